@@ -1,0 +1,108 @@
+"""Checks that stand at the doors: each adds its sentence to a list, so that a report names every problem.
+
+A check returns the value as the rest of the program holds it (floats, tuples), or a harmless one after a
+problem was noted.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import math
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from autocolor.errors import InputError
+
+Vector = tuple[float, float, float]
+Color = tuple[int, int, int]
+
+LARGEST_COORDINATE = 1e30
+"""Assumed: far beyond any object, and its square is still far from the end of the float64 range."""
+
+COLOR_PATTERN = re.compile(r"#[0-9a-fA-F]{6}")
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """A clause that names the nearest right name, or all of them when few, or nothing."""
+    names = list(names)
+    close = [known for known in names if known.startswith(name)] or difflib.get_close_matches(name, names, n=1)
+    if close:
+        return f"; did you mean {close[0]!r}?"
+    if 0 < len(names) <= 12:
+        return f"; known are {', '.join(map(repr, names))}"
+    return ""
+
+
+def known_fields(
+    cls: type, changes: Mapping[str, Any], place: str, suggested: Iterable[str] = ()
+) -> dict[str, Any]:
+    """The changes as a dictionary, when each names a field of the dataclass; else InputError.
+
+    `suggested` are the names to choose the nearest right one from, where they are more than the fields.
+    """
+    fields = [field.name for field in dataclasses.fields(cls)]
+    names = list(suggested) or fields
+    unknown = [name for name in changes if name not in fields]
+    if unknown:
+        raise InputError([f"{place}: there is no {name!r}{nearest(name, names)}" for name in unknown])
+    return dict(changes)
+
+
+def finite(
+    problems: list[str], what: str, value: object, *, at_least: float = -math.inf, at_most: float = math.inf
+) -> float:
+    """The value as a float, when it is a finite number within the bounds."""
+    rule = "must be a finite number"
+    if at_least > -math.inf and at_most < math.inf:
+        rule = f"must be a number from {at_least:g} to {at_most:g}"
+    elif at_least > -math.inf:
+        rule = f"must be a finite number of at least {at_least:g}"
+    try:
+        number = float(value) if not isinstance(value, (bool, str, bytes)) else math.nan  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not (math.isfinite(number) and at_least <= number <= at_most):
+        problems.append(f"{what} {rule}, not {value!r}")
+        return max(0.0, at_least)
+    return number
+
+
+def vector(problems: list[str], what: str, value: object, *, not_zero: bool = False) -> Vector:
+    """The value as three floats, when it is three finite numbers (and not all zero, where that is asked)."""
+    try:
+        components = [float(component) for component in value]  # type: ignore[attr-defined]
+        if isinstance(value, (str, bytes)) or any(isinstance(component, bool) for component in value):  # type: ignore[attr-defined]
+            components = []
+    except (TypeError, ValueError, OverflowError):
+        components = []
+    if len(components) != 3 or not all(abs(component) <= LARGEST_COORDINATE for component in components):
+        problems.append(f"{what} must be three finite numbers of at most 1e30, not {value!r}")
+        return (0.0, 0.0, 1.0)
+    if not_zero and not any(components):
+        problems.append(f"{what} must not be zero, not {value!r}; give it a length")
+        return (0.0, 0.0, 1.0)
+    return (components[0], components[1], components[2])
+
+
+def switch(problems: list[str], what: str, value: object) -> None:
+    """Note a problem unless the value is true or false."""
+    if not isinstance(value, bool):
+        problems.append(f"{what} must be true or false, not {value!r}")
+
+
+def color(problems: list[str], what: str, value: object) -> Color:
+    """The value as red, green and blue from 0 to 255, when it is "#rrggbb" or three whole numbers."""
+    if isinstance(value, str) and COLOR_PATTERN.fullmatch(value):
+        return (int(value[1:3], 16), int(value[3:5], 16), int(value[5:7], 16))
+    try:
+        parts = [] if isinstance(value, (str, bytes)) else [int(part) for part in value]  # type: ignore[attr-defined]
+        if [part != whole for part, whole in zip(value, parts, strict=True)].count(True):  # type: ignore[call-overload]
+            parts = []
+    except (TypeError, ValueError, OverflowError):
+        parts = []
+    if len(parts) != 3 or not all(0 <= part <= 255 for part in parts):
+        problems.append(f'{what} must be "#rrggbb" or three whole numbers from 0 to 255, not {value!r}')
+        return (0, 0, 0)
+    return (parts[0], parts[1], parts[2])

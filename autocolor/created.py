@@ -1,0 +1,113 @@
+"""The auxiliary tables that are created when they are not given.
+
+Paper: "Introduction": tables with the part, surface and lighting parameters can be supplied as input or
+created automatically by the system as they are needed. Assumed: everything about how they look.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.lights import Light
+from autocolor.tables import Mesh, Paint, Part, Surface
+from autocolor.view import View
+
+FILLED = 0.86
+"""Assumed: the fraction of the picture's width or height that a framed object fills."""
+
+ASPECT = 640 / 480
+
+OBJECT_COLORS = (
+    "#b3202c", "#2f5fa8", "#c9a227", "#3f7f4f", "#7d4a94", "#c8642c",
+    "#3a8c92", "#a8426a", "#7c8a3a", "#5561a8", "#8c5a3c", "#8a949e",
+)  # fmt: skip
+"""Assumed: paints that can be told apart on one screen, given to the surfaces in turn."""
+
+
+def created_parts(mesh: Mesh, surface_of_part: dict[str, str]) -> tuple[Part, ...]:
+    """A part for each group of the mesh, with the surface that is named for it, else the one of its name."""
+    return tuple(Part(name, surface_of_part.get(name, name)) for name in mesh.part_names)
+
+
+def created_surface(name: str, number: int) -> Surface:
+    """A glossy paint, the color chosen by the surface's number, counted from 0."""
+    return Surface(name, paint=Paint(object_color=OBJECT_COLORS[number % len(OBJECT_COLORS)]))  # type: ignore[arg-type]
+
+
+def created_view(mesh: Mesh) -> View:
+    """A view from the front left and somewhat above, as near as the whole object stays in the picture."""
+    azimuth, elevation = math.radians(-125.0), math.radians(18.0)
+    toward_eye = (
+        math.cos(elevation) * math.cos(azimuth),
+        math.cos(elevation) * math.sin(azimuth),
+        math.sin(elevation),
+    )
+    return framed(View(eye=toward_eye, target=(0.0, 0.0, 0.0)), mesh)
+
+
+def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
+    """The view moved, not turned, so that the object fills the picture with space left on all sides.
+
+    Paper: Figure 5, RESCALE.
+    """
+    low, high = mesh.bounds
+    axes = view.axes
+    if not len(mesh.node_numbers) or (low == high).all():
+        points: npt.NDArray[np.float64] = np.array([low - 0.5, high + 0.5])
+    else:
+        points = mesh.coordinates[np.unique(mesh.node_numbers)]
+    middle = (low + high) / 2
+    places = (points - middle) @ axes.T
+    size = float(np.abs(places).max())
+
+    # A point is within the picture where |across - shift| <= slope (depth + distance). Both bounds together
+    # give the shift and the least distance for each direction; the larger distance serves both.
+    slope_down = filled * math.tan(math.radians(view.field_of_view) / 2)
+    slopes = (slope_down * ASPECT, slope_down)
+    shifts, distances = [], []
+    for across, slope in zip(places.T[:2], slopes, strict=True):
+        least = float((across + slope * places[:, 2]).min())
+        most = float((across - slope * places[:, 2]).max())
+        shifts.append((least + most) / 2)
+        distances.append((most - least) / (2 * slope))
+    distance = max(*distances, size * 1e-3 - float(places[:, 2].min()))
+    eye = middle + axes.T @ np.array([*shifts, -distance])
+    forward = axes[2]
+    return view.replace(eye=tuple(eye), direction=tuple(forward))
+
+
+def created_lights(mesh: Mesh, view: View) -> tuple[Light, ...]:
+    """Four studio lights around the object, aimed at it, placed as seen from the eye.
+
+    Key from the upper left, fill from the right, top from above, rim from behind: as around a car in a
+    photographer's studio (Paper: "Light Controls").
+    """
+    low, high = mesh.bounds
+    middle = (low + high) / 2
+    radius = max(float(np.linalg.norm(high - low)) / 2, 1e-30) or 1.0
+    right, down, forward = view.axes
+    if abs(forward[2]) > 0.99:
+        up, ahead = -down, forward
+    else:
+        up = np.array([0.0, 0.0, 1.0])
+        ahead = np.array([forward[0], forward[1], 0.0])
+        ahead /= np.linalg.norm(ahead)
+        right = np.cross(ahead, up)
+
+    def light(
+        name: str, to_right: float, to_up: float, to_eye: float, intensity: float, concentration: float
+    ) -> Light:
+        place = middle + radius * (to_right * right + to_up * up - to_eye * ahead)
+        return Light(
+            name, tuple(place.tolist()), intensity, aim=tuple(middle.tolist()), concentration=concentration
+        )  # fmt: skip
+
+    return (
+        light("key", -1.8, 2.0, 1.9, 1.0, 2.0),
+        light("fill", 2.6, 0.7, 1.4, 0.35, 1.0),
+        light("top", 0.3, 3.2, -0.3, 0.5, 3.0),
+        light("rim", 1.0, 1.4, -2.8, 0.5, 2.0),
+    )

@@ -1,0 +1,214 @@
+"""The scene: the tables, the lights, the ambient term and the view, and how intensities are shown.
+
+A scene never changes. An edit is a new scene that shares all it did not change, so that comparing the
+tables of two scenes tells what must be computed again.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from autocolor.checks import Color, color, finite, known_fields, nearest
+from autocolor.created import created_lights, created_parts, created_surface, created_view
+from autocolor.errors import InputError, UsageError
+from autocolor.lights import Light
+from autocolor.tables import MOST_SURFACES, Mesh, Part, Surface
+from autocolor.view import View
+
+SCALINGS = ("surface", "object")
+MAPPINGS = ("linear", "gamma", "logarithm", "equalize")
+CONTRASTS = ("stretch", "floor")
+
+Curve = tuple[tuple[float, float], ...]
+Row = TypeVar("Row", Part, Surface, Light)
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Everything that makes a picture, and everything that colors it; `scene_of` creates what is missing.
+
+    There is one part for each of the mesh's part names, in their order, and a surface for each name that a
+    part has. `ambient` is an intensity of at least 0. `scaling` says whose minimum and maximum are mapped:
+    each "surface" its own, or the whole "object". `mapping` is "linear", "gamma", "logarithm", "equalize" or
+    points (x, y) of a rising curve from x = 0 to x = 1. `contrast` is "stretch" (the lowest level is black)
+    or "floor" (the lowest level is as bright as its intensity). `background` is the color of word 0.
+
+    Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
+    """
+
+    mesh: Mesh
+    parts: tuple[Part, ...]
+    surfaces: tuple[Surface, ...]
+    lights: tuple[Light, ...]
+    view: View
+    ambient: float = 0.1
+    scaling: str = "surface"
+    mapping: str | Curve = "linear"
+    contrast: str = "stretch"
+    background: Color = (0, 0, 0)
+    name: str = "scene"
+
+    def __post_init__(self) -> None:
+        problems: list[str] = []
+        for table in ("parts", "surfaces", "lights"):
+            object.__setattr__(self, table, tuple(getattr(self, table)))
+            problems.extend(_repeated(table, [row.name for row in getattr(self, table)]))
+        object.__setattr__(self, "ambient", finite(problems, "ambient", self.ambient, at_least=0.0))
+        object.__setattr__(self, "background", color(problems, "background", self.background))
+        for what, value, known in (
+            ("scaling", self.scaling, SCALINGS),
+            ("contrast", self.contrast, CONTRASTS),
+        ):
+            if value not in known:
+                problems.append(f"{what} must be {' or '.join(map(repr, known))}, not {value!r}")
+        object.__setattr__(self, "mapping", _mapping(problems, self.mapping))
+        problems.extend(self._table_problems())
+        if problems:
+            raise InputError(problems)
+
+    def _table_problems(self) -> list[str]:
+        problems = []
+        part_names = [part.name for part in self.parts]
+        if part_names != list(self.mesh.part_names):
+            problems.append(
+                f"the part table must have the mesh's parts in their order {list(self.mesh.part_names)}, not"
+                f" {part_names}"
+            )
+        surface_names = [surface.name for surface in self.surfaces]
+        for part in self.parts:
+            if part.surface not in surface_names:
+                problems.append(
+                    f"part {part.name!r}: surface {part.surface!r} is not in the surface table"
+                    f"{nearest(part.surface, surface_names)}"
+                )
+        if len(self.surfaces) > MOST_SURFACES:
+            problems.append(
+                f"a scene must have at most {MOST_SURFACES} surfaces, not {len(self.surfaces)}; let parts share"
+                " a surface"
+            )
+        return problems
+
+    def replace(self, **changes: Any) -> Scene:
+        """The scene with some fields changed."""
+        return dataclasses.replace(self, **known_fields(Scene, changes, "scene"))
+
+    def light(self, name: str) -> Light:
+        """The light of that name; UsageError with the nearest right name when there is none."""
+        return _row("light", self.lights, name)
+
+    def surface(self, name: str) -> Surface:
+        """The surface of that name; UsageError with the nearest right name when there is none."""
+        return _row("surface", self.surfaces, name)
+
+    def part(self, name: str) -> Part:
+        """The part of that name; UsageError with the nearest right name when there is none."""
+        return _row("part", self.parts, name)
+
+    def with_light(self, name: str, **changes: Any) -> Scene:
+        """The scene with some fields of one light changed."""
+        return self.replace(lights=_changed(self.lights, self.light(name), changes))
+
+    def with_surface(self, name: str, **changes: Any) -> Scene:
+        """The scene with some fields of one surface changed, its reflectance and paint among them."""
+        return self.replace(surfaces=_changed(self.surfaces, self.surface(name), changes))
+
+    def with_part(self, name: str, **changes: Any) -> Scene:
+        """The scene with some fields of one part changed."""
+        return self.replace(parts=_changed(self.parts, self.part(name), changes))
+
+    def with_view(self, **changes: Any) -> Scene:
+        """The scene with some fields of the view changed."""
+        return self.replace(view=self.view.replace(**changes))
+
+    def only_lights(self, *names: str) -> Scene:
+        """The scene with the named lights on and all others off (Paper: Figure 8)."""
+        wanted = [self.light(name).name for name in names]
+        return self.replace(lights=tuple(light.replace(on=light.name in wanted) for light in self.lights))
+
+    @property
+    def surface_number_of_part(self) -> tuple[int, ...]:
+        """The surface number, counted from 1, of each part."""
+        number = {surface.name: row + 1 for row, surface in enumerate(self.surfaces)}
+        return tuple(number[part.surface] for part in self.parts)
+
+    def __repr__(self) -> str:
+        return (
+            f"Scene({self.name!r}: {self.mesh!r}, {len(self.surfaces)} surfaces, {len(self.lights)} lights)"
+        )  # fmt: skip
+
+
+def scene_of(
+    mesh: Mesh,
+    *,
+    surface_of_part: dict[str, str] | None = None,
+    surfaces: Sequence[Surface] | None = None,
+    lights: Sequence[Light] | None = None,
+    view: View | None = None,
+    **fields: Any,
+) -> Scene:
+    """A scene of a mesh, with every table that is not given created.
+
+    A part takes the surface that `surface_of_part` names, else the surface of its own name, else one that
+    is created for it. Where that would be more surfaces than numbers, the parts past them share the last.
+    `fields` are the other fields of Scene. Raises InputError.
+    """
+    given = list(surfaces or ())
+    parts = list(created_parts(mesh, surface_of_part or {}))
+    names = {surface.name: None for surface in given} | {part.surface: None for part in parts}
+    kept = list(names)[:MOST_SURFACES]
+    if len(names) > MOST_SURFACES and len(given) < MOST_SURFACES:
+        parts = [part if part.surface in kept else part.replace(surface=kept[-1]) for part in parts]
+    table = {surface.name: surface for surface in given}
+    # A part that names a surface of another name than its own must name one that is given.
+    named = set((surface_of_part or {}).values())
+    for number, name in enumerate(kept):
+        if name not in table and (name not in named or name in mesh.part_names):
+            table[name] = created_surface(name, number)
+    view = created_view(mesh) if view is None else view
+    return Scene(
+        mesh,
+        tuple(parts),
+        tuple(table.values()) if len(given) == len({surface.name for surface in given}) else tuple(given),
+        created_lights(mesh, view) if lights is None else tuple(lights),
+        view,
+        **known_fields(Scene, fields, "scene"),
+    )
+
+
+def _row(kind: str, rows: Sequence[Row], name: str) -> Row:
+    for row in rows:
+        if row.name == name:
+            return row
+    raise UsageError(f"there is no {kind} {name!r}{nearest(str(name), [row.name for row in rows])}")
+
+
+def _changed(rows: tuple[Row, ...], row: Row, changes: dict[str, Any]) -> tuple[Row, ...]:
+    changed = row.replace(**changes)
+    return tuple(changed if other is row else other for other in rows)
+
+
+def _repeated(table: str, names: list[str]) -> list[str]:
+    repeated = dict.fromkeys(name for name in names if names.count(name) > 1)
+    return [f"{table}: a name must stand once, not repeated: {name!r}; rename one" for name in repeated]
+
+
+def _mapping(problems: list[str], mapping: object) -> str | Curve:
+    """The mapping, when it is a known name or points of a curve that never falls."""
+    rule = f"mapping must be {', '.join(map(repr, MAPPINGS))}, or rising points [x, y] from x = 0 to x = 1"
+    if isinstance(mapping, str):
+        if mapping not in MAPPINGS:
+            problems.append(f"{rule}, not {mapping!r}{nearest(mapping, MAPPINGS)}")
+        return mapping
+    try:
+        points = tuple((float(x), float(y)) for x, y in mapping)  # type: ignore[attr-defined]
+    except (TypeError, ValueError, OverflowError):
+        points = ()
+    across, up = [x for x, _ in points], [y for _, y in points]
+    rising = all(a < b for a, b in zip(across, across[1:], strict=False)) and up == sorted(up)
+    if len(points) < 2 or across[0] != 0 or across[-1] != 1 or not rising or not 0 <= up[0] <= up[-1] <= 1:
+        problems.append(f"{rule}, not {mapping!r}")
+        return "linear"
+    return points
