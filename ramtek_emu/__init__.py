@@ -1,0 +1,77 @@
+"""An emulator of the RAMTEK RM-9300 raster display, driven by the 16-bit words that its programs sent.
+
+What is modelled
+    the instruction stream: one continuous row of words, cut anywhere, with its sticky operands
+    the frame buffer: ten planes behind a write mask, windows, eight scan orders
+    the video lookup table: 1024 parallel entries of 24 bits, or of 12
+    the characters: a 7 x 9 cell, dots of our own drawing, reloadable
+    scan-out: words through the table to a field of colors
+    the switches of the unit as status bits: illegal instruction
+
+What is **not** modelled
+    time: an instruction is done when `send` returns; no source gives a rate
+    the monitor's beam: no interlace, no blanking, no phosphor
+    the UNIBUS registers: a host port of two methods stands for them
+    interrupts: their request bits can be read, nothing is interrupted
+
+The sources are named by keys: LIN (Linton's C library for the Princeton RM-9300, 1978), PRG (the Princeton
+and Cincinnati programs), BTL (the Bell Labs plot library), PIC (Bell Labs pico and rebecca), V8K (the Bell
+Labs VAX driver), JPL (the VICAR driver of the RM-9460), NCAR (its opcode header and client), LONG (the
+LONGLIB manual), ASF (the Alaska SAR facility) and GM (Warn, "Lighting Controls for Synthetic Images",
+SIGGRAPH 1983).
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .configuration import GMR_9300 as GMR_9300
+    from .configuration import PRINCETON_9300 as PRINCETON_9300
+    from .configuration import Configuration as Configuration
+    from .configuration import EntryFormat as EntryFormat
+    from .display import Ramtek9300 as Ramtek9300
+    from .errors import ColorsError as ColorsError
+    from .errors import ConfigurationError as ConfigurationError
+    from .errors import InstructionError as InstructionError
+    from .errors import NoScreenError as NoScreenError
+    from .errors import OutputExistsError as OutputExistsError
+    from .errors import RamtekError as RamtekError
+    from .errors import ReplyError as ReplyError
+    from .errors import WordsError as WordsError
+    from .errors import WriteError as WriteError
+    from .host_port import HostPort as HostPort
+    from .host_port import Recorder as Recorder
+
+_HOME = {
+    "ColorsError": "errors",
+    "Configuration": "configuration",
+    "ConfigurationError": "errors",
+    "EntryFormat": "configuration",
+    "GMR_9300": "configuration",
+    "HostPort": "host_port",
+    "InstructionError": "errors",
+    "NoScreenError": "errors",
+    "OutputExistsError": "errors",
+    "PRINCETON_9300": "configuration",
+    "RamtekError": "errors",
+    "Ramtek9300": "display",
+    "Recorder": "host_port",
+    "ReplyError": "errors",
+    "WordsError": "errors",
+    "WriteError": "errors",
+}
+
+__all__ = list(_HOME)
+
+
+def __getattr__(name: str) -> object:
+    """A public name, from the module that defines it; loaded when it is first asked for."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value: object = getattr(import_module(f".{_HOME[name]}", __name__), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,97 @@
+"""The checks at the door for Python callers: words, colors and places.
+
+Hardware drops what does not fit; a program that hands over numbers is better told which one is wrong.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import ColorsError, WordsError
+from .scan_orders import Window
+
+
+def whole_numbers(
+    values: object, thing: str, error: type[WordsError] | type[ColorsError]
+) -> NDArray[np.integer]:
+    """The values as an array of whole numbers; `error` when they are anything else."""
+    try:
+        array = np.asarray(values)
+    except (ValueError, TypeError, OverflowError) as cause:
+        raise error(
+            f"{thing} must be an array of whole numbers, not {type(values).__name__}; pass a numpy array"
+        ) from cause
+    if array.size == 0 and array.dtype.kind == "f":
+        array = array.astype(np.uint16)
+    if array.dtype.kind not in "ui":
+        raise error(f"{thing} must be whole numbers, not {array.dtype}; convert them first, rounding half up")
+    return array
+
+
+def checked_words(words: object, planes: int = 10) -> NDArray[np.uint16]:
+    """(lines, elements) words as uint16, none of them beyond the planes.
+
+    >>> checked_words([[1024]])
+    Traceback (most recent call last):
+    ramtek_emu.errors.WordsError: a word must be 0 to 1023, not 1024 (line 0, element 0); use fewer levels
+    """
+    array = whole_numbers(words, "words", WordsError)
+    if array.ndim != 2 or 0 in array.shape:
+        raise WordsError(
+            f"words must be a (lines, elements) array with at least one of each, not of shape {array.shape}; "
+            "pass words[np.newaxis] for one line"
+        )
+    largest = (1 << planes) - 1
+    if array.max() > largest or (array.dtype.kind == "i" and array.min() < 0):
+        line, element = np.argwhere((array < 0) | (array > largest))[0]
+        raise WordsError(
+            f"a word must be 0 to {largest}, not {array[line, element]} "
+            f"(line {line}, element {element}); use fewer levels"
+        )
+    return array.astype(np.uint16, copy=False)
+
+
+def checked_stream(words: object) -> NDArray[np.uint16]:
+    """A flat row of 16-bit words as a host sends them; uint16 arrays are taken as they are."""
+    array = whole_numbers(words, "a stream of words", WordsError)
+    if array.ndim != 1:
+        raise WordsError(f"a stream of words must be one row, not of shape {array.shape}; flatten it first")
+    if array.dtype != np.uint16 and array.size and (array.max() > 0xFFFF or array.min() < 0):
+        (place,) = np.argwhere((array < 0) | (array > 0xFFFF))[0]
+        raise WordsError(
+            f"a word of a stream must be 0 to 65535, not {array[place]} (word {place}); mask it to 16 bits"
+        )
+    return array.astype(np.uint16, copy=False)
+
+
+def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[np.uint8]:
+    """(n, 3) colors as uint8, for the entries from `first` on."""
+    array = whole_numbers(colors, "colors", ColorsError)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ColorsError(
+            f"colors must be an (n, 3) array of red, green, blue, not of shape {array.shape}; reshape it"
+        )
+    if isinstance(first, bool) or not isinstance(first, int | np.integer) or not 0 <= first < entries:
+        raise ColorsError(
+            f"the first entry must be 0 to {entries - 1}, not {first!r}; choose an entry of the table"
+        )
+    if first + len(array) > entries:
+        raise ColorsError(
+            f"a run of entries must end at {entries - 1}, not {first + len(array) - 1} "
+            f"({len(array)} from {first} on); send fewer"
+        )
+    if array.size and (array.max() > 255 or array.min() < 0):
+        row, column = np.argwhere((array < 0) | (array > 255))[0]
+        raise ColorsError(
+            f"a color must be 0 to 255, not {array[row, column]} "
+            f"(entry {first + row}, {('red', 'green', 'blue')[column]}); clip it first"
+        )
+    return array.astype(np.uint8, copy=False)
+
+
+def checked_place(place: Window, memory: Window, thing: str) -> None:
+    """Refuse a window that is not wholly in the memory."""
+    if place.intersection(memory) != place:
+        raise WordsError(
+            f"{thing} must lie within elements 0 to {memory.right} and lines 0 to {memory.bottom}, "
+            f"not {place.left} to {place.right} and {place.top} to {place.bottom}; move it or cut it"
+        )

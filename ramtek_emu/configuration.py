@@ -1,0 +1,95 @@
+"""Configuration: the sizes and formats of one display; the named ones carry the source of every number.
+
+>>> GMR_9300.elements, GMR_9300.lines, GMR_9300.largest_word
+(640, 480, 1023)
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from .errors import ConfigurationError
+
+
+class EntryFormat(Enum):
+    """How an entry of the lookup table travels in words."""
+
+    PAIR_24 = "two words an entry: green << 8 | blue, then red"
+    """Hardware: JPL, NCAR."""
+    WORD_12 = "one word an entry: red << 8 | green << 4 | blue, four bits each"
+    """Hardware: LIN, BTL."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Configuration:
+    """The sizes of a display; the part of the memory that is shown starts at line 0, element 0."""
+
+    name: str
+    elements: int
+    lines: int
+    planes: int
+    visible_elements: int | None = None
+    visible_lines: int | None = None
+    entries: int = 1024
+    entry_format: EntryFormat = EntryFormat.PAIR_24
+    extended: bool = True
+    """Whether the 9400/9460 instructions and the second operand flag word are there."""
+
+    def __post_init__(self) -> None:
+        limits = {
+            "elements": (self.elements, 1, 4096),
+            "lines": (self.lines, 1, 4096),
+            "planes": (self.planes, 1, 16),
+            "visible_elements": (self.shown_elements, 1, self.elements),
+            "visible_lines": (self.shown_lines, 1, self.lines),
+        }
+        for name, (value, least, most) in limits.items():
+            if not isinstance(value, int) or not least <= value <= most:
+                raise ConfigurationError(
+                    f"{name} must be a whole number from {least} to {most}, not {value!r} "
+                    f"(configuration {self.name!r}); choose another size"
+                )
+        if not isinstance(self.entries, int) or self.entries not in (256, 512, 1024, 2048, 4096):
+            raise ConfigurationError(
+                f"entries must be 256, 512, 1024, 2048 or 4096, not {self.entries!r} "
+                f"(configuration {self.name!r}); choose one of them"
+            )
+
+    @property
+    def shown_elements(self) -> int:
+        """Elements of a line on the screen, before any zoom."""
+        return self.elements if self.visible_elements is None else self.visible_elements
+
+    @property
+    def shown_lines(self) -> int:
+        """Lines on the screen, before any zoom."""
+        return self.lines if self.visible_lines is None else self.visible_lines
+
+    @property
+    def largest_word(self) -> int:
+        """The largest number that a pixel holds; its bits are the planes."""
+        return (1 << self.planes) - 1
+
+
+GMR_9300 = Configuration(name="GMR_9300", elements=640, lines=480, planes=10)
+"""The display of the paper.
+
+Hardware: GM, 640 x 480 words of ten bits, one parallel table of 1024 x 24 bits.
+Assumed: the table takes the word pairs of the 9460, the same family and the same number of entries; no source
+shows a 9300 with a 24-bit table.
+Departs: the 9300 had no second operand flag word and no 9460 instructions; this display takes them, so that
+the programs of the whole family run on it. PRINCETON_9300 is the strict one.
+"""
+
+PRINCETON_9300 = Configuration(
+    name="PRINCETON_9300",
+    elements=640,
+    lines=512,
+    planes=10,
+    entry_format=EntryFormat.WORD_12,
+    extended=False,
+)
+"""The RM-9300 of Princeton University.
+
+Hardware: LIN and PRG, 640 x 512 memory, 1024 entries of 12 bits, words of ten bits (cmap 3).
+Assumed: all 640 elements are shown; the programs kept to 620, probably because the monitor cut the rest.
+"""

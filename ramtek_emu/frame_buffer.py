@@ -1,0 +1,163 @@
+"""FrameBuffer: the words of the picture, behind a write mask and a write window.
+
+What is modelled: planes, the mask, the clipping of whatever lies outside the memory, the eight scan orders,
+a count of the words ever written. What is **not**: the time that a write takes, memory outside the raster.
+
+Words from the wire lose the bits beyond the planes; words from Python are refused when they have some.
+Hardware: LIN, JPL (mask, runs in a window); GM (ten planes).
+Assumed: what is read where there is no memory is 0.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .checks import checked_place, checked_words
+from .configuration import GMR_9300, Configuration
+from .scan_orders import SCAN_ORDERS, Block, Point, ScanOrder, Window, blocks
+
+Words = NDArray[np.uint16]
+Dots = NDArray[np.bool_]
+
+
+class WriteEnable(NamedTuple):
+    """What a write may change: the planes of a mask, within a window."""
+
+    mask: int = 0xFFFF
+    window: Window = Window(-0x8000, -0x8000, 0x7FFF, 0x7FFF)
+
+
+EVERYTHING = WriteEnable()
+NORMAL_ORDER = SCAN_ORDERS[0]
+
+
+class FrameBuffer:
+    """The memory of the picture: (lines, elements) words."""
+
+    def __init__(self, configuration: Configuration = GMR_9300) -> None:
+        self.planes = configuration.planes
+        self.window = Window(0, 0, configuration.elements - 1, configuration.lines - 1)
+        self.written = 0
+        """Words ever written; it only grows."""
+        self._every_plane = configuration.largest_word
+        self._words: Words = np.zeros((configuration.lines, configuration.elements), np.uint16)
+        self.words: Words = self._words.view()
+        """The words, (lines, elements) uint16, read-only; always the present ones."""
+        self.words.flags.writeable = False
+
+    def write(self, words: object, left: int = 0, top: int = 0) -> None:
+        """Write a (lines, elements) array from Python; WordsError when a word or the place does not fit."""
+        block = checked_words(words, self.planes)
+        place = NORMAL_ORDER.block_window(Point(left, top), block.shape[1], block.shape[0])
+        checked_place(place, self.window, "the words' window")
+        self._store(place, NORMAL_ORDER, block, EVERYTHING)
+
+    def fill(self, window: Window, word: int, enable: WriteEnable = EVERYTHING) -> None:
+        """Write one word to every pixel of a window."""
+        self._store(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable)
+
+    def write_run(
+        self, window: Window, order: ScanOrder, start: Point, words: Words, enable: WriteEnable = EVERYTHING
+    ) -> Point:
+        """Write words along the scan of a window from a point on; returns the point after the last one."""
+        size = window.width * window.height
+        if size == 0:
+            return start
+        position = starting_position(window, order, start)
+        # Only the last time around the window leaves anything behind.
+        skipped = max(0, len(words) - size)
+        for block in blocks(window, order, (position + skipped) % size, len(words) - skipped):
+            first = skipped + block.first
+            data = words[first : first + block.inner * block.outer].reshape(block.outer, block.inner)
+            self.write_block(block.start, order, data, enable)
+        return order.point(window, (position + len(words)) % size)
+
+    def read_run(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
+        """`count` words along the scan of a window from a point on, and the point after the last one."""
+        words = np.zeros(count, np.uint16)
+        size = window.width * window.height
+        if size == 0:
+            return words, start
+        position = starting_position(window, order, start)
+        for block in blocks(window, order, position, count):
+            out = words[block.first : block.first + block.inner * block.outer]
+            self._load(block, order, out.reshape(block.outer, block.inner))
+        return words, order.point(window, (position + count) % size)
+
+    def write_block(
+        self,
+        start: Point,
+        order: ScanOrder,
+        block: Words,
+        enable: WriteEnable = EVERYTHING,
+        dots: Dots | None = None,
+    ) -> None:
+        """Write an [outer, inner] block from its first point on; where `dots` are given, only those."""
+        place = order.block_window(start, block.shape[1], block.shape[0])
+        self._store(place, order, block, enable, dots)
+
+    def write_points(
+        self, elements: NDArray[np.intp], lines: NDArray[np.intp], word: int, enable: WriteEnable = EVERYTHING
+    ) -> None:
+        """Write one word to each of the points that lie inside."""
+        inside = enable.window.intersection(self.window)
+        seen = (elements >= inside.left) & (elements <= inside.right)
+        seen &= (lines >= inside.top) & (lines <= inside.bottom)
+        places = (lines[seen], elements[seen])
+        mask = enable.mask & self._every_plane
+        if mask:
+            kept = self._words[places] & np.uint16(~mask & 0xFFFF)
+            self._words[places] = kept | np.uint16(word & mask)
+            self.written += len(places[0])
+
+    def _store(
+        self,
+        place: Window,
+        order: ScanOrder,
+        block: Words | np.uint16,
+        enable: WriteEnable,
+        dots: Dots | None = None,
+    ) -> None:
+        clipped = place.intersection(self.window).intersection(enable.window)
+        mask = enable.mask & self._every_plane
+        if not (clipped.width and clipped.height and mask):
+            return
+        memory = order.oriented(
+            self._words[clipped.top : clipped.bottom + 1, clipped.left : clipped.right + 1]
+        )
+        if clipped != place:
+            part = part_of(place, clipped, order)
+            block = block[part] if isinstance(block, np.ndarray) else block
+            dots = None if dots is None else dots[part]
+        if mask == self._every_plane and dots is None:
+            # The plain case: one pass that copies and drops the bits beyond the planes.
+            np.bitwise_and(block, np.uint16(mask), out=memory)
+            self.written += memory.size
+            return
+        mixed = (memory & np.uint16(~mask & 0xFFFF)) | (block & np.uint16(mask))
+        np.copyto(memory, mixed, where=True if dots is None else dots)
+        self.written += memory.size if dots is None else int(np.count_nonzero(dots))
+
+    def _load(self, block: Block, order: ScanOrder, out: Words) -> None:
+        place = order.block_window(block.start, block.inner, block.outer)
+        clipped = place.intersection(self.window)
+        if clipped.width and clipped.height:
+            memory = self._words[clipped.top : clipped.bottom + 1, clipped.left : clipped.right + 1]
+            out[part_of(place, clipped, order)] = order.oriented(memory)
+
+
+def part_of(place: Window, clipped: Window, order: ScanOrder) -> tuple[slice, slice]:
+    """The [outer, inner] part of a block at `place` that covers `clipped`."""
+    across = place.right - clipped.right if order.leftward else clipped.left - place.left
+    down = place.bottom - clipped.bottom if order.upward else clipped.top - place.top
+    elements, lines = slice(across, across + clipped.width), slice(down, down + clipped.height)
+    return (elements, lines) if order.vertical else (lines, elements)
+
+
+def starting_position(window: Window, order: ScanOrder, start: Point) -> int:
+    """The position of a point in the scan of a window.
+
+    Assumed: a point outside the window starts at the window's first corner; the sources never do it.
+    """
+    return order.position(window, start) if window.holds(start) else 0

@@ -1,0 +1,129 @@
+"""Instruction, one value: its row of the table, its operands and its data; and its words.
+
+>>> str(normal("SET", {"foreground": 1}))
+'SET  foreground 1'
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import InstructionError
+from .instruction_set import FORM_OF_NAME, ILLEGAL, OPERANDS, OPERANDS_1, OPERANDS_2, Flags, Form
+
+Words = NDArray[np.uint16]
+Numbers = int | Sequence[int]
+"""An operand's value: one number, or as many as it has words."""
+NO_WORDS: Words = np.zeros(0, np.uint16)
+MOST_BYTES = 0xFFFF
+"""The longest data field: its length is one word."""
+
+
+@dataclass(frozen=True, eq=False)
+class Instruction:
+    """One instruction: its row of the table, its low byte, its operands as words, its data."""
+
+    form: Form
+    low_byte: int = 0
+    operands: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    length: int | None = None
+    """Bytes of data, None without a data field."""
+    data: Words = field(default_factory=lambda: NO_WORDS)
+
+    @property
+    def flags(self) -> Flags:
+        """The low byte of a normal instruction."""
+        return Flags(self.low_byte)
+
+    def data_bytes(self) -> bytes:
+        """The data as bytes: high byte first, low byte first with reverse packing; a pad byte is left out."""
+        packed = self.data.astype("<u2" if self.low_byte & Flags.REVERSE_PACKING else ">u2")
+        return packed.tobytes()[: self.length]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Instruction) and np.array_equal(encode(self), encode(other))
+
+    def __hash__(self) -> int:
+        return hash(encode(self).tobytes())
+
+    def __str__(self) -> str:
+        operands = [f"{name} {', '.join(map(str, words))}" for name, words in self.operands.items()]
+        low = [f"{self.low_byte:02X}h"] if self.low_byte else []
+        if self.form.is_normal and self.low_byte & 0xF8:
+            low = ["|".join(flag.name or "" for flag in Flags(self.low_byte & 0xF8))]
+        elif self.form.is_normal:
+            low = []
+        length = [] if self.length is None else [f"{self.length} bytes"]
+        return f"{self.form.name:<5}{'; '.join(low + operands + length)}".rstrip()
+
+
+def encode(instruction: Instruction) -> Words:
+    """The words of an instruction."""
+    form = instruction.form
+    if form is ILLEGAL:
+        return np.array(instruction.operands["word"], np.uint16)
+    head = [form.opcode << 8 | instruction.low_byte]
+    if form.is_normal:
+        flag_words = [
+            sum(1 << bit for bit, operand in enumerate(operands) if operand.name in instruction.operands)
+            for operands in (OPERANDS_1, OPERANDS_2)
+        ]
+        # A flag word that announces nothing is sent when its flag says so.
+        for flag, word in zip((Flags.OPERANDS_1, Flags.OPERANDS_2), flag_words, strict=True):
+            if instruction.low_byte & flag:
+                head.append(word)
+        for operand in OPERANDS_1 + OPERANDS_2:
+            head.extend(instruction.operands.get(operand.name, ()))
+        if instruction.length is not None:
+            head.append(instruction.length)
+    else:
+        for name in form.fixed or ():
+            head.extend((instruction.length or 0,) if name == "length" else instruction.operands[name])
+    return np.concatenate((np.array(head, np.uint16), instruction.data))
+
+
+def normal(
+    name: str,
+    operands: Mapping[str, Numbers | None],
+    data: Words = NO_WORDS,
+    length: int | None = None,
+    flags: int = 0,
+) -> Instruction:
+    """A normal instruction from named operands; numbers from -32768 to 65535 are sent as 16 bits."""
+    named = {key: operand_words(key, value) for key, value in operands.items() if value is not None}
+    if any(operand.name in named for operand in OPERANDS_1):
+        flags |= Flags.OPERANDS_1
+    if any(operand.name in named for operand in OPERANDS_2):
+        flags |= Flags.OPERANDS_2
+    if length is None and len(data):
+        length = 2 * len(data)
+    if length is not None:
+        flags |= Flags.DATA
+        if not 0 <= length <= MOST_BYTES:
+            raise InstructionError(
+                f"the data of {name} must be 0 to {MOST_BYTES} bytes, not {length}; "
+                "send them in several instructions"
+            )
+    return Instruction(FORM_OF_NAME[name], int(flags), named, length, data)
+
+
+def operand_words(name: str, value: Numbers) -> tuple[int, ...]:
+    """The words of one operand, checked for their number and range."""
+    if name not in OPERANDS:
+        raise InstructionError(
+            f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; choose one of them"
+        )
+    numbers = (value,) if isinstance(value, int | np.integer) else tuple(value)
+    if len(numbers) != OPERANDS[name].words:
+        raise InstructionError(
+            f"{name} must be {OPERANDS[name].words} numbers, not {len(numbers)}; give all of them"
+        )
+    for number in numbers:
+        whole = isinstance(number, int | np.integer) and not isinstance(number, bool)
+        if not whole or not -0x8000 <= number <= 0xFFFF:
+            raise InstructionError(
+                f"{name} must be whole numbers from -32768 to 65535, not {number!r}; round or clip it"
+            )
+    return tuple(int(number) & 0xFFFF for number in numbers)

@@ -1,0 +1,118 @@
+"""The instruction set: one table of operands and one of instructions, for decoder, processor and listing.
+
+An instruction is a word with the opcode in its high byte. A *normal* one has flags in its low byte: operand
+flag words follow, then the operands that they name in ascending bit order, then, with the data flag, a
+length in bytes and the data. A *special* one has a device, cursor or character number there and a fixed row
+of operands.
+
+Hardware: LIN, BTL, JPL and NCAR agree on all of this; the counts of words are Linton's `Argno` and `libdoc`.
+Assumed: CONE is 12 words, as its only client sends; a header comment says 6.
+Assumed: DCL is one word, as its neighbours are; no client sends it.
+Assumed: the bits of the second flag word that no source names carry no words.
+"""
+
+from dataclasses import dataclass
+from enum import IntFlag
+
+
+class Flags(IntFlag):
+    """The low byte of a normal instruction."""
+
+    DATA = 0x01
+    OPERANDS_1 = 0x02
+    OPERANDS_2 = 0x04
+    REVERSE_PACKING = 0x08
+    SWAP = 0x10
+    """Foreground and background change places."""
+    ADDITIVE = 0x20
+    INDEX_1 = 0x40
+    INDEX_2 = 0x80
+    RELATIVE = 0xC0
+
+
+@dataclass(frozen=True, slots=True)
+class Operand:
+    """A sticky parameter: its name here, the hardware's, and how many words it is."""
+
+    name: str
+    mnemonic: str
+    words: int
+
+
+OPERANDS_1 = (
+    Operand("mask", "SUB", 1),
+    Operand("foreground", "FORE", 1),
+    Operand("background", "BACK", 1),
+    Operand("index_1", "INX1", 2),
+    Operand("index_2", "INX2", 2),
+    Operand("origin", "ORIG", 2),
+    Operand("window", "WIN", 4),
+    Operand("scan_order", "SCAN", 1),
+    Operand("dimensions", "DIM", 2),
+    Operand("spacing", "SPACE", 2),
+    Operand("scale", "SCALE", 1),
+    Operand("function", "FUNC", 1),
+    Operand("conic", "CONE", 12),
+    Operand("base_line", "BASE", 1),
+    Operand("scroll", "SCRO", 1),
+    Operand("start", "STRT", 2),
+)
+OPERANDS_2 = (
+    Operand("read_mask", "RMSK", 1),
+    Operand("write_window", "WEW", 4),
+    Operand("write_offset", "WOF", 2),
+    Operand("texture", "VTX", 2),
+    Operand("display_class", "DCL", 1),
+    Operand("image_mode", "IMG", 1),
+)
+OPERANDS = {operand.name: operand for operand in OPERANDS_1 + OPERANDS_2}
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """A row of the instruction table."""
+
+    opcode: int
+    name: str
+    meaning: str
+    fixed: tuple[str, ...] | None = None
+    """The operands of a special instruction, `length` among them where data follow; None for a normal one."""
+    replies: bool = False
+    """Whether the data go to the host: then a length is sent, but no data."""
+    extended: bool = False
+    """Whether only the 9400 and 9460 know it."""
+
+    @property
+    def is_normal(self) -> bool:
+        """Whether the low byte holds flags."""
+        return self.fixed is None
+
+
+ILLEGAL = Form(-1, "???", "no instruction", ())
+"""What a word is that no row describes; it is skipped alone."""
+
+FORMS = (
+    Form(0x03, "LAM", "load the lookup table", ("address", "length")),
+    Form(0x04, "RAM", "read the lookup table", ("address", "length"), replies=True),
+    Form(0x05, "RSET", "restore every parameter and erase the screen", ()),
+    Form(0x06, "INIT", "restore every parameter", ()),
+    Form(0x07, "NOP", "do nothing", ()),
+    Form(0x08, "SET", "set parameters"),
+    Form(0x09, "ERS", "erase the window"),
+    Form(0x0A, "WI", "write an image"),
+    Form(0x0B, "RI", "read an image", replies=True),
+    Form(0x0C, "WT", "write text"),
+    Form(0x0E, "WVL", "write linked vectors"),
+)
+FORM_OF_OPCODE = {form.opcode: form for form in FORMS}
+FORM_OF_NAME = {form.name: form for form in FORMS}
+
+
+def operands_named(flag_word_1: int, flag_word_2: int = 0) -> tuple[Operand, ...]:
+    """The operands that two flag words announce, in the order in which they come."""
+    return tuple(
+        operand
+        for flag_word, operands in ((flag_word_1, OPERANDS_1), (flag_word_2, OPERANDS_2))
+        for bit, operand in enumerate(operands)
+        if flag_word >> bit & 1
+    )

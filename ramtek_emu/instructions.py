@@ -1,0 +1,170 @@
+"""The encoders that a host calls: each returns the words of one instruction, or of as many as it takes.
+
+>>> " ".join(f"{word:04X}" for word in set_parameters(foreground=1))
+'0802 0002 0001'
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from .checks import checked_colors, checked_words, whole_numbers
+from .errors import InstructionError, WordsError
+from .instruction import MOST_BYTES, NO_WORDS, Instruction, Numbers, Words, encode, normal, operand_words
+from .instruction_set import FORM_OF_NAME, Flags
+
+
+def reset() -> Words:
+    """RSET: every parameter as at power-on, the screen erased; the lookup table stays."""
+    return encode(Instruction(FORM_OF_NAME["RSET"]))
+
+
+def initialize() -> Words:
+    """INIT: every parameter as at power-on; screen and lookup table stay."""
+    return encode(Instruction(FORM_OF_NAME["INIT"]))
+
+
+def no_operation() -> Words:
+    """NOP."""
+    return encode(Instruction(FORM_OF_NAME["NOP"]))
+
+
+def set_parameters(**operands: Numbers | None) -> Words:
+    """SET: operands by name (`foreground=3`, `window=(0, 0, 639, 479)`), kept until set again."""
+    return encode(normal("SET", operands))
+
+
+def erase(window: Sequence[int] | None = None, word: int | None = None) -> Words:
+    """ERS: fill a window with a word, which stays the background."""
+    return encode(normal("ERS", {"window": window, "background": word}))
+
+
+def write_image(words: object, left: int = 0, top: int = 0, planes: int = 10) -> Words:
+    """WI: write a (lines, elements) array of words with its first one at (left, top).
+
+    The window is set by the first instruction; as many as the length in bytes asks for go on from there.
+    The words are checked against the planes: WordsError names the first that does not fit.
+    """
+    image = checked_words(words, planes)
+    lines, elements = image.shape
+    flat = np.ascontiguousarray(image).reshape(-1)
+    most = MOST_BYTES // 2
+    if elements <= most:
+        most -= most % elements
+    starts = range(0, flat.size, most)
+    window = operand_words("window", (left, top, left + elements - 1, top + lines - 1))
+    head = encode(normal("WI", {"window": window}, length=2 * min(most, flat.size)))
+    stream = np.empty(flat.size + len(head) + 2 * (len(starts) - 1), np.uint16)
+    place = 0
+    for start in starts:
+        part = flat[start : start + most]
+        first = head if start == 0 else (FORM_OF_NAME["WI"].opcode << 8 | Flags.DATA, 2 * part.size)
+        stream[place : place + len(first)] = first
+        place += len(first)
+        stream[place : place + part.size] = part
+        place += part.size
+    return stream
+
+
+def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple[Words, int]]:
+    """RI: instructions that read a window, each with the number of words to receive for it."""
+    most = MOST_BYTES // 2
+    if elements <= most:
+        most -= most % elements
+    window: tuple[int, ...] | None = (left, top, left + elements - 1, top + lines - 1)
+    for start in range(0, elements * lines, most):
+        count = min(most, elements * lines - start)
+        yield encode(normal("RI", {"window": window}, length=2 * count)), count
+        window = None
+
+
+def load_entries(first: int, colors: object, entries: int = 1024) -> Words:
+    """LAM: (n, 3) colors, 0 to 255, for the entries from `first` on, in the 24-bit format."""
+    checked = checked_colors(first, colors, entries)
+    stream = np.empty(3 + 2 * len(checked), np.uint16)
+    stream[:3] = FORM_OF_NAME["LAM"].opcode << 8, 2 * first, 4 * len(checked)
+    red, green, blue = checked.astype(np.uint16).T
+    stream[3::2] = green << 8 | blue
+    stream[4::2] = red
+    return stream
+
+
+def load_short_entries(first: int, colors: object, entries: int = 1024) -> Words:
+    """LAM: (n, 3) colors, 0 to 255, for the entries from `first` on, in the 12-bit format.
+
+    The upper four bits of each are sent.
+    """
+    checked = checked_colors(first, colors, entries)
+    red, green, blue = checked.astype(np.uint16).T >> 4
+    head = np.array((FORM_OF_NAME["LAM"].opcode << 8, first, 2 * len(checked)), np.uint16)
+    return np.concatenate((head, red << 8 | green << 4 | blue))
+
+
+def read_entries(address: int = 0, words: int = 2048) -> Words:
+    """RAM: ask for words of the lookup table from a word address on; receive as many."""
+    return np.array((FORM_OF_NAME["RAM"].opcode << 8, address, 2 * words), np.uint16)
+
+
+def write_text(
+    text: str | bytes,
+    left: int,
+    top: int,
+    word: int | None = None,
+    background: int | None = None,
+    size: int | tuple[int, int] = 1,
+    transparent: bool = False,
+) -> Words:
+    """WT: characters of 7 x 9 dots with the first cell's top-left corner at (left, top).
+
+    `size` repeats the dots, across and down; `transparent` leaves the pixels between the dots as they are.
+    The window, the words and the size stay set. Characters that are not ASCII become question marks.
+    """
+    data = text if isinstance(text, bytes) else text.encode("ascii", "replace")
+    across, down = (size, size) if isinstance(size, int) else size
+    if not (1 <= across <= 16 and 1 <= down <= 16):
+        raise InstructionError(f"the size of text must be 1 to 16, not {size!r}; write it smaller")
+    window = (left, top, left + 7 * across * max(1, len(data)) - 1, top + 9 * down - 1)
+    operands: dict[str, Numbers | None] = {
+        "foreground": word,
+        "background": background,
+        "window": window,
+        "scan_order": 0,
+        "dimensions": (7, 9),
+        "spacing": (0, 0),
+        "scale": (down - 1) << 8 | (across - 1),
+    }
+    packed = np.frombuffer(data + bytes(len(data) % 2), ">u2").astype(np.uint16)
+    return encode(normal("WT", operands, packed, len(data), Flags.ADDITIVE if transparent else 0))
+
+
+def write_vectors(vertices: object, word: int | None = None, start: Sequence[int] | None = None) -> Words:
+    """WVL: lines that link (n, 2) vertices (element, line), from `start` or the first vertex on.
+
+    More vertices than one instruction takes are sent in several, which go on from each other.
+    """
+    numbers = whole_numbers(vertices, "vertices", WordsError)
+    if numbers.ndim != 2 or numbers.shape[1] != 2 or not len(numbers):
+        raise WordsError(
+            f"vertices must be an (n, 2) array of element and line with at least one row, not of shape "
+            f"{numbers.shape}; reshape it"
+        )
+    if numbers.min() < -0x8000 or numbers.max() > 0xFFFF:
+        raise WordsError(
+            f"a vertex must be within -32768 to 65535, not {numbers.min()} to {numbers.max()}; "
+            "clip the lines first"
+        )
+    words = (numbers.astype(np.int64) & 0xFFFF).astype(np.uint16)
+    if start is None:
+        start = words[0].tolist()
+        words = words[1:] if len(words) > 1 else words
+    operands: dict[str, Numbers | None] = {"foreground": word, "start": start}
+    parts = []
+    for first in range(0, len(words), MOST_BYTES // 4):
+        parts.append(encode(normal("WVL", operands, words[first : first + MOST_BYTES // 4].reshape(-1))))
+        operands = {}
+    return concatenate(*parts)
+
+
+def concatenate(*parts: Words) -> Words:
+    """One stream of several."""
+    return np.concatenate(parts) if parts else NO_WORDS

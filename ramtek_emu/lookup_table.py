@@ -1,0 +1,92 @@
+"""LookupTable: the parallel video lookup table, entries that a word addresses.
+
+What is modelled: the two card formats, the address counter that goes on from load to load and wraps, reading
+back. What is **not**: the digital-to-analog converters, a change in the middle of a field.
+
+Hardware: JPL, NCAR (24 bits: entry n at word address 2n, green << 8 | blue, then red); LIN, BTL (12 bits:
+entry n at word address n); LIN, JPL (the counter keeps its last value, and its upper bits pick the part of
+the table that is shown when there are fewer planes than address bits).
+Assumed: the entries are black at power-on; no source says what a cold table shows.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .checks import checked_colors
+from .configuration import GMR_9300, Configuration, EntryFormat
+
+Words = NDArray[np.uint16]
+
+
+class LookupTable:
+    """The memory of the colors: `entries` entries, kept packed as 0x00RRGGBB for scan-out."""
+
+    def __init__(self, configuration: Configuration = GMR_9300) -> None:
+        self.entry_format = configuration.entry_format
+        self.size = configuration.entries
+        self.address = 0
+        """The word address that comes next."""
+        self.written = 0
+        """Entry words ever written; it only grows."""
+        self._packed: NDArray[np.uint32] = np.zeros(self.size, "<u4")
+        # In this byte order the two halves of a packed entry are the two words of the 24-bit format.
+        self._halves: Words = self._packed.view("<u2")
+        self.packed: NDArray[np.uint32] = self._packed.view()
+        """The entries as 0x00RRGGBB, (entries,) uint32, read-only; always the present ones."""
+        self.packed.flags.writeable = False
+
+    @property
+    def word_count(self) -> int:
+        """How many words the whole table is on the wire."""
+        return self.size if self.entry_format is EntryFormat.WORD_12 else 2 * self.size
+
+    @property
+    def addressed_entry(self) -> int:
+        """The entry that the address counter points to."""
+        return self.address if self.entry_format is EntryFormat.WORD_12 else self.address >> 1
+
+    @property
+    def entries(self) -> NDArray[np.uint8]:
+        """The colors, (entries, 3) uint8, read-only; a copy of this moment."""
+        colors = self._packed.view(np.uint8).reshape(-1, 4)[:, 2::-1].copy()
+        colors.flags.writeable = False
+        return colors
+
+    def write(self, first: int, colors: object) -> None:
+        """Write (n, 3) colors from Python; ColorsError when a color or the place does not fit."""
+        checked = checked_colors(first, colors, self.size)
+        self._packed.view(np.uint8).reshape(-1, 4)[first : first + len(checked), 2::-1] = checked
+        self.written += len(checked)
+
+    def load(self, address: int, words: Words) -> None:
+        """Write words from the wire; the address is a word's, the counter goes on and wraps at the end."""
+        count = self.word_count
+        self.address = (address + len(words)) % count
+        self.written += len(words)
+        first, words = (address + max(0, len(words) - count)) % count, words[-count:]
+        before_wrap = count - first
+        self._store(first, words[:before_wrap])
+        self._store(0, words[before_wrap:])
+
+    def read(self, address: int, count: int) -> Words:
+        """`count` words for the wire from a word address on; the counter goes on and wraps at the end."""
+        if self.entry_format is EntryFormat.WORD_12:
+            nibbles = (self._packed >> 4) & 0x0F0F0F
+            table = ((nibbles >> 8) & 0xF00 | (nibbles >> 4) & 0xF0 | nibbles & 0xF).astype(np.uint16)
+        else:
+            table = self._halves
+        self.address = (address + count) % self.word_count
+        return np.resize(np.roll(table, -(address % self.word_count)), count).astype(np.uint16)
+
+    def _store(self, first: int, words: Words) -> None:
+        if not len(words):
+            return
+        if self.entry_format is EntryFormat.WORD_12:
+            wide = words.astype(np.uint32)
+            nibbles = (wide & 0xF00) << 8 | (wide & 0xF0) << 4 | wide & 0xF
+            # Full scale of four bits is full scale of eight: 15 becomes 255.
+            self._packed[first : first + len(words)] = nibbles * 17
+            return
+        halves = self._halves[first : first + len(words)]
+        halves[:] = words
+        halves[1 - first % 2 :: 2] &= 0x00FF

@@ -1,0 +1,118 @@
+"""Parameters: the sticky operands, as they stand between instructions.
+
+Assumed: at power-on and after RSET and INIT the foreground is all ones (BTL's programs draw before they set
+one), the background 0, the mask all ones, the window the whole memory, the scan order 0, the cell 7 x 9
+(PRG), and everything else 0; no source lists the values.
+"""
+
+from dataclasses import dataclass, field
+
+from .character_rom import CELL_ELEMENTS, CELL_LINES
+from .configuration import Configuration
+from .frame_buffer import WriteEnable
+from .instruction_set import Flags
+from .scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
+
+ORIGIN = Point(0, 0)
+
+
+def signed(word: int) -> int:
+    """A word as a two's complement number: programs send coordinates below 0 (Hardware: PRG, chase)."""
+    return word - 0x10000 if word & 0x8000 else word
+
+
+@dataclass(kw_only=True)
+class Parameters:
+    """Every sticky operand, by the name that the operand table gives it."""
+
+    mask: int
+    foreground: int
+    background: int = 0
+    index_1: Point = ORIGIN
+    index_2: Point = ORIGIN
+    origin: Point = ORIGIN
+    window: Window
+    scan_order: int = 0
+    dimensions: tuple[int, int] = (CELL_ELEMENTS, CELL_LINES)
+    spacing: tuple[int, int] = (0, 0)
+    scale: int = 0
+    function: int = 0
+    conic: tuple[int, ...] = (0,) * 12
+    base_line: int = 0
+    scroll: int = 0
+    start: Point = ORIGIN
+    """The current operating point: instructions move it on."""
+    read_mask: int
+    write_window: Window
+    write_offset: Point = ORIGIN
+    texture: tuple[int, int] = (0xFFFF, 0)
+    display_class: int = 0
+    image_mode: int = 0
+    whole_window: Window = field(repr=False)
+
+    @classmethod
+    def at_reset(cls, configuration: Configuration) -> "Parameters":
+        """What RSET and INIT restore."""
+        window = Window(0, 0, configuration.elements - 1, configuration.lines - 1)
+        return cls(
+            mask=0xFFFF,
+            foreground=configuration.largest_word,
+            window=window,
+            read_mask=0xFFFF,
+            write_window=window,
+            whole_window=window,
+        )
+
+    @property
+    def order(self) -> ScanOrder:
+        """The present scan order.
+
+        Assumed: only the lowest three bits count.
+        """
+        return SCAN_ORDERS[self.scan_order & 7]
+
+    @property
+    def enable(self) -> WriteEnable:
+        """What a write may change now.
+
+        Hardware: NCAR (the 9460 clips with its write-enable window; the image window clips no vector).
+        """
+        return WriteEnable(self.mask, self.write_window)
+
+    def base(self, flags: Flags) -> Point:
+        """What coordinates are counted from: the memory's origin, an index register, the operating point.
+
+        Hardware: LIN, wtr() sends C0h where it means the operating point.
+        """
+        addressing = flags & Flags.RELATIVE
+        if addressing == Flags.RELATIVE:
+            return self.start
+        if addressing == Flags.INDEX_1:
+            return self.index_1
+        return self.index_2 if addressing == Flags.INDEX_2 else ORIGIN
+
+    def take(self, operands: dict[str, tuple[int, ...]], flags: Flags) -> None:
+        """Set the operands of a normal instruction.
+
+        Hardware: LIN, BTL, LONG: a window moves the operating point to the corner where the scan starts.
+        Assumed: a start point in the same instruction wins; window and start are counted from the base,
+        which is taken before either moves; the corner is that of the scan order after the instruction.
+        """
+        base = self.base(flags)
+        for name, words in operands.items():
+            if name in ("window", "start"):
+                continue
+            if name in ("index_1", "index_2", "origin", "write_offset"):
+                setattr(self, name, Point(signed(words[0]), signed(words[1])))
+            elif name == "write_window":
+                self.write_window = Window(*map(signed, words))
+            elif len(words) == 1:
+                setattr(self, name, words[0])
+            else:
+                setattr(self, name, words)
+        if "window" in operands:
+            self.window = Window(*map(signed, operands["window"])).moved(*base)
+            self.start = self.order.corner(self.window)
+        if "start" in operands:
+            element, line = operands["start"]
+            self.start = Point(base.element + signed(element), base.line + signed(line))

@@ -1,0 +1,151 @@
+"""Windows, points and the eight scan orders: where the next word of an image goes.
+
+A window is inclusive at both ends and may lie partly or wholly outside the memory. Within it words run along
+one direction (inner) and, at the window's edge, go on one step in the other direction (outer). A position
+counts words from the corner where the scan starts.
+
+Hardware: PRG, LONG, ASF (the eight codes); LIN, JPL (the run wraps at the window's edge to the next line).
+Assumed: a run that reaches the end of its window goes on at the corner where the scan starts, as counters do.
+Assumed: a window whose right is left of its left, or whose bottom is above its top, holds no word.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Item = TypeVar("Item", bound=np.generic)
+
+
+class Point(NamedTuple):
+    """An element (x) and a line (y)."""
+
+    element: int
+    line: int
+
+
+class Window(NamedTuple):
+    """Left, top, right and bottom, all inclusive."""
+
+    left: int
+    top: int
+    right: int
+    bottom: int
+
+    @property
+    def width(self) -> int:
+        """Elements of a line of the window."""
+        return max(0, self.right - self.left + 1)
+
+    @property
+    def height(self) -> int:
+        """Lines of the window."""
+        return max(0, self.bottom - self.top + 1)
+
+    def holds(self, point: Point) -> bool:
+        """Whether the point lies inside."""
+        return self.left <= point.element <= self.right and self.top <= point.line <= self.bottom
+
+    def intersection(self, other: "Window") -> "Window":
+        """What the two windows share; it may be empty."""
+        return Window(
+            max(self.left, other.left),
+            max(self.top, other.top),
+            min(self.right, other.right),
+            min(self.bottom, other.bottom),
+        )
+
+    def moved(self, elements: int, lines: int) -> "Window":
+        """The window, that much to the right and down."""
+        return Window(self.left + elements, self.top + lines, self.right + elements, self.bottom + lines)
+
+
+class ScanOrder(NamedTuple):
+    """The two directions of one of the eight codes."""
+
+    vertical: bool
+    leftward: bool
+    upward: bool
+
+    def oriented(self, raster: NDArray[Item]) -> NDArray[Item]:
+        """A view of [line, element] data as [outer, inner]; its own inverse is `raster`."""
+        if self.leftward:
+            raster = raster[:, ::-1]
+        if self.upward:
+            raster = raster[::-1]
+        return raster.T if self.vertical else raster
+
+    def inner_and_outer(self, window: Window) -> tuple[int, int]:
+        """How many words a run takes along, and how many such runs the window holds."""
+        if self.vertical:
+            return window.height, window.width
+        return window.width, window.height
+
+    def corner(self, window: Window) -> Point:
+        """Where the scan of the window starts."""
+        return Point(
+            window.right if self.leftward else window.left, window.bottom if self.upward else window.top
+        )
+
+    def position(self, window: Window, point: Point) -> int:
+        """The count of words from the corner to a point inside the window."""
+        across = window.right - point.element if self.leftward else point.element - window.left
+        down = window.bottom - point.line if self.upward else point.line - window.top
+        return across * window.height + down if self.vertical else down * window.width + across
+
+    def point(self, window: Window, position: int) -> Point:
+        """The point at a position: the inverse of `position`."""
+        outer, inner = divmod(position, self.inner_and_outer(window)[0])
+        across, down = (outer, inner) if self.vertical else (inner, outer)
+        return Point(
+            window.right - across if self.leftward else window.left + across,
+            window.bottom - down if self.upward else window.top + down,
+        )
+
+    def block_window(self, start: Point, inner: int, outer: int) -> Window:
+        """The window that a block of inner x outer words covers when its first word is at `start`."""
+        width, height = (outer, inner) if self.vertical else (inner, outer)
+        left = start.element - width + 1 if self.leftward else start.element
+        top = start.line - height + 1 if self.upward else start.line
+        return Window(left, top, left + width - 1, top + height - 1)
+
+
+SCAN_ORDERS = (
+    ScanOrder(False, False, False),  # 0: left to right, top to bottom
+    ScanOrder(False, True, False),  # 1: right to left, top to bottom
+    ScanOrder(False, False, True),  # 2: left to right, bottom to top
+    ScanOrder(False, True, True),  # 3: right to left, bottom to top
+    ScanOrder(True, False, False),  # 4: top to bottom, left to right
+    ScanOrder(True, False, True),  # 5: bottom to top, left to right
+    ScanOrder(True, True, False),  # 6: top to bottom, right to left
+    ScanOrder(True, True, True),  # 7: bottom to top, right to left
+)
+
+
+class Block(NamedTuple):
+    """A part of a run that fills a rectangle: its first point, its sizes, the number of its first word."""
+
+    start: Point
+    inner: int
+    outer: int
+    first: int
+
+
+def blocks(window: Window, order: ScanOrder, start: int, count: int) -> Iterator[Block]:
+    """The rectangles that `count` words fill from position `start` on: at most three for each time around."""
+    along, runs = order.inner_and_outer(window)
+    position, done = start, 0
+    while done < count:
+        inner = position % along
+        left = count - done
+        if inner or left < along:
+            size = min(along - inner, left)
+            block = Block(order.point(window, position), size, 1, done)
+        else:
+            outer = min(left // along, runs - position // along)
+            size = along * outer
+            block = Block(order.point(window, position), along, outer, done)
+        yield block
+        done += size
+        position = (position + size) % (along * runs)
