@@ -58,11 +58,11 @@ class Ramtek9300:
         """The bits of the interface's status register."""
         return self.processor.status
 
-    def save_png(self, path: str | PathLike[str]) -> None:
-        """Write the field to a PNG file, wholly or not at all; WriteError when it cannot be written."""
+    def save_png(self, path: str | PathLike[str], overwrite: bool = True) -> None:
+        """Write the field to a PNG file, wholly or not at all; OutputExistsError or WriteError if not."""
         from .png import save_png
 
-        save_png(self.field(), path)
+        save_png(self.field(), path, overwrite)
 
     def _repr_png_(self) -> bytes:
         """The field for a notebook."""

@@ -1,0 +1,147 @@
+"""The test pattern: a stream of instructions that shows what a display of any configuration can do.
+
+A disc with color bars, ramps of the words through gray, red, green, blue and around the hues, a grid to
+judge the raster, circles to judge its shape, and the characters.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import instructions
+from .configuration import GMR_9300, Configuration, EntryFormat
+
+Words = NDArray[np.uint16]
+
+BARS = (
+    (255, 255, 255),
+    (255, 255, 0),
+    (0, 255, 255),
+    (0, 255, 0),
+    (255, 0, 255),
+    (255, 0, 0),
+    (0, 0, 255),
+    (0, 0, 0),
+)
+FIRST_BAR, GROUND, GRID, LABEL, SHADE = 1, 9, 10, 11, 12
+"""The words of the bars, of the ground, of the grid, of letters and circles, and of the letters' ground."""
+
+
+def pattern(configuration: Configuration = GMR_9300) -> Words:
+    """The whole pattern as a stream of words for the host port."""
+    parts = [instructions.reset(), load(configuration), instructions.write_image(picture(configuration))]
+    parts += [circle_outline(configuration), labels(configuration)]
+    return instructions.concatenate(*parts)
+
+
+def words_in_use(configuration: Configuration) -> int:
+    """How many words select different entries."""
+    return min(configuration.entries, configuration.largest_word + 1)
+
+
+def ramp_words(configuration: Configuration) -> dict[str, NDArray[np.intp]]:
+    """The words of each ramp: a quarter of the table for the grays, an eighth for each of the others."""
+    total = words_in_use(configuration)
+    starts = {"gray": 2, "red": 4, "green": 5, "blue": 6, "hue": 7}
+    return {
+        name: np.arange(start * total // 8, (start + (2 if name == "gray" else 1)) * total // 8)
+        for name, start in starts.items()
+    }
+
+
+def colors(configuration: Configuration) -> NDArray[np.uint8]:
+    """The entries of the pattern, (words in use, 3)."""
+    table = np.zeros((words_in_use(configuration), 3), np.uint8)
+    table[FIRST_BAR : FIRST_BAR + len(BARS)] = BARS
+    table[[GROUND, GRID, LABEL, SHADE]] = (26, 30, 38), (66, 76, 92), (255, 255, 255), (12, 14, 18)
+    for name, words in ramp_words(configuration).items():
+        height = np.linspace(0, 255, len(words)).round().astype(np.uint8)
+        if name == "hue":
+            turn = np.arange(len(words)) / len(words) * 6
+            for column, shift in enumerate((0, 4, 2)):
+                wave = np.abs((turn + shift) % 6 - 3) - 1
+                table[words, column] = (np.clip(wave, 0, 1) * 255).round().astype(np.uint8)
+        else:
+            shown = {"gray": [0, 1, 2], "red": [0], "green": [1], "blue": [2]}[name]
+            table[np.ix_(words, np.array(shown))] = height[:, np.newaxis]
+    return table
+
+
+def load(configuration: Configuration) -> Words:
+    """The instruction that loads the entries, in the configuration's format."""
+    short = configuration.entry_format is EntryFormat.WORD_12
+    encoder = instructions.load_short_entries if short else instructions.load_entries
+    return encoder(0, colors(configuration), configuration.entries)
+
+
+def middle(configuration: Configuration) -> tuple[int, int, int]:
+    """The disc's center (element, line) and its radius."""
+    width, height = configuration.shown_elements, configuration.shown_lines
+    return width // 2, height // 2, min(width, height) * 5 // 12
+
+
+def picture(configuration: Configuration) -> Words:
+    """The words of ground, grid and disc, (lines, elements)."""
+    width, height = configuration.shown_elements, configuration.shown_lines
+    center, middle_line, radius = middle(configuration)
+    words = np.full((height, width), GROUND, np.uint16)
+    step = max(2, min(width, height) // 12)
+    words[middle_line % step :: step] = GRID
+    words[:, center % step :: step] = GRID
+    words[[0, -1]] = words[:, [0, -1]] = LABEL
+
+    ramps = ramp_words(configuration)
+    edges = [-12, -4, -1, 2, 4, 6, 8, 12]
+    across = np.arange(width) - (center - radius)
+    disc = np.zeros_like(words)
+    bars = FIRST_BAR + np.clip(across * len(BARS) // (2 * radius), 0, len(BARS) - 1)
+    rows: list[NDArray[np.intp]] = [bars]
+    for name in ("gray", "hue", "red", "green", "blue"):
+        place = np.clip(across * len(ramps[name]) // (2 * radius), 0, len(ramps[name]) - 1)
+        rows.append(ramps[name][place])
+    # The lowest part shows sixteen steps of gray: neighbors differ as much as they ever should.
+    rows.append(ramps["gray"][np.clip(across * 16 // (2 * radius), 0, 15) * (len(ramps["gray"]) - 1) // 15])
+    for row, first, last in zip(rows, edges[:-1], edges[1:], strict=True):
+        disc[middle_line + first * radius // 12 : middle_line + last * radius // 12] = row
+    lines, elements = np.ogrid[:height, :width]
+    inside = (lines - middle_line) ** 2 + (elements - center) ** 2 < radius * radius
+    words[inside] = disc[inside]
+    return words
+
+
+def circle_outline(configuration: Configuration) -> Words:
+    """Vectors around the disc and around a small circle in each corner."""
+    center, middle_line, radius = middle(configuration)
+    width, height = configuration.shown_elements, configuration.shown_lines
+    small = min(width, height) // 12
+    around = np.linspace(0, 2 * np.pi, 181)
+    unit = np.stack((np.cos(around), np.sin(around)), axis=1)
+    circles = [(center, middle_line, radius), (center, middle_line, radius + 1)]
+    circles += [
+        (e, n, small) for e in (small + 8, width - small - 9) for n in (small + 8, height - small - 9)
+    ]
+    return instructions.concatenate(
+        *(
+            instructions.write_vectors(np.floor(unit * size + (element, line) + 0.5).astype(np.int64), LABEL)
+            for element, line, size in circles
+        )
+    )
+
+
+def labels(configuration: Configuration) -> Words:
+    """The name of the configuration, its sizes and the characters."""
+    center, middle_line, radius = middle(configuration)
+    height = configuration.shown_lines
+    sizes = (
+        f" {configuration.shown_elements} x {configuration.shown_lines} x {configuration.planes} "
+        f"  {configuration.entries} ENTRIES "
+    )
+    title = f" {configuration.name.replace('_', ' ')} "
+    rows = [(title, middle_line - radius * 9 // 12, 2), (sizes, middle_line - radius * 9 // 12 + 22, 1)]
+    characters = "".join(map(chr, range(32, 127)))
+    rows += [(characters[:48], height - 27, 1), (characters[48:], height - 16, 1)]
+    return instructions.concatenate(
+        *(
+            instructions.write_text(text, center - len(text) * 7 * size // 2, line, LABEL, SHADE, size)
+            for text, line, size in rows
+        )
+    )
