@@ -27,7 +27,9 @@ COLOR_PATTERN = re.compile(r"#[0-9a-fA-F]{6}")
 def nearest(name: str, names: Iterable[str]) -> str:
     """A clause that names the nearest right name, or all of them when few, or nothing."""
     names = list(names)
-    close = [known for known in names if known.startswith(name)] or difflib.get_close_matches(name, names, n=1)
+    close = [known for known in names if known.startswith(name)] or difflib.get_close_matches(
+        name, names, n=1
+    )
     if close:
         return f"; did you mean {close[0]!r}?"
     if 0 < len(names) <= 12:

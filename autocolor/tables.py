@@ -88,6 +88,12 @@ class Mesh:
         used = self.coordinates[np.unique(self.node_numbers)]
         return used.min(axis=0), used.max(axis=0)
 
+    @cached_property
+    def parts_in_use(self) -> tuple[int, ...]:
+        """The part numbers that have a polygon."""
+        counts = np.bincount(self.part_numbers, minlength=len(self.part_names))
+        return tuple(np.flatnonzero(counts).tolist())
+
     @property
     def edge_count(self) -> int:
         """How many distinct edges the polygons have (the paper counts 17,940 for its car)."""

@@ -1,0 +1,83 @@
+"""GMR AUTOCOLOR: light a scene, look at it on a RAMTEK 9300, and recolor it without computing it again.
+
+Paper: D. R. Warn, "Lighting Controls for Synthetic Images", SIGGRAPH 1983.
+
+    scene = autocolor.read_scene("scenes/coupe")
+    display = Ramtek9300()
+    studio = autocolor.Studio(scene, display)
+    studio.recolor("body", object_color="#1f3f8f", blend=0.3)
+    display.save_png("coupe.png")
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from autocolor.errors import AutocolorError as AutocolorError
+    from autocolor.errors import InputError as InputError
+    from autocolor.errors import MissingInputError as MissingInputError
+    from autocolor.errors import OutputError as OutputError
+    from autocolor.errors import UnavailableError as UnavailableError
+    from autocolor.errors import UsageError as UsageError
+    from autocolor.errors import WriteError as WriteError
+    from autocolor.files import read_scene as read_scene
+    from autocolor.files.picture_file import read_picture as read_picture
+    from autocolor.files.picture_file import write_picture as write_picture
+    from autocolor.level_ranges import LevelRange as LevelRange
+    from autocolor.lights import Flap as Flap
+    from autocolor.lights import Flaps as Flaps
+    from autocolor.lights import Light as Light
+    from autocolor.picture import Picture as Picture
+    from autocolor.rendering import render as render
+    from autocolor.scene import Scene as Scene
+    from autocolor.scene import scene_of as scene_of
+    from autocolor.studio import Studio as Studio
+    from autocolor.tables import Mesh as Mesh
+    from autocolor.tables import Paint as Paint
+    from autocolor.tables import Part as Part
+    from autocolor.tables import Reflectance as Reflectance
+    from autocolor.tables import Surface as Surface
+    from autocolor.view import View as View
+
+_HOME = {
+    "AutocolorError": "errors",
+    "Flap": "lights",
+    "Flaps": "lights",
+    "InputError": "errors",
+    "LevelRange": "level_ranges",
+    "Light": "lights",
+    "Mesh": "tables",
+    "MissingInputError": "errors",
+    "OutputError": "errors",
+    "Paint": "tables",
+    "Part": "tables",
+    "Picture": "picture",
+    "Reflectance": "tables",
+    "Scene": "scene",
+    "Studio": "studio",
+    "Surface": "tables",
+    "UnavailableError": "errors",
+    "UsageError": "errors",
+    "View": "view",
+    "WriteError": "errors",
+    "read_picture": "files.picture_file",
+    "read_scene": "files",
+    "render": "rendering",
+    "scene_of": "scene",
+    "write_picture": "files.picture_file",
+}
+
+__all__ = list(_HOME)
+
+
+def __getattr__(name: str) -> object:
+    """A public name, from the module that defines it, loaded when it is first asked for."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value: object = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

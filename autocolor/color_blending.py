@@ -1,0 +1,41 @@
+"""The entries of a surface's range: the object color, blended with the color of the light.
+
+Paper: "Light Source Color Blending", Figure 12. All intensities below the blend level are taken as purely
+diffuse; from there the color shifts to the specular one in N equal steps. That the brightest points are the
+color of the light is an assumption of the method, which predicts no color.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.rounding import half_up, halves_up
+from autocolor.tables import Paint
+
+
+def blend_level(paint: Paint, levels: int) -> int:
+    """The highest level that is purely the object color."""
+    return half_up(paint.blend * (levels - 1))
+
+
+def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.uint8]:
+    """The entries of a range, (levels, 3) uint8: red, green, blue from the lowest level to the highest.
+
+    The colors are those of the paint, darkened in proportion to the level. `floor` is how bright the lowest
+    level is, as a fraction of the highest: 0 stretches the range to black, minimum / maximum of the
+    surface's intensities keeps the shading in proportion to them.
+
+    Paper: a weight that grows by 1 / N for each of the N levels above the blend level; "another control
+    should be added to adjust the percentage of the specular color at the maximum intensity". Assumed: the
+    blend weighs the colors and the level darkens them, so that a blend never changes how bright a level
+    is when the two colors are alike. With the blend at the maximum there is no shift.
+    """
+    level = np.arange(levels)
+    begin = blend_level(paint, levels)
+    weight = np.clip(level - begin, 0, None) / max(levels - 1 - begin, 1) * (paint.light_percentage / 100)
+    brightness = floor + (1 - floor) * level / max(levels - 1, 1)
+    ramps = np.stack([(1 - weight) * brightness, weight * brightness], axis=1)
+    colors = ramps @ np.array([paint.object_color, paint.light_color], np.float64)
+    # Mixing in floats may miss a whole color by the last bit, just below a half.
+    return np.clip(halves_up(colors + 1e-9), 0, 255).astype(np.uint8)

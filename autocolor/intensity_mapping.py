@@ -1,0 +1,108 @@
+"""Intensity to level to word.
+
+Paper: "The Lighting Model": the unscaled intensities are mapped into integer intensities for the display,
+by the range of each surface or of the entire object; nonlinear mappings can be tried. "Light Source Color
+Blending", Figure 11: a word is the first of its surface's range plus the level.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.errors import InputError
+from autocolor.level_ranges import BACKGROUND, LevelRange
+from autocolor.picture import IntensityRange, Picture
+from autocolor.rounding import halves_up
+from autocolor.scene import Curve
+
+Singles = npt.NDArray[np.float32]
+
+GAMMA = 2.2
+"""Assumed: the exponent of a television monitor."""
+
+LOGARITHM = 15.0
+"""Assumed: the logarithm of 1 to 16, four doublings, over the range."""
+
+
+def words_of(
+    picture: Picture,
+    ranges: Mapping[str, LevelRange],
+    scaling: str = "surface",
+    mapping: str | Curve = "linear",
+) -> npt.NDArray[np.uint16]:
+    """The words of a picture, (lines, elements) uint16; the background's where nothing is seen.
+
+    `scaling` says whose minimum and maximum become the lowest and the highest level, each "surface" its own
+    or the whole "object"; a range without extent becomes the highest level. Raises InputError for
+    intensities that are not finite.
+    """
+    words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
+    for surface in picture.slices:
+        name = picture.surfaces[surface.surface_number - 1]
+        part = slice(surface.start, surface.stop)
+        of_whole = scaling == "object"
+        extent = picture.relative_ranges[0 if of_whole else surface.surface_number]
+        everything = picture.relative if of_whole else picture.relative[part]
+        if not (np.isfinite(extent.minimum) and np.isfinite(extent.maximum)):
+            raise InputError(f"surface {name!r}: an intensity must be finite, not {extent.maximum:g}")
+        shown = fractions(picture.relative[part], extent, mapping, everything)
+        words[picture.pixels[part]] = levels_of(shown, ranges[name].levels) + np.uint16(ranges[name].first)
+    words.flags.writeable = False
+    return words.reshape(picture.lines, picture.elements)
+
+
+def levels_of(shown: Singles, levels: int) -> npt.NDArray[np.uint16]:
+    """The levels, 0 to levels - 1, of fractions from 0 to 1."""
+    return halves_up(shown * np.float32(levels - 1)).astype(np.uint16)
+
+
+def fractions(
+    intensities: Singles, extent: IntensityRange, mapping: str | Curve, everything: Singles
+) -> Singles:
+    """How far along its range each intensity is shown, 0 to 1; `everything` is what "equalize" counts."""
+    if extent.maximum == extent.minimum:
+        return np.ones_like(intensities)
+    if mapping == "equalize":
+        return equalized(intensities, everything)
+    # Divide, for the maximum must come to exactly 1.
+    shown = intensities - np.float32(extent.minimum)
+    shown /= np.float32(extent.maximum) - np.float32(extent.minimum)
+    return curve_of(mapping)(shown)
+
+
+def curve_of(mapping: str | Curve) -> Callable[[Singles], Singles]:
+    """A mapping as a function of fractions that never falls."""
+    if isinstance(mapping, str):
+        return CURVES[mapping]
+    across, up = zip(*mapping, strict=True)
+    return lambda shown: np.interp(shown, across, up).astype(np.float32)
+
+
+def equalized(intensities: Singles, everything: Singles) -> Singles:
+    """How many of all intensities are below each, so that every level is shown equally often."""
+    values, counts = np.unique(everything, return_counts=True)
+    below = np.cumsum(counts) - counts[0]
+    place = np.searchsorted(values, intensities)
+    return (below[place] / max(below[-1], 1)).astype(np.float32)
+
+
+def _linear(shown: Singles) -> Singles:
+    return shown
+
+
+def _gamma(shown: Singles) -> Singles:
+    return np.power(shown, np.float32(1 / GAMMA))
+
+
+def _logarithm(shown: Singles) -> Singles:
+    return np.log1p(shown * np.float32(LOGARITHM)) / np.float32(np.log1p(LOGARITHM))
+
+
+CURVES: Mapping[str, Callable[[Singles], Singles]] = {
+    "linear": _linear,
+    "gamma": _gamma,
+    "logarithm": _logarithm,
+}

@@ -1,0 +1,63 @@
+"""Level ranges: which words of the display each surface owns.
+
+Paper: "Light Source Color Blending", Figure 11: the intensities of each surface type are mapped to a separate
+sequential range of the lookup table. Assumed: word 0 is the background, the screens own sixteen words at
+the top, and what is between is shared equally among the surfaces in use, in the order of their table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import NamedTuple
+
+from autocolor.errors import InputError
+from autocolor.tables import Surface
+
+WORDS = 1024
+BACKGROUND = 0
+SCREEN_LEVELS = 16
+FEWEST_LEVELS = 2
+
+
+class LevelRange(NamedTuple):
+    """The words `first` to `first + levels - 1`; a surface's level l is the word first + l."""
+
+    first: int
+    levels: int
+
+    @property
+    def last(self) -> int:
+        """The word of the highest level."""
+        return self.first + self.levels - 1
+
+
+SCREENS = LevelRange(WORDS - SCREEN_LEVELS, SCREEN_LEVELS)
+"""The words of the interactive screens: letters, frames, bars."""
+
+
+def level_ranges(surfaces: Sequence[Surface], in_use: Collection[str]) -> Mapping[str, LevelRange]:
+    """The range of each surface in use, by name.
+
+    A surface has as many levels as it asks for, the others share equally what is left. Raises InputError
+    where less than two levels would be left for one of them.
+    """
+    used = [surface for surface in surfaces if surface.name in in_use]
+    room = SCREENS.first - BACKGROUND - 1
+    asked = sum(surface.levels for surface in used if surface.levels is not None)
+    sharing = sum(1 for surface in used if surface.levels is None)
+    share = (room - asked) // sharing if sharing else 0
+    if asked > room or (sharing and share < FEWEST_LEVELS):
+        largest = max(
+            (surface for surface in used if surface.levels), key=lambda surface: surface.levels or 0
+        )
+        raise InputError(
+            f"surface {largest.name!r}: the levels of all surfaces must leave {FEWEST_LEVELS} for each that asks"
+            f" for none, {room} in all, not {asked} and {sharing} more surfaces; ask for fewer levels"
+        )
+    ranges = {}
+    first = BACKGROUND + 1
+    for surface in used:
+        levels = share if surface.levels is None else surface.levels
+        ranges[surface.name] = LevelRange(first, levels)
+        first += levels
+    return ranges

@@ -1,0 +1,98 @@
+"""The light controls: direction and concentration, cone, and flaps, as a multiplier in [0, 1].
+
+Paper: "Light Controls". They modify what a reflection model gives at a point and know nothing of it, so they
+work with any. Points are columns of `Seen.rows`, in camera space.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.lights import Light
+from autocolor.seen import ONE, POINT, Seen
+
+Singles = npt.NDArray[np.float32]
+Floats = npt.NDArray[np.float64]
+
+ROUNDING = float(np.finfo(np.float32).eps)
+
+
+@dataclass(frozen=True, eq=False)
+class Controls:
+    """One light's controls, made ready for the points of one view.
+
+    `toward` is the unit vector of the light direction in camera space, or None for a point source.
+    `least_cosine` is what cos(L) must reach, None where nothing is cut. `flaps` is (sides, 4): a point
+    is inside where every row's product with (P, 1) is at least 0.
+    """
+
+    toward: Floats | None
+    concentration: float
+    least_cosine: float | None
+    flaps: Singles
+
+
+def controls(light: Light, seen: Seen) -> Controls:
+    """The controls of a light for what is seen.
+
+    Paper: cos^C(L) for cos(L) > 0; with C = 0 the light is a point source. A point is in the cone where
+    L <= A. Departs: the paper prints the test as cos(L) <= cos(A), which would light the outside; the rim
+    itself is lit. With C = 0 nothing is cut behind the light, so a cone of more than 90 degrees lights
+    there too; with C > 0 the hemisphere ends at 90.
+    """
+    toward, least = None, None
+    if light.axis is not None:
+        toward = seen.camera_direction(light.axis)
+        if light.cone_angle is not None:
+            # A float32 rounding of the rim keeps a cone that ends on a line of pixels from fraying.
+            least = math.cos(math.radians(light.cone_angle)) - ROUNDING
+        if light.concentration > 0:
+            least = max(least if least is not None else 0.0, 0.0)
+    return Controls(toward, light.concentration, least, _flap_sides(light, seen))
+
+
+def _flap_sides(light: Light, seen: Seen) -> Singles:
+    """A row for each side of each flap that is on; a point of the side itself is inside.
+
+    Paper: "Light Flaps and Cones": a flap is a range of an object coordinate, a box and no shadow.
+    """
+    rows: list[Floats] = []
+    for axis, flap in enumerate((light.flaps.x, light.flaps.y, light.flaps.z)):
+        if flap is None or not flap.on:
+            continue
+        coordinate = seen.world_coordinate(axis)
+        # A surface that lies on the flap is lit: allow what float32 rounds a point by.
+        slack = 4 * ROUNDING * (seen.depth + abs(float(coordinate[3])))
+        for sign, limit in ((1.0, flap.minimum), (-1.0, flap.maximum)):
+            if math.isfinite(limit):
+                rows.append(sign * coordinate - np.array([0, 0, 0, sign * limit - slack]))
+    return np.array(rows, np.float32).reshape(-1, 4)
+
+
+def inside(ready: Controls, cos_light: Singles | None, rows: Singles) -> npt.NDArray[np.bool_] | None:
+    """Whether each point is in the cone, before the light and within the flaps; None where all are."""
+    lit: npt.NDArray[np.bool_] | None = None
+    if cos_light is not None and ready.least_cosine is not None:
+        lit = cos_light > 0 if ready.least_cosine == 0 else cos_light >= ready.least_cosine
+    if len(ready.flaps):
+        within: npt.NDArray[np.bool_] = np.all(ready.flaps @ rows[POINT.start : ONE + 1] >= 0, axis=0)
+        lit = within if lit is None else lit & within
+    return lit
+
+
+def concentrated(cos_light: Singles, concentration: float) -> Singles:
+    """cos^C(L), the light's concentration around its direction; `cos_light` is above 0.
+
+    Paper: "Light Direction and Concentration". Half is left at 60 degrees for C = 1, at 21.1 for C = 10 and
+    at 10.6 for C = 40.
+    """
+    if concentration == 1:
+        return cos_light
+    # Measured: the exponential of a logarithm takes half the time of a power.
+    log = np.log(cos_light)
+    log *= np.float32(concentration)
+    return np.exp(log, out=log)

@@ -1,0 +1,209 @@
+"""The virtual picture array: unscaled floating-point intensities and the surface number at each pixel.
+
+Paper: "The Lighting Model": the intensity at a point is the sum of the contributions of all lights plus an
+ambient term, held as an unscaled floating-point value; the surface number stands in an auxiliary array, and
+minima and maxima of the whole picture and of each surface are found on the way.
+
+The sum is made in proportion to the strongest weight and only then multiplied by it. So the same lights k
+times as strong give the same proportions, and the levels that are made from these do not change by rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.errors import InputError
+from autocolor.lights import Light
+from autocolor.seen import Seen, SurfaceSlice
+from autocolor.shading import DIFFUSE, SPECULAR
+from autocolor.tables import Surface
+
+PIXELS_AT_ONCE = 1 << 15
+
+Singles = npt.NDArray[np.float32]
+
+
+class IntensityRange(NamedTuple):
+    """The minimum and the maximum of some intensities."""
+
+    minimum: float
+    maximum: float
+
+
+@dataclass(frozen=True)
+class PictureRanges:
+    """Minimum and maximum intensity of the whole picture and, by surface name, of each surface seen.
+
+    Both are 0 for a picture in which nothing is seen.
+    """
+
+    whole: IntensityRange
+    surfaces: Mapping[str, IntensityRange]
+
+
+@dataclass(frozen=True, eq=False)
+class LightPlane:
+    """What one light gives, (lines, elements) float32 each: without D, S and the light's intensity."""
+
+    diffuse: Singles
+    specular: Singles
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """The picture as the lighting model leaves it: it knows intensities and surfaces, and no color.
+
+    The visible pixels are held surface by surface: `pixels` are their flat places, `relative` the
+    intensities in proportion to `scale`, both (n,); `slices` says which are whose. `planes` has the two
+    planes of each light that was computed, (2, n).
+    """
+
+    lines: int
+    elements: int
+    surfaces: tuple[str, ...]
+    pixels: npt.NDArray[np.intp]
+    slices: tuple[SurfaceSlice, ...]
+    relative: Singles
+    scale: float
+    light_planes: Mapping[str, Singles] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def intensity(self) -> Singles:
+        """Unscaled intensities, (lines, elements) float32, 0 where nothing is seen; read-only."""
+        return self._raster(self.relative * np.float32(self.scale))
+
+    @cached_property
+    def surface_number(self) -> npt.NDArray[np.uint8]:
+        """Surface numbers, (lines, elements) uint8: number k is surfaces[k - 1], 0 is none; read-only."""
+        numbers = np.empty(len(self.pixels), np.uint8)
+        for surface in self.slices:
+            numbers[surface.start : surface.stop] = surface.surface_number
+        raster: npt.NDArray[np.uint8] = self._raster(numbers)
+        return raster
+
+    @cached_property
+    def relative_ranges(self) -> Mapping[int, IntensityRange]:
+        """Minimum and maximum of `relative` by surface number; those of the whole picture under 0."""
+        ranges = {
+            surface.surface_number: _range(self.relative[surface.start : surface.stop])
+            for surface in self.slices
+        }
+        least = min((each.minimum for each in ranges.values()), default=0.0)
+        most = max((each.maximum for each in ranges.values()), default=0.0)
+        return {0: IntensityRange(least, most), **ranges}
+
+    @property
+    def ranges(self) -> PictureRanges:
+        """Minimum and maximum intensity of the whole picture and of each surface seen."""
+        scaled = {
+            number: IntensityRange(each.minimum * self.scale, each.maximum * self.scale)
+            for number, each in self.relative_ranges.items()
+        }
+        return PictureRanges(
+            scaled[0], {self.surfaces[number - 1]: each for number, each in scaled.items() if number}
+        )
+
+    @property
+    def planes(self) -> Mapping[str, LightPlane]:
+        """The two planes of each light, by its name, spread over the raster."""
+        return {
+            name: LightPlane(self._raster(planes[DIFFUSE]), self._raster(planes[SPECULAR]))
+            for name, planes in self.light_planes.items()
+        }
+
+    def _raster(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Values of the visible pixels in their places, 0 elsewhere; read-only."""
+        flat = np.zeros(self.lines * self.elements, values.dtype)
+        flat[self.pixels] = values
+        flat.flags.writeable = False
+        return flat.reshape(self.lines, self.elements)
+
+    def _repr_png_(self) -> bytes:
+        from ramtek_emu.png import png_bytes
+
+        ranges = self.ranges.whole
+        extent = (ranges.maximum - ranges.minimum) or 1.0
+        gray = np.where(self.surface_number > 0, (self.intensity - ranges.minimum) / extent * 255 + 0.5, 0)
+        return png_bytes(np.repeat(gray.astype(np.uint8)[..., None], 3, axis=2))
+
+    def __repr__(self) -> str:
+        whole = self.ranges.whole
+        return (
+            f"Picture({self.lines} x {self.elements}, {len(self.pixels)} pixels of {len(self.slices)} surfaces,"
+            f" intensities {whole.minimum:.4g} to {whole.maximum:.4g})"
+        )
+
+
+def composed(
+    seen: Seen,
+    planes: Mapping[str, Singles],
+    surfaces: Sequence[Surface],
+    lights: Sequence[Light],
+    ambient: float,
+) -> Picture:
+    """The picture: the sum of the planes, each with D or S and its light's intensity, plus the ambient.
+
+    `planes` has the two planes of each light that is on. Raises InputError where the sum would leave the
+    range of float32: such an intensity is refused by name, never clipped into a level.
+    """
+    shining = [light for light in lights if light.name in planes and light.on and light.intensity > 0]
+    weights = {}
+    for surface in seen.slices:
+        reflectance = surfaces[surface.surface_number - 1].reflectance
+        weights[surface.surface_number] = [
+            (light.intensity * reflectance.diffuse, light.intensity * reflectance.specular)
+            for light in shining
+        ]
+    scale = max([ambient, *(weight for rows in weights.values() for pair in rows for weight in pair)]) or 1.0
+    for number, rows in weights.items():
+        _refuse_overflow(surfaces[number - 1].name, rows, shining, ambient)
+
+    relative = np.empty(len(seen.pixels), np.float32)
+    for surface in seen.slices:
+        pairs = np.array(weights[surface.surface_number]).reshape(-1, 2) / scale
+        singles = pairs.astype(np.float32)
+        for first in range(surface.start, surface.stop, PIXELS_AT_ONCE):
+            part = slice(first, min(first + PIXELS_AT_ONCE, surface.stop))
+            out = relative[part]
+            out[:] = np.float32(ambient / scale)
+            for light, pair in zip(shining, singles, strict=True):
+                out += pair @ planes[light.name][:, part]
+    relative.flags.writeable = False
+    return Picture(
+        seen.lines,
+        seen.elements,
+        tuple(surface.name for surface in surfaces),
+        seen.pixels,
+        seen.slices,
+        relative,
+        scale,
+        dict(planes),
+    )
+
+
+def _refuse_overflow(
+    name: str, weights: list[tuple[float, float]], shining: list[Light], ambient: float
+) -> None:
+    """Refuse weights whose sum float32 can't hold, naming the light that does most to it."""
+    largest = float(np.finfo(np.float32).max)
+    total = ambient + sum(diffuse + specular for diffuse, specular in weights)
+    if math.isfinite(total) and total < largest:
+        return
+    if not weights:
+        raise InputError(f"ambient must stay below {largest:.3g}, not {ambient:g}; lower it")
+    light = max(zip(weights, shining, strict=True), key=lambda row: sum(row[0]))[1]
+    raise InputError(
+        f"surface {name!r} under light {light.name!r}: intensities must stay below {largest:.3g}, not reach"
+        f" {total:g}; lower the light's intensity or the surface's diffuse and specular"
+    )
+
+
+def _range(values: Singles) -> IntensityRange:
+    return IntensityRange(float(values.min()), float(values.max()))

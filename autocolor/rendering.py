@@ -1,0 +1,115 @@
+"""From a scene to its picture, keeping what the next scene can use again.
+
+| changed | computed again |
+|---|---|
+| mesh, view, the surface of a part | everything |
+| a light's place, aim, concentration, flaps, cone | that light's two planes, the sum |
+| a surface's exponent | every light on that surface, the sum |
+| a light's intensity or switch, ambient, D, S | the sum |
+| anything else | nothing |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from autocolor.lights import Light
+from autocolor.picture import Picture, Singles, composed
+from autocolor.scene import Scene
+from autocolor.seen import Seen
+from autocolor.shading import light_planes
+from autocolor.visible_surfaces import visible_surfaces
+from autocolor.watkins import watkins
+
+ALGORITHMS: dict[str, Callable[..., Seen]] = {"batch": visible_surfaces, "watkins": watkins}
+
+
+@dataclass(frozen=True, eq=False)
+class Rendering:
+    """A scene, what is seen of it, and its picture."""
+
+    scene: Scene
+    seen: Seen
+    picture: Picture
+
+
+def render(scene: Scene, lines: int = 480, elements: int = 640, algorithm: str = "batch") -> Picture:
+    """The picture of a scene, (lines, elements).
+
+    `algorithm` is "batch", all lines at once, or "watkins", the literal one, which gives the same picture
+    some hundred times slower. Raises InputError for intensities that float32 can't hold.
+    """
+    return rendering(scene, lines, elements, algorithm=algorithm).picture
+
+
+def rendering(
+    scene: Scene,
+    lines: int = 480,
+    elements: int = 640,
+    before: Rendering | None = None,
+    algorithm: str = "batch",
+) -> Rendering:
+    """The picture of a scene with what it was made from; `before` lends what did not change."""
+    if before is not None and (before.picture.lines, before.picture.elements) != (lines, elements):
+        before = None
+    if before is not None and _sees_the_same(before.scene, scene):
+        seen = before.seen
+    else:
+        before = None
+        one_sided = frozenset(row + 1 for row, surface in enumerate(scene.surfaces) if not surface.two_sided)
+        visible = ALGORITHMS[algorithm]
+        seen = visible(scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided)
+    planes = _planes(scene, seen, before)
+    if before is not None and _composes_the_same(before.scene, scene):
+        return Rendering(scene, seen, before.picture)
+    return Rendering(
+        scene, seen, composed(seen, planes, scene.surfaces, scene.lights, scene.ambient)
+    )  # fmt: skip
+
+
+def _planes(scene: Scene, seen: Seen, before: Rendering | None) -> dict[str, Singles]:
+    """The planes of the lights that shine, and of those that did before and only rest."""
+    exponents = {
+        surface.surface_number: scene.surfaces[surface.surface_number - 1].reflectance.exponent
+        for surface in seen.slices
+    }
+    planes: dict[str, Singles] = {}
+    old = {} if before is None else before.picture.light_planes
+    old_lights = {} if before is None else {light.name: light for light in before.scene.lights}
+    changed = frozenset(
+        number
+        for number, exponent in exponents.items()
+        if before is not None and before.scene.surfaces[number - 1].reflectance.exponent != exponent
+    )
+    for light in scene.lights:
+        same = light.name in old and _shape(old_lights[light.name]) == _shape(light)
+        if same and not changed:
+            planes[light.name] = old[light.name]
+        elif light.on and light.intensity > 0:
+            kept = old[light.name] if same else None
+            planes[light.name] = light_planes(light, seen, exponents, kept, changed)
+    return planes
+
+
+def _shape(light: Light) -> Light:
+    """The light without what only weighs its planes."""
+    return light.replace(intensity=1.0, on=True)
+
+
+def _sees_the_same(old: Scene, new: Scene) -> bool:
+    return (
+        old.mesh is new.mesh
+        and old.view == new.view
+        and old.surface_number_of_part == new.surface_number_of_part
+        and [surface.two_sided for surface in old.surfaces] == [surface.two_sided for surface in new.surfaces]
+    )
+
+
+def _composes_the_same(old: Scene, new: Scene) -> bool:
+    return (
+        old.ambient == new.ambient
+        and old.lights == new.lights
+        and [(surface.name, surface.reflectance) for surface in old.surfaces]
+        == [(surface.name, surface.reflectance) for surface in new.surfaces]
+    )

@@ -1,0 +1,24 @@
+"""The one rounding rule: to the nearest whole number, halves up."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+
+def half_up(value: float) -> int:
+    """The whole number nearest to a number, the upper one of two.
+
+    >>> half_up(2.5), half_up(-2.5)
+    (3, -2)
+    """
+    return math.floor(value + 0.5)
+
+
+def halves_up(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """The whole numbers nearest to an array's numbers, in the array's own type."""
+    rounded: npt.NDArray[Any] = np.floor(values + values.dtype.type(0.5))
+    return rounded

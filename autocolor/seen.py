@@ -1,0 +1,221 @@
+"""What is seen: for each pixel the polygon, the point and the normal, in camera space, surface by surface.
+
+Paper: "The Lighting Model": the direction of the normal is computed from the node normals by bilinear
+interpolation, along the edges and then along the span. Departs: on the screens of 1983 that was linear in
+the picture; here it is right in perspective, by interpolating the normal times the inverse depth. Only the
+direction matters, so the inverse depth never has to be divided out again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.edges import edges
+from autocolor.projection import Projection, lens
+from autocolor.tables import Mesh
+from autocolor.view import View
+
+PIXELS_AT_ONCE = 1 << 14
+
+Singles = npt.NDArray[np.float32]
+Floats = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.intp]
+
+# Rows of `Seen.rows`: the point P, 1 and P.P; the normal N and -N.P; the eye's mirrored ray M and -M.P.
+POINT, ONE, POINT_SQUARED = slice(0, 3), 3, 4
+NORMAL, NORMAL_POINT = slice(5, 8), 8
+MIRROR, MIRROR_POINT = slice(9, 12), 12
+ROW_COUNT = 13
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceSlice:
+    """The pixels `start` to `stop` of what is seen, all of one surface."""
+
+    surface_number: int
+    start: int
+    stop: int
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """The visible pixels, sorted by surface and within one by place.
+
+    `pixels` are their flat places in the raster, (n,) intp; `polygon_numbers` (n,) intp are rows of the
+    polygon table. `rows` is (13, n) float32 and has what the reflected light is computed from: a point in
+    camera space around `middle`, the unit normal, and the ray to the eye mirrored at the normal, each with
+    its product with the point, so that every cosine to a light is one matrix product.
+    """
+
+    lines: int
+    elements: int
+    pixels: Numbers
+    slices: tuple[SurfaceSlice, ...]
+    polygon_numbers: Numbers
+    inverse_depth: Singles
+    rows: Singles
+    view: View
+    middle: Floats
+
+    @cached_property
+    def depth(self) -> float:
+        """The largest distance from the eye's plane, which the rounding of the points is in proportion to."""
+        return float(1 / self.inverse_depth.min()) if len(self.pixels) else 1.0
+
+    def camera_point(self, point: tuple[float, float, float]) -> Floats:
+        """A point of the world as the rows of points are: in camera space, around the middle."""
+        placed: Floats = self.view.axes @ (np.array(point) - np.array(self.view.eye)) - self.middle
+        return placed
+
+    def camera_direction(self, direction: tuple[float, float, float]) -> Floats:
+        """A direction of the world in camera space."""
+        turned: Floats = self.view.axes @ np.array(direction)
+        return turned
+
+    def world_coordinate(self, axis: int) -> Floats:
+        """The four numbers whose product with a point and 1 is the point's world coordinate."""
+        along = self.view.axes[:, axis]
+        return np.append(along, self.view.eye[axis] + along @ self.middle)
+
+    @property
+    def points(self) -> Floats:
+        """The points in world coordinates, (n, 3), in the order of `pixels`."""
+        placed = self.rows[POINT].T.astype(np.float64) + self.middle
+        points: Floats = placed @ self.view.axes + np.array(self.view.eye)
+        return points
+
+    @property
+    def normals(self) -> Floats:
+        """The unit normals in world axes, (n, 3), in the order of `pixels`."""
+        normals: Floats = self.rows[NORMAL].T.astype(np.float64) @ self.view.axes
+        return normals
+
+
+@dataclass(frozen=True, eq=False)
+class Winners:
+    """The spans that are seen somewhere, and at each visible pixel the one that is.
+
+    `pixels`, `inverse_depth` and `span` are (n,), a row for each visible pixel in the order of the raster;
+    `first_pixel`, `left_edge` and `right_edge` are (spans,).
+    """
+
+    pixels: Numbers
+    inverse_depth: Singles
+    span: Numbers
+    first_pixel: Numbers
+    left_edge: Numbers
+    right_edge: Numbers
+
+
+def seen_of_winners(
+    winners: Winners,
+    projected: Projection,
+    mesh: Mesh,
+    view: View,
+    surface_numbers: tuple[int, ...],
+    one_sided: frozenset[int],
+) -> Seen:
+    """What is seen, computed for the visible pixels only."""
+    # Sort the pixels by surface, so that each surface's D, S and N are numbers and not arrays.
+    column = winners.left_edge % max(projected.corners.shape[1], 1)
+    polygon = projected.polygon_numbers[column]
+    surface = np.array(surface_numbers, np.uint8)[mesh.part_numbers[polygon]]
+    surface_at_pixel = surface[winners.span]
+    order = np.argsort(surface_at_pixel, kind="stable")
+    pixels, span = winners.pixels[order], winners.span[order]
+    inverse_depth = winners.inverse_depth[order]
+
+    # Turn to the eye the normals of polygons that are seen from behind.
+    turned = projected.from_behind[column] & ~np.isin(surface, list(one_sided))
+    start, step = _normals_along_spans(winners, projected)
+    start[:, turned] *= -1
+    step[:, turned] *= -1
+
+    low, high = mesh.bounds
+    middle = view.axes @ ((low + high) / 2 - np.array(view.eye))
+    rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
+    rays = lens(projected.lines, projected.elements, view.field_of_view)
+    along = (pixels - winners.first_pixel[span]).astype(np.float32)
+    for first in range(0, len(pixels), PIXELS_AT_ONCE):
+        part = slice(first, first + PIXELS_AT_ONCE)
+        seen_at, some, far = pixels[part], span[part], 1 / inverse_depth[part]
+        out = rows[:, part]
+        # Place the point along the ray.
+        ray = (rays.across[seen_at], rays.down[seen_at])
+        to_eye = rays.inverse_length[seen_at]
+        np.multiply(ray[0], far, out=out[0])
+        np.multiply(ray[1], far, out=out[1])
+        out[2] = far
+        out[POINT] -= middle.astype(np.float32)[:, None]
+        out[ONE] = 1
+        np.einsum("ij,ij->j", out[POINT], out[POINT], out=out[POINT_SQUARED])
+        # Interpolate the normal along the span.
+        normal = out[NORMAL]
+        np.multiply(step[:, some], along[part], out=normal)
+        normal += start[:, some]
+        length = np.sqrt(np.einsum("ij,ij->j", normal, normal))
+        normal /= np.maximum(length, np.float32(1e-30), out=length)
+        # Mirror the ray to the eye: M = 2 (N.V) N - V, where V = -ray / |ray|.
+        view_ray = np.stack([ray[0] * to_eye, ray[1] * to_eye, to_eye])
+        facing = np.einsum("ij,ij->j", normal, view_ray)
+        np.multiply(normal, -2 * facing, out=out[MIRROR])
+        out[MIRROR] += view_ray
+        # Keep the products with the point.
+        np.einsum("ij,ij->j", out[NORMAL], out[POINT], out=out[NORMAL_POINT])
+        np.einsum("ij,ij->j", out[MIRROR], out[POINT], out=out[MIRROR_POINT])
+        np.negative(out[NORMAL_POINT], out=out[NORMAL_POINT])
+        np.negative(out[MIRROR_POINT], out=out[MIRROR_POINT])
+
+    counts = np.bincount(surface_at_pixel, minlength=1)
+    stops = np.cumsum(counts)
+    slices = tuple(
+        SurfaceSlice(number, int(stops[number] - counts[number]), int(stops[number]))
+        for number in np.flatnonzero(counts).tolist()
+    )
+    for table in (rows, pixels):
+        table.flags.writeable = False
+    return Seen(
+        projected.lines,
+        projected.elements,
+        pixels,
+        slices,
+        polygon[span],
+        inverse_depth,
+        rows,
+        view,
+        middle,
+    )
+
+
+def _normals_along_spans(winners: Winners, projected: Projection) -> tuple[Singles, Singles]:
+    """Normal times inverse depth at the first pixel of each span, and what each further pixel adds.
+
+    Both are (3, spans) float32.
+    """
+    line, first = np.divmod(winners.first_pixel, projected.elements)
+    left, left_normal = _cut_normals(projected, winners.left_edge, line)
+    right, right_normal = _cut_normals(projected, winners.right_edge, line)
+    step = (right_normal - left_normal) / (right - left)
+    start = left_normal + step * (first + 0.5 - left)
+    # Bring all to about the size of 1, so that float32 holds them however far the object is.
+    size = np.abs(left_normal).max(axis=0) + np.abs(right_normal).max(axis=0)
+    size[size == 0] = 1
+    return (start / size).astype(np.float32), (step / size).astype(np.float32)
+
+
+def _cut_normals(projected: Projection, numbers: Numbers, line: Numbers) -> tuple[Floats, Floats]:
+    """Where each edge is cut by its line, and normal times inverse depth there, (3, spans)."""
+    cut = edges(projected, numbers)
+    corners, rows = projected.corners.ravel(), projected.corner_normals.ravel()
+    a, b = corners[cut.top], corners[cut.bottom]
+    way = (line + 0.5 - projected.down[a]) / (projected.down[b] - projected.down[a])
+    across = cut.across + (line - cut.first_line) * cut.across_step
+    upper = (1 - way) * projected.inverse_depth[a]
+    lower = way * projected.inverse_depth[b]
+    return across, upper * projected.normals.T[:, rows[cut.top]] + lower * projected.normals.T[
+        :, rows[cut.bottom]
+    ]

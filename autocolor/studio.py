@@ -1,0 +1,247 @@
+"""The studio: a session with one scene and one display; where renderer and display meet.
+
+It does what the VAX did: it sends RAMTEK instructions through a host port and never touches the display's
+memories. Each edit makes a new scene; comparing it with the one before tells what is computed and sent.
+
+| changed | sent to the display |
+|---|---|
+| mesh, view, lights, ambient, D, S, N | all words |
+| mapping, scaling, division of the levels | all words, the entries that differ |
+| object color, light color, blend, light percentage | the entries of one range, no word |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.checks import nearest
+from autocolor.color_blending import entries_of
+from autocolor.errors import UsageError
+from autocolor.intensity_mapping import words_of
+from autocolor.level_ranges import BACKGROUND, SCREENS, WORDS, LevelRange, level_ranges
+from autocolor.picture import Picture
+from autocolor.rendering import Rendering, rendering
+from autocolor.scene import Scene
+from autocolor.tables import Paint
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from ramtek_emu import HostPort
+
+PAINT_FIELDS = tuple(entry.name for entry in fields(Paint))
+
+SCREEN_COLORS = (
+    (0, 0, 0), (255, 255, 255), (192, 192, 192), (128, 128, 128), (72, 76, 84), (36, 39, 46),
+    (255, 214, 90), (255, 140, 60), (235, 70, 70), (110, 200, 110), (90, 170, 240), (170, 130, 230),
+    (120, 220, 220), (240, 150, 190), (150, 110, 70), (210, 225, 160),
+)  # fmt: skip
+"""Assumed: the entries of the screens' own words."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """A scene and all that the display holds of it."""
+
+    rendering: Rendering
+    ranges: Mapping[str, LevelRange]
+    words: npt.NDArray[np.uint16]
+    entries: npt.NDArray[np.uint8]
+
+
+def shown(scene: Scene, lines: int = 480, elements: int = 640, before: Shown | None = None) -> Shown:
+    """What a display holds of a scene; `before` lends what did not change."""
+    old = None if before is None else before.rendering
+    rendered = rendering(scene, lines, elements, old)
+    return _colored(rendered, before)
+
+
+def _colored(rendered: Rendering, before: Shown | None) -> Shown:
+    scene, picture = rendered.scene, rendered.picture
+    in_use = {scene.parts[number].surface for number in scene.mesh.parts_in_use}
+    ranges = level_ranges(scene.surfaces, in_use)
+    if (
+        before is not None
+        and before.rendering.picture is picture
+        and before.ranges == ranges
+        and before.rendering.scene.scaling == scene.scaling
+        and before.rendering.scene.mapping == scene.mapping
+    ):
+        words = before.words
+    else:
+        words = words_of(picture, ranges, scene.scaling, scene.mapping)
+    return Shown(rendered, ranges, words, table_of(scene, picture, ranges))
+
+
+def table_of(scene: Scene, picture: Picture, ranges: Mapping[str, LevelRange]) -> npt.NDArray[np.uint8]:
+    """The whole lookup table of a scene, (1024, 3) uint8, read-only."""
+    table = np.zeros((WORDS, 3), np.uint8)
+    table[BACKGROUND] = scene.background
+    table[SCREENS.first :] = SCREEN_COLORS
+    for name, (first, levels) in ranges.items():
+        floor = _floor(scene, picture, name) if scene.contrast == "floor" else 0.0
+        table[first : first + levels] = entries_of(scene.surface(name).paint, levels, floor)
+    table.flags.writeable = False
+    return table
+
+
+def _floor(scene: Scene, picture: Picture, name: str) -> float:
+    """The minimum as a fraction of the maximum, of the surface or of the whole object."""
+    number = 0 if scene.scaling == "object" else picture.surfaces.index(name) + 1
+    extent = picture.relative_ranges.get(number)
+    return extent.minimum / extent.maximum if extent is not None and extent.maximum > 0 else 0.0
+
+
+class Studio:
+    """A session: a scene on a display, edited step by step, each step undone and done again.
+
+    `display` is a host port: a `Ramtek9300`, one behind a network, or a recording. It is reset and gets the
+    whole picture; later edits send what changed. An edit that is refused changes nothing.
+    """
+
+    def __init__(self, scene: Scene, display: HostPort) -> None:
+        configuration = getattr(display, "configuration", None)
+        lines = 480 if configuration is None else configuration.shown_lines
+        elements = 640 if configuration is None else configuration.shown_elements
+        self._display = display
+        self._shown = shown(scene, lines, elements)
+        self._undone: list[Scene] = []
+        self._done: list[Scene] = []
+        self._kept = scene
+        self.send_everything()
+
+    @property
+    def scene(self) -> Scene:
+        """The current scene."""
+        return self._shown.rendering.scene
+
+    @property
+    def picture(self) -> Picture:
+        """The current picture."""
+        return self._shown.rendering.picture
+
+    @property
+    def level_ranges(self) -> Mapping[str, LevelRange]:
+        """The words that each surface owns, by its name."""
+        return self._shown.ranges
+
+    @property
+    def words(self) -> npt.NDArray[np.uint16]:
+        """The words of the current picture, (lines, elements) uint16; read-only."""
+        return self._shown.words
+
+    @property
+    def entries(self) -> npt.NDArray[np.uint8]:
+        """The entries of the lookup table, (1024, 3) uint8; read-only."""
+        return self._shown.entries
+
+    def recolor(self, surface: str, **changes: Any) -> None:
+        """Change the colors of a surface; entries are sent, and no word.
+
+        `changes` are fields of its Paint: object_color, light_color ("#rrggbb" or three numbers), blend,
+        light_percentage.
+        """
+        unknown = [name for name in changes if name not in PAINT_FIELDS]
+        if unknown:
+            raise UsageError(
+                f"recolor takes {', '.join(PAINT_FIELDS)}, not {unknown[0]!r}{nearest(unknown[0], PAINT_FIELDS)}"
+            )
+        self.edit(self.scene.with_surface(surface, **changes))
+
+    def surface(self, name: str, **changes: Any) -> None:
+        """Change any field of a surface, of its reflectance or of its paint."""
+        self.edit(self.scene.with_surface(name, **changes))
+
+    def light(self, name: str, **changes: Any) -> None:
+        """Change any field of a light."""
+        self.edit(self.scene.with_light(name, **changes))
+
+    def view(self, **changes: Any) -> None:
+        """Change any field of the view; everything is computed again."""
+        self.edit(self.scene.with_view(**changes))
+
+    def edit(self, scene: Scene, same_step: bool = False) -> None:
+        """Make a scene the current one; with `same_step` it is undone together with the edit before.
+
+        A drag is many edits and one step.
+        """
+        before = self.scene
+        if scene is before:
+            return
+        self._show(scene)
+        if not (same_step and self._done):
+            self._done.append(before)
+        self._undone.clear()
+
+    def undo(self) -> bool:
+        """Go back one step; False where there is none."""
+        return self._step(self._done, self._undone)
+
+    def redo(self) -> bool:
+        """Do again the step that was undone last; False where there is none."""
+        return self._step(self._undone, self._done)
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether the scene is another than when it was opened or last kept."""
+        return self.scene is not self._kept
+
+    def keep(self) -> None:
+        """Note that the current scene is saved."""
+        self._kept = self.scene
+
+    def save(self, path: str | PathLike[str], overwrite: bool = False) -> None:
+        """Write the picture with its scene to a picture file, and note that it is saved."""
+        from autocolor.files.picture_file import write_picture
+
+        write_picture(path, self.picture, self.scene, overwrite=overwrite)
+        self.keep()
+
+    def send_everything(self) -> None:
+        """Reset the display and send all entries and all words."""
+        from ramtek_emu import instructions
+
+        self._display.send(instructions.reset())
+        self._send(None, self._shown)
+
+    def _step(self, source: list[Scene], target: list[Scene]) -> bool:
+        if not source:
+            return False
+        before = self.scene
+        self._show(source[-1])
+        source.pop()
+        target.append(before)
+        return True
+
+    def _show(self, scene: Scene) -> None:
+        """Compute what changed and send it; nothing is kept of a scene that is refused."""
+        now = shown(scene, self.picture.lines, self.picture.elements, self._shown)
+        self._send(self._shown, now)
+        self._shown = now
+
+    def _send(self, before: Shown | None, now: Shown) -> None:
+        from ramtek_emu import instructions
+
+        changed = (
+            np.arange(WORDS)
+            if before is None
+            else np.flatnonzero((before.entries != now.entries).any(axis=1))
+        )  # fmt: skip
+        if len(changed):
+            run = slice(int(changed[0]), int(changed[-1]) + 1)
+            self._display.send(instructions.load_entries(run.start, now.entries[run]))
+        if before is None or before.words is not now.words:
+            self._display.send(instructions.write_image(now.words))
+
+    def _repr_png_(self) -> bytes:
+        from ramtek_emu.png import png_bytes
+
+        return png_bytes(self.entries[self.words])
+
+    def __repr__(self) -> str:
+        return f"Studio({self.scene.name!r}, {len(self._done)} steps to undo, {len(self._undone)} to redo)"
