@@ -1,0 +1,1 @@
+"""The coupe: the modelling scripts of the built-in scene."""

@@ -1,0 +1,107 @@
+"""Nose and tail: the fascias with recessed lamps, grille, air intake and license plate."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scenes.coupe.body import CREASE, S_END
+from scenes.coupe.curves import Array, spaced
+from scenes.coupe.panels import FASCIA_CUT, GAP, SHOULDER, SILL, TAIL_CUT, UPPER_ROWS, fascia_columns, skin
+from scenes.coupe.parts import Parts
+
+Hole = tuple[int, int, int, int]
+
+
+def border(grid: Array) -> Array:
+    """Return the closed loop of points round a grid."""
+    return np.concatenate([grid[:, 0], grid[-1, 1:], grid[-2::-1, -1], grid[0, -2::-1]])
+
+
+def recess(parts: Parts, face: Array, depth: float, name: str) -> Array:
+    """Add the walls of a recess behind a hole in the skin; returns the grid of its bottom."""
+    inward = -float(np.sign(face[0, 0, 0]))
+    back = face + [inward * depth, 0, 0]
+    walls = np.stack([border(face), border(back)], axis=1)
+    normal = np.cross(face[1, 0] - face[0, 0], face[0, 1] - face[0, 0])
+    parts.grid(name, walls, flip=bool(normal[0] * inward > 0))
+    return back
+
+
+def pane(corner: Array, opposite: Array, across: int, up: int, swell: float) -> Array:
+    """Return an upright lens square to x between two corners, swelling out toward its middle."""
+    y, z = np.linspace(corner[1], opposite[1], across + 1), np.linspace(corner[2], opposite[2], up + 1)
+    a, b = np.meshgrid(np.linspace(-1, 1, across + 1), np.linspace(-1, 1, up + 1), indexing="ij")
+    x = corner[0] + swell * (1 - a**2) * (1 - b**2)
+    return np.stack([x, *np.meshgrid(y, z, indexing="ij")], axis=-1)
+
+
+def boxed(parts: Parts, lens: Array, name: str, depth: float) -> None:
+    """Add a lens and the dark box behind its rim."""
+    outward = float(np.sign(lens[0, 0, 0]))
+    parts.grid(name, lens, outward=(outward, 0, 0))
+    rim = border(lens)
+    middle = rim.mean(axis=0)
+    frame = middle + (rim - middle) * [1, 1.05, 1.10] - [outward * 0.004, 0, 0]
+    parts.grid("lamp_frames", np.stack([rim, frame], axis=1), outward=(outward, 0, 0))
+    parts.grid("lamp_frames", np.stack([frame, frame - [outward * depth, 0, 0]], axis=1))
+
+
+def cells(grid: Array, hole: Hole) -> Array:
+    """Return the points of a hole of the grid, rim included."""
+    return grid[hole[0] : hole[1] + 1, hole[2] : hole[3] + 1]
+
+
+def nose(parts: Parts) -> None:
+    """Add the front fascia with quad head lamps, turn lamps, grille and intake."""
+    s = spaced(0.0, 0.62, 0.80, 1.56, 2.30, 3.0, 4.3, counts=(3, 1, 3, 3, 3, 3))
+    v = np.concatenate([spaced(SILL, 1.7, 2.8, CREASE, 5.25, 5.5, 6.75, SHOULDER,
+                               counts=(2, 2, 2, 2, 1, 2, 1)), UPPER_ROWS[1:]])  # fmt: skip
+    points = skin(fascia_columns(s, v, FASCIA_CUT - GAP / 2, 3.0))
+    lamps, slot, intake, turn = (4, 10, 8, 12), (0, 3, 9, 11), (0, 4, 2, 4), (7, 10, 2, 4)
+    parts.grid("front_fascia", points, holes=(lamps, slot, intake, turn))
+
+    face = cells(points, lamps)
+    parts.grid("lamp_frames", recess(parts, face, 0.12, "lamp_frames")[:, ::2], outward=(-1, 0, 0))
+    for i0, i1 in ((0, 3), (3, 6)):
+        low, high = face[i0, 0], face[i1, -1]
+        ahead = float(face[i0 : i1 + 1, :, 0].max()) + 0.008
+        corner = np.array([ahead, low[1] + 0.012, face[i0, 0, 2] + 0.014])
+        opposite = np.array([ahead, face[i1, 0, 1] - 0.012, face[i0, -1, 2] - 0.012])
+        boxed(parts, pane(corner, opposite, 4, 3, -0.012), "head_lamps", 0.06)
+    for hole, bars in ((slot, 3), (intake, 3)):
+        face = cells(points, hole)
+        parts.grid("grille", recess(parts, face, 0.07, "grille")[:, ::2], outward=(-1, 0, 0))
+        for k in range(bars):
+            share = (k + 0.5) / bars
+            edge = face[:, 0] * (1 - share) + face[:, -1] * share + [0.012, 0, 0]
+            parts.grid("grille", np.stack([edge, edge + [0.022, 0, 0.012]], axis=1), outward=(-1, 0, 1))
+            parts.grid("grille", np.stack([edge, edge + [0.022, 0, -0.006]], axis=1), outward=(-1, 0, -1))
+    parts.grid("turn_lamps", recess(parts, cells(points, turn), 0.012, "lamp_frames"), outward=(-1, 0, 0))
+
+
+def tail(parts: Parts) -> None:
+    """Add the rear fascia, tail lamps and license plate recess."""
+    s = spaced(S_END, S_END - 0.50, S_END - 0.66, 15.72, 15.0, 13.9, counts=(3, 1, 6, 3, 2))
+    v = np.concatenate([spaced(SILL, 1.5, 3.0, CREASE, 5.0, 5.5, 6.75, SHOULDER,
+                               counts=(2, 1, 2, 2, 1, 2, 1)), UPPER_ROWS[1:-1]])  # fmt: skip
+    points = skin(fascia_columns(s, v, TAIL_CUT + GAP / 2, 15.0))
+    lamps, plate = (4, 10, 8, 10), (0, 3, 8, 10)
+    parts.grid("rear_fascia", points, holes=(lamps, plate))
+    back = recess(parts, cells(points, lamps), 0.022, "lamp_frames")
+    parts.grid("lamp_frames", back, outward=(1, 0, 0))
+    for i in range(0, 6, 2):
+        for j in range(2):
+            cell = back[i : i + 3, j : j + 2]
+            middle = cell.reshape(-1, 3).mean(axis=0)
+            inner = middle + (cell - middle) * [1, 0.93, 0.86] + [0.008, 0, 0]
+            parts.grid("tail_lamps", inner, outward=(1, 0, 0))
+            parts.grid("lamp_frames", np.stack([border(inner), border(inner) - [0.008, 0, 0]], axis=1))
+    parts.grid("lamp_frames", recess(parts, cells(points, plate), 0.035, "lamp_frames"), outward=(1, 0, 0))
+    sheet = pane(np.array([2.318, 0.0, 0.628]), np.array([2.322, 0.152, 0.772]), 2, 2, 0.0)
+    parts.grid("license_plate", sheet, outward=(1, 0, 0))
+
+
+def build(parts: Parts) -> None:
+    """Add both ends."""
+    nose(parts)
+    tail(parts)

@@ -1,0 +1,75 @@
+"""Write the mesh files of the coupe beside this script: `python -m scenes.coupe.make [FOLDER]`.
+
+The car is a 2 + 2 sports coupe of the early 1980s with a long hood and a glass hatch, in meters: x runs from nose
+to tail, y to the right, z up; the wheels stand on z = 0. The meshes are the same to the last digit at each run.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from scenes.coupe import canopy, details, ends, panels, wheels
+from scenes.coupe.curves import spaced
+from scenes.coupe.parts import Parts
+
+FILES = {
+    "body.obj": (
+        "hood", "fender_left", "fender_right", "door_left", "door_right", "quarter_left", "quarter_right",
+        "sill_left", "sill_right", "wheel_arches", "front_fascia", "rear_fascia", "roof", "pillar_left",
+        "pillar_right", "sail_left", "sail_right", "deck", "spoiler", "mirrors",
+    ),
+    "fittings.obj": (
+        "windshield", "window_left", "window_right", "hatch_glass", "mirror_glass", "glass_trim", "gaps", "cowl",
+        "wipers", "grille", "handles", "moldings", "lamp_frames", "head_lamps", "turn_lamps", "tail_lamps",
+        "license_plate",
+    ),
+    "chassis.obj": ("tires", "wheels", "brakes", "wheel_wells", "underbody"),
+}  # fmt: skip
+
+
+def car() -> Parts:
+    """Return all parts of the car."""
+    parts = Parts()
+    panels.build(parts)
+    canopy.build(parts)
+    ends.build(parts)
+    details.build(parts)
+    wheels.build(parts)
+    return parts
+
+
+def ground() -> Parts:
+    """Return the studio floor, a disc, and the dark patch of shade below the car."""
+    parts = Parts()
+    angle = np.linspace(0, 2 * np.pi, 49)[:, None]
+    radius = spaced(0.0, 4.0, 11.0, counts=(6, 7))
+    disc = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * radius * angle], axis=-1)
+    parts.grid("floor", disc, outward=(0, 0, 1), mirror=False)
+    round_x = np.sign(np.cos(angle)) * np.abs(np.cos(angle)) ** 0.35
+    round_y = np.sign(np.sin(angle)) * np.abs(np.sin(angle)) ** 0.35
+    share = np.array([0.0, 0.5, 1.0])
+    patch = np.stack([2.2 * share * round_x, 0.84 * share * round_y, 0 * share * angle + 0.005], axis=-1)
+    parts.grid("shade", patch, outward=(0, 0, 1), mirror=False)
+    return parts
+
+
+def meshes() -> dict[str, str]:
+    """Return the text of each mesh file by its name."""
+    parts = car()
+    texts = {name: parts.obj(list(names), f"coupe, {name}") for name, names in FILES.items()}
+    floor = ground()
+    return {**texts, "floor.obj": floor.obj(list(floor.polygons), "coupe, studio floor")}
+
+
+def main(folder: Path) -> None:
+    """Write the mesh files into the folder."""
+    for name, text in meshes().items():
+        (folder / name).write_text(text, encoding="ascii", newline="\n")
+    print("nodes {}, polygons {}, distinct edges {}".format(*car().counts()))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)

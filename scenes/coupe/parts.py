@@ -1,0 +1,84 @@
+"""The part collector: grids of points become quads of named parts, mirrored left to right, and an OBJ text."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scenes.coupe.curves import Array
+
+MIDDLE = np.array([0.0, 0.0, 0.55])
+
+
+class Parts:
+    """Named parts under construction; nodes that coincide within a part are shared."""
+
+    def __init__(self) -> None:
+        """Start with no part."""
+        self.nodes: dict[str, dict[tuple[float, float, float], int]] = {}
+        self.polygons: dict[str, list[list[int]]] = {}
+
+    def polygon(self, part: str, points: Array) -> None:
+        """Add one polygon, counterclockwise from outside; corners that coincide are taken together."""
+        nodes = self.nodes.setdefault(part, {})
+        corners: list[int] = []
+        for x, y, z in np.round(points, 4) + 0.0:
+            number = nodes.setdefault((float(x), float(y), float(z)), len(nodes))
+            if number not in corners:
+                corners.append(number)
+        if len(corners) >= 3:
+            self.polygons.setdefault(part, []).append(corners)
+
+    def grid(
+        self,
+        part: str,
+        points: Array,
+        *,
+        outward: tuple[float, float, float] | None = None,
+        holes: tuple[tuple[int, int, int, int], ...] = (),
+        mirror: bool = True,
+        flip: bool | None = None,
+    ) -> None:
+        """Add the quads of an (n, m, 3) grid and its mirror image.
+
+        The winding is turned to face away from the middle of the car, or along `outward`. A hole
+        (i0, i1, j0, j1) leaves cells out. "{side}" in the part's name becomes right and left.
+        """
+        quads = np.stack([points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]], axis=2)
+        keep = np.ones(quads.shape[:2], dtype=bool)
+        for i0, i1, j0, j1 in holes:
+            keep[i0:i1, j0:j1] = False
+        quads = quads[keep]
+        normals = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
+        if flip is None:
+            middle = MIDDLE * [0, 0, 1] + quads.mean(axis=1) * [0.85, 0, 0]
+            away = quads.mean(axis=1) - middle if outward is None else np.array(outward)
+            flip = bool((normals * away).sum() < 0)
+        if flip:
+            quads = quads[:, ::-1]
+        for quad in quads:
+            self.polygon(part.format(side="right"), quad)
+        if mirror:
+            for quad in quads[:, ::-1] * [1.0, -1.0, 1.0]:
+                self.polygon(part.format(side="left"), quad)
+
+    def obj(self, names: list[str], title: str) -> str:
+        """Return the OBJ text of these parts, nodes in the order of their making."""
+        lines, base = [f"# {title}"], 1
+        for name in names:
+            lines += [f"v {x:.4f} {y:.4f} {z:.4f}" for x, y, z in self.nodes[name]]
+        for name in names:
+            lines.append(f"g {name}")
+            lines += ["f " + " ".join(str(base + k) for k in corners) for corners in self.polygons[name]]
+            base += len(self.nodes[name])
+        return "\n".join(lines) + "\n"
+
+    def counts(self) -> tuple[int, int, int]:
+        """Return the numbers of nodes, polygons and distinct edges."""
+        edges = 0
+        for polygons in self.polygons.values():
+            edges += len({frozenset(e) for p in polygons for e in zip(p, p[1:] + p[:1], strict=True)})
+        return (
+            sum(len(nodes) for nodes in self.nodes.values()),
+            sum(len(polygons) for polygons in self.polygons.values()),
+            edges,
+        )

@@ -1,0 +1,46 @@
+"""Wheels: tires turned from a profile, and alloy discs of five spokes before a dark brake."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scenes.coupe.body import AXLES, WHEEL_HEIGHT
+from scenes.coupe.curves import Array
+from scenes.coupe.parts import Parts
+
+CENTER_Y = 0.784
+AROUND = 30
+SPOKES = 5
+# (outward offset from the wheel's middle plane, radius), from the outside bead round to the inside.
+TIRE = ((0.088, 0.207), (0.1055, 0.236), (0.1075, 0.272), (0.098, 0.306), (0.078, 0.3225), (-0.078, 0.3225), (-0.106, 0.280),
+        (-0.088, 0.207))  # fmt: skip
+RIM = ((0.088, 0.207), (0.094, 0.200), (0.088, 0.190), (0.052, 0.182))
+# Rows of the disc, from the rim to the hub cap; cells between rows 1 and 3 are open between the spokes.
+DISC = ((0.056, 0.182), (0.062, 0.166), (0.074, 0.130), (0.082, 0.088), (0.082, 0.060), (0.070, 0.052), (0.072, 0.030),
+        (0.074, 0.0))  # fmt: skip
+OPEN_ROWS = (1, 3)
+
+
+def turned(profile: tuple[tuple[float, float], ...], axle: float) -> Array:
+    """Return the surface (around, profile, 3) turned about a wheel's axis."""
+    angle = np.linspace(0, 2 * np.pi, AROUND + 1)[:, None] + np.pi / 2 + np.pi / SPOKES
+    offset, radius = np.array(profile).T
+    return np.stack(
+        [axle + radius * np.cos(angle), CENTER_Y + offset + 0 * angle, WHEEL_HEIGHT + radius * np.sin(angle)], axis=-1
+    )
+
+
+def build(parts: Parts) -> None:
+    """Add four wheels with their tires."""
+    cells = AROUND // SPOKES
+    for axle in AXLES:
+        parts.grid("tires", turned(TIRE, axle), flip=False)
+        parts.grid("wheels", turned(RIM, axle), flip=False)
+        disc = turned(DISC, axle)
+        windows = tuple((k * cells - 1 + cells // 2, k * cells + 2 + cells // 2, *OPEN_ROWS) for k in range(SPOKES))
+        parts.grid("wheels", disc, flip=False, holes=windows)
+        for i0, i1, j0, j1 in windows:
+            hole = disc[i0 : i1 + 1, j0 : j1 + 1]
+            loop = np.concatenate([hole[:, 0], hole[-1, 1:], hole[-2::-1, -1], hole[0, -2::-1]])
+            parts.grid("wheels", np.stack([loop, loop - [0, 0.028, 0]], axis=1), flip=True)
+        parts.grid("brakes", turned(((0.040, 0.185), (0.044, 0.07)), axle), flip=False)
