@@ -7,6 +7,7 @@ tables of two scenes tells what must be computed again.
 from __future__ import annotations
 
 import dataclasses
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
@@ -191,7 +192,7 @@ def _changed(rows: tuple[Row, ...], row: Row, changes: dict[str, Any]) -> tuple[
 
 
 def _repeated(table: str, names: list[str]) -> list[str]:
-    repeated = dict.fromkeys(name for name in names if names.count(name) > 1)
+    repeated = [name for name, count in Counter(names).items() if count > 1]
     return [f"{table}: a name must stand once, not repeated: {name!r}; rename one" for name in repeated]
 
 

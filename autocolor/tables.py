@@ -262,7 +262,8 @@ def _check_rows(
     problems: list[str], what: str, numbers: npt.NDArray[np.intp], count: int, table: str
 ) -> None:
     """Note the first number that is no row of a table."""
-    bad = np.flatnonzero(((numbers < 0) | (numbers >= count)).reshape(len(numbers), -1).any(axis=1))
+    missing = (numbers < 0) | (numbers >= count)
+    bad = np.flatnonzero(missing.any(axis=1) if missing.ndim > 1 else missing)
     if len(bad):
         problems.append(
             f"{what} must be a row of the {table} (0 to {count - 1}), not {numbers[bad[0]].tolist()} (row {bad[0]})"
