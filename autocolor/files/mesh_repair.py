@@ -1,0 +1,100 @@
+"""From the polygons of a file to a mesh of triangles and quads, with a sentence for every repair.
+
+- A corner that repeats the one before it is left out: a quad becomes a triangle.
+- A polygon with fewer than three corners left, or without area, is dropped.
+- A polygon of more than four corners is split into quads and triangles.
+- Quads that are warped, concave or crossed (bow-ties) are kept as they are, for the renderer goes through
+  them scan line by scan line; `quad_shapes` counts them. Nodes that no polygon uses are kept.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.errors import InputError
+from autocolor.files.polygon_split import split_polygons
+from autocolor.files.polygons import MeshReport, Polygons, standing
+from autocolor.node_normals import CREASE_ANGLE
+from autocolor.tables import Mesh
+
+FLAT = 1e-12
+"""Assumed: twice the area of a triangle over the square of the polygon's size, below which it has none."""
+
+
+def mended(
+    polygons: Polygons,
+    place: str,
+    *,
+    up: str = "z",
+    crease_angle: float | None = None,
+    skipped: tuple[str, ...] = (),
+) -> MeshReport:
+    """The mesh of the polygons; `place` is the file's name and `skipped` are sentences for the report.
+
+    Raises InputError where no polygon is left.
+    """
+    coordinates = standing(polygons.coordinates, up)
+    repairs = list(skipped)
+    corners, counts, shortened = _without_repeats(polygons.corners, polygons.corner_counts)
+    few = counts < 3
+    node_numbers, owners = split_polygons(coordinates, corners, counts)
+
+    # Drop pieces without area; a polygon is dropped when no piece of it is left.
+    wide = _have_area(coordinates[node_numbers])
+    node_numbers, owners = node_numbers[wide], owners[wide]
+    left = np.zeros(len(counts), np.bool_)
+    left[owners] = True
+    noted = (
+        (shortened & ~few & left, "{} with repeated corners {} mended"),
+        (few, "{} with fewer than three different corners {} dropped"),
+        (~few & ~left, "{} without area {} dropped"),
+        ((counts > 4) & left, "{} with more than four corners {} split"),
+    )
+    for which, sentence in noted:
+        if count := int(which.sum()):
+            polygon, was = ("polygon", "was") if count == 1 else ("polygons", "were")
+            repairs.append(sentence.format(f"{count:,} {polygon}", was))
+    if not len(node_numbers):
+        raise InputError(f"{place}: a mesh must have a polygon with area, not none; add polygons")
+    mesh = Mesh(
+        coordinates,
+        node_numbers,
+        polygons.part_numbers[owners],
+        polygons.part_names,
+        CREASE_ANGLE if crease_angle is None else crease_angle,
+    )
+    return MeshReport(mesh, tuple(f"{place}: {repair}" for repair in repairs))
+
+
+def _without_repeats(
+    corners: npt.NDArray[np.intp], counts: npt.NDArray[np.intp]
+) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], npt.NDArray[np.bool_]]:
+    """Corners and counts without a corner that equals the following one, and which polygons had such."""
+    following = np.arange(1, len(corners) + 1)
+    ends = np.cumsum(counts)
+    filled = counts > 0
+    following[ends[filled] - 1] = (ends - counts)[filled]
+    kept = corners != corners[following]
+    if kept.all():
+        return corners, counts, np.zeros(len(counts), np.bool_)
+    owners = np.repeat(np.arange(len(counts)), counts)
+    kept_counts = np.bincount(owners[kept], minlength=len(counts))
+    return corners[kept], kept_counts, kept_counts != counts
+
+
+def _have_area(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    """Whether polygons (n, 4, 3) cover any area: on neither diagonal are both triangles flat.
+
+    A bow-tie whose halves cancel has area; a polygon that goes the same way there and back has none.
+    """
+    size = np.ptp(corners, axis=1).max(axis=1)
+    size[size == 0] = 1.0
+    scaled = (corners - corners[:, :1]) / size[:, None, None]
+
+    def flat(first: int, second: int, third: int) -> npt.NDArray[np.bool_]:
+        onward, back = scaled[:, second] - scaled[:, first], scaled[:, third] - scaled[:, first]
+        below: npt.NDArray[np.bool_] = np.linalg.norm(np.cross(onward, back), axis=1) < FLAT
+        return below
+
+    return ~((flat(0, 1, 2) & flat(0, 2, 3)) | (flat(0, 1, 3) & flat(1, 2, 3)))

@@ -1,0 +1,45 @@
+"""Meshes in OBJ files (Wavefront): nodes, polygons and the names that group them.
+
+Read are `v` (a weight or colors after x y z are not used), `f` with node numbers from 1 or negative, alone or
+with texture and normal numbers, and `g`, `o` and `usemtl` as part names (see `obj_statements`). Polygons may
+name nodes that come later. Quads stay quads and shared nodes stay shared. Texture places, normals and
+material files are not used; points, lines, curves and unknown statements are skipped and counted. Lines may
+end in any of the three ways, continue after a backslash, and start with spaces or tabs.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from autocolor.errors import InputError
+from autocolor.files.mesh_repair import mended
+from autocolor.files.obj_lines import read_obj_lines
+from autocolor.files.obj_plain import read_plain_obj
+from autocolor.files.obj_statements import Statements
+from autocolor.files.polygons import MeshReport, Polygons
+from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
+
+
+def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) -> MeshReport:
+    """The mesh of an OBJ file, and what was repaired or skipped; `up` is the file's up axis.
+
+    Raises InputError with file and line of every problem, MissingInputError where there is no file.
+    """
+    data = read_bytes(path, LARGEST_MESH_FILE)
+    if problem := text_problem(data):
+        raise InputError(f"{path.name}: an OBJ file {problem}")
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    statements = Statements(path.stem)
+    tables = read_plain_obj(data, statements)
+    if tables is None or (tables.rows < 0).any():
+        statements = Statements(path.stem)
+        tables = read_obj_lines(data, path.name, statements)
+    polygons = Polygons(
+        tables.coordinates,
+        tables.rows,
+        tables.corner_counts,
+        tables.part_numbers,
+        tuple(statements.numbers),
+    )
+    return mended(polygons, path.name, up=up, crease_angle=crease_angle, skipped=statements.sentences)

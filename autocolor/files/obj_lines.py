@@ -1,0 +1,143 @@
+"""The patient OBJ reader: one statement after the other, with a sentence for every fault."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from array import array
+from collections.abc import Iterator
+
+import numpy as np
+
+from autocolor.checks import LARGEST_COORDINATE
+from autocolor.errors import InputError
+from autocolor.files.obj_statements import Statements
+from autocolor.files.obj_tables import LONGEST_LINE, ObjTables
+from autocolor.files.polygon_split import MOST_CORNERS
+from autocolor.files.reading import shown
+
+MOST_PROBLEMS = 20
+"""Assumed: sentences for one mesh file; a file with more faults has one that repeats."""
+
+NUMBER = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+CORNER = re.compile(rb"([+-]?[0-9]{1,18})(?:/[+-]?[0-9]*){0,2}")
+
+
+class ObjLines:
+    """The tables while they grow, and the problems found."""
+
+    def __init__(self, place: str, statements: Statements) -> None:
+        self.place = place
+        self.statements = statements
+        self.problems: list[str] = []
+        self.coordinates = array("d")
+        self.numbers = array("q")
+        self.corner_counts = array("q")
+        self.part_numbers = array("q")
+        self.nodes_before = array("q")
+        self.polygon_lines = array("q")
+        self.line = 0
+
+    def problem(self, sentence: str) -> None:
+        """Note a problem of the current line; raise InputError when there are enough."""
+        self.problems.append(f"{self.place}, line {self.line}: {sentence}")
+        if len(self.problems) >= MOST_PROBLEMS:
+            raise InputError(self.problems)
+
+    def node(self, words: list[bytes]) -> None:
+        """Read `v x y z`; a weight or colors that follow must be numbers and are not used."""
+        if len(words) < 3:
+            self.problem(f"a node must have three coordinates x y z, not {len(words)}; add what is missing")
+            words = [*words, b"0", b"0", b"0"][:3]
+        for row, word in enumerate(words):
+            number = float(word) if NUMBER.fullmatch(word) else math.nan
+            if row < 3 and not abs(number) <= LARGEST_COORDINATE:
+                rule = "a coordinate must be a decimal number of at most 1e30 in size"
+                self.problem(f"{rule}, not {shown(word)}; correct it")
+            elif math.isnan(number):
+                self.problem(f"what follows x y z must be decimal numbers, not {shown(word)}; correct it")
+            if row < 3:
+                self.coordinates.append(number)
+
+    def polygon(self, words: list[bytes]) -> None:
+        """Read the corners of `f`, of each the node number; texture and normal numbers are not used."""
+        if len(words) > MOST_CORNERS:
+            self.problem(
+                f"a polygon must have at most {MOST_CORNERS:,} corners, not {len(words):,}; divide it"
+            )
+            return
+        for word in words:
+            corner = CORNER.fullmatch(word)
+            if corner is None:
+                self.problem(
+                    "a corner must be a node number, alone or with texture and normal numbers as in 7/1/3,"
+                    f" not {shown(word)}; correct it"
+                )
+                return
+        self.numbers.extend(int(word.split(b"/", 1)[0]) for word in words)
+        self.corner_counts.append(len(words))
+        self.part_numbers.append(self.statements.part_number)
+        self.nodes_before.append(len(self.coordinates) // 3)
+        self.polygon_lines.append(self.line)
+
+    def tables(self) -> ObjTables:
+        """The tables, when there was no problem and every corner has its node; else InputError."""
+        count = len(self.coordinates) // 3
+        tables = ObjTables(
+            np.array(self.coordinates, np.float64).reshape(count, 3),
+            *(
+                np.array(column, np.int64)
+                for column in (self.numbers, self.corner_counts, self.part_numbers, self.nodes_before)
+            ),
+        )
+        missing = np.flatnonzero(tables.rows < 0)
+        polygons = np.searchsorted(np.cumsum(tables.corner_counts), missing, side="right")
+        polygons, first = np.unique(polygons, return_index=True)
+        for corner, polygon in zip(missing[first].tolist(), polygons.tolist(), strict=True):
+            self.line = self.polygon_lines[polygon]
+            rule = f"from 1 to {count}" if count else "of a node in the file, which has none"
+            if before := self.nodes_before[polygon]:
+                rule += f" or from -{before} to -1"
+            self.problem(f"a corner must be a node number {rule}, not {self.numbers[corner]}; correct it")
+        if self.problems:
+            raise InputError(self.problems)
+        return tables
+
+
+def read_obj_lines(data: bytes, place: str, statements: Statements) -> ObjTables:
+    """The tables of an OBJ file whose lines end with line feeds; `place` is its name in the sentences.
+
+    Raises InputError with every problem, up to MOST_PROBLEMS.
+    """
+    reader = ObjLines(place, statements)
+    for number, line in _statements(data, reader):
+        reader.line = number
+        if statements.read(line):
+            continue
+        words = line.split(b"#", 1)[0].split()
+        if words[0] == b"v":
+            reader.node(words[1:])
+        else:
+            reader.polygon(words[1:])
+    return reader.tables()
+
+
+def _statements(data: bytes, reader: ObjLines) -> Iterator[tuple[int, bytes]]:
+    """Each statement with the number of its first line; a backslash at a line's end continues it."""
+    begun = b""
+    first = 0
+    for number, line in enumerate(io.BytesIO(data), start=1):
+        if len(begun) + len(line) > LONGEST_LINE:
+            reader.line = first or number
+            reader.problem(
+                f"a line must have at most {LONGEST_LINE:,} bytes, not {len(begun) + len(line):,}; divide it"
+            )
+            raise InputError(reader.problems)
+        if line.endswith(b"\\\n"):
+            begun, first = begun + line[:-2] + b" ", first or number
+            continue
+        yield first or number, begun + line
+        begun, first = b"", 0
+    if begun:
+        yield first, begun

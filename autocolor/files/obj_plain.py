@@ -1,0 +1,146 @@
+"""The fast OBJ reader: whole arrays of plain lines at a time; it knows no error, only files it leaves alone.
+
+`read_plain_obj` gives what `read_obj_lines` gives, or None for anything out of the ordinary: a statement
+that does not start its line, a comment after numbers, nodes with and without colors mixed, any fault.
+Measured: one million quads in 1.6 s, where the reader by lines takes 5.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.checks import LARGEST_COORDINATE
+from autocolor.files.obj_statements import Statements
+from autocolor.files.obj_tables import LONGEST_LINE, ObjTables
+from autocolor.files.polygon_split import MOST_CORNERS
+
+BLOCK = 1 << 21
+"""Bytes read at a time: large enough for arrays, small enough to stay out of the way of memory."""
+
+NOT_IN_NODES = b"0123456789+-.eEv \t\n"
+NOT_IN_POLYGONS = b"0123456789-f \t\n"
+TEXTURE_AND_NORMAL = re.compile(rb"(?<=[0-9])/-?[0-9]*(?:/-?[0-9]*)?(?=[ \t\n])")
+
+Bytes = npt.NDArray[np.uint8]
+Counts = npt.NDArray[np.int64]
+
+
+def read_plain_obj(data: bytes, statements: Statements) -> ObjTables | None:
+    """The tables of an OBJ file whose lines end with line feeds, or None where it is not plain."""
+    if b"\\\n" in data:
+        return None
+    node_count = 0
+    nodes = [np.empty((0, 3))]
+    tables: list[tuple[Counts, Counts, Counts, Counts]] = []
+    for block in _blocks(data):
+        text = np.frombuffer(block, np.uint8)
+        ends = np.flatnonzero(text == ord("\n"))
+        starts = np.concatenate([[0], ends[:-1] + 1])
+        lengths = ends + 1 - starts
+        if lengths.max() > LONGEST_LINE:
+            return None
+
+        # Tell the lines apart by their first bytes.
+        first, second = text[starts], text[np.minimum(starts + 1, ends)]
+        third = text[np.minimum(starts + 2, ends)]
+        spaced = (second == ord(" ")) | (second == ord("\t"))
+        is_node, is_polygon = (first == ord("v")) & spaced, (first == ord("f")) & spaced
+        unused = (first == ord("v")) & ((second == ord("t")) | (second == ord("n"))) & (third <= ord(" "))
+        unused |= (first == ord("#")) | (first == ord("\n"))
+
+        coordinates = _coordinates(text, is_node, lengths)
+        corners = _corners(text, is_polygon, lengths)
+        others = np.flatnonzero(~(is_node | is_polygon | unused))
+        parts = _part_numbers(block, others, starts, ends, np.flatnonzero(is_polygon), statements)
+        if coordinates is None or corners is None or parts is None:
+            return None
+        nodes.append(coordinates)
+        tables.append((*corners, parts, node_count + np.cumsum(is_node)[is_polygon]))
+        node_count += len(coordinates)
+    if not tables:
+        return None
+    return ObjTables(np.concatenate(nodes), *(np.concatenate(column) for column in zip(*tables, strict=True)))
+
+
+def _blocks(data: bytes) -> Iterator[bytes]:
+    """The file in blocks of whole lines, the last line ended where the file does not."""
+    start = 0
+    while start < len(data):
+        end = data.find(b"\n", min(start + BLOCK, len(data)))
+        block = data[start:] if end < 0 else data[start : end + 1]
+        yield block if block.endswith(b"\n") else block + b"\n"
+        start += len(block)
+
+
+def _coordinates(
+    text: Bytes, chosen: npt.NDArray[np.bool_], lengths: Counts
+) -> npt.NDArray[np.float64] | None:
+    """The first three numbers of the chosen lines, which must all have as many."""
+    lines = text[np.repeat(chosen, lengths)]
+    if not len(lines):
+        return np.empty((0, 3))
+    plain = lines.tobytes()
+    counts = _words_a_line(lines)
+    if plain.translate(None, NOT_IN_NODES) or plain.count(b"v") != len(counts):
+        return None
+    if counts[0] < 4 or (counts != counts[0]).any():
+        return None
+    words = plain.replace(b"v", b" ").decode("ascii").split()
+    try:
+        numbers = np.fromiter(map(float, words), np.float64, len(words))
+    except ValueError:
+        return None
+    coordinates = np.ascontiguousarray(numbers.reshape(len(counts), -1)[:, :3])
+    return coordinates if (np.abs(coordinates) <= LARGEST_COORDINATE).all() else None
+
+
+def _corners(text: Bytes, chosen: npt.NDArray[np.bool_], lengths: Counts) -> tuple[Counts, Counts] | None:
+    """The node numbers of the chosen lines, and how many each line has."""
+    lines = text[np.repeat(chosen, lengths)]
+    if not len(lines):
+        return np.empty(0, np.int64), np.empty(0, np.int64)
+    plain = lines.tobytes()
+    if b"/" in plain:
+        plain = TEXTURE_AND_NORMAL.sub(b"", plain)
+        lines = np.frombuffer(plain, np.uint8)
+    counts = _words_a_line(lines) - 1
+    if plain.translate(None, NOT_IN_POLYGONS) or plain.count(b"f") != len(counts):
+        return None
+    if counts.max() > MOST_CORNERS:
+        return None
+    words = plain.replace(b"f", b" ").decode("ascii").split()
+    try:
+        return np.fromiter(map(int, words), np.int64, len(words)), counts
+    except (ValueError, OverflowError):
+        return None
+
+
+def _words_a_line(lines: Bytes) -> Counts:
+    """How many words, with spaces between, each line has."""
+    spaces = lines <= ord(" ")
+    starts = ~spaces
+    starts[1:] &= spaces[:-1]
+    ends = np.flatnonzero(lines == ord("\n"))
+    return np.add.reduceat(starts, np.concatenate([[0], ends[:-1] + 1]), dtype=np.int64)
+
+
+def _part_numbers(
+    block: bytes, others: Counts, starts: Counts, ends: Counts, polygons: Counts, statements: Statements
+) -> Counts | None:
+    """The part number of each polygon, by the names that stand before it among the other lines."""
+    numbers = np.empty(len(polygons), np.int64)
+    done = 0
+    before = np.searchsorted(polygons, others).tolist()
+    for upto, start, end in zip(before, starts[others].tolist(), ends[others].tolist(), strict=True):
+        if upto > done:
+            numbers[done:upto] = statements.part_number
+            done = upto
+        if not statements.read(block[start:end]):
+            return None
+    if len(polygons) > done:
+        numbers[done:] = statements.part_number
+    return numbers

@@ -1,0 +1,34 @@
+"""What the two OBJ readers hand on: the node table and the corners as the file numbers them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+LONGEST_LINE = 1 << 20
+"""Assumed: bytes of one statement, its continuation lines included."""
+
+
+@dataclass(frozen=True, eq=False)
+class ObjTables:
+    """Node numbers as they stand in the file: from 1, or negative, counted back from the latest node.
+
+    `coordinates` is (nodes, 3); `numbers` holds the corners of all polygons one after the other;
+    `corner_counts`, `part_numbers` and `nodes_before` (how many nodes stood before it) have a row a polygon.
+    """
+
+    coordinates: npt.NDArray[np.float64]
+    numbers: npt.NDArray[np.int64]
+    corner_counts: npt.NDArray[np.int64]
+    part_numbers: npt.NDArray[np.int64]
+    nodes_before: npt.NDArray[np.int64]
+
+    @property
+    def rows(self) -> npt.NDArray[np.intp]:
+        """The row of the node table for each corner, -1 where there is no such node."""
+        before = np.repeat(self.nodes_before, self.corner_counts)
+        rows = np.where(self.numbers > 0, self.numbers - 1, before + self.numbers)
+        missing = (self.numbers == 0) | (rows < 0) | (rows >= len(self.coordinates))
+        return np.where(missing, -1, rows).astype(np.intp)

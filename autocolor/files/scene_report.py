@@ -1,0 +1,47 @@
+"""A scene that was read, with what was repaired and what was created for it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from autocolor.scene import Scene, scene_of
+from autocolor.tables import Mesh
+
+
+@dataclass(frozen=True)
+class SceneReport:
+    """A scene; sentences for what was repaired or skipped in its files, and for what was created.
+
+    `mesh_files` are the `[[mesh]]` tables that lead to the same mesh (see `scene_text`).
+    """
+
+    scene: Scene
+    repairs: tuple[str, ...] = ()
+    created: tuple[str, ...] = ()
+    mesh_files: tuple[Mapping[str, str], ...] = ()
+
+
+def scene_report(
+    mesh: Mesh,
+    *,
+    repairs: tuple[str, ...] = (),
+    mesh_files: tuple[Mapping[str, str], ...] = (),
+    **fields: Any,
+) -> SceneReport:
+    """The scene of a mesh and of tables as for `scene_of`, and what that created."""
+    scene = scene_of(mesh, **fields)
+    given = {surface.name for surface in fields.get("surfaces") or ()}
+    names = [repr(surface.name) for surface in scene.surfaces if surface.name not in given]
+    created = []
+    if fields.get("view") is None:
+        created.append("a view was created that frames the object")
+    if fields.get("lights") is None:
+        created.append(f"{len(scene.lights)} studio lights were created")
+    if len(names) == 1:
+        created.append(f"surface {names[0]} was created")
+    elif names:
+        listed = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")
+        created.append(f"{len(names)} surfaces were created: {listed}")
+    return SceneReport(scene, repairs, tuple(created), mesh_files)
