@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from scenes.coupe.body import LEDGE, S_END, s_at, wall
-from scenes.coupe.curves import Array, bspline, coons, segment, spaced
-from scenes.coupe.panels import DOOR_FRONT, DOOR_REAR, HOOD_EDGE, QUARTER_TOP, TAIL_CUT, hood_rear
+from scenes.coupe.body import LEDGE, S_END, s_at, top, wall
+from scenes.coupe.curves import Array, bspline, coons, ease, segment, spaced
+from scenes.coupe.panels import DOOR_FRONT, DOOR_REAR, HOOD_EDGE, QUARTER_TOP, hood_rear
 from scenes.coupe.parts import Parts
 
 # Side views (x, z) of the center line and of the rail; the same count of control points.
@@ -22,7 +22,7 @@ RAIL = np.array([(-0.50, 0.885), (-0.33, 0.980), (-0.13, 1.094), (0.06, 1.200), 
                  (0.55, 1.206), (0.76, 1.170), (1.10, 1.098), (1.43, 1.020), (1.72, 0.955), (1.92, 0.914)])  # fmt: skip
 T_END = float(len(CENTER) - 3)
 HEADER, REAR_HEADER, PILLAR_END = 2.25, 5.45, 6.35
-RIM, DROP = 0.935, 0.036
+RIM, DROP, GLASS_FOOT = 0.935, 0.036, 0.016
 
 
 def flank(x: ArrayLike, z: ArrayLike) -> Array:
@@ -79,7 +79,7 @@ def fillet(x: Array, steps: int) -> Array:
 
 def fillet_rise(x: Array) -> Array:
     """Return how far the hollow strip climbs the flank; it runs out with the hatch."""
-    return 0.030 * np.clip((2.03 - x) / 0.5, 0.25, 1)
+    return GLASS_FOOT + 0.016 * ease(x, DOOR_REAR, 0.88) * np.clip((2.03 - x) / 0.5, 0.0, 1)
 
 
 def t_of_lower_edge(x: float) -> float:
@@ -120,14 +120,10 @@ def crown_panels(parts: Parts) -> None:
 def side_panels(parts: Parts) -> None:
     """Add door glass, sail panel and the side of the hatch glass, down to the ledge."""
     top_rear = t_of_lower_edge(0.47)
-    glass_rear = lower_edge(top_rear)
-    tip = 0.75
-    strip = 0.016
     x = np.linspace(DOOR_FRONT + 0.09, DOOR_REAR + 0.005, 13)
     foot = wall(s_at(x, LEDGE), LEDGE)
-    low = flank(x, foot[:, 2] + strip)
+    low = flank(x, foot[:, 2] + GLASS_FOOT)
     high = lower_edge(np.linspace(0.12, top_rear, 13))
-    ladder = np.linspace(0, 1, 8)[:, None]
 
     def upright(bottom: Array, summit: Array, steps: int = 5) -> Array:
         line = segment(bottom, summit, steps)
@@ -137,7 +133,6 @@ def side_panels(parts: Parts) -> None:
         grid = np.stack([upright(b, s) for b, s in zip(bottom, summit, strict=True)])
         return grid
 
-    del glass_rear, tip, ladder
     parts.grid("window_{side}", sheet(low[3:], high[3:]))
     parts.grid("glass_trim", sheet(low[:4], high[:4]))
     parts.grid("glass_trim", np.stack([foot, low], axis=1))
@@ -170,8 +165,6 @@ def cowl(parts: Parts) -> None:
     side = wall(s_at(-0.61, HOOD_EDGE), HOOD_EDGE)
     y = np.linspace(0, float(side[1]), len(shield))
     plan = hood_rear(y, float(side[1]))
-    from scenes.coupe.body import top
-
     rear = np.concatenate([plan, top(plan[:, 0], plan[:, 1])[:, None]], axis=1)
     parts.grid("cowl", np.stack([rear, (rear + shield) / 2 - [0, 0, 0.004], shield], axis=1), outward=(0, 0, 1))
     ledge = wall(s_at(np.linspace(-0.61, -0.47, 4), LEDGE), LEDGE)

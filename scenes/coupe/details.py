@@ -25,9 +25,7 @@ def raised(parts: Parts, part: str, grid: Array, height: float) -> None:
     base, normal = skin(grid), outward_at(grid)
     middle = base.reshape(-1, 3).mean(axis=0)
     face = base + normal * height
-    top_face = face.copy()
-    top_face[:, 1:-1] += (middle - top_face[:, 1:-1]) * 0
-    parts.grid(part, top_face)
+    parts.grid(part, face)
     for edge in (np.s_[:, 0], np.s_[:, -1], np.s_[0], np.s_[-1]):
         strip = np.stack([base[edge] - normal[edge] * 0.004, face[edge]], axis=1)
         parts.grid(part, strip, outward=tuple(strip.reshape(-1, 3).mean(axis=0) - middle))
@@ -71,10 +69,10 @@ def mirrors(parts: Parts) -> None:
     center = np.array([0.965, 0.945])
     housing = np.stack([
         x[:, None] + 0.02 * np.abs(round_y)[None] * size[:, None] ** 2 + 0.03 * (round_y[None] + 1) * 0.5,
-        center[0] + 0.095 * size[:, None] * round_y[None] + 0 * x[:, None],
-        center[1] + 0.058 * size[:, None] * round_z[None] - 0.012 * (1 - size[:, None]),
+        center[0] + 0.098 * size[:, None] * round_y[None] + 0 * x[:, None],
+        center[1] + 0.054 * size[:, None] * round_z[None] - 0.012 * (1 - size[:, None]),
     ], axis=-1)  # fmt: skip
-    parts.grid("mirrors", housing, flip=False)
+    parts.grid("mirrors", housing, flip=True)
     rim = housing[-1]
     middle = rim.mean(axis=0)
     inner = middle + (rim - middle) * 0.9 - [0.008, 0, 0]
@@ -107,6 +105,8 @@ def build(parts: Parts) -> None:
     mirrors(parts)
     wipers(parts)
     raised(parts, "handles", patch(0.40, 0.56, 6.35, 6.75, 4, 1), 0.008)
+    raised(parts, "side_markers", patch(-2.08, -1.95, 2.55, 2.95, 2, 1), 0.006)
+    raised(parts, "side_markers", patch(2.00, 2.13, 3.0, 3.4, 2, 1), 0.006)
     for x0, x1, count in ((-0.965, -0.572, 4), (-0.548, 0.617, 12), (0.642, 0.80, 2)):
         raised(parts, "moldings", patch(x0, x1, 3.15, 3.5, count, 1), 0.009)
 

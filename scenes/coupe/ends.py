@@ -22,6 +22,9 @@ def recess(parts: Parts, face: Array, depth: float, name: str) -> Array:
     inward = -float(np.sign(face[0, 0, 0]))
     back = face + [inward * depth, 0, 0]
     walls = np.stack([border(face), border(back)], axis=1)
+    if abs(face[0, 0, 1]) < 1e-9:
+        # The mirror image goes on at the center line: no wall there.
+        walls = walls[: len(walls) - face.shape[1] + 1]
     normal = np.cross(face[1, 0] - face[0, 0], face[0, 1] - face[0, 0])
     parts.grid(name, walls, flip=bool(normal[0] * inward > 0))
     return back
@@ -54,7 +57,7 @@ def cells(grid: Array, hole: Hole) -> Array:
 def nose(parts: Parts) -> None:
     """Add the front fascia with quad head lamps, turn lamps, grille and intake."""
     s = spaced(0.0, 0.62, 0.80, 1.56, 2.30, 3.0, 4.3, counts=(3, 1, 3, 3, 3, 3))
-    v = np.concatenate([spaced(SILL, 1.7, 2.8, CREASE, 5.25, 5.5, 6.75, SHOULDER,
+    v = np.concatenate([spaced(SILL, 1.7, 2.8, CREASE, 5.1, 5.4, 6.7, SHOULDER,
                                counts=(2, 2, 2, 2, 1, 2, 1)), UPPER_ROWS[1:]])  # fmt: skip
     points = skin(fascia_columns(s, v, FASCIA_CUT - GAP / 2, 3.0))
     lamps, slot, intake, turn = (4, 10, 8, 12), (0, 3, 9, 11), (0, 4, 2, 4), (7, 10, 2, 4)
@@ -81,7 +84,7 @@ def nose(parts: Parts) -> None:
 
 def tail(parts: Parts) -> None:
     """Add the rear fascia, tail lamps and license plate recess."""
-    s = spaced(S_END, S_END - 0.50, S_END - 0.66, 15.72, 15.0, 13.9, counts=(3, 1, 6, 3, 2))
+    s = spaced(S_END, S_END - 0.45, S_END - 0.58, 15.62, 15.0, 13.9, counts=(3, 1, 6, 3, 2))
     v = np.concatenate([spaced(SILL, 1.5, 3.0, CREASE, 5.0, 5.5, 6.75, SHOULDER,
                                counts=(2, 1, 2, 2, 1, 2, 1)), UPPER_ROWS[1:-1]])  # fmt: skip
     points = skin(fascia_columns(s, v, TAIL_CUT + GAP / 2, 15.0))
@@ -97,7 +100,7 @@ def tail(parts: Parts) -> None:
             parts.grid("tail_lamps", inner, outward=(1, 0, 0))
             parts.grid("lamp_frames", np.stack([border(inner), border(inner) - [0.008, 0, 0]], axis=1))
     parts.grid("lamp_frames", recess(parts, cells(points, plate), 0.035, "lamp_frames"), outward=(1, 0, 0))
-    sheet = pane(np.array([2.318, 0.0, 0.628]), np.array([2.322, 0.152, 0.772]), 2, 2, 0.0)
+    sheet = pane(np.array([2.310, 0.0, 0.625]), np.array([2.310, 0.150, 0.765]), 1, 1, 0.0)
     parts.grid("license_plate", sheet, outward=(1, 0, 0))
 
 

@@ -20,11 +20,9 @@ FILES = {
         "hood", "fender_left", "fender_right", "door_left", "door_right", "quarter_left", "quarter_right",
         "sill_left", "sill_right", "wheel_arches", "front_fascia", "rear_fascia", "roof", "pillar_left",
         "pillar_right", "sail_left", "sail_right", "deck", "spoiler", "mirrors",
-    ),
-    "fittings.obj": (
         "windshield", "window_left", "window_right", "hatch_glass", "mirror_glass", "glass_trim", "gaps", "cowl",
         "wipers", "grille", "handles", "moldings", "lamp_frames", "head_lamps", "turn_lamps", "tail_lamps",
-        "license_plate",
+        "side_markers", "license_plate",
     ),
     "chassis.obj": ("tires", "wheels", "brakes", "wheel_wells", "underbody"),
 }  # fmt: skip
@@ -68,7 +66,9 @@ def main(folder: Path) -> None:
     """Write the mesh files into the folder."""
     for name, text in meshes().items():
         (folder / name).write_text(text, encoding="ascii", newline="\n")
-    print("nodes {}, polygons {}, distinct edges {}".format(*car().counts()))
+    parts = car()
+    counts = np.sum([parts.counts(list(names)) for names in FILES.values()], axis=0)
+    print("nodes {}, polygons {}, distinct edges {}".format(*counts))
 
 
 if __name__ == "__main__":

@@ -54,11 +54,11 @@ def opening(parts: Parts, edge: Array, axle: float) -> None:
     lip = np.stack([edge, edge - [0, 0.012, 0], edge - [0, 0.045, 0]], axis=1)
     lip[:, 1:, 0] += (axle - lip[:, 1:, 0]) * 0.012
     lip[:, 1:, 2] += (ARCH_HEIGHT - lip[:, 1:, 2]) * 0.012
-    parts.grid("wheel_arches", lip, flip=True)
+    parts.grid("wheel_arches", lip, flip=False)
     rim = lip[::2, -1]
     deep = rim * [1, 0, 1] + [0, 0.50, 0]
-    well = np.stack([rim, (rim + deep) / 2, deep], axis=1)
-    parts.grid("wheel_wells", well, flip=True)
+    well = np.stack([rim, deep], axis=1)
+    parts.grid("wheel_wells", well, flip=False)
     foot = segment(deep[0], deep[-1], len(deep) - 1)
     parts.grid("wheel_wells", np.stack([deep, (deep + foot) / 2, foot], axis=1), outward=(0.0, 1.0, 0.0))
 
@@ -94,7 +94,7 @@ def side(parts: Parts) -> None:
 
 def gap(parts: Parts, cut: float, rows: Array) -> None:
     """Add the dark bottom of an upright gap: a strip behind the skin, wider than the gap."""
-    points = skin(columns(cut - GAP, cut + GAP, 1, rows))
+    points = skin(columns(cut - 2 * GAP, cut + 2 * GAP, 1, rows))
     inward = np.stack([0 * rows, -np.ones(len(rows)), -1.6 * (rows > 7.6)], axis=-1)
     parts.grid("gaps", points + GAP_DEPTH * inward)
 
@@ -136,9 +136,9 @@ def hood(parts: Parts) -> None:
     plan = coons(front[:, :2], rear, center, flank[:, :2])
     points = np.concatenate([plan, top(plan[..., 0], plan[..., 1])[..., None]], axis=2)
     parts.grid("hood", points, outward=(0, 0, 1))
-    front_out, flank_out = hood_outline(10, 18, LEDGE, -0.61)
-    inner, outer = np.concatenate([front, flank[1:]]), np.concatenate([front_out, flank_out[1:]])
-    parts.grid("gaps", np.stack([inner, outer], axis=1), outward=(0, 0, 1))
+    below = [np.concatenate([a, b[1:]]) for a, b in (hood_outline(10, 18, v, -0.61) for v in (8.85, 9.3))]
+    strip = np.stack(below, axis=1) - [0, 0, GAP_DEPTH]
+    parts.grid("gaps", strip, outward=(0, 0, 1))
 
 
 def underbody(parts: Parts) -> None:
@@ -146,8 +146,8 @@ def underbody(parts: Parts) -> None:
     for start, end in ((0.0, -1.86), (-1.86, -1.73), (-0.99, 0.82), (1.58, 1.83), (1.83, 0.0)):
         a = 0.0 if start == 0.0 else float(s_at(start, 0.2))
         b = S_END if end == 0.0 else float(s_at(end, 0.2))
-        s = np.linspace(a, b, 9)
-        rows = np.array([0.0, 0.2, SILL])
+        s = np.linspace(a, b, 7)
+        rows = np.array([0.0, SILL])
         edge = wall(s[:, None], rows[None])
         parts.grid("underbody", edge)
         pan = np.stack([edge[:, 0], edge[:, 0] * [1, 0, 1]], axis=1)

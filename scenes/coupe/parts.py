@@ -61,24 +61,27 @@ class Parts:
             for quad in quads[:, ::-1] * [1.0, -1.0, 1.0]:
                 self.polygon(part.format(side="left"), quad)
 
-    def obj(self, names: list[str], title: str) -> str:
-        """Return the OBJ text of these parts, nodes in the order of their making."""
-        lines, base = [f"# {title}"], 1
+    def numbered(self, names: list[str]) -> tuple[list[tuple[float, float, float]], dict[str, list[list[int]]]]:
+        """Return the nodes these parts have together, and their polygons as node numbers from 1."""
+        numbers: dict[tuple[float, float, float], int] = {}
+        polygons: dict[str, list[list[int]]] = {}
         for name in names:
-            lines += [f"v {x:.4f} {y:.4f} {z:.4f}" for x, y, z in self.nodes[name]]
+            own = [numbers.setdefault(node, len(numbers) + 1) for node in self.nodes[name]]
+            polygons[name] = [[own[corner] for corner in corners] for corners in self.polygons[name]]
+        return list(numbers), polygons
+
+    def obj(self, names: list[str], title: str) -> str:
+        """Return the OBJ text of these parts: shared nodes, then the polygons of each part."""
+        nodes, polygons = self.numbered(names)
+        lines = [f"# {title}"] + [f"v {x:.4f} {y:.4f} {z:.4f}" for x, y, z in nodes]
         for name in names:
             lines.append(f"g {name}")
-            lines += ["f " + " ".join(str(base + k) for k in corners) for corners in self.polygons[name]]
-            base += len(self.nodes[name])
+            lines += ["f " + " ".join(map(str, corners)) for corners in polygons[name]]
         return "\n".join(lines) + "\n"
 
-    def counts(self) -> tuple[int, int, int]:
-        """Return the numbers of nodes, polygons and distinct edges."""
-        edges = 0
-        for polygons in self.polygons.values():
-            edges += len({frozenset(e) for p in polygons for e in zip(p, p[1:] + p[:1], strict=True)})
-        return (
-            sum(len(nodes) for nodes in self.nodes.values()),
-            sum(len(polygons) for polygons in self.polygons.values()),
-            edges,
-        )
+    def counts(self, names: list[str]) -> tuple[int, int, int]:
+        """Return the numbers of nodes, polygons and distinct edges of these parts in one file."""
+        nodes, polygons = self.numbered(names)
+        rings = [ring for of_part in polygons.values() for ring in of_part]
+        edges = {frozenset(edge) for ring in rings for edge in zip(ring, ring[1:] + ring[:1], strict=True)}
+        return len(nodes), len(rings), len(edges)

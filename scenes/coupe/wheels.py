@@ -12,12 +12,12 @@ CENTER_Y = 0.784
 AROUND = 30
 SPOKES = 5
 # (outward offset from the wheel's middle plane, radius), from the outside bead round to the inside.
-TIRE = ((0.088, 0.207), (0.1055, 0.236), (0.1075, 0.272), (0.098, 0.306), (0.078, 0.3225), (-0.078, 0.3225), (-0.106, 0.280),
-        (-0.088, 0.207))  # fmt: skip
-RIM = ((0.088, 0.207), (0.094, 0.200), (0.088, 0.190), (0.052, 0.182))
+TIRE = ((0.088, 0.207), (0.1055, 0.238), (0.1065, 0.278), (0.097, 0.308), (0.078, 0.3225), (-0.078, 0.3225),
+        (-0.104, 0.26))  # fmt: skip
+RIM = ((0.088, 0.207), (0.094, 0.201), (0.056, 0.182))
 # Rows of the disc, from the rim to the hub cap; cells between rows 1 and 3 are open between the spokes.
-DISC = ((0.056, 0.182), (0.062, 0.166), (0.074, 0.130), (0.082, 0.088), (0.082, 0.060), (0.070, 0.052), (0.072, 0.030),
-        (0.074, 0.0))  # fmt: skip
+DISC = ((0.056, 0.182), (0.062, 0.170), (0.074, 0.130), (0.082, 0.080), (0.082, 0.050), (0.068, 0.044),
+        (0.072, 0.0))  # fmt: skip
 OPEN_ROWS = (1, 3)
 
 
@@ -35,12 +35,12 @@ def build(parts: Parts) -> None:
     cells = AROUND // SPOKES
     for axle in AXLES:
         parts.grid("tires", turned(TIRE, axle), flip=False)
-        parts.grid("wheels", turned(RIM, axle), flip=False)
+        parts.grid("wheels", turned(RIM, axle), flip=True)
         disc = turned(DISC, axle)
-        windows = tuple((k * cells - 1 + cells // 2, k * cells + 2 + cells // 2, *OPEN_ROWS) for k in range(SPOKES))
-        parts.grid("wheels", disc, flip=False, holes=windows)
+        windows = tuple((k * cells + 1, k * cells + cells - 1, *OPEN_ROWS) for k in range(SPOKES))
+        parts.grid("wheels", disc, flip=True, holes=windows)
         for i0, i1, j0, j1 in windows:
             hole = disc[i0 : i1 + 1, j0 : j1 + 1]
             loop = np.concatenate([hole[:, 0], hole[-1, 1:], hole[-2::-1, -1], hole[0, -2::-1]])
             parts.grid("wheels", np.stack([loop, loop - [0, 0.028, 0]], axis=1), flip=True)
-        parts.grid("brakes", turned(((0.040, 0.185), (0.044, 0.07)), axle), flip=False)
+        parts.grid("brakes", turned(((0.040, 0.185), (0.044, 0.07)), axle), flip=True)
