@@ -38,4 +38,5 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     ramps = np.stack([(1 - weight) * brightness, weight * brightness], axis=1)
     colors = ramps @ np.array([paint.object_color, paint.light_color], np.float64)
     # Mixing in floats may miss a whole color by the last bit, just below a half.
-    return np.clip(halves_up(colors + 1e-9), 0, 255).astype(np.uint8)
+    entries: npt.NDArray[np.uint8] = np.clip(halves_up(colors + 1e-9), 0, 255).astype(np.uint8)
+    return entries

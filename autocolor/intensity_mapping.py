@@ -86,7 +86,8 @@ def equalized(intensities: Singles, everything: Singles) -> Singles:
     values, counts = np.unique(everything, return_counts=True)
     below = np.cumsum(counts) - counts[0]
     place = np.searchsorted(values, intensities)
-    return (below[place] / max(below[-1], 1)).astype(np.float32)
+    fraction: Singles = (below[place] / max(below[-1], 1)).astype(np.float32)
+    return fraction
 
 
 def _linear(shown: Singles) -> Singles:
@@ -98,7 +99,8 @@ def _gamma(shown: Singles) -> Singles:
 
 
 def _logarithm(shown: Singles) -> Singles:
-    return np.log1p(shown * np.float32(LOGARITHM)) / np.float32(np.log1p(LOGARITHM))
+    mapped: Singles = np.log1p(shown * np.float32(LOGARITHM)) / np.float32(np.log1p(LOGARITHM))
+    return mapped
 
 
 CURVES: Mapping[str, Callable[[Singles], Singles]] = {

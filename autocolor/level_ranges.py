@@ -34,6 +34,13 @@ class LevelRange(NamedTuple):
 SCREENS = LevelRange(WORDS - SCREEN_LEVELS, SCREEN_LEVELS)
 """The words of the interactive screens: letters, frames, bars."""
 
+SCREEN_COLORS = (
+    (0, 0, 0), (255, 255, 255), (192, 192, 192), (128, 128, 128), (72, 76, 84), (36, 39, 46),
+    (255, 214, 90), (255, 140, 60), (235, 70, 70), (110, 200, 110), (90, 170, 240), (170, 130, 230),
+    (120, 220, 220), (240, 150, 190), (150, 110, 70), (210, 225, 160),
+)  # fmt: skip
+"""Assumed: the entries of the screens' words, which no surface's colors change."""
+
 
 def level_ranges(surfaces: Sequence[Surface], in_use: Collection[str]) -> Mapping[str, LevelRange]:
     """The range of each surface in use, by name.
@@ -51,8 +58,8 @@ def level_ranges(surfaces: Sequence[Surface], in_use: Collection[str]) -> Mappin
             (surface for surface in used if surface.levels), key=lambda surface: surface.levels or 0
         )
         raise InputError(
-            f"surface {largest.name!r}: the levels of all surfaces must leave {FEWEST_LEVELS} for each that asks"
-            f" for none, {room} in all, not {asked} and {sharing} more surfaces; ask for fewer levels"
+            f"surface {largest.name!r}: the levels of all surfaces must leave {FEWEST_LEVELS} for each that"
+            f" asks for none, {room} in all, not {asked} and {sharing} more surfaces; ask for fewer levels"
         )
     ranges = {}
     first = BACKGROUND + 1

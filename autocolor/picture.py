@@ -136,8 +136,8 @@ class Picture:
     def __repr__(self) -> str:
         whole = self.ranges.whole
         return (
-            f"Picture({self.lines} x {self.elements}, {len(self.pixels)} pixels of {len(self.slices)} surfaces,"
-            f" intensities {whole.minimum:.4g} to {whole.maximum:.4g})"
+            f"Picture({self.lines} x {self.elements}, {len(self.pixels)} pixels of {len(self.slices)}"
+            f" surfaces, intensities {whole.minimum:.4g} to {whole.maximum:.4g})"
         )
 
 

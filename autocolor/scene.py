@@ -10,6 +10,7 @@ import dataclasses
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, TypeVar
 
 from autocolor.checks import Color, color, finite, known_fields, nearest
@@ -87,8 +88,8 @@ class Scene:
                 )
         if len(self.surfaces) > MOST_SURFACES:
             problems.append(
-                f"a scene must have at most {MOST_SURFACES} surfaces, not {len(self.surfaces)}; let parts share"
-                " a surface"
+                f"a scene must have at most {MOST_SURFACES} surfaces, not {len(self.surfaces)}; let"
+                " parts share a surface"
             )
         return problems
 
@@ -208,7 +209,7 @@ def _mapping(problems: list[str], mapping: object) -> str | Curve:
     except (TypeError, ValueError, OverflowError):
         points = ()
     across, up = [x for x, _ in points], [y for _, y in points]
-    rising = all(a < b for a, b in zip(across, across[1:], strict=False)) and up == sorted(up)
+    rising = all(a < b for a, b in pairwise(across)) and up == sorted(up)
     if len(points) < 2 or across[0] != 0 or across[-1] != 1 or not rising or not 0 <= up[0] <= up[-1] <= 1:
         problems.append(f"{rule}, not {mapping!r}")
         return "linear"

@@ -23,59 +23,64 @@ from autocolor.checks import nearest
 from autocolor.color_blending import entries_of
 from autocolor.errors import UsageError
 from autocolor.intensity_mapping import words_of
-from autocolor.level_ranges import BACKGROUND, SCREENS, WORDS, LevelRange, level_ranges
+from autocolor.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.picture import Picture
-from autocolor.rendering import Rendering, rendering
+from autocolor.rendering import rendering
 from autocolor.scene import Scene
 from autocolor.tables import Paint
+from ramtek_emu import GMR_9300, HostPort, instructions
 
 if TYPE_CHECKING:
     from os import PathLike
 
-    from ramtek_emu import HostPort
-
 PAINT_FIELDS = tuple(entry.name for entry in fields(Paint))
-
-SCREEN_COLORS = (
-    (0, 0, 0), (255, 255, 255), (192, 192, 192), (128, 128, 128), (72, 76, 84), (36, 39, 46),
-    (255, 214, 90), (255, 140, 60), (235, 70, 70), (110, 200, 110), (90, 170, 240), (170, 130, 230),
-    (120, 220, 220), (240, 150, 190), (150, 110, 70), (210, 225, 160),
-)  # fmt: skip
-"""Assumed: the entries of the screens' own words."""
 
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """A scene and all that the display holds of it."""
+    """What a display holds of a scene and its picture: the words, the entries, and which are whose."""
 
-    rendering: Rendering
+    scene: Scene
+    picture: Picture
     ranges: Mapping[str, LevelRange]
     words: npt.NDArray[np.uint16]
     entries: npt.NDArray[np.uint8]
 
 
-def shown(scene: Scene, lines: int = 480, elements: int = 640, before: Shown | None = None) -> Shown:
-    """What a display holds of a scene; `before` lends what did not change."""
-    old = None if before is None else before.rendering
-    rendered = rendering(scene, lines, elements, old)
-    return _colored(rendered, before)
-
-
-def _colored(rendered: Rendering, before: Shown | None) -> Shown:
-    scene, picture = rendered.scene, rendered.picture
+def shown(scene: Scene, picture: Picture, before: Shown | None = None) -> Shown:
+    """What a display holds of a scene with its picture; `before` lends the words if they did not change."""
     in_use = {scene.parts[number].surface for number in scene.mesh.parts_in_use}
     ranges = level_ranges(scene.surfaces, in_use)
     if (
         before is not None
-        and before.rendering.picture is picture
+        and before.picture is picture
         and before.ranges == ranges
-        and before.rendering.scene.scaling == scene.scaling
-        and before.rendering.scene.mapping == scene.mapping
+        and before.scene.scaling == scene.scaling
+        and before.scene.mapping == scene.mapping
     ):
         words = before.words
     else:
         words = words_of(picture, ranges, scene.scaling, scene.mapping)
-    return Shown(rendered, ranges, words, table_of(scene, picture, ranges))
+    return Shown(scene, picture, ranges, words, table_of(scene, picture, ranges))
+
+
+def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
+    """Reset a display and show a picture in the colors of a scene on it; nothing is rendered."""
+    display.send(instructions.reset())
+    _send(None, shown(scene, picture), display)
+
+
+def _send(before: Shown | None, now: Shown, display: HostPort) -> None:
+    """Send the entries and the words that differ."""
+    if before is None:
+        changed = np.arange(WORDS)
+    else:
+        changed = np.flatnonzero((before.entries != now.entries).any(axis=1))
+    if len(changed):
+        first, last = int(changed[0]), int(changed[-1])
+        display.send(instructions.load_entries(first, now.entries[first : last + 1]))
+    if before is None or before.words is not now.words:
+        display.send(instructions.write_image(now.words))
 
 
 def table_of(scene: Scene, picture: Picture, ranges: Mapping[str, LevelRange]) -> npt.NDArray[np.uint8]:
@@ -105,25 +110,24 @@ class Studio:
     """
 
     def __init__(self, scene: Scene, display: HostPort) -> None:
-        configuration = getattr(display, "configuration", None)
-        lines = 480 if configuration is None else configuration.shown_lines
-        elements = 640 if configuration is None else configuration.shown_elements
+        configuration = getattr(display, "configuration", GMR_9300)
         self._display = display
-        self._shown = shown(scene, lines, elements)
-        self._undone: list[Scene] = []
+        self._rendering = rendering(scene, configuration.shown_lines, configuration.shown_elements)
+        self._shown = shown(scene, self._rendering.picture)
         self._done: list[Scene] = []
+        self._undone: list[Scene] = []
         self._kept = scene
         self.send_everything()
 
     @property
     def scene(self) -> Scene:
         """The current scene."""
-        return self._shown.rendering.scene
+        return self._shown.scene
 
     @property
     def picture(self) -> Picture:
         """The current picture."""
-        return self._shown.rendering.picture
+        return self._shown.picture
 
     @property
     def level_ranges(self) -> Mapping[str, LevelRange]:
@@ -148,9 +152,8 @@ class Studio:
         """
         unknown = [name for name in changes if name not in PAINT_FIELDS]
         if unknown:
-            raise UsageError(
-                f"recolor takes {', '.join(PAINT_FIELDS)}, not {unknown[0]!r}{nearest(unknown[0], PAINT_FIELDS)}"
-            )
+            guess = nearest(unknown[0], PAINT_FIELDS)
+            raise UsageError(f"recolor takes {', '.join(PAINT_FIELDS)}, not {unknown[0]!r}{guess}")
         self.edit(self.scene.with_surface(surface, **changes))
 
     def surface(self, name: str, **changes: Any) -> None:
@@ -204,10 +207,8 @@ class Studio:
 
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
-        from ramtek_emu import instructions
-
         self._display.send(instructions.reset())
-        self._send(None, self._shown)
+        _send(None, self._shown, self._display)
 
     def _step(self, source: list[Scene], target: list[Scene]) -> bool:
         if not source:
@@ -220,23 +221,11 @@ class Studio:
 
     def _show(self, scene: Scene) -> None:
         """Compute what changed and send it; nothing is kept of a scene that is refused."""
-        now = shown(scene, self.picture.lines, self.picture.elements, self._shown)
-        self._send(self._shown, now)
-        self._shown = now
-
-    def _send(self, before: Shown | None, now: Shown) -> None:
-        from ramtek_emu import instructions
-
-        changed = (
-            np.arange(WORDS)
-            if before is None
-            else np.flatnonzero((before.entries != now.entries).any(axis=1))
-        )  # fmt: skip
-        if len(changed):
-            run = slice(int(changed[0]), int(changed[-1]) + 1)
-            self._display.send(instructions.load_entries(run.start, now.entries[run]))
-        if before is None or before.words is not now.words:
-            self._display.send(instructions.write_image(now.words))
+        picture = self.picture
+        rendered = rendering(scene, picture.lines, picture.elements, self._rendering)
+        now = shown(scene, rendered.picture, self._shown)
+        _send(self._shown, now, self._display)
+        self._rendering, self._shown = rendered, now
 
     def _repr_png_(self) -> bytes:
         from ramtek_emu.png import png_bytes

@@ -52,15 +52,15 @@ class Mesh:
         if not (np.abs(coordinates) <= LARGEST_COORDINATE).all():
             row = int(np.flatnonzero(~(np.abs(coordinates) <= LARGEST_COORDINATE).all(axis=1))[0])
             problems.append(
-                f"node table: coordinates must be finite and at most 1e30 in size, not {coordinates[row].tolist()}"
-                f" (row {row})"
+                f"node table: coordinates must be finite and at most 1e30 in size, not"
+                f" {coordinates[row].tolist()} (row {row})"
             )
         _check_rows(problems, "polygon table: a node number", node_numbers, len(coordinates), "node table")
         _check_rows(problems, "polygon table: a part number", part_numbers, len(names), "part table")
         if part_numbers.shape != (len(node_numbers),):
             problems.append(
-                f"polygon table: there must be one part number a polygon ({len(node_numbers)}), not an array of"
-                f" shape {part_numbers.shape}"
+                f"polygon table: there must be one part number a polygon ({len(node_numbers)}), not an"
+                f" array of shape {part_numbers.shape}"
             )
         if len(set(names)) != len(names):
             problems.append("part table: part names must differ, not repeat")
@@ -82,7 +82,7 @@ class Mesh:
 
     @cached_property
     def bounds(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """The smallest and the largest coordinates of the nodes that polygons use; zeros for an empty mesh."""
+        """The least and the largest coordinates of the nodes that polygons use; zeros for an empty mesh."""
         if not len(self.node_numbers):
             return np.zeros(3), np.zeros(3)
         used = self.coordinates[np.unique(self.node_numbers)]
@@ -125,7 +125,8 @@ class Mesh:
         )
 
     def __repr__(self) -> str:
-        return f"Mesh({len(self.coordinates)} nodes, {len(self.node_numbers)} polygons, {len(self.part_names)} parts)"
+        nodes, polygons, parts = len(self.coordinates), len(self.node_numbers), len(self.part_names)
+        return f"Mesh({nodes} nodes, {polygons} polygons, {parts} parts)"
 
 
 @dataclass(frozen=True)
@@ -266,5 +267,6 @@ def _check_rows(
     bad = np.flatnonzero(missing.any(axis=1) if missing.ndim > 1 else missing)
     if len(bad):
         problems.append(
-            f"{what} must be a row of the {table} (0 to {count - 1}), not {numbers[bad[0]].tolist()} (row {bad[0]})"
+            f"{what} must be a row of the {table} (0 to {count - 1}), not {numbers[bad[0]].tolist()}"
+            f" (row {bad[0]})"
         )

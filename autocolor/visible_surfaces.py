@@ -10,7 +10,7 @@ Measured and rejected: sorting the fragments (argsort and reduceat 7 times, lexs
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -154,7 +155,7 @@ def visible_segments(segments: list[Segment]) -> Iterator[tuple[Segment, int, in
     active: list[Segment] = []
     entering = iter(segments)
     following = next(entering, None)
-    for first, beyond in zip(ends, ends[1:], strict=False):
+    for first, beyond in pairwise(ends):
         active = [segment for segment in active if segment.beyond > first]
         while following is not None and following.first == first:
             active.append(following)

@@ -18,6 +18,9 @@ from autocolor.files.polygons import MeshReport, Polygons, standing
 from autocolor.node_normals import CREASE_ANGLE
 from autocolor.tables import Mesh
 
+AT_A_TIME = 1 << 14
+"""Polygons whose corners are looked at together, so that the arrays stay near the processor."""
+
 FLAT = 1e-12
 """Assumed: twice the area of a triangle over the square of the polygon's size, below which it has none."""
 
@@ -41,8 +44,14 @@ def mended(
     node_numbers, owners = split_polygons(coordinates, corners, counts)
 
     # Drop pieces without area; a polygon is dropped when no piece of it is left.
-    wide = _have_area(coordinates[node_numbers])
-    node_numbers, owners = node_numbers[wide], owners[wide]
+    wide = np.concatenate(
+        [
+            _have_area(coordinates[node_numbers[first : first + AT_A_TIME]])
+            for first in range(0, max(len(node_numbers), 1), AT_A_TIME)
+        ]
+    )
+    if not wide.all():
+        node_numbers, owners = node_numbers[wide], owners[wide]
     left = np.zeros(len(counts), np.bool_)
     left[owners] = True
     noted = (

@@ -35,6 +35,7 @@ def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) ->
     if tables is None or (tables.rows < 0).any():
         statements = Statements(path.stem)
         tables = read_obj_lines(data, path.name, statements)
+    del data
     polygons = Polygons(
         tables.coordinates,
         tables.rows,

@@ -2,7 +2,7 @@
 
 `read_plain_obj` gives what `read_obj_lines` gives, or None for anything out of the ordinary: a statement
 that does not start its line, a comment after numbers, nodes with and without colors mixed, any fault.
-Measured: one million quads in 1.6 s, where the reader by lines takes 5.
+Measured: one million quads in 2 to 3 s, where the reader by lines takes 7.
 """
 
 from __future__ import annotations

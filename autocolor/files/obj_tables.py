@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -25,10 +26,12 @@ class ObjTables:
     part_numbers: npt.NDArray[np.int64]
     nodes_before: npt.NDArray[np.int64]
 
-    @property
+    @cached_property
     def rows(self) -> npt.NDArray[np.intp]:
         """The row of the node table for each corner, -1 where there is no such node."""
-        before = np.repeat(self.nodes_before, self.corner_counts)
-        rows = np.where(self.numbers > 0, self.numbers - 1, before + self.numbers)
-        missing = (self.numbers == 0) | (rows < 0) | (rows >= len(self.coordinates))
-        return np.where(missing, -1, rows).astype(np.intp)
+        rows = self.numbers - 1
+        back = np.flatnonzero(self.numbers < 0)
+        if len(back):
+            rows[back] = np.repeat(self.nodes_before, self.corner_counts)[back] + self.numbers[back]
+        rows[(rows < 0) | (rows >= len(self.coordinates))] = -1
+        return rows.astype(np.intp, copy=False)

@@ -25,9 +25,11 @@ def split_polygons(
     starts = np.cumsum(counts) - counts
     small = np.flatnonzero((counts == 3) | (counts == 4))
     pieces = [corners[starts[small, None] + np.minimum(np.arange(4), counts[small, None] - 1)]]
-    owners = [small]
     large = np.flatnonzero(counts > 4)
-    for count in np.unique(counts[large]).tolist():
+    if not len(large):
+        return pieces[0], small
+    owners = [small]
+    for count in np.flatnonzero(np.bincount(counts[large])).tolist():
         rows = large[counts[large] == count]
         nodes = corners[starts[rows, None] + np.arange(count)]
         flat, convex = _in_their_planes(coordinates[nodes])

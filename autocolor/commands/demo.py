@@ -1,0 +1,20 @@
+"""Where the built-in demo is: installed beside the package, or in the scenes of a checkout."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from autocolor.errors import MissingInputError
+
+PACKAGE = Path(__file__).resolve().parents[1]
+PLACES = (PACKAGE / "demo", PACKAGE.parent / "scenes" / "coupe")
+
+
+def demo_folder() -> Path:
+    """The folder of the demo's scene."""
+    for place in PLACES:
+        if (place / "scene.toml").is_file():
+            return place
+    raise MissingInputError(
+        f"the built-in demo must be at {PLACES[0]}, but nothing is there; install autocolor again"
+    )

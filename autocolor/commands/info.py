@@ -1,0 +1,91 @@
+"""`autocolor info`: what a scene holds."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from autocolor.commands.scenes import ended, read, scene_options
+
+if TYPE_CHECKING:
+    from autocolor.files.scene_report import SceneReport
+
+EXAMPLES = """\b
+Examples:
+  autocolor info scenes/coupe
+  autocolor info car.obj --json
+"""
+
+
+@click.command(epilog=EXAMPLES)
+@scene_options
+@click.option("--json", "as_json", is_flag=True, help="Answer in JSON.")
+@click.pass_context
+def info(context: click.Context, scene: str, as_json: bool, up: str, strict: bool) -> None:
+    """Say what SCENE holds: nodes, polygons, edges, parts, surfaces, lights, view and intensities."""
+    report = read(scene, up)
+    facts = facts_of(report)
+    if as_json:
+        click.echo(json.dumps(facts, indent=2, ensure_ascii=False))
+    else:
+        click.echo("\n".join(lines_of(facts)))
+    context.exit(ended(report, strict))
+
+
+def facts_of(report: SceneReport) -> dict[str, Any]:
+    """The facts of a scene as values that JSON can hold."""
+    from autocolor.rendering import render
+    from autocolor.studio import shown
+
+    scene = report.scene
+    mesh = scene.mesh
+    picture = render(scene)
+    ranges = shown(scene, picture).ranges
+    low, high = mesh.bounds
+    return {
+        "name": scene.name,
+        "nodes": len(mesh.coordinates),
+        "polygons": len(mesh.node_numbers),
+        "triangles": mesh.triangle_count,
+        "edges": mesh.edge_count,
+        "bounds": [low.tolist(), high.tolist()],
+        "parts": {part.name: part.surface for part in scene.parts},
+        "surfaces": {
+            surface.name: {
+                "levels": list(ranges[surface.name]) if surface.name in ranges else None,
+                "intensities": picture.ranges.surfaces.get(surface.name),
+            }
+            for surface in scene.surfaces
+        },
+        "lights": [light.name for light in scene.lights if light.on],
+        "view": {"eye": scene.view.eye, "forward": scene.view.axes[2].tolist()},
+        "pixels": len(picture.pixels),
+        "intensities": picture.ranges.whole,
+        "repairs": list(report.repairs),
+        "created": list(report.created),
+    }
+
+
+def lines_of(facts: dict[str, Any]) -> list[str]:
+    """The facts as lines to read."""
+    low, high = facts["bounds"]
+    size = " x ".join(f"{b - a:.4g}" for a, b in zip(low, high, strict=True))
+    lines = [
+        f"{facts['name']}: {facts['nodes']:,} nodes, {facts['polygons']:,} polygons"
+        f" ({facts['triangles']:,} with three sides), {facts['edges']:,} edges",
+        f"size {size}, seen at {facts['pixels']:,} pixels,"
+        f" intensities {facts['intensities'].minimum:.4g} to {facts['intensities'].maximum:.4g}",
+        f"parts: {', '.join(f'{part} ({surface})' for part, surface in facts['parts'].items())}",
+        f"lights: {', '.join(facts['lights']) or 'none'}",
+        "surfaces:",
+    ]
+    for name, surface in facts["surfaces"].items():
+        words, extent = surface["levels"], surface["intensities"]
+        owned = f"words {words[0]} to {words[0] + words[1] - 1}" if words else "no words"
+        seen = f"intensities {extent.minimum:.4g} to {extent.maximum:.4g}" if extent else "not seen"
+        lines.append(f"  {name}: {owned}, {seen}")
+    if facts["created"]:
+        lines.append(f"created: {', '.join(facts['created'])}")
+    return lines

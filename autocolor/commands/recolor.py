@@ -1,0 +1,72 @@
+"""`autocolor recolor`: a saved picture in other colors; no mesh is read and nothing is rendered."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import click
+
+from autocolor.commands.render import refuse_existing
+
+EXAMPLES = """\b
+Examples:
+  autocolor render scenes/coupe --save coupe.npz
+  autocolor recolor coupe.npz body --object "#1f3f8f" -o blue.png
+  autocolor recolor coupe.npz body --source "#ffe9c0" --blend 0 -o metallic.png
+"""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("picture")
+@click.argument("surface")
+@click.option("--object", "object_color", metavar="COLOR", help='The object color, "#rrggbb".')
+@click.option("--source", "light_color", metavar="COLOR", help='The light source color, "#rrggbb".')
+@click.option("--blend", type=float, metavar="FRACTION", help="Where the shift begins: 1 never, 0 at once.")
+@click.option("--percentage", type=float, help="How much of the light color there is at the maximum.")
+@click.option(
+    "-o", "--output", metavar="PNG", help="The picture; PICTURE-SURFACE.png if nothing else is asked."
+)
+@click.option("--save", metavar="PICTURE.npz", help="Keep the picture with the new colors.")
+@click.option("--force", is_flag=True, help="Overwrite what exists.")
+def recolor(
+    picture: str,
+    surface: str,
+    object_color: str | None,
+    light_color: str | None,
+    blend: float | None,
+    percentage: float | None,
+    output: str | None,
+    save: str | None,
+    force: bool,
+) -> None:
+    """Give SURFACE of a saved PICTURE other colors."""
+    if output is None and save is None:
+        output = f"{Path(picture).stem}-{surface}.png".replace("/", "_")
+    for path in (output, save):
+        refuse_existing(path, force)
+
+    from autocolor.files.picture_file import read_picture, write_picture
+    from autocolor.studio import send_picture
+    from ramtek_emu import GMR_9300, Ramtek9300
+
+    saved = read_picture(picture)
+    changes = {
+        "object_color": object_color,
+        "light_color": light_color,
+        "blend": blend,
+        "light_percentage": percentage,
+    }
+    scene = saved.scene.with_surface(
+        surface, **{name: value for name, value in changes.items() if value is not None}
+    )
+    if save is not None:
+        write_picture(save, saved.picture, scene, overwrite=force)
+    if output is not None:
+        lines, elements = saved.picture.lines, saved.picture.elements
+        display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
+        send_picture(scene, saved.picture, display)
+        display.save_png(output, overwrite=force)
+    for path in (output, save):
+        if path is not None:
+            click.echo(f"wrote {path}", err=True)

@@ -1,0 +1,93 @@
+"""`autocolor render`: the picture of a scene, without a window."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+
+from autocolor.commands.scenes import ended, read, scene_options, with_settings
+
+EXAMPLES = """\b
+Examples:
+  autocolor render scenes/coupe -o coupe.png --save coupe.npz
+  autocolor render car.obj --up y
+  autocolor render scenes/coupe --light key -o key.png
+  autocolor render scenes/coupe --set lights.key.concentration=40 --set ambient=0.2
+"""
+
+
+@click.command(epilog=EXAMPLES)
+@scene_options
+@click.option("-o", "--output", metavar="PNG", help="The picture; the scene's name if nothing else is asked.")
+@click.option("--save", metavar="PICTURE.npz", help="Keep the picture with its scene, to recolor it later.")
+@click.option(
+    "--light", "lights", multiple=True, metavar="NAME", help="Render with this light alone; repeatable."
+)
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Change the scene; repeatable.")
+@click.option("--force", is_flag=True, help="Overwrite what exists.")
+@click.pass_context
+def render(
+    context: click.Context,
+    scene: str,
+    output: str | None,
+    save: str | None,
+    lights: tuple[str, ...],
+    settings: tuple[str, ...],
+    force: bool,
+    up: str,
+    strict: bool,
+) -> None:
+    """Render SCENE: a folder, a scene.toml, a mesh file or a saved picture."""
+    with progress(5) as step:
+        report = read(scene, up)
+        edited = with_settings(report.scene, settings)
+        if lights:
+            edited = edited.only_lights(*lights)
+        if output is None and save is None:
+            output = f"{Path(edited.name).name}.png"
+        for path in (output, save):
+            refuse_existing(path, force)
+        step()
+
+        from autocolor.studio import Studio
+        from ramtek_emu import Ramtek9300
+
+        _ = edited.mesh.normals
+        step()
+        display = Ramtek9300()
+        studio = Studio(edited, display)
+        step()
+        if save is not None:
+            from autocolor.files.picture_file import write_picture
+
+            write_picture(save, studio.picture, studio.scene, overwrite=force)
+        step()
+        if output is not None:
+            display.save_png(output, overwrite=force)
+        step()
+    for path in (output, save):
+        if path is not None:
+            click.echo(f"wrote {path}", err=True)
+    context.exit(ended(report, strict))
+
+
+def refuse_existing(path: str | None, force: bool) -> None:
+    """Refuse an output that exists before anything is computed for it."""
+    from autocolor.errors import OutputError
+
+    if path is not None and not force and Path(path).exists():
+        raise OutputError(f"{path}: an output must be new, not exist; choose another name or add --force")
+
+
+@contextmanager
+def progress(steps: int) -> Iterator[Callable[[], None]]:
+    """A bar on stderr when it is a terminal; call what it gives after each step."""
+    if not sys.stderr.isatty():
+        yield lambda: None
+        return
+    with click.progressbar(length=steps, file=sys.stderr, show_eta=False) as bar:
+        yield lambda: bar.update(1)

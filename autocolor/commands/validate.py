@@ -1,0 +1,35 @@
+"""`autocolor validate`: every problem of a scene at once."""
+
+from __future__ import annotations
+
+import json
+
+import click
+
+from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.errors import InputError
+
+EXAMPLES = """\b
+Examples:
+  autocolor validate scenes/coupe
+  autocolor validate car.obj --strict --json
+"""
+
+
+@click.command(epilog=EXAMPLES)
+@scene_options
+@click.option("--json", "as_json", is_flag=True, help="Answer in JSON.")
+@click.pass_context
+def validate(context: click.Context, scene: str, as_json: bool, up: str, strict: bool) -> None:
+    """List every problem of SCENE, and what was repaired; exit code 65 if there is a problem."""
+    try:
+        report = read(scene, up)
+    except InputError as error:
+        if as_json:
+            click.echo(json.dumps({"problems": error.problems, "repairs": []}, indent=2, ensure_ascii=False))
+        raise
+    if as_json:
+        click.echo(json.dumps({"problems": [], "repairs": report.repairs}, indent=2, ensure_ascii=False))
+    else:
+        click.echo(f"{scene}: no problem")
+    context.exit(ended(report, strict))

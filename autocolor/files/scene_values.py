@@ -1,0 +1,102 @@
+"""A scene but its mesh as plain values, dictionaries and lists, and back: what a picture file has."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy.typing as npt
+
+from autocolor.checks import known_fields
+from autocolor.errors import InputError
+from autocolor.lights import Flap, Flaps, Light
+from autocolor.scene import Scene
+from autocolor.tables import Mesh, Paint, Part, Reflectance, Surface
+from autocolor.view import View
+
+PLAIN = ("ambient", "scaling", "mapping", "contrast", "background", "name")
+
+
+def values_of_scene(scene: Scene) -> dict[str, Any]:
+    """The scene's tables but the mesh's arrays as values that JSON can hold; None and infinities left out."""
+    values: dict[str, Any] = {name: getattr(scene, name) for name in PLAIN}
+    values["mesh"] = {"part_names": scene.mesh.part_names, "crease_angle": scene.mesh.crease_angle}
+    values["view"] = _stated(scene.view)
+    for table in ("parts", "surfaces", "lights"):
+        values[table] = [_stated(row) for row in getattr(scene, table)]
+    return values
+
+
+def scene_of_values(
+    values: object,
+    coordinates: npt.NDArray[Any],
+    node_numbers: npt.NDArray[Any],
+    part_numbers: npt.NDArray[Any],
+) -> Scene:
+    """The scene of such values and the mesh's arrays; InputError where they break a rule."""
+    tables = _table(values, "scene")
+    names = {field.name for field in dataclasses.fields(Scene)}
+    if set(tables) != names:
+        raise InputError(f"scene: its tables must be {sorted(names)}, not {sorted(map(str, tables))}")
+    mesh = _table(tables["mesh"], "mesh")
+    part_names = _list(mesh.get("part_names"), "part_names")
+    if not all(isinstance(name, str) for name in part_names):
+        raise InputError(f"mesh: part names must be texts, not {part_names!r}")
+    return Scene(
+        Mesh(coordinates, node_numbers, part_numbers, tuple(part_names), mesh.get("crease_angle", math.nan)),
+        tuple(_made(Part, row, "part") for row in _list(tables["parts"], "parts")),
+        tuple(_surface(row) for row in _list(tables["surfaces"], "surfaces")),
+        tuple(_light(row) for row in _list(tables["lights"], "lights")),
+        _made(View, tables["view"], "view"),
+        **{name: tables[name] for name in PLAIN},
+    )
+
+
+def _surface(row: object) -> Surface:
+    fields = _table(row, "surface")
+    for name, cls in (("reflectance", Reflectance), ("paint", Paint)):
+        fields[name] = _made(cls, fields.get(name), name)
+    surface: Surface = _made(Surface, fields, "surface")
+    return surface
+
+
+def _light(row: object) -> Light:
+    fields = _table(row, "light")
+    flaps = {
+        axis: _made(Flap, flap, "flap") for axis, flap in _table(fields.pop("flaps", {}), "flaps").items()
+    }
+    light: Light = _made(Light, {**fields, "flaps": _made(Flaps, flaps, "flaps")}, "light")
+    return light
+
+
+def _made(cls: type, row: object, place: str) -> Any:
+    """A dataclass of a dictionary of its fields."""
+    try:
+        return cls(**known_fields(cls, _table(row, place), place))
+    except TypeError as error:
+        raise InputError(f"{place}: {error}") from None
+
+
+def _table(value: object, place: str) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise InputError(f"{place}: it must be a table, not {value!r}")
+    return dict(value)
+
+
+def _list(value: object, place: str) -> list[Any]:
+    if not isinstance(value, list):
+        raise InputError(f"{place}: it must be a list, not {value!r}")
+    return value
+
+
+def _stated(row: Any) -> dict[str, Any]:
+    """The fields of a dataclass, and of those in it, that are neither None nor infinite."""
+    stated = {}
+    for entry in dataclasses.fields(row):
+        value = getattr(row, entry.name)
+        if dataclasses.is_dataclass(value):
+            value = _stated(value)
+        if value is not None and not (isinstance(value, float) and math.isinf(value)):
+            stated[entry.name] = value
+    return stated

@@ -1,0 +1,1 @@
+"""The interactive screens: everything on them is words in the frame buffer, drawn by instructions alone."""

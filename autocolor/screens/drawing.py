@@ -1,0 +1,36 @@
+"""What the screens draw with: their own words by name, text and frames as instructions."""
+
+from __future__ import annotations
+
+from autocolor.level_ranges import SCREENS
+from ramtek_emu import HostPort, instructions
+
+WIDTH, HEIGHT = 640, 480
+"""Elements and lines that a screen is laid out for."""
+
+BLACK, WHITE, LIGHT_GRAY, GRAY, SLATE, NIGHT, YELLOW, ORANGE = (SCREENS.first + row for row in range(8))
+
+
+def clear(display: HostPort, word: int = NIGHT) -> None:
+    """Fill the whole screen with a word."""
+    display.send(instructions.reset())
+    display.send(instructions.erase((0, 0, WIDTH - 1, HEIGHT - 1), word))
+
+
+def text(
+    display: HostPort,
+    line: str,
+    left: int,
+    top: int,
+    word: int = WHITE,
+    background: int = NIGHT,
+    size: int = 1,
+) -> None:
+    """Write a line of text with its first character's corner at (left, top)."""
+    display.send(instructions.write_text(line, left, top, word, background, size))
+
+
+def frame(display: HostPort, left: int, top: int, right: int, bottom: int, word: int = WHITE) -> None:
+    """Draw the outline of a box whose corners are elements and lines of it."""
+    corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)]
+    display.send(instructions.write_vectors(corners, word))

@@ -1,0 +1,35 @@
+"""The table page: the 1024 entries as 32 x 32 cells, each filled with its own word, the ranges outlined."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.level_ranges import BACKGROUND, SCREENS, WORDS, LevelRange
+from autocolor.screens.drawing import HEIGHT, LIGHT_GRAY, WIDTH
+from ramtek_emu import HostPort, instructions
+
+SIDE = 32
+ACROSS, DOWN = WIDTH // SIDE, HEIGHT // SIDE
+
+
+def cell_words(ranges: Mapping[str, LevelRange]) -> npt.NDArray[np.uint16]:
+    """The page as words, (480, 640) uint16: a line of the outline lies between cells of different owners."""
+    words = np.arange(WORDS, dtype=np.uint16).reshape(SIDE, SIDE)
+    owners = np.zeros(WORDS, np.intp)
+    for number, (first, levels) in enumerate([*ranges.values(), SCREENS, LevelRange(BACKGROUND, 1)], start=1):
+        owners[first : first + levels] = number
+    owner = owners.reshape(SIDE, SIDE)
+    page = words.repeat(DOWN, axis=0).repeat(ACROSS, axis=1)
+    below = owner != np.vstack([owner[1:], np.full((1, SIDE), -1)])
+    beside = owner != np.hstack([owner[:, 1:], np.full((SIDE, 1), -1)])
+    page[DOWN - 1 :: DOWN][below.repeat(ACROSS, axis=1)] = LIGHT_GRAY
+    page[:, ACROSS - 1 :: ACROSS][beside.repeat(DOWN, axis=0)] = LIGHT_GRAY
+    return page
+
+
+def draw_entries(display: HostPort, ranges: Mapping[str, LevelRange]) -> None:
+    """Show the page; entries that change afterwards change on it too."""
+    display.send(instructions.write_image(cell_words(ranges)))

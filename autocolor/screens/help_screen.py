@@ -1,0 +1,28 @@
+"""The help page, made from the key table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from autocolor.screens.drawing import LIGHT_GRAY, ORANGE, WHITE, YELLOW, clear, text
+from ramtek_emu import HostPort
+
+LEFT, MIDDLE, TOP, STEP = 24, 220, 62, 15
+
+LIMITS = (
+    "The blend takes the brightest points of a surface for the color of the",
+    "light. It is an approximation: it does not predict a color.",
+)
+"""Paper: "Light Source Color Blending", the simplifications of the method."""
+
+
+def draw_help(display: HostPort, title: str, rows: Sequence[tuple[str, str]]) -> None:
+    """Show a title, a line for each key and what it does, and the limits of the method."""
+    clear(display)
+    text(display, title, LEFT, 22, YELLOW, size=2)
+    for number, (keys, does) in enumerate(rows):
+        top = TOP + STEP * number
+        text(display, keys, LEFT, top, ORANGE)
+        text(display, does, MIDDLE, top, WHITE)
+    for number, line in enumerate(LIMITS):
+        text(display, line, LEFT, 446 + 12 * number, LIGHT_GRAY)
