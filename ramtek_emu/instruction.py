@@ -115,7 +115,7 @@ def operand_words(name: str, value: Numbers) -> tuple[int, ...]:
         raise InstructionError(
             f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; choose one of them"
         )
-    numbers = (value,) if isinstance(value, int | np.integer) else tuple(value)
+    numbers = tuple(value) if isinstance(value, Sequence | np.ndarray) else (value,)
     if len(numbers) != OPERANDS[name].words:
         raise InstructionError(
             f"{name} must be {OPERANDS[name].words} numbers, not {len(numbers)}; give all of them"

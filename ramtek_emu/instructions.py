@@ -100,6 +100,14 @@ def load_short_entries(first: int, colors: object, entries: int = 1024) -> Words
     return np.concatenate((head, red << 8 | green << 4 | blue))
 
 
+def park_table(address: int = 0) -> Words:
+    """LAM without data: set the table's address counter, whose upper bits pick the part that is shown.
+
+    Hardware: LIN, JPL, NCAR send it after a load; it matters with fewer planes than address bits.
+    """
+    return np.array((FORM_OF_NAME["LAM"].opcode << 8, address, 0), np.uint16)
+
+
 def read_entries(address: int = 0, words: int = 2048) -> Words:
     """RAM: ask for words of the lookup table from a word address on; receive as many."""
     return np.array((FORM_OF_NAME["RAM"].opcode << 8, address, 2 * words), np.uint16)

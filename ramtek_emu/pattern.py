@@ -67,10 +67,11 @@ def colors(configuration: Configuration) -> NDArray[np.uint8]:
 
 
 def load(configuration: Configuration) -> Words:
-    """The instruction that loads the entries, in the configuration's format."""
+    """The instructions that load the entries, in the configuration's format."""
     short = configuration.entry_format is EntryFormat.WORD_12
     encoder = instructions.load_short_entries if short else instructions.load_entries
-    return encoder(0, colors(configuration), configuration.entries)
+    loaded = encoder(0, colors(configuration), configuration.entries)
+    return instructions.concatenate(loaded, instructions.park_table())
 
 
 def middle(configuration: Configuration) -> tuple[int, int, int]:

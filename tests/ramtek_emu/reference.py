@@ -1,0 +1,136 @@
+"""Slow, obvious twins of the display: one pixel, one word at a time."""
+
+from ramtek_emu.instruction_set import FORMS
+
+# Scan code -> step to the next word, step to the next run: (element, line) each.
+STEPS = {
+    0: ((1, 0), (0, 1)),
+    1: ((-1, 0), (0, 1)),
+    2: ((1, 0), (0, -1)),
+    3: ((-1, 0), (0, -1)),
+    4: ((0, 1), (1, 0)),
+    5: ((0, -1), (1, 0)),
+    6: ((0, 1), (-1, 0)),
+    7: ((0, -1), (-1, 0)),
+}
+
+Raster = list[list[int]]
+Place = tuple[int, int]
+
+
+def inside(place: Place, window: tuple[int, int, int, int]) -> bool:
+    left, top, right, bottom = window
+    return left <= place[0] <= right and top <= place[1] <= bottom
+
+
+def corner(window: tuple[int, int, int, int], code: int) -> Place:
+    left, top, right, bottom = window
+    step, run = STEPS[code]
+    return (right if -1 in (step[0], run[0]) else left, bottom if -1 in (step[1], run[1]) else top)
+
+
+def walk(window: tuple[int, int, int, int], code: int, start: Place, count: int) -> list[Place]:
+    """The places of `count` words from `start` on, and the one after them."""
+    step, run = STEPS[code]
+    first = corner(window, code)
+    place = start if inside(start, window) else first
+    places = [place]
+    for _ in range(count):
+        following = (place[0] + step[0], place[1] + step[1])
+        if not inside(following, window):
+            # Back to the edge where runs start, one run further.
+            back = (first[0], place[1]) if step[0] else (place[0], first[1])
+            following = (back[0] + run[0], back[1] + run[1])
+            if not inside(following, window):
+                following = first
+        place = following
+        places.append(place)
+    return places
+
+
+def write_run(
+    raster: Raster,
+    window: tuple[int, int, int, int],
+    code: int,
+    start: Place,
+    words: list[int],
+    mask: int,
+    clip: tuple[int, int, int, int],
+) -> Place:
+    places = walk(window, code, start, len(words))
+    for (element, line), word in zip(places, words, strict=False):
+        if 0 <= line < len(raster) and 0 <= element < len(raster[0]) and inside((element, line), clip):
+            raster[line][element] = (raster[line][element] & ~mask) | (word & mask)
+    return places[-1]
+
+
+def read_run(
+    raster: Raster, window: tuple[int, int, int, int], code: int, start: Place, count: int
+) -> tuple[list[int], Place]:
+    places = walk(window, code, start, count)
+    words = [
+        raster[line][element] if 0 <= line < len(raster) and 0 <= element < len(raster[0]) else 0
+        for element, line in places[:-1]
+    ]
+    return words, places[-1]
+
+
+def field(words: Raster, entries: list[tuple[int, int, int]]) -> list[list[tuple[int, int, int]]]:
+    return [[entries[word] for word in line] for line in words]
+
+
+def line_places(start: Place, end: Place) -> list[Place]:
+    """The pixels of a line: along its longer side, the nearest on the other, ties away from the start."""
+    elements, lines = end[0] - start[0], end[1] - start[1]
+    length = max(abs(elements), abs(lines))
+    places = [start]
+    for number in range(1, length + 1):
+        offsets = []
+        for delta in (elements, lines):
+            whole, rest = divmod(abs(delta) * number, length)
+            size = whole + (1 if 2 * rest >= length else 0)
+            offsets.append(size if delta >= 0 else -size)
+        places.append((start[0] + offsets[0], start[1] + offsets[1]))
+    return places
+
+
+OPERAND_WORDS = (
+    (1, 1, 1, 2, 2, 2, 4, 1, 2, 2, 1, 1, 12, 1, 1, 2),
+    (1, 4, 2, 2, 1, 1),
+)
+
+
+def split(stream: list[int]) -> list[list[int]]:
+    """The words of each whole instruction of a stream, read one word after the other."""
+    forms = {form.opcode: form for form in FORMS}
+    parts: list[list[int]] = []
+    words = iter(stream)
+    while True:
+        part: list[int] = []
+
+        def take(count: int, part: list[int] = part) -> int:
+            for _ in range(count):
+                part.append(next(words))
+            return part[-1] if part else 0
+
+        try:
+            first = take(1)
+            form = forms.get(first >> 8)
+            if form is not None and form.fixed is not None:
+                for name in form.fixed:
+                    value = take(1)
+                    if name == "length" and not form.replies:
+                        take((value + 1) // 2)
+            elif form is not None:
+                flag_words = [take(1) if first & flag else 0 for flag in (2, 4)]
+                for flag_word, counts in zip(flag_words, OPERAND_WORDS, strict=True):
+                    for bit, count in enumerate(counts):
+                        if flag_word & 1 << bit:
+                            take(count)
+                if first & 1:
+                    length = take(1)
+                    if not form.replies:
+                        take((length + 1) // 2)
+        except StopIteration:
+            return parts
+        parts.append(part)

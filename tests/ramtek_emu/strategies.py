@@ -1,0 +1,50 @@
+"""Words, windows, entries and streams for the display's tests."""
+
+import itertools
+
+import numpy as np
+from hypothesis import settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+from numpy.typing import NDArray
+
+from ramtek_emu import Configuration
+from ramtek_emu.instruction_set import FORMS
+from ramtek_emu.scan_orders import Point, Window
+
+quick = settings(deadline=None, max_examples=80)
+thorough = settings(deadline=None, max_examples=250)
+
+SMALL = Configuration(name="SMALL", elements=13, lines=9, planes=10)
+
+words = st.integers(0, 0xFFFF)
+ten_bit_words = st.integers(0, 1023)
+scan_codes = st.integers(0, 7)
+masks = st.integers(0, 1023) | st.just(0xFFFF)
+points = st.builds(Point, st.integers(-6, 18), st.integers(-6, 14))
+
+
+@st.composite
+def windows(draw: st.DrawFn) -> Window:
+    """A window that may lie partly or wholly outside the small memory; never empty."""
+    left, top = draw(st.integers(-6, 15)), draw(st.integers(-6, 11))
+    return Window(left, top, left + draw(st.integers(0, 16)), top + draw(st.integers(0, 12)))
+
+
+def streams(most: int = 60) -> st.SearchStrategy[list[int]]:
+    """Words at random, many of which begin an instruction."""
+    opcodes = st.sampled_from([form.opcode for form in FORMS])
+    begins = st.builds(lambda opcode, low: opcode << 8 | low, opcodes, st.integers(0, 255))
+    small = st.integers(0, 12)
+    return st.lists(begins | small | words, max_size=most)
+
+
+def rasters(lines: int = 9, elements: int = 13) -> st.SearchStrategy[NDArray[np.uint16]]:
+    """(lines, elements) ten-bit words."""
+    return arrays.arrays(np.uint16, (lines, elements), elements=ten_bit_words, fill=st.nothing())
+
+
+def cuts(stream: list[int], places: list[int]) -> list[NDArray[np.uint16]]:
+    """The stream in pieces, cut at these places."""
+    edges = sorted({0, len(stream), *(place % (len(stream) + 1) for place in places)})
+    return [np.array(stream[a:b], np.uint16) for a, b in itertools.pairwise(edges)]

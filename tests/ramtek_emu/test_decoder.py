@@ -1,0 +1,63 @@
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu import PRINCETON_9300
+from ramtek_emu.decoder import MOST_WORDS, Decoder
+from ramtek_emu.instruction import encode
+from ramtek_emu.instruction_set import ILLEGAL
+from tests.ramtek_emu import reference
+from tests.ramtek_emu.strategies import cuts, quick, streams, thorough, words
+
+
+def decoded(pieces: list[np.ndarray[tuple[int], np.dtype[np.uint16]]]) -> tuple[list[list[int]], Decoder]:
+    decoder = Decoder()
+    found = [encode(instruction).tolist() for piece in pieces for instruction in decoder.feed(piece)]
+    return found, decoder
+
+
+@thorough
+@given(streams(), st.lists(st.integers(0, 60), max_size=8))
+def test_instructions_do_not_depend_on_the_cuts(stream: list[int], places: list[int]) -> None:
+    whole, _ = decoded([np.array(stream, np.uint16)])
+    assert decoded(cuts(stream, places))[0] == whole
+    assert decoded([np.array([word], np.uint16) for word in stream])[0] == whole
+
+
+@thorough
+@given(streams())
+def test_the_decoder_splits_as_a_reader_of_single_words_does(stream: list[int]) -> None:
+    found, decoder = decoded([np.array(stream, np.uint16)])
+    twin = reference.split(stream)
+    # Flag bits that no source names carry no words, and are not sent again.
+    assert [len(part) for part in found] == [len(part) for part in twin]
+    assert decoder.held_words == len(stream) - sum(map(len, twin))
+
+
+@quick
+@given(st.lists(words, max_size=2000))
+def test_what_is_held_is_never_more_than_one_instruction(stream: list[int]) -> None:
+    decoder = Decoder()
+    for word in stream:
+        list(decoder.feed(np.array([word], np.uint16)))
+        assert decoder.held_words < MOST_WORDS
+
+
+def test_data_are_views_of_the_words_sent() -> None:
+    stream = np.array([0x0A01, 6, 1, 2, 3], np.uint16)
+    (instruction,) = Decoder().feed(stream)
+    assert np.shares_memory(instruction.data, stream)
+
+
+def test_a_word_that_begins_nothing_is_skipped_alone() -> None:
+    stream = np.array([0xFF00, 0x0000, 0x0700], np.uint16)
+    forms = [instruction.form.name for instruction in Decoder().feed(stream)]
+    assert forms == ["???", "???", "NOP"]
+
+
+def test_a_9300_knows_no_second_operand_flag_word() -> None:
+    stream = np.array([0x0804, 0x0001, 0x0700], np.uint16)
+    strict = [instruction.form for instruction in Decoder(PRINCETON_9300).feed(stream)]
+    assert strict[0] is ILLEGAL
+    (instruction,) = Decoder().feed(stream)
+    assert instruction.operands == {"read_mask": (0x0700,)}

@@ -1,0 +1,79 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu import InstructionError, WordsError, instructions
+from ramtek_emu.decoder import Decoder
+from ramtek_emu.instruction import encode, normal
+from tests.ramtek_emu.strategies import quick, streams
+
+
+def hexadecimal(words: np.ndarray[tuple[int], np.dtype[np.uint16]]) -> str:
+    return " ".join(f"{word:04X}" for word in words)
+
+
+def test_encoders_send_the_words_of_the_time() -> None:
+    assert hexadecimal(instructions.reset()) == "0500"
+    assert hexadecimal(instructions.initialize()) == "0600"
+    assert hexadecimal(instructions.no_operation()) == "0700"
+    assert hexadecimal(instructions.set_parameters(start=(10, 501))) == "0802 8000 000A 01F5"
+    assert hexadecimal(instructions.erase((100, 331, 200, 411), 2)) == "0902 0044 0002 0064 014B 00C8 019B"
+    assert hexadecimal(instructions.erase()) == "0900"
+    assert hexadecimal(instructions.write_image([[1, 2], [3, 4]], 5, 6)) == (
+        "0A03 0040 0005 0006 0006 0007 0008 0001 0002 0003 0004"
+    )
+    assert hexadecimal(instructions.read_entries(4, 2)) == "0400 0004 0004"
+    assert hexadecimal(instructions.write_vectors([(0, 0), (639, 479)], 5)) == (
+        "0E03 8002 0005 0000 0000 0004 027F 01DF"
+    )
+
+
+@quick
+@given(streams())
+def test_an_instruction_is_equal_to_its_own_words_read_again(stream: list[int]) -> None:
+    for instruction in Decoder().feed(np.array(stream, np.uint16)):
+        (again,) = Decoder().feed(encode(instruction))
+        assert again == instruction
+        assert hash(again) == hash(instruction)
+        assert str(again) == str(instruction)
+
+
+def test_a_listing_names_operands_and_flags() -> None:
+    assert str(normal("SET", {"mask": 15, "window": (0, 0, 9, 9)})) == "SET  mask 15; window 0, 0, 9, 9"
+    (text,) = Decoder().feed(np.array([0x0C13, 0x0040, 0, 0, 32, 32, 3, 0x3030, 0x3400], np.uint16))
+    assert str(text) == "WT   SWAP; window 0, 0, 32, 32; 3 bytes"
+    assert text.data_bytes() == b"004"
+
+
+@pytest.mark.parametrize(
+    ("operands", "sentence"),
+    [
+        ({"mask": 65536}, "mask must be whole numbers from -32768 to 65535, not 65536; round or clip it"),
+        ({"mask": 1.5}, "mask must be whole numbers from -32768 to 65535, not 1.5; round or clip it"),
+        ({"window": (1, 2)}, "window must be 4 numbers, not 2; give all of them"),
+    ],
+)
+def test_operands_that_do_not_fit_are_refused_by_name(operands: dict[str, int], sentence: str) -> None:
+    with pytest.raises(InstructionError) as refusal:
+        instructions.set_parameters(**operands)
+    assert str(refusal.value) == sentence
+
+
+def test_an_unknown_operand_is_refused_with_those_that_exist() -> None:
+    with pytest.raises(InstructionError, match=r"an operand must be one of mask, foreground, .*not 'color'"):
+        instructions.set_parameters(color=3)
+
+
+@pytest.mark.parametrize("vertices", [[], [[1, 2, 3]], [[0.5, 1.0]], [[40000000, 1]]])
+def test_vertices_that_do_not_fit_are_refused(vertices: object) -> None:
+    with pytest.raises(WordsError):
+        instructions.write_vectors(vertices)
+
+
+@quick
+@given(st.integers(1, 20000))
+def test_long_rows_of_vertices_are_sent_in_several_instructions(count: int) -> None:
+    stream = instructions.write_vectors(np.arange(2 * count).reshape(-1, 2) % 600, 1)
+    found = list(Decoder().feed(stream))
+    assert sum(len(instruction.data) // 2 for instruction in found) == max(1, count - 1)
