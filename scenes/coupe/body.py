@@ -85,8 +85,8 @@ def wall(s: ArrayLike, v: ArrayLike) -> Array:
     points[..., 2] += lift * (top(points[..., 0], points[..., 1]) - points[..., 2])
     for axle in AXLES:
         distance = np.hypot(points[..., 0] - axle, points[..., 2] - ARCH_HEIGHT)
-        swell = np.exp(-(((distance - ARCH_RADIUS) / 0.07) ** 2)) * (1 - ease(v, 6, 8.5))
-        points[..., 1] += 0.020 * swell * ease(points[..., 1], 0.4, 0.8)
+        swell = np.exp(-(((distance - ARCH_RADIUS) / 0.10) ** 2)) * (1 - ease(v, 6, 8.5))
+        points[..., 1] += 0.017 * swell * ease(points[..., 1], 0.4, 0.8)
     return points
 
 

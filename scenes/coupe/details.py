@@ -20,15 +20,15 @@ def outward_at(grid: Array) -> Array:
     return normal
 
 
-def raised(parts: Parts, part: str, grid: Array, height: float) -> None:
-    """Add a pad that stands out from the skin by `height`, with its sides."""
+def raised(parts: Parts, part: str, grid: Array, low: float, high: float, edging: str) -> None:
+    """Add a pad that stands out from the skin by `low` at its foot and `high` at its top, and its edging."""
     base, normal = skin(grid), outward_at(grid)
     middle = base.reshape(-1, 3).mean(axis=0)
-    face = base + normal * height
+    face = base + normal * np.linspace(low, high, grid.shape[1])[None, :, None]
     parts.grid(part, face)
     for edge in (np.s_[:, 0], np.s_[:, -1], np.s_[0], np.s_[-1]):
         strip = np.stack([base[edge] - normal[edge] * 0.004, face[edge]], axis=1)
-        parts.grid(part, strip, outward=tuple(strip.reshape(-1, 3).mean(axis=0) - middle))
+        parts.grid(edging, strip, outward=tuple(strip.reshape(-1, 3).mean(axis=0) - middle))
 
 
 def patch(x0: float, x1: float, v0: float, v1: float, across: int, up: int) -> Array:
@@ -104,10 +104,10 @@ def build(parts: Parts) -> None:
     spoiler(parts)
     mirrors(parts)
     wipers(parts)
-    raised(parts, "handles", patch(0.40, 0.56, 6.35, 6.75, 4, 1), 0.008)
-    raised(parts, "side_markers", patch(-2.08, -1.95, 2.55, 2.95, 2, 1), 0.006)
-    raised(parts, "side_markers", patch(2.00, 2.13, 3.0, 3.4, 2, 1), 0.006)
+    raised(parts, "handles", patch(0.40, 0.56, 6.35, 6.75, 4, 1), 0.008, 0.008, "handles")
+    raised(parts, "side_markers", patch(-2.08, -1.95, 2.55, 2.95, 2, 1), 0.003, 0.015, "lamp_frames")
+    raised(parts, "side_markers", patch(2.00, 2.13, 3.0, 3.4, 2, 1), 0.003, 0.015, "lamp_frames")
     for x0, x1, count in ((-0.965, -0.572, 4), (-0.548, 0.617, 12), (0.642, 0.80, 2)):
-        raised(parts, "moldings", patch(x0, x1, 3.15, 3.5, count, 1), 0.009)
+        raised(parts, "moldings", patch(x0, x1, 3.15, 3.5, count, 1), 0.009, 0.009, "moldings")
 
 

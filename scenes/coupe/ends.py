@@ -30,11 +30,11 @@ def recess(parts: Parts, face: Array, depth: float, name: str) -> Array:
     return back
 
 
-def pane(corner: Array, opposite: Array, across: int, up: int, swell: float) -> Array:
-    """Return an upright lens square to x between two corners, swelling out toward its middle."""
+def pane(corner: Array, opposite: Array, across: int, up: int, swell: float, lean: float) -> Array:
+    """Return a lens across x between two corners, swelling out toward its middle, its top set off by `lean`."""
     y, z = np.linspace(corner[1], opposite[1], across + 1), np.linspace(corner[2], opposite[2], up + 1)
     a, b = np.meshgrid(np.linspace(-1, 1, across + 1), np.linspace(-1, 1, up + 1), indexing="ij")
-    x = corner[0] + swell * (1 - a**2) * (1 - b**2)
+    x = corner[0] + swell * (1 - a**2) * (1 - b**2) + lean * (b + 1) / 2
     return np.stack([x, *np.meshgrid(y, z, indexing="ij")], axis=-1)
 
 
@@ -70,7 +70,7 @@ def nose(parts: Parts) -> None:
         ahead = float(face[i0 : i1 + 1, :, 0].max()) + 0.008
         corner = np.array([ahead, low[1] + 0.012, face[i0, 0, 2] + 0.014])
         opposite = np.array([ahead, face[i1, 0, 1] - 0.012, face[i0, -1, 2] - 0.012])
-        boxed(parts, pane(corner, opposite, 4, 3, -0.012), "head_lamps", 0.06)
+        boxed(parts, pane(corner, opposite, 4, 3, -0.010, 0.018), "head_lamps", 0.06)
     for hole, bars in ((slot, 3), (intake, 3)):
         face = cells(points, hole)
         parts.grid("grille", recess(parts, face, 0.07, "grille")[:, ::2], outward=(-1, 0, 0))
@@ -79,7 +79,9 @@ def nose(parts: Parts) -> None:
             edge = face[:, 0] * (1 - share) + face[:, -1] * share + [0.012, 0, 0]
             parts.grid("grille", np.stack([edge, edge + [0.022, 0, 0.012]], axis=1), outward=(-1, 0, 1))
             parts.grid("grille", np.stack([edge, edge + [0.022, 0, -0.006]], axis=1), outward=(-1, 0, -1))
-    parts.grid("turn_lamps", recess(parts, cells(points, turn), 0.012, "lamp_frames"), outward=(-1, 0, 0))
+    lens = recess(parts, cells(points, turn), 0.010, "lamp_frames")
+    lens[..., 0] += np.linspace(0.030, 0.0, lens.shape[1])
+    parts.grid("turn_lamps", lens, outward=(-1, 0, 0))
 
 
 def tail(parts: Parts) -> None:
@@ -96,11 +98,12 @@ def tail(parts: Parts) -> None:
         for j in range(2):
             cell = back[i : i + 3, j : j + 2]
             middle = cell.reshape(-1, 3).mean(axis=0)
-            inner = middle + (cell - middle) * [1, 0.93, 0.86] + [0.008, 0, 0]
+            inner = middle + (cell - middle) * [1, 0.93, 0.86] + [0.010, 0, 0]
+            inner[:, 0, 0] -= 0.018
             parts.grid("tail_lamps", inner, outward=(1, 0, 0))
-            parts.grid("lamp_frames", np.stack([border(inner), border(inner) - [0.008, 0, 0]], axis=1))
+            parts.grid("lamp_frames", np.stack([border(inner), border(inner) - [0.010, 0, 0]], axis=1))
     parts.grid("lamp_frames", recess(parts, cells(points, plate), 0.035, "lamp_frames"), outward=(1, 0, 0))
-    sheet = pane(np.array([2.310, 0.0, 0.625]), np.array([2.310, 0.150, 0.765]), 1, 1, 0.0)
+    sheet = pane(np.array([2.325, 0.0, 0.625]), np.array([2.325, 0.150, 0.765]), 1, 1, 0.0, -0.035)
     parts.grid("license_plate", sheet, outward=(1, 0, 0))
 
 

@@ -49,7 +49,7 @@ def ground() -> Parts:
     round_x = np.sign(np.cos(angle)) * np.abs(np.cos(angle)) ** 0.35
     round_y = np.sign(np.sin(angle)) * np.abs(np.sin(angle)) ** 0.35
     share = np.array([0.0, 0.5, 1.0])
-    patch = np.stack([2.2 * share * round_x, 0.84 * share * round_y, 0 * share * angle + 0.005], axis=-1)
+    patch = np.stack([2.08 * share * round_x, 0.83 * share * round_y, 0 * share * angle + 0.005], axis=-1)
     parts.grid("shade", patch, outward=(0, 0, 1), mirror=False)
     return parts
 
