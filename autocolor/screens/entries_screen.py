@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.level_ranges import BACKGROUND, SCREENS, WORDS, LevelRange
-from autocolor.screens.drawing import HEIGHT, LIGHT_GRAY, WIDTH
+from autocolor.screens.drawing import HEIGHT, WIDTH, YELLOW
 from ramtek_emu import HostPort, instructions
 
 SIDE = 32
@@ -16,17 +16,18 @@ ACROSS, DOWN = WIDTH // SIDE, HEIGHT // SIDE
 
 
 def cell_words(ranges: Mapping[str, LevelRange]) -> npt.NDArray[np.uint16]:
-    """The page as words, (480, 640) uint16: a line of the outline lies between cells of different owners."""
+    """The page as words, (480, 640) uint16: a line runs between cells of different owners."""
     words = np.arange(WORDS, dtype=np.uint16).reshape(SIDE, SIDE)
     owners = np.zeros(WORDS, np.intp)
     for number, (first, levels) in enumerate([*ranges.values(), SCREENS, LevelRange(BACKGROUND, 1)], start=1):
         owners[first : first + levels] = number
     owner = owners.reshape(SIDE, SIDE)
     page = words.repeat(DOWN, axis=0).repeat(ACROSS, axis=1)
-    below = owner != np.vstack([owner[1:], np.full((1, SIDE), -1)])
-    beside = owner != np.hstack([owner[:, 1:], np.full((SIDE, 1), -1)])
-    page[DOWN - 1 :: DOWN][below.repeat(ACROSS, axis=1)] = LIGHT_GRAY
-    page[:, ACROSS - 1 :: ACROSS][beside.repeat(DOWN, axis=0)] = LIGHT_GRAY
+    # Mark each cell's border where its neighbor has another owner, on both sides of it.
+    owner = owner.repeat(DOWN, axis=0).repeat(ACROSS, axis=1)
+    across, down = owner[:, 1:] != owner[:, :-1], owner[1:] != owner[:-1]
+    for part, other in ((page[:, 1:], across), (page[:, :-1], across), (page[1:], down), (page[:-1], down)):
+        part[other] = YELLOW
     return page
 
 

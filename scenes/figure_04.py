@@ -1,0 +1,23 @@
+"""Figure 4: light direction and concentration, on a pyramid that stands on a plane."""
+
+from __future__ import annotations
+
+from scenes.figures import Sheet, open_scene
+
+
+def main() -> None:
+    """Render once, then change the one light twice."""
+    studio, display = open_scene("pyramid")
+    sheet = Sheet("04")
+    aim = studio.scene.light("lamp").aim
+    studio.light("lamp", aim=None, concentration=0)
+    sheet.add(display.field(), "A. Point Source", "a")
+    studio.light("lamp", aim=aim, concentration=1)
+    sheet.add(display.field(), "B. Directed Flood, C = 1", "b")
+    studio.light("lamp", concentration=40)
+    sheet.add(display.field(), "C. Directed Spot, C = 40", "c")
+    sheet.write(across=3)
+
+
+if __name__ == "__main__":
+    main()

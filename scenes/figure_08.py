@@ -1,0 +1,21 @@
+"""Figure 8: the effect of each of the four lights individually."""
+
+from __future__ import annotations
+
+from scenes.figures import Sheet, open_scene
+
+
+def main() -> None:
+    """Render once; each panel is the weighted sum again, with the other lights' weights at nothing."""
+    studio, display = open_scene("coupe")
+    # By the whole object: a surface that a light does not reach stays dark.
+    four = studio.scene.replace(scaling="object", mapping="gamma")
+    sheet = Sheet("08")
+    for light in four.lights:
+        studio.edit(four.only_lights(light.name))
+        sheet.add(display.field(), f"Light: {light.name}", light.name)
+    sheet.write(across=2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,30 @@
+"""Figure 9: light flaps. A light along the side of the coupe, and the same between two Z flaps."""
+
+from __future__ import annotations
+
+import autocolor
+from scenes.figures import Sheet, open_scene
+
+CREASE = 0.63
+"""The height in meters of the line that runs along the side."""
+
+ROOF = 1.0
+
+
+def main() -> None:
+    """Render once; each panel moves flaps of the one light."""
+    studio, display = open_scene("coupe")
+    side = autocolor.Light("flapped", (-4.0, -6.0, 2.0), aim=(0.0, 0.0, 0.6), concentration=4)
+    view = studio.scene.view.replace(eye=(-4.6, -7.4, 1.7), target=(0.0, 0.0, 0.52))
+    studio.edit(studio.scene.replace(lights=(side,), view=view, scaling="object", mapping="gamma"))
+    sheet = Sheet("09")
+    sheet.add(display.field(), "A. No Flaps", "a")
+    studio.light("flapped", flaps={"z": {"minimum": CREASE}})
+    sheet.add(display.field(), "B. Minimum Z Flap at the Crease", "b")
+    studio.light("flapped", flaps={"z": {"minimum": CREASE, "maximum": ROOF}})
+    sheet.add(display.field(), "C. Minimum and Maximum Z Flap", "c")
+    sheet.write(across=3)
+
+
+if __name__ == "__main__":
+    main()

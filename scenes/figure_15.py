@@ -1,0 +1,27 @@
+"""Figure 15: dynamic light blending. One picture, three tables, only the body's entries differ."""
+
+from __future__ import annotations
+
+from scenes.figures import Sheet, open_scene
+
+PANELS = (
+    ("a", 1.0, "A. Object Color Only"),
+    ("b", 0.5, "B. Blend at Half the Range"),
+    ("c", 0.0, "C. Blend at the Lowest Level"),
+)
+
+
+def main() -> None:
+    """Render once; then every panel is one range of the lookup table, and no word is written."""
+    studio, display = open_scene("coupe")
+    words_written = display.frame_buffer.written
+    sheet = Sheet("15")
+    for panel, blend, caption in PANELS:
+        studio.recolor("body", blend=blend)
+        sheet.add(display.field(), caption, panel)
+    assert display.frame_buffer.written == words_written
+    sheet.write(across=3)
+
+
+if __name__ == "__main__":
+    main()

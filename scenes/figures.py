@@ -1,0 +1,76 @@
+"""The figures of the paper, each made by a script of its own: `python -m scenes.figures` makes them all.
+
+Paper: D. R. Warn, "Lighting Controls for Synthetic Images", Figures 4, 6, 7, 8, 9, 10 and 15. Each script
+renders once, then relights or recolors for every panel, and writes labelled pictures into `figures/`, or into
+the folder that it is given: `python -m scenes.figure_04 elsewhere`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import sys
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+import autocolor
+from ramtek_emu import GMR_9300, Ramtek9300, instructions
+from ramtek_emu.png import save_png
+
+SCENES = Path(__file__).parent
+FIGURES = ("04", "06", "07", "08", "09", "10", "15")
+CAPTION_LINES = 26
+
+Field = npt.NDArray[np.uint8]
+
+
+def open_scene(name: str) -> tuple[autocolor.Studio, Ramtek9300]:
+    """A studio on one of the scenes beside this file, and its display."""
+    display = Ramtek9300()
+    return autocolor.Studio(autocolor.read_scene(SCENES / name), display), display
+
+
+def captioned(field: Field, text: str) -> Field:
+    """A field with a line of text below it, written by a display of its own."""
+    strip = Ramtek9300(dataclasses.replace(GMR_9300, name="caption", lines=CAPTION_LINES))
+    strip.send(instructions.load_entries(0, [(24, 26, 30), (235, 235, 235)]))
+    strip.send(instructions.write_text(text, 12, 4, 1, 0, size=2))
+    return np.vstack([field, strip.field()])
+
+
+class Sheet:
+    """The panels of one figure: each is written alone, and all of them side by side at the end."""
+
+    def __init__(self, figure: str) -> None:
+        self.figure = figure
+        self.folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+        self.panels: list[Field] = []
+
+    def add(self, field: Field, caption: str, panel: str = "") -> None:
+        """Write one panel with its caption."""
+        self.panels.append(captioned(field, caption))
+        self._write(self.panels[-1], f"figure-{self.figure}{f'-{panel}' if panel else ''}.png")
+
+    def write(self, across: int) -> None:
+        """Write all panels in rows of so many."""
+        rows = [
+            np.hstack(self.panels[first : first + across]) for first in range(0, len(self.panels), across)
+        ]
+        self._write(np.vstack(rows), f"figure-{self.figure}.png")
+
+    def _write(self, field: Field, name: str) -> None:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        save_png(field, self.folder / name)
+        print(self.folder / name)
+
+
+def main() -> None:
+    """Make every figure."""
+    for number in FIGURES:
+        importlib.import_module(f"scenes.figure_{number}").main()
+
+
+if __name__ == "__main__":
+    main()
