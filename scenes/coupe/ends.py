@@ -73,7 +73,7 @@ def nose(parts: Parts) -> None:
         boxed(parts, pane(corner, opposite, 4, 3, -0.010, 0.018), "head_lamps", 0.06)
     for hole, bars in ((slot, 3), (intake, 3)):
         face = cells(points, hole)
-        parts.grid("grille", recess(parts, face, 0.07, "grille")[:, ::2], outward=(-1, 0, 0))
+        parts.grid("lamp_frames", recess(parts, face, 0.07, "lamp_frames")[:, ::2], outward=(-1, 0, 0))
         for k in range(bars):
             share = (k + 0.5) / bars
             edge = face[:, 0] * (1 - share) + face[:, -1] * share + [0.012, 0, 0]
@@ -92,16 +92,16 @@ def tail(parts: Parts) -> None:
     points = skin(fascia_columns(s, v, TAIL_CUT + GAP / 2, 15.0))
     lamps, plate = (4, 10, 8, 10), (0, 3, 8, 10)
     parts.grid("rear_fascia", points, holes=(lamps, plate))
-    back = recess(parts, cells(points, lamps), 0.022, "lamp_frames")
+    back = recess(parts, cells(points, lamps), 0.040, "lamp_frames")
     parts.grid("lamp_frames", back, outward=(1, 0, 0))
     for i in range(0, 6, 2):
         for j in range(2):
             cell = back[i : i + 3, j : j + 2]
             middle = cell.reshape(-1, 3).mean(axis=0)
-            inner = middle + (cell - middle) * [1, 0.93, 0.86] + [0.010, 0, 0]
-            inner[:, 0, 0] -= 0.018
+            inner = middle + (cell - middle) * [1, 0.93, 0.86] + [0.030, 0, 0]
+            inner[:, 0, 0] -= 0.020
             parts.grid("tail_lamps", inner, outward=(1, 0, 0))
-            parts.grid("lamp_frames", np.stack([border(inner), border(inner) - [0.010, 0, 0]], axis=1))
+            parts.grid("lamp_frames", np.stack([border(inner), border(inner) - [0.030, 0, 0]], axis=1))
     parts.grid("lamp_frames", recess(parts, cells(points, plate), 0.035, "lamp_frames"), outward=(1, 0, 0))
     sheet = pane(np.array([2.325, 0.0, 0.625]), np.array([2.325, 0.150, 0.765]), 1, 1, 0.0, -0.035)
     parts.grid("license_plate", sheet, outward=(1, 0, 0))

@@ -42,13 +42,13 @@ def car() -> Parts:
 def ground() -> Parts:
     """Return the studio floor, a disc, and the dark patch of shade below the car."""
     parts = Parts()
-    angle = np.linspace(0, 2 * np.pi, 49)[:, None]
-    radius = spaced(0.0, 4.0, 11.0, counts=(6, 7))
+    angle = np.linspace(0, 2 * np.pi, 33)[:, None]
+    radius = spaced(0.0, 4.0, 11.0, counts=(3, 4))
     disc = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * radius * angle], axis=-1)
     parts.grid("floor", disc, outward=(0, 0, 1), mirror=False)
     round_x = np.sign(np.cos(angle)) * np.abs(np.cos(angle)) ** 0.35
     round_y = np.sign(np.sin(angle)) * np.abs(np.sin(angle)) ** 0.35
-    share = np.array([0.0, 0.5, 1.0])
+    share = np.array([0.0, 1.0])
     patch = np.stack([2.08 * share * round_x, 0.83 * share * round_y, 0 * share * angle + 0.005], axis=-1)
     parts.grid("shade", patch, outward=(0, 0, 1), mirror=False)
     return parts

@@ -1,0 +1,1 @@
+"""The pyramid on a plane of the paper's Figure 4."""
