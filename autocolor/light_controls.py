@@ -19,6 +19,11 @@ Singles = npt.NDArray[np.float32]
 Floats = npt.NDArray[np.float64]
 
 ROUNDING = float(np.finfo(np.float32).eps)
+FAR_FLAP = 1e30
+"""In units; farther than any point, and float32 can hold it."""
+
+LARGEST_EXPONENT = 1e36
+"""Nothing but cos(L) = 1 is left of a light of this concentration, and float32 can hold its logarithm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +74,8 @@ def _flap_sides(light: Light, seen: Seen) -> Singles:
         slack = 4 * ROUNDING * (seen.depth + abs(float(coordinate[3])))
         for sign, limit in ((1.0, flap.minimum), (-1.0, flap.maximum)):
             if math.isfinite(limit):
-                rows.append(sign * coordinate - np.array([0, 0, 0, sign * limit - slack]))
+                beyond = min(max(sign * limit / seen.unit, -FAR_FLAP), FAR_FLAP)
+                rows.append(sign * coordinate - np.array([0, 0, 0, beyond - slack]))
     return np.array(rows, np.float32).reshape(-1, 4)
 
 
@@ -90,9 +96,11 @@ def concentrated(cos_light: Singles, concentration: float) -> Singles:
     Paper: "Light Direction and Concentration". Half is left at 60 degrees for C = 1, at 21.1 for C = 10 and
     at 10.6 for C = 40.
     """
+    # Rounding may leave a cosine above 1, which a large exponent would make a light of its own.
+    cosine: Singles = np.minimum(cos_light, np.float32(1))
     if concentration == 1:
-        return cos_light
+        return cosine
     # Measured: the exponential of a logarithm takes half the time of a power.
-    log = np.log(cos_light)
-    log *= np.float32(concentration)
+    log = np.log(cosine, out=cosine)
+    log *= np.float32(min(concentration, LARGEST_EXPONENT))
     return np.exp(log, out=log)

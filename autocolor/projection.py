@@ -7,6 +7,7 @@ centers stand at half-integers, line 0 on top.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -18,7 +19,10 @@ from autocolor.tables import Mesh
 from autocolor.view import View
 
 NEAR = 1e-4
-"""Assumed: the near plane, as a fraction of the depth of the farthest node."""
+"""Assumed: the near plane, as a fraction of the depth of the object's farthest corner."""
+
+LEAST_NEAR = 1e-12
+"""Assumed: the near plane, in units, where even that corner is hardly before the eye."""
 
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
@@ -55,6 +59,8 @@ def lens(lines: int, elements: int, field_of_view: float) -> Lens:
 class Projection:
     """Nodes on the raster and the polygons that use them.
 
+    Camera space is measured in `unit`, a power of two near the distance of the farthest corner of the
+    object: so float32 holds a part of a watch and a mountain range alike, and to the same last bit.
     `across`, `down` (pixels) and `inverse_depth` are (nodes,) float64. `first_line` is (nodes,) intp: the
     first line whose center is at or below the node, so that an edge from a to b crosses the lines
     first_line[a] <= line < first_line[b]. `corners` and `corner_normals` are (4, polygons) intp, one
@@ -64,6 +70,7 @@ class Projection:
 
     lines: int
     elements: int
+    unit: float
     across: Floats
     down: Floats
     inverse_depth: Floats
@@ -77,15 +84,17 @@ class Projection:
 
 def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     """The polygons of the mesh that may be seen, each crossed at most twice by any line."""
-    axes = view.axes
-    places = (mesh.coordinates - np.array(view.eye)) @ axes.T
+    axes, eye = view.axes, np.array(view.eye)
+    box = (np.array(list(itertools.product(*np.stack(mesh.bounds, axis=1)))) - eye) @ axes.T
+    unit = 2.0 ** math.frexp(float(np.abs(box).max()))[1]
+    places = (mesh.coordinates - eye) @ axes.T / unit
     normals = mesh.normals.vectors @ axes.T
     corners, corner_normals = mesh.node_numbers.T, mesh.normals.numbers.T
     polygon_numbers = np.arange(corners.shape[1])
 
     # Cut at the near plane what reaches through it, and drop what is behind it.
     depth = places[:, 2]
-    near = NEAR * max(float(depth.max(initial=0.0)), 1e-300)
+    near = max(NEAR * float(box[:, 2].max()) / unit, LEAST_NEAR)
     if depth.min(initial=near) < near:
         places, normals, corners, corner_normals, polygon_numbers = _cut_at_near_plane(
             near, places, normals, corners, corner_normals, polygon_numbers
@@ -123,6 +132,7 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     return Projection(
         lines,
         elements,
+        unit,
         across,
         down,
         inverse_depth,

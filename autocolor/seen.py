@@ -48,7 +48,8 @@ class Seen:
     `pixels` are their flat places in the raster, (n,) intp; `polygon_numbers` (n,) intp are rows of the
     polygon table. `rows` is (13, n) float32 and has what the reflected light is computed from: a point in
     camera space around `middle`, the unit normal, and the ray to the eye mirrored at the normal, each with
-    its product with the point, so that every cosine to a light is one matrix product.
+    its product with the point, so that every cosine to a light is one matrix product. Lengths in camera
+    space, `middle` and `inverse_depth` among them, are in `unit`.
     """
 
     lines: int
@@ -59,16 +60,18 @@ class Seen:
     inverse_depth: Singles
     rows: Singles
     view: View
+    unit: float
     middle: Floats
 
     @cached_property
     def depth(self) -> float:
-        """The largest distance from the eye's plane, which the rounding of the points is in proportion to."""
+        """The largest distance from the eye's plane in units; the rounding of the points is in proportion."""
         return float(1 / self.inverse_depth.min()) if len(self.pixels) else 1.0
 
     def camera_point(self, point: tuple[float, float, float]) -> Floats:
         """A point of the world as the rows of points are: in camera space, around the middle."""
-        placed: Floats = self.view.axes @ (np.array(point) - np.array(self.view.eye)) - self.middle
+        away = np.array(point) - np.array(self.view.eye)
+        placed: Floats = self.view.axes @ away / self.unit - self.middle
         return placed
 
     def camera_direction(self, direction: tuple[float, float, float]) -> Floats:
@@ -77,14 +80,14 @@ class Seen:
         return turned
 
     def world_coordinate(self, axis: int) -> Floats:
-        """The four numbers whose product with a point and 1 is the point's world coordinate."""
+        """The four numbers whose product with a point and 1 is the point's world coordinate in units."""
         along = self.view.axes[:, axis]
-        return np.append(along, self.view.eye[axis] + along @ self.middle)
+        return np.append(along, self.view.eye[axis] / self.unit + along @ self.middle)
 
     @property
     def points(self) -> Floats:
         """The points in world coordinates, (n, 3), in the order of `pixels`."""
-        placed = self.rows[POINT].T.astype(np.float64) + self.middle
+        placed = (self.rows[POINT].T.astype(np.float64) + self.middle) * self.unit
         points: Floats = placed @ self.view.axes + np.array(self.view.eye)
         return points
 
@@ -136,7 +139,7 @@ def seen_of_winners(
     step[:, turned] *= -1
 
     low, high = mesh.bounds
-    middle = view.axes @ ((low + high) / 2 - np.array(view.eye))
+    middle = view.axes @ ((low + high) / 2 - np.array(view.eye)) / projected.unit
     rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
     rays = lens(projected.lines, projected.elements, view.field_of_view)
     along = (pixels - winners.first_pixel[span]).astype(np.float32)
@@ -187,6 +190,7 @@ def seen_of_winners(
         inverse_depth,
         rows,
         view,
+        projected.unit,
         middle,
     )
 

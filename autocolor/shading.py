@@ -18,6 +18,9 @@ PIXELS_AT_ONCE = 1 << 15
 CLOSE = 0.02
 """Below this squared distance, as a fraction of the squares it is the difference of, subtract the points."""
 
+FARTHEST = 1e15
+"""In units; the rays of a light that is farther are parallel, and float32 can hold the square of this."""
+
 DIFFUSE, SPECULAR = 0, 1
 
 Singles = npt.NDArray[np.float32]
@@ -39,6 +42,7 @@ def light_planes(
     planes = np.zeros((2, len(seen.pixels)), np.float32) if kept is None else kept.copy()
     ready = controls(light, seen)
     position = seen.camera_point(light.position)
+    position *= min(FARTHEST / max(float(np.abs(position).max()), 1.0), 1.0)
     for surface in seen.slices:
         if kept is not None:
             if surface.surface_number not in changed:
