@@ -74,9 +74,9 @@ def finite(
 def vector(problems: list[str], what: str, value: object, *, not_zero: bool = False) -> Vector:
     """The value as three floats, when it is three finite numbers (and not all zero, where that is asked)."""
     try:
-        components = [float(component) for component in value]  # type: ignore[attr-defined]
-        if isinstance(value, (str, bytes)) or any(isinstance(component, bool) for component in value):  # type: ignore[attr-defined]
-            components = []
+        given = list(value)  # type: ignore[call-overload]
+        words = any(isinstance(component, (str, bytes, bool)) for component in given)
+        components = [] if words else [float(component) for component in given]
     except (TypeError, ValueError, OverflowError):
         components = []
     if len(components) != 3 or not all(abs(component) <= LARGEST_COORDINATE for component in components):
@@ -99,8 +99,10 @@ def color(problems: list[str], what: str, value: object) -> Color:
     if isinstance(value, str) and COLOR_PATTERN.fullmatch(value):
         return (int(value[1:3], 16), int(value[3:5], 16), int(value[5:7], 16))
     try:
-        parts = [] if isinstance(value, (str, bytes)) else [int(part) for part in value]  # type: ignore[attr-defined]
-        if [part != whole for part, whole in zip(value, parts, strict=True)].count(True):  # type: ignore[call-overload]
+        given = list(value)  # type: ignore[call-overload]
+        words = any(isinstance(part, (str, bytes, bool)) for part in given)
+        parts = [] if words else [int(part) for part in given]
+        if parts != given:
             parts = []
     except (TypeError, ValueError, OverflowError):
         parts = []

@@ -33,10 +33,10 @@ class Flap:
         problems: list[str] = []
         for name in ("minimum", "maximum"):
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or math.isnan(value):
-                problems.append(f"a flap's {name} must be a number, not {value!r}")
-            else:
-                object.__setattr__(self, name, float(value))
+            open_end = -math.inf if name == "minimum" else math.inf
+            if not (isinstance(value, float) and value == open_end):
+                value = finite(problems, f"a flap's {name}", value)
+            object.__setattr__(self, name, value)
         switch(problems, "a flap's switch", self.on)
         if not problems and self.minimum > self.maximum:
             problems.append(
@@ -47,7 +47,7 @@ class Flap:
 
     def replace(self, **changes: Any) -> Flap:
         """The flap with some fields changed."""
-        return dataclasses.replace(self, **changes)
+        return dataclasses.replace(self, **known_fields(Flap, changes, "flap"))
 
 
 @dataclass(frozen=True)
@@ -69,8 +69,13 @@ class Flaps:
                 )
 
     def replace(self, **changes: Any) -> Flaps:
-        """The flaps with some of them changed."""
-        return dataclasses.replace(self, **known_fields(Flaps, changes, "flaps"))
+        """The flaps with some of them changed; a table of some fields of a flap leaves its others."""
+        changes = known_fields(Flaps, changes, "flaps")
+        for axis, change in changes.items():
+            flap = getattr(self, axis)
+            if isinstance(change, Mapping) and flap is not None:
+                changes[axis] = flap.replace(**change)
+        return dataclasses.replace(self, **changes)
 
 
 @dataclass(frozen=True)
@@ -113,12 +118,12 @@ class Light:
             keep("aim", vector(problems, f"{place}: aim", self.aim))
         if self.cone_angle is not None:
             angle = finite(problems, f"{place}: cone_angle", self.cone_angle, at_least=0.0, at_most=180.0)
-            keep("cone_angle", angle)
-            if angle == 0.0:
+            if angle == self.cone_angle == 0:
                 problems.append(f"{place}: cone_angle must be above 0, not 0; leave it out for no cone")
+            keep("cone_angle", angle)
         if isinstance(self.flaps, Mapping):
             try:
-                keep("flaps", Flaps(**known_fields(Flaps, self.flaps, f"{place}: flaps")))
+                keep("flaps", Flaps(**known_fields(Flaps, self.flaps, "flaps")))
             except InputError as error:
                 problems.extend(f"{place}: {problem}" for problem in error.problems)
         elif not isinstance(self.flaps, Flaps):

@@ -46,7 +46,7 @@ class Mesh:
         node_numbers = _array(problems, "polygon table", self.node_numbers, np.intp, (3, 4))
         if node_numbers.shape[1] == 3:
             node_numbers = node_numbers[:, [0, 1, 2, 2]]
-        part_numbers = np.array(self.part_numbers, dtype=np.intp)
+        part_numbers = np.atleast_1d(_numbers(problems, "part numbers", self.part_numbers, np.intp))
         names = tuple(self.part_names)
         angle = finite(problems, "mesh: crease_angle", self.crease_angle, at_least=0.0, at_most=180.0)
         if not (np.abs(coordinates) <= LARGEST_COORDINATE).all():
@@ -79,6 +79,16 @@ class Mesh:
     def normals(self) -> NodeNormals:
         """Unit normals at the corners of the polygons, made from the adjoining polygons."""
         return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
+
+    @cached_property
+    def columns(self) -> npt.NDArray[np.intp]:
+        """The node numbers with one row a corner, (4, polygons), as batches of polygons are worked on."""
+        return np.ascontiguousarray(self.node_numbers.T)
+
+    @cached_property
+    def normal_columns(self) -> npt.NDArray[np.intp]:
+        """The numbers of the normals with one row a corner, (4, polygons)."""
+        return np.ascontiguousarray(self.normals.numbers.T)
 
     @cached_property
     def bounds(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
@@ -237,19 +247,24 @@ def _fields(cls: type) -> list[str]:
     return [entry.name for entry in dataclasses.fields(cls)]
 
 
+def _numbers(problems: list[str], what: str, value: object, dtype: type) -> npt.NDArray[Any]:
+    """A copy of the value as an array of the type, or an empty one after a problem was noted."""
+    try:
+        array = np.array(value)
+    except (TypeError, ValueError, OverflowError):
+        array = np.array(None)
+    if array.size and array.dtype.kind not in ("iu" if dtype is np.intp else "iuf"):
+        kind = "whole numbers" if dtype is np.intp else "numbers"
+        problems.append(f"{what}: it must be an array of {kind}, not {type(value).__name__}")
+        array = np.empty(0)
+    return array.astype(dtype, copy=False)
+
+
 def _array(
     problems: list[str], what: str, value: object, dtype: type, widths: tuple[int, ...]
 ) -> npt.NDArray[Any]:
     """A copy of the value as (rows, width) of the type, or an empty one after a problem was noted."""
-    try:
-        array = np.array(value)
-        if dtype is np.intp and array.size and not np.issubdtype(array.dtype, np.integer):
-            raise ValueError
-        array = array.astype(dtype)
-    except (TypeError, ValueError, OverflowError):
-        kind = "whole numbers" if dtype is np.intp else "numbers"
-        problems.append(f"{what}: it must be an array of {kind}, not {type(value).__name__}")
-        array = np.empty((0, widths[-1]), dtype)
+    array = _numbers(problems, what, value, dtype)
     if array.size == 0:
         array = array.reshape(0, widths[-1])
     if array.ndim != 2 or array.shape[1] not in widths:
