@@ -1,0 +1,89 @@
+"""Meshes that the tests know all about."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor import Mesh, Reflectance, Scene, Surface, View, scene_of
+from tests.autocolor.strategies import Vector
+
+
+def grid(columns: int, rows: int, corner: Vector, across: Vector, up: Vector, name: str = "wall") -> Mesh:
+    """A parallelogram of columns x rows quads, counterclockwise where `across` x `up` points to one."""
+    along = np.arange(columns + 1) / columns
+    upward = np.arange(rows + 1) / rows
+    coordinates = (
+        np.array(corner) + along[None, :, None] * np.array(across) + upward[:, None, None] * np.array(up)
+    ).reshape(-1, 3)
+    first = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
+    quads = np.stack([first, first + 1, first + columns + 2, first + columns + 1], axis=1)
+    return Mesh(coordinates, quads, np.zeros(len(quads), np.intp), (name,))
+
+
+def wall(columns: int = 1, rows: int = 1, half: float = 1.0) -> Mesh:
+    """A square in the plane y = 0 that faces -y."""
+    return grid(columns, rows, (-half, 0.0, -half), (2 * half, 0.0, 0.0), (0.0, 0.0, 2 * half))
+
+
+def wall_scene(
+    mesh: Mesh | None = None,
+    reflectance: Reflectance | None = None,
+    view: View | None = None,
+    two_sided: bool = True,
+    **fields: object,
+) -> Scene:
+    """A wall, seen from straight before it unless a view is given; no ambient light unless given."""
+    return scene_of(
+        wall() if mesh is None else mesh,
+        surfaces=[Surface("wall", reflectance or Reflectance(0.7, 0.5, 20.0), two_sided=two_sided)],
+        view=view or View((0.0, -4.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=25.0),
+        **{"ambient": 0.0, **fields},  # type: ignore[arg-type]
+    )
+
+
+CUBE_NODES = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+CUBE_QUADS = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+
+
+def cube(size: float = 1.0) -> Mesh:
+    """The cube from the origin to (size, size, size), wound outward."""
+    return Mesh(
+        np.array(CUBE_NODES, np.float64) * size, np.array(CUBE_QUADS), np.zeros(6, np.intp), ("cube",)
+    )
+
+
+def sphere(columns: int = 32, rows: int = 16, radius: float = 1.0) -> Mesh:
+    """A sphere around the origin, of quads and of triangles at the poles, wound outward."""
+    coordinates = [(0.0, 0.0, -radius)]
+    for row in range(1, rows):
+        low = math.pi * (row / rows - 0.5)
+        for column in range(columns):
+            turn = 2 * math.pi * column / columns
+            coordinates.append(
+                (
+                    radius * math.cos(low) * math.cos(turn),
+                    radius * math.cos(low) * math.sin(turn),
+                    radius * math.sin(low),
+                )
+            )
+    coordinates.append((0.0, 0.0, radius))
+    last = len(coordinates) - 1
+
+    def node(row: int, column: int) -> int:
+        return 0 if row == 0 else last if row == rows else 1 + (row - 1) * columns + column % columns
+
+    quads = []
+    for row in range(rows):
+        for column in range(columns):
+            a, b = node(row, column), node(row, column + 1)
+            c, d = node(row + 1, column + 1), node(row + 1, column)
+            quads.append((d, a, b, b) if a != b and c == d else (a, c, d, d) if a == b else (a, b, c, d))
+    return Mesh(np.array(coordinates), np.array(quads), np.zeros(len(quads), np.intp), ("sphere",))
+
+
+def ramp(count: int) -> npt.NDArray[np.float32]:
+    """Intensities from 0 to 1."""
+    return np.linspace(0, 1, count, dtype=np.float32)

@@ -1,0 +1,178 @@
+"""Slow, obvious twins, made from the paper and from a scene's values alone: no function of the renderer's.
+
+Every formula is written for one point, one intensity or one level, in plain Python floats.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor import Light, Mesh, Paint, Reflectance, View
+
+Vector = Sequence[float]
+
+
+def plus(a: Vector, b: Vector) -> list[float]:
+    return [x + y for x, y in zip(a, b, strict=True)]
+
+
+def minus(a: Vector, b: Vector) -> list[float]:
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
+def times(factor: float, a: Vector) -> list[float]:
+    return [factor * x for x in a]
+
+
+def dot(a: Vector, b: Vector) -> float:
+    return math.fsum(x * y for x, y in zip(a, b, strict=True))
+
+
+def cross(a: Vector, b: Vector) -> list[float]:
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit(a: Vector) -> list[float]:
+    return times(1 / math.sqrt(dot(a, a)), a)
+
+
+def ray(view: View, lines: int, elements: int, line: int, element: int) -> list[float]:
+    """The direction from the eye through the center of a pixel, as long as it is 1 deep."""
+    assert view.direction is not None or view.target is not None
+    toward = view.direction if view.direction is not None else minus(view.target or (), view.eye)
+    forward = unit(toward)
+    up = [0.0, 0.0, 1.0] if abs(forward[2]) < 1 - 1e-15 else [0.0, 1.0, 0.0]
+    right = unit(cross(forward, up))
+    top = cross(right, forward)
+    # The horizontal axis of the picture plane turned by the angle.
+    angle = math.radians(view.angle)
+    across_axis = plus(times(math.cos(angle), right), times(math.sin(angle), top))
+    up_axis = plus(times(math.cos(angle), top), times(-math.sin(angle), right))
+    pixel = 2 * math.tan(math.radians(view.field_of_view) / 2) / lines
+    across = (element + 0.5 - elements / 2) * pixel
+    up_by = (lines / 2 - line - 0.5) * pixel
+    return plus(forward, plus(times(across, across_axis), times(up_by, up_axis)))
+
+
+class Lit(NamedTuple):
+    """What one light gives at a point, and how far the point is from where that would jump."""
+
+    intensity: float
+    from_jump: float
+
+
+def light_at(light: Light, point: Vector, normal: Vector, eye: Vector, reflectance: Reflectance) -> Lit:
+    """The light that reaches the eye: the paper's formula with all of its controls.
+
+    `from_jump` is the least of the differences that decide: of cosines, and of coordinates to flaps.
+    """
+    if not light.on:
+        return Lit(0.0, math.inf)
+    jumps = [math.inf]
+    lit = True
+    # Figure 9: the flaps that are on.
+    for coordinate, flap in zip(point, (light.flaps.x, light.flaps.y, light.flaps.z), strict=True):
+        if flap is not None and flap.on:
+            lit = lit and flap.minimum <= coordinate <= flap.maximum
+            jumps += [abs(coordinate - flap.minimum), abs(coordinate - flap.maximum)]
+    # Figure 1: the angle of incidence I.
+    to_light = unit(minus(light.position, point))
+    cos_i = dot(normal, to_light)
+    jumps.append(abs(cos_i))
+    # Figure 3: the angle L between the light's direction and the ray from the light to the point.
+    multiplier = 1.0
+    toward = light.direction
+    if light.aim is not None:
+        toward = tuple(minus(light.aim, light.position))  # type: ignore[assignment]
+    if toward is not None:
+        cos_l = -dot(unit(toward), to_light)
+        if light.concentration > 0:
+            multiplier = max(cos_l, 0.0) ** light.concentration
+            if light.concentration < 1:
+                jumps.append(abs(cos_l))
+        # Figure 10: the cone angle A.
+        if light.cone_angle is not None:
+            lit = lit and cos_l >= math.cos(math.radians(light.cone_angle))
+            if light.cone_angle < 180:
+                jumps.append(abs(cos_l - math.cos(math.radians(light.cone_angle))))
+    if not lit or cos_i <= 0:
+        return Lit(0.0, min(jumps))
+    # Figure 2: the angle E between the reflected ray and the ray to the eye.
+    reflected = minus(times(2 * cos_i, normal), to_light)
+    cos_e = max(dot(reflected, unit(minus(eye, point))), 0.0)
+    both = reflectance.diffuse * cos_i + reflectance.specular * cos_e**reflectance.exponent
+    return Lit(multiplier * light.intensity * both, min(jumps))
+
+
+def level_of(fraction: float, levels: int) -> int:
+    """The level of a fraction of a range, halves up."""
+    return math.floor(fraction * (levels - 1) + 0.5)
+
+
+def entry_of(paint: Paint, levels: int, level: int, floor: float = 0.0) -> tuple[int, ...]:
+    """Figure 12: one entry of a range, its object and light color mixed and then darkened."""
+    begin = math.floor(paint.blend * (levels - 1) + 0.5)
+    shift = 0.0
+    if level > begin:
+        shift = (level - begin) / (levels - 1 - begin) * paint.light_percentage / 100
+    brightness = floor + (1 - floor) * level / (levels - 1)
+    return tuple(
+        math.floor(brightness * ((1 - shift) * surface + shift * light) + 0.5 + 1e-9)
+        for surface, light in zip(paint.object_color, paint.light_color, strict=True)
+    )
+
+
+def divided(levels: Sequence[int | None]) -> list[tuple[int, int]]:
+    """First word and levels of each surface: 1024 less the background and sixteen of the screens."""
+    left = 1024 - 1 - 16 - sum(count for count in levels if count is not None)
+    share = left // max(sum(1 for count in levels if count is None), 1)
+    ranges: list[tuple[int, int]] = []
+    first = 1
+    for count in levels:
+        ranges.append((first, share if count is None else count))
+        first += ranges[-1][1]
+    return ranges
+
+
+class Hit(NamedTuple):
+    """The polygon that a ray meets first, its distance, and how clear that is: 0 is a tie or an edge."""
+
+    polygon: int
+    depth: float
+    clear: float
+
+
+def first_hit(mesh: Mesh, eye: Vector, direction: Vector) -> Hit:
+    """Brute force: the ray against every triangle of the mesh, each quad as two; polygon -1 for none."""
+    best = Hit(-1, math.inf, math.inf)
+    clear = math.inf
+    for number, (a, b, c, d) in enumerate(mesh.node_numbers.tolist()):
+        for triangle in ((a, b, c), (a, c, d)):
+            if len(set(triangle)) < 3:
+                continue
+            depth, inside = _triangle(mesh.coordinates[list(triangle)], np.array(eye), np.array(direction))
+            if math.isnan(depth) or depth <= 0:
+                continue
+            clear = min(clear, abs(inside))
+            if inside < 0:
+                continue
+            clear = min(clear, abs(depth - best.depth) / depth)
+            if depth < best.depth:
+                best = Hit(number, depth, 0.0)
+    return best._replace(clear=clear)
+
+
+def _triangle(
+    corners: npt.NDArray[np.float64], eye: npt.NDArray[np.float64], direction: npt.NDArray[np.float64]
+) -> tuple[float, float]:
+    """How far along the ray the triangle's plane is, and the least barycentric coordinate there."""
+    columns = np.stack([corners[0] - corners[1], corners[0] - corners[2], direction], axis=1)
+    if abs(np.linalg.det(columns)) < 1e-9:
+        return math.nan, -1.0
+    second, third, depth = np.linalg.solve(columns, corners[0] - eye)
+    return float(depth), float(min(second, third, 1 - second - third))

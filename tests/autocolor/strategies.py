@@ -1,0 +1,151 @@
+"""Random meshes, lights, surfaces, views and scenes, small enough for a slow twin.
+
+The coordinates are short binary fractions, so that polygons often meet: in the same place, in the same
+plane, in the eye's plane, at a pixel's center.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from hypothesis import strategies as st
+
+from autocolor import Flap, Flaps, Light, Mesh, Paint, Part, Reflectance, Scene, Surface, View
+
+Vector = tuple[float, float, float]
+
+short = st.integers(-32, 32).map(lambda number: number / 16)
+"""Numbers from -2 to 2 that meet often."""
+
+
+def numbers(least: float, most: float) -> st.SearchStrategy[float]:
+    """Numbers within the bounds, with no tiny ones around 0."""
+    return st.integers(0, 1 << 20).map(lambda step: least + (most - least) * step / (1 << 20))
+
+
+def vectors(component: st.SearchStrategy[float] = short) -> st.SearchStrategy[Vector]:
+    """Points, or directions that may be zero."""
+    return st.tuples(component, component, component)
+
+
+directions = vectors().filter(any)
+colors = st.tuples(*[st.integers(0, 255)] * 3)
+
+
+@st.composite
+def meshes(draw: st.DrawFn, parts: int = 2, least_polygons: int = 1) -> Mesh:
+    """Polygons among a few nodes: warped, crossing themselves and each other, without area, repeated."""
+    coordinates = draw(st.lists(vectors(), min_size=3, max_size=9))
+    node = st.integers(0, len(coordinates) - 1)
+    if draw(st.booleans()):
+        # A mesh of a file that repeats its nodes.
+        coordinates = coordinates + coordinates
+        node = st.integers(0, len(coordinates) - 1)
+    quads = st.tuples(node, node, node, node)
+    triangles = st.tuples(node, node, node).map(lambda three: (*three, three[2]))
+    polygons = draw(st.lists(quads | triangles, min_size=least_polygons, max_size=8))
+    part_numbers = draw(st.lists(st.integers(0, parts - 1), min_size=len(polygons), max_size=len(polygons)))
+    return Mesh(
+        np.array(coordinates),
+        np.array(polygons, np.intp).reshape(-1, 4),
+        np.array(part_numbers, np.intp),
+        tuple(f"part {number}" for number in range(parts)),
+        crease_angle=draw(st.sampled_from([0.0, 40.0, 90.0, 180.0])),
+    )
+
+
+@st.composite
+def soups(draw: st.DrawFn) -> Mesh:
+    """Triangles of nowhere else used nodes, in general position: they pass through each other."""
+    seed = draw(st.integers(0, 1 << 32))
+    count = draw(st.integers(1, 10))
+    coordinates = np.random.default_rng(seed).uniform(-1, 1, (3 * count, 3))
+    return Mesh(coordinates, np.arange(3 * count).reshape(-1, 3), np.zeros(count, np.intp), ("soup",))
+
+
+@st.composite
+def views(draw: st.DrawFn) -> View:
+    """Views from within, before and behind the polygons."""
+    eye = draw(vectors())
+    return View(
+        eye,
+        direction=draw(directions),
+        angle=draw(st.sampled_from([0.0, 30.0, 90.0, -45.0])),
+        field_of_view=draw(st.sampled_from([20.0, 60.0, 120.0])),
+    )
+
+
+@st.composite
+def outside_views(draw: st.DrawFn) -> View:
+    """Views of the whole from around it."""
+    eye = draw(directions)
+    far = 6.0 / float(np.linalg.norm(eye))
+    return View((eye[0] * far, eye[1] * far, eye[2] * far), target=(0.0, 0.0, 0.0), field_of_view=40.0)
+
+
+rasters = st.tuples(st.integers(1, 24), st.integers(1, 24))
+
+
+@st.composite
+def flaps(draw: st.DrawFn) -> Flaps:
+    """Flaps in any of the directions, some of them switched off."""
+
+    def one() -> Flap | None:
+        if draw(st.booleans()):
+            return None
+        ends = sorted((draw(numbers(-1.5, 1.5)), draw(numbers(-1.5, 1.5))))
+        return Flap(ends[0], ends[1], draw(st.booleans()))
+
+    return Flaps(one(), one(), one())
+
+
+@st.composite
+def lights(draw: st.DrawFn, /, name: str = "light", **given: Any) -> Light:
+    """A light with any of the controls."""
+    position = given.pop("position", None) or draw(vectors(numbers(-3, 3)))
+    fields: dict[str, Any] = {"intensity": draw(numbers(0, 3)), "on": draw(st.booleans())}
+    if draw(st.booleans()):
+        fields["direction"] = draw(directions)
+        fields["concentration"] = draw(st.sampled_from([0.0, 1.0, 2.5, 10.0, 40.0]))
+        fields["cone_angle"] = draw(st.none() | numbers(1, 180))
+    if draw(st.booleans()):
+        fields["flaps"] = draw(flaps())
+    return Light(name, position, **{**fields, **given})
+
+
+reflectances = st.builds(
+    Reflectance, numbers(0, 2), numbers(0, 2), st.sampled_from([0.0, 1.0, 5.0, 20.0, 50.0])
+)
+paints = st.builds(
+    Paint, colors, colors, st.sampled_from([0.0, 0.25, 0.6, 1.0]) | numbers(0, 1), numbers(0, 100)
+)
+
+
+def surfaces(name: str) -> st.SearchStrategy[Surface]:
+    """A surface with any reflectance and paint; few ask for a number of levels."""
+    return st.builds(
+        Surface, st.just(name), reflectances, paints, st.booleans(), st.none() | st.integers(2, 300)
+    )
+
+
+MAPPINGS: list[Any] = ["linear", "gamma", "logarithm", "equalize", ((0, 0.1), (0.4, 0.8), (1, 1))]
+
+
+@st.composite
+def scenes(draw: st.DrawFn) -> Scene:
+    """A scene with everything in it."""
+    mesh = draw(meshes())
+    names = ["body", "glass"]
+    return Scene(
+        mesh,
+        tuple(Part(name, draw(st.sampled_from(names))) for name in mesh.part_names),
+        tuple(draw(surfaces(name)) for name in names),
+        tuple(draw(lights(name)) for name in draw(st.sampled_from([(), ("key",), ("key", "fill", "rim")]))),
+        draw(views() | outside_views()),
+        ambient=draw(numbers(0, 1)),
+        scaling=draw(st.sampled_from(["surface", "object"])),
+        mapping=draw(st.sampled_from(MAPPINGS)),
+        contrast=draw(st.sampled_from(["stretch", "floor"])),
+        background=draw(colors),
+    )

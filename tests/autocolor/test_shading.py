@@ -1,0 +1,304 @@
+"""One light on a wall and on a sphere, by the closed form of the paper."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from autocolor import Flap, Flaps, Light, Mesh, Reflectance, Scene, View, render
+from autocolor.shading import light_planes
+from autocolor.visible_surfaces import visible_surfaces
+from tests.autocolor.meshes import sphere, wall, wall_scene
+from tests.autocolor.reference import Lit, light_at, minus, plus, ray, times, unit
+from tests.autocolor.strategies import flaps, lights, numbers, reflectances
+
+LINES, ELEMENTS = 12, 16
+WALLS = [wall(), wall(7, 5)]
+
+
+def expected_on_wall(scene: Scene, lines: int, elements: int) -> dict[tuple[int, int], Lit]:
+    """The sum of all lights at each pixel that is on the wall y = 0, from -1 to 1, by the paper's formula."""
+    expected = {}
+    eye = scene.view.eye
+    surface = scene.surfaces[0]
+    for line in range(lines):
+        for element in range(elements):
+            direction = ray(scene.view, lines, elements, line, element)
+            if direction[1] == 0 or eye[1] / -direction[1] <= 0:
+                continue
+            point = plus(eye, times(eye[1] / -direction[1], direction))
+            if max(abs(point[0]), abs(point[2])) > 1 - 1e-6:
+                continue
+            point[1] = 0.0
+            facing = 1.0 if surface.two_sided and eye[1] > 0 else -1.0
+            each = [
+                light_at(light, point, (0.0, facing, 0.0), eye, surface.reflectance) for light in scene.lights
+            ]
+            expected[line, element] = Lit(
+                scene.ambient + math.fsum(lit.intensity for lit in each),
+                min((lit.from_jump for lit in each), default=math.inf),
+            )
+    return expected
+
+
+def assert_as_the_paper(scene: Scene, tolerance: float = 1e-4) -> None:
+    picture = render(scene, LINES, ELEMENTS)
+    expected = expected_on_wall(scene, LINES, ELEMENTS)
+    largest = max((lit.intensity for lit in expected.values()), default=0.0)
+    for (line, element), lit in expected.items():
+        assert picture.surface_number[line, element] == 1
+        if lit.from_jump > 1e-4:
+            error = abs(float(picture.intensity[line, element]) - lit.intensity)
+            assert error <= tolerance * largest, f"{lit} at line {line}, element {element}"
+    assert np.count_nonzero(picture.surface_number) >= len(expected)
+
+
+@st.composite
+def wall_views(draw: st.DrawFn) -> View:
+    """An eye before or behind the wall."""
+    side = draw(st.sampled_from([-1, 1]))
+    eye = (draw(numbers(-2, 2)), side * draw(numbers(2, 4)), draw(numbers(-2, 2)))
+    return View(eye, target=(0.1, 0.0, -0.1), field_of_view=40.0, angle=draw(numbers(-90, 90)))
+
+
+@st.composite
+def places(draw: st.DrawFn) -> tuple[float, float, float]:
+    """A place before or behind the wall, from near to far."""
+    far = draw(st.sampled_from([0.06, 0.3, 1.0, 4.0, 50.0, 1e4])) * draw(st.sampled_from([-1, 1]))
+    wide = max(abs(far), 1.0)
+    return (draw(numbers(-1, 1)) * wide, far, draw(numbers(-1, 1)) * wide)
+
+
+def aimed(position: tuple[float, float, float], aim: list[float]) -> tuple[float, float, float]:
+    toward = minus(aim, position)
+    return (toward[0], toward[1], toward[2])
+
+
+@pytest.mark.parametrize("mesh", WALLS, ids=["of one polygon", "of 35 polygons"])
+@given(view=wall_views(), place=places(), reflectance=reflectances, two_sided=st.booleans())
+def test_a_point_source_on_a_wall_is_as_the_paper_says(
+    mesh: Mesh, view: View, place: tuple[float, float, float], reflectance: Reflectance, two_sided: bool
+) -> None:
+    light = Light("light", place, 1.5)
+    assert_as_the_paper(wall_scene(mesh, reflectance, view, two_sided, lights=[light]))
+
+
+@given(
+    view=wall_views(),
+    place=places(),
+    at=st.tuples(numbers(-1.5, 1.5), numbers(-1.5, 1.5)),
+    concentration=st.sampled_from([0.0, 0.5, 1.0, 2.0, 10.0, 40.0]),
+    cone_angle=st.none() | numbers(2, 180),
+)
+def test_a_directed_light_with_a_cone_on_a_wall_is_as_the_paper_says(
+    view: View,
+    place: tuple[float, float, float],
+    at: tuple[float, float],
+    concentration: float,
+    cone_angle: float | None,
+) -> None:
+    light = Light(
+        "light",
+        place,
+        direction=aimed(place, [at[0], 0.0, at[1]]),
+        concentration=concentration,
+        cone_angle=cone_angle,
+    )
+    assert_as_the_paper(wall_scene(WALLS[1], view=view, lights=[light]))
+
+
+@given(view=wall_views(), place=places(), limits=flaps())
+def test_flaps_on_a_wall_are_as_the_paper_says(
+    view: View, place: tuple[float, float, float], limits: Flaps
+) -> None:
+    assert_as_the_paper(wall_scene(view=view, lights=[Light("light", place, flaps=limits)]))
+
+
+@pytest.mark.parametrize("mesh", WALLS, ids=["of one polygon", "of 35 polygons"])
+@given(data=st.data())
+def test_all_controls_of_several_lights_on_a_wall_are_as_the_paper_says(
+    mesh: Mesh, data: st.DataObject
+) -> None:
+    scene = wall_scene(
+        mesh,
+        data.draw(reflectances),
+        data.draw(wall_views()),
+        data.draw(st.booleans()),
+        lights=[data.draw(lights(name, position=data.draw(places()))) for name in ("key", "fill", "rim")],
+        ambient=data.draw(numbers(0, 1)),
+    )
+    assert_as_the_paper(scene)
+
+
+@given(place=st.tuples(numbers(-0.9, 0.9), numbers(-2e-3, -2e-4), numbers(-0.9, 0.9)))
+def test_a_light_that_almost_touches_the_wall_is_still_right_beside_the_spot(
+    place: tuple[float, float, float],
+) -> None:
+    assert_as_the_paper(wall_scene(lights=[Light("light", place)]), tolerance=0.02)
+
+
+def test_a_light_within_the_wall_gives_finite_light() -> None:
+    scene = wall_scene(
+        lights=[
+            Light("point", (0.0, 0.0, 0.0)),
+            Light("spot", (0.2, 0.0, 0.1), direction=(0, 1, 0), concentration=3, cone_angle=20),
+        ]
+    )
+    picture = render(scene, LINES + 1, ELEMENTS + 1)
+    assert np.isfinite(picture.intensity).all()
+    assert picture.ranges.whole.maximum < 2.5
+
+
+@pytest.mark.parametrize("exponent", [1e4, 1e7, 1e30])
+def test_no_exponent_makes_a_highlight_brighter_than_its_light(exponent: float) -> None:
+    picture = render(
+        wall_scene(
+            reflectance=Reflectance(0.0, 1.0, exponent),
+            view=View((0.3, -4.0, 0.2), target=(0.3, 0.0, 0.2), field_of_view=25.0),
+            lights=[Light("light", (0.3, -4.0, 0.2))],
+        ),
+        301,
+        301,
+    )
+    assert picture.ranges.whole.maximum <= 1.000001
+
+
+@pytest.mark.parametrize("concentration", [1e4, 1e7, 1e30])
+def test_no_concentration_makes_a_light_brighter(concentration: float) -> None:
+    light = Light("light", (0.3, -4.0, 0.2), direction=(0, 1, 0), concentration=concentration)
+    picture = render(wall_scene(reflectance=Reflectance(1, 0, 1), lights=[light]), 101, 101)
+    assert picture.ranges.whole.maximum <= 1.000001
+
+
+@pytest.mark.parametrize(("concentration", "half"), [(1, 60.0), (10, 21.1), (40, 10.6)])
+def test_half_of_a_directed_light_is_left_at_the_angle_of_its_concentration(
+    concentration: float, half: float
+) -> None:
+    light = Light("light", (0.0, -0.5, 0.0), direction=(0.0, 1.0, 0.0))
+    seen = visible_surfaces(wall(), View((0, -4, 0), target=(0, 0, 0), field_of_view=25), (1,), 401, 401)
+    whole = light_planes(light, seen, {1: 20.0})[0]
+    directed = light_planes(light.replace(concentration=concentration), seen, {1: 20.0})[0]
+    angles = np.degrees(np.arctan2(np.hypot(seen.points[:, 0], seen.points[:, 2]), 0.5))
+    order = np.argsort(angles)
+    falling = (directed / whole)[order]
+    assert np.interp(-0.5, -falling, angles[order]) == pytest.approx(half, abs=0.1)
+
+
+def test_a_cone_of_more_than_90_degrees_lights_behind_a_light_without_concentration() -> None:
+    # The light shines away from the wall; the wall is at 180 degrees and less from its direction.
+    away = Light("light", (0.0, -1.0, 0.0), direction=(0.0, -1.0, 0.0), cone_angle=170.0)
+    picture = render(wall_scene(lights=[away]), 51, 51)
+    assert picture.intensity[25, 25] == 0
+    assert picture.intensity[25, 50] > 0
+    concentrated = render(wall_scene(lights=[away.replace(concentration=0.01)]), 51, 51)
+    assert concentrated.ranges.whole.maximum == 0
+    narrow = render(wall_scene(lights=[away.replace(cone_angle=90.0)]), 51, 51)
+    assert narrow.ranges.whole.maximum == 0
+
+
+def test_a_light_without_concentration_and_cone_is_a_point_source_in_every_direction() -> None:
+    point = render(wall_scene(lights=[Light("light", (0.2, -1.0, 0.1))]), 20, 20)
+    for direction in ((0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (1.0, 0.2, 0.3)):
+        directed = render(wall_scene(lights=[Light("light", (0.2, -1.0, 0.1), direction=direction)]), 20, 20)
+        assert directed.intensity.tobytes() == point.intensity.tobytes()
+
+
+def test_an_aim_is_the_direction_from_the_light_to_it() -> None:
+    place, aim = (1.0, -2.0, 0.5), (0.25, 0.0, -0.25)
+    by_aim = Light("light", place, aim=aim, concentration=10, cone_angle=30)
+    by_direction = Light("light", place, direction=aimed(place, list(aim)), concentration=10, cone_angle=30)
+    pictures = [render(wall_scene(lights=[light]), 20, 20).intensity for light in (by_aim, by_direction)]
+    assert pictures[0] == pytest.approx(pictures[1], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("limits", "lit_side"),
+    [(Flaps(x=Flap(minimum=0.0)), 1), (Flaps(x=Flap(maximum=0.0)), -1), (Flaps(z=Flap(0.0, 9.0)), 1)],
+)
+def test_a_flap_along_the_middle_of_the_wall_lights_exactly_its_side(limits: Flaps, lit_side: int) -> None:
+    light = Light("light", (0.0, -2.0, 0.0), flaps=limits)
+    picture = render(wall_scene(lights=[light]), 40, 40)
+    on_wall = picture.surface_number == 1
+    line, element = np.indices((40, 40))
+    side = np.where(element < 20, -1, 1) if limits.z is None else np.where(line < 20, 1, -1)
+    assert (picture.intensity[on_wall & (side == lit_side)] > 0).all()
+    assert (picture.intensity[side != lit_side] == 0).all()
+
+
+@pytest.mark.parametrize("limit", [Flap(0.0, 0.0), Flap(minimum=0.0), Flap(maximum=0.0)])
+def test_a_wall_that_lies_on_a_flap_is_lit(limit: Flap) -> None:
+    view = View((1.0, -7.0, 2.0), target=(0.0, 0.0, 0.0))
+    lit = render(
+        wall_scene(view=view, lights=[Light("light", (0.3, -2.0, 0.1), flaps=Flaps(y=limit))]), 30, 40
+    )
+    whole = render(wall_scene(view=view, lights=[Light("light", (0.3, -2.0, 0.1))]), 30, 40)
+    assert lit.intensity.tobytes() == whole.intensity.tobytes()
+
+
+def test_flaps_that_are_off_change_nothing() -> None:
+    off = Flaps(*[Flap(0.2, 0.3, on=False)] * 3)
+    scenes = [wall_scene(lights=[Light("light", (0.3, -2.0, 0.1), flaps=each)]) for each in (off, Flaps())]
+    one, other = (render(scene, 20, 20).intensity.tobytes() for scene in scenes)
+    assert one == other
+
+
+@given(light=lights(on=True, intensity=1.0), power=st.integers(-95, 95))
+def test_the_size_of_the_world_does_not_change_the_picture(light: Light, power: int) -> None:
+    def scaled(size: float) -> Scene:
+        def one(flap: Flap | None) -> Flap | None:
+            return None if flap is None else Flap(flap.minimum * size, flap.maximum * size, flap.on)
+
+        px, py, pz = light.position
+        x, y, z = light.flaps.x, light.flaps.y, light.flaps.z
+        moved = light.replace(position=(px * size, py * size, pz * size), flaps=Flaps(one(x), one(y), one(z)))
+        view = View((0.5 * size, -4.0 * size, 1.0 * size), target=(0.0, 0.0, 0.0))
+        return wall_scene(wall(2, 2, half=size), view=view, lights=[moved])
+
+    assume(min(abs(coordinate) for coordinate in light.position) > 1e-3)
+    one, other = render(scaled(1.0), 12, 16), render(scaled(2.0**power), 12, 16)
+    assert one.intensity.tobytes() == other.intensity.tobytes()
+
+
+@pytest.mark.parametrize("two_sided", [True, False])
+def test_a_sphere_is_lit_as_the_paper_says(two_sided: bool) -> None:
+    view = View((3.0, -4.0, 2.0), target=(0.0, 0.0, 0.0), field_of_view=25.0)
+    reflectance = Reflectance(0.8, 0.6, 12.0)
+    some = [
+        Light("key", (2.0, -3.0, 3.0)),
+        Light("spot", (-3.0, -3.0, 1.0), 0.7, aim=(0, 0, 0), concentration=10),
+    ]
+    scene = wall_scene(sphere(128, 64), lights=some, view=view, two_sided=two_sided)
+    scene = scene.with_surface("sphere", reflectance=reflectance, two_sided=two_sided)
+    picture = render(scene, 40, 40)
+    for line, element in np.argwhere(picture.surface_number).tolist():
+        direction = np.array(ray(view, 40, 40, line, element))
+        eye = np.array(view.eye)
+        half, square = direction @ eye, direction @ direction
+        under = half * half - square * (eye @ eye - 1)
+        if under < 0.02:
+            continue
+        point = (eye + (-half - math.sqrt(under)) / square * direction).tolist()
+        each = [light_at(light, point, unit(point), view.eye, reflectance) for light in some]
+        expected = sum(lit.intensity for lit in each)
+        if min(lit.from_jump for lit in each) > 0.02:
+            assert float(picture.intensity[line, element]) == pytest.approx(expected, abs=0.01)
+
+
+def kept_planes_arguments() -> tuple[Light, Any]:
+    light = Light("light", (0.5, -2.0, 0.5))
+    return light, visible_surfaces(sphere(), View((0, -4, 1), target=(0, 0, 0)), (1,), 24, 24)
+
+
+def test_planes_that_are_kept_change_only_on_the_surfaces_that_changed() -> None:
+    light, seen = kept_planes_arguments()
+    old = light_planes(light, seen, {1: 20.0})
+    same = light_planes(light, seen, {1: 5.0}, kept=old)
+    renewed = light_planes(light, seen, {1: 5.0}, kept=old, changed=frozenset({1}))
+    assert same.tobytes() == old.tobytes()
+    assert renewed.tobytes() == light_planes(light, seen, {1: 5.0}).tobytes()
+    assert not renewed.flags.writeable

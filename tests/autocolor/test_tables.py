@@ -1,0 +1,159 @@
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from autocolor import InputError, Mesh, Paint, Part, Reflectance, Surface
+from tests.autocolor.meshes import cube, grid, sphere
+from tests.autocolor.strategies import meshes
+
+
+def mesh_of(**fields: Any) -> Mesh:
+    given_fields = {
+        "coordinates": np.eye(3),
+        "node_numbers": np.array([[0, 1, 2]]),
+        "part_numbers": np.array([0]),
+        "part_names": ("door",),
+    }
+    return Mesh(**{**given_fields, **fields})
+
+
+def test_a_triangle_repeats_its_last_node() -> None:
+    mesh = mesh_of()
+    assert mesh.node_numbers.tolist() == [[0, 1, 2, 2]]
+    assert mesh.triangle_count == 1
+
+
+def test_a_mesh_is_a_copy_that_never_changes() -> None:
+    coordinates = np.eye(3)
+    mesh = mesh_of(coordinates=coordinates)
+    coordinates[:] = 7
+    assert mesh.coordinates.tolist() == np.eye(3).tolist()
+    for table in (mesh.coordinates, mesh.node_numbers, mesh.part_numbers):
+        assert not table.flags.writeable
+
+
+@pytest.mark.parametrize(
+    ("mesh", "counts"), [(cube(), (8, 6, 12)), (grid(3, 2, (0, 0, 0), (1, 0, 0), (0, 1, 0)), (12, 6, 17))]
+)
+def test_nodes_polygons_and_distinct_edges_are_counted(mesh: Mesh, counts: tuple[int, int, int]) -> None:
+    assert (len(mesh.coordinates), len(mesh.node_numbers), mesh.edge_count) == counts
+
+
+def test_a_closed_mesh_obeys_eulers_formula() -> None:
+    mesh = sphere(12, 7)
+    assert len(mesh.coordinates) - mesh.edge_count + len(mesh.node_numbers) == 2
+    assert mesh.triangle_count == 24
+
+
+@given(meshes())
+def test_the_bounds_hold_the_nodes_that_polygons_use_and_no_other(mesh: Mesh) -> None:
+    low, high = mesh.bounds
+    used = mesh.coordinates[sorted(set(mesh.node_numbers.ravel().tolist()))]
+    assert low.tolist() == used.min(axis=0).tolist()
+    assert high.tolist() == used.max(axis=0).tolist()
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        (
+            {"coordinates": np.array([[0, 0, 0], [0, math.nan, 0], [0, 0, 1]])},
+            "node table: coordinates must be finite and at most 1e30 in size, not [0.0, nan, 0.0] (row 1)",
+        ),
+        ({"coordinates": np.eye(3)[:, :2]}, "node table: its shape must be (rows, 3), not (3, 2)"),
+        ({"coordinates": [[1, 2], [3]]}, "node table: it must be an array of numbers, not list"),
+        ({"coordinates": [["1", "2", "3"]] * 3}, "node table: it must be an array of numbers, not list"),
+        ({"node_numbers": [[0, 1, 2.5]]}, "polygon table: it must be an array of whole numbers, not list"),
+        ({"node_numbers": [[0, 1]]}, "polygon table: its shape must be (rows, 3) or (rows, 4), not (1, 2)"),
+        (
+            {"node_numbers": [[0, 1, 3]]},
+            "polygon table: a node number must be a row of the node table (0 to 2), not [0, 1, 3, 3] (row 0)",
+        ),
+        (
+            {"node_numbers": [[0, 1, -1]]},
+            "polygon table: a node number must be a row of the node table (0 to 2), not [0, 1, -1, -1] (row 0)",
+        ),
+        (
+            {"part_numbers": [1]},
+            "polygon table: a part number must be a row of the part table (0 to 0), not 1 (row 0)",
+        ),
+        (
+            {"part_numbers": [0, 0]},
+            "polygon table: there must be one part number a polygon (1), not an array of shape (2,)",
+        ),
+        ({"part_numbers": [0.5]}, "part numbers: it must be an array of whole numbers, not list"),
+        ({"part_numbers": "x"}, "part numbers: it must be an array of whole numbers, not str"),
+        ({"part_names": ("door", "door")}, "part table: part names must differ, not repeat"),
+        ({"crease_angle": 181}, "mesh: crease_angle must be a number from 0 to 180, not 181"),
+    ],
+)
+def test_a_mesh_that_breaks_a_rule_is_refused(fields: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        mesh_of(**fields)
+    assert sentence in refusal.value.problems
+
+
+def test_an_empty_mesh_is_a_mesh() -> None:
+    empty = Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ())
+    assert (empty.edge_count, empty.triangle_count, empty.parts_in_use) == (0, 0, ())
+    assert [bound.tolist() for bound in empty.bounds] == [[0, 0, 0], [0, 0, 0]]
+    assert len(empty.normals.vectors) == 0
+
+
+@given(meshes(), meshes())
+def test_joined_meshes_keep_their_polygons_and_share_parts_of_the_same_name(one: Mesh, other: Mesh) -> None:
+    joined = Mesh.joined([one, other])
+    assert joined.part_names == one.part_names
+    assert joined.part_numbers.tolist() == [*one.part_numbers, *other.part_numbers]
+    corners = joined.coordinates[joined.node_numbers]
+    both = [*one.coordinates[one.node_numbers], *other.coordinates[other.node_numbers]]
+    assert corners.tolist() == [each.tolist() for each in both]
+
+
+def test_the_parts_in_use_have_a_polygon() -> None:
+    mesh = mesh_of(part_names=("hood", "door", "roof"), part_numbers=[1])
+    assert mesh.parts_in_use == (1,)
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (lambda: Reflectance(diffuse=-1), "diffuse must be a finite number of at least 0, not -1"),
+        (lambda: Reflectance(exponent=math.inf), "exponent must be a finite number of at least 0, not inf"),
+        (lambda: Paint(blend=1.5), "blend must be a number from 0 to 1, not 1.5"),
+        (lambda: Paint(light_percentage=101), "light_percentage must be a number from 0 to 100, not 101"),
+        (lambda: Surface(""), "a surface's name must be a text of at least one letter, not ''"),
+        (
+            lambda: Surface("body", levels=1),
+            "surface 'body': levels must be a whole number of at least 2, not 1",
+        ),
+        (lambda: Surface("body", two_sided=1), "surface 'body': two_sided must be true or false, not 1"),  # type: ignore[arg-type]
+    ],
+)
+def test_a_row_that_breaks_a_rule_is_refused(make: Any, sentence: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        make()
+    assert str(refusal.value) == sentence
+
+
+def test_a_surface_changes_its_own_fields_and_those_of_reflectance_and_paint() -> None:
+    surface = Surface("body").replace(diffuse=0.2, blend=0.3, two_sided=False, object_color="#102030")
+    assert surface.reflectance == Reflectance(diffuse=0.2)
+    assert surface.paint == Paint(object_color=(16, 32, 48), blend=0.3)
+    assert not surface.two_sided
+    assert surface.replace(paint=Paint(), blend=0.1).paint == Paint(blend=0.1)
+
+
+def test_a_refused_field_is_told_with_the_surface() -> None:
+    with pytest.raises(InputError) as refusal:
+        Surface("body").replace(blend=2)
+    assert str(refusal.value) == "surface 'body': blend must be a number from 0 to 1, not 2"
+    with pytest.raises(InputError, match=r"surface 'body': there is no 'difuse'; did you mean 'diffuse'\?"):
+        Surface("body").replace(difuse=2)
+    with pytest.raises(InputError, match=r"part 'door': there is no 'surfaces'; did you mean 'surface'\?"):
+        Part("door", "body").replace(surfaces="glass")

@@ -1,0 +1,103 @@
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from autocolor import InputError, View
+from tests.autocolor.reference import ray
+from tests.autocolor.strategies import Vector, directions, numbers, vectors
+
+
+@given(vectors(), directions, numbers(-720, 720))
+def test_the_axes_are_a_rotation_with_the_view_direction_last(
+    eye: Vector, direction: Vector, angle: float
+) -> None:
+    axes = View(eye, direction=direction, angle=angle).axes
+    assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-12)
+    # Right, down and forward, in this order, are right-handed.
+    assert np.linalg.det(axes) == pytest.approx(1)
+    assert np.cross(axes[2], direction) == pytest.approx(np.zeros(3), abs=1e-12)
+    assert axes[2] @ np.array(direction) > 0
+
+
+@given(vectors(), directions)
+def test_without_an_angle_the_horizon_is_level_and_up_is_up(eye: Vector, direction: Vector) -> None:
+    right, down, _ = View(eye, direction=direction).axes
+    if direction[0] or direction[1]:
+        assert right[2] == pytest.approx(0, abs=1e-12)
+        assert down[2] < 0
+    else:
+        assert down == pytest.approx((0, -1, 0))
+
+
+def test_looking_along_y_right_is_x_and_down_is_minus_z() -> None:
+    assert View((0, 0, 0), direction=(0, 2, 0)).axes == pytest.approx(
+        np.array([(1, 0, 0), (0, 0, -1), (0, 1, 0)])
+    )
+
+
+def test_looking_down_the_top_of_the_picture_is_y() -> None:
+    for direction in ((0, 0, -1), (1e-12, -1e-12, -1)):
+        right, down, _ = View((0, 0, 5), direction=direction).axes
+        assert right == pytest.approx((1, 0, 0), abs=1e-9)
+        assert down == pytest.approx((0, -1, 0), abs=1e-9)
+
+
+def test_the_angle_turns_the_horizontal_axis_toward_the_top() -> None:
+    right, _, _ = View((0, 0, 0), direction=(0, 1, 0), angle=30).axes
+    assert right == pytest.approx((math.cos(math.radians(30)), 0, math.sin(math.radians(30))))
+
+
+@given(vectors(), directions, numbers(-180, 180))
+def test_the_reference_ray_agrees_with_the_axes(eye: Vector, direction: Vector, angle: float) -> None:
+    view = View(eye, direction=direction, angle=angle, field_of_view=60)
+    focal = 6 / 2 / math.tan(math.radians(30))
+    expected = np.array([(7 + 0.5 - 4) / focal, (1 + 0.5 - 3) / focal, 1]) @ view.axes
+    assert ray(view, 6, 8, 1, 7) == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_target_is_the_direction_to_it() -> None:
+    assert View((1, 2, 3), target=(4, 6, 3)).axes == pytest.approx(View((1, 2, 3), direction=(3, 4, 0)).axes)
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-20, 1e20, 1e30])
+def test_a_direction_of_any_length_will_do(size: float) -> None:
+    axes = View((0, 0, 0), direction=(size, size, 0)).axes
+    assert axes == pytest.approx(View((0, 0, 0), direction=(1, 1, 0)).axes)
+
+
+def test_giving_a_direction_drops_the_target_and_the_other_way_round() -> None:
+    view = View((0, 0, 0), target=(1, 0, 0))
+    directed = view.replace(direction=(0, 1, 0))
+    assert (directed.direction, directed.target) == ((0, 1, 0), None)
+    assert directed.replace(target=(1, 0, 0)) == view
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        ({}, "view: it must have a direction or a target, and not both; leave one out"),
+        (
+            {"direction": (1, 0, 0), "target": (1, 1, 1)},
+            "view: it must have a direction or a target, and not both; leave one out",
+        ),
+        (
+            {"target": (0, 0, 0)},
+            "view: the target must not be the eye, not both (0.0, 0.0, 0.0); move one of them",
+        ),
+        ({"direction": (0, 0, 0)}, "view: direction must not be zero, not (0, 0, 0); give it a length"),
+        ({"target": (1, 0, 0), "angle": math.inf}, "view: angle must be a finite number, not inf"),
+        (
+            {"target": (1, 0, 0), "field_of_view": 180},
+            "view: field_of_view must be a number from 0.01 to 179, not 180",
+        ),
+    ],
+)
+def test_a_view_that_breaks_a_rule_is_refused(fields: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        View((0, 0, 0), **fields)
+    assert str(refusal.value) == sentence

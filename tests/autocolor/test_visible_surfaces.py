@@ -1,0 +1,103 @@
+"""What is seen is what a ray meets first."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Mesh, View
+from autocolor.visible_surfaces import visible_surfaces
+from tests.autocolor.meshes import cube, grid, sphere
+from tests.autocolor.reference import first_hit, ray
+from tests.autocolor.strategies import outside_views, rasters, soups, views
+
+
+def assert_as_rays_see(mesh: Mesh, view: View, lines: int, elements: int) -> None:
+    seen = visible_surfaces(mesh, view, (1,), lines, elements)
+    polygon = np.full(lines * elements, -1)
+    polygon[seen.pixels] = seen.polygon_numbers
+    depth = np.full(lines * elements, np.inf)
+    depth[seen.pixels] = seen.unit / seen.inverse_depth.astype(np.float64)
+    for pixel in range(lines * elements):
+        hit = first_hit(mesh, view.eye, ray(view, lines, elements, *divmod(pixel, elements)))
+        if hit.clear > 1e-3 and hit.depth > 1e-3:
+            assert polygon[pixel] == hit.polygon, f"pixel {divmod(pixel, elements)}"
+            assert depth[pixel] == pytest.approx(hit.depth, rel=1e-4)
+
+
+@given(soups(), outside_views() | views(), rasters)
+def test_the_polygon_at_a_pixel_is_the_one_that_a_ray_meets_first(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    assert_as_rays_see(mesh, view, *raster)
+
+
+@pytest.mark.parametrize("mesh", [cube(), sphere(8, 6)], ids=repr)
+@given(view=outside_views())
+def test_a_solid_is_seen_as_rays_see_it(mesh: Mesh, view: View) -> None:
+    assert_as_rays_see(mesh, view, 9, 12)
+
+
+@given(st.integers(0, 1 << 32))
+def test_polygons_that_pass_through_each_other_cross_where_they_should(seed: int) -> None:
+    # Two planes x = slope * y through the eye's axis: to the left of the crossing one is nearer.
+    slopes = np.random.default_rng(seed).uniform(0.2, 0.9, 2)
+    crossed = Mesh.joined(
+        [
+            grid(1, 1, (-1, -slope * sign, -1), (2, 2 * slope * sign, 0), (0, 0, 2), f"plane {sign}")
+            for slope, sign in zip(slopes, (1, -1), strict=True)
+        ]
+    )
+    view = View((0.0, -5.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=20.0)
+    seen = visible_surfaces(crossed, view, (1, 2), 16, 16)
+    number = np.zeros(256, int)
+    number[seen.pixels] = crossed.part_numbers[seen.polygon_numbers] + 1
+    left, right = np.hsplit(number.reshape(16, 16), 2)
+    assert set(left.ravel().tolist()) <= {0, 1}
+    assert set(right.ravel().tolist()) <= {0, 2}
+    assert {1, 2} <= set(number.tolist())
+
+
+def test_of_two_polygons_in_the_same_place_the_later_one_is_seen() -> None:
+    twice = Mesh.joined([grid(1, 1, (-1, 0, -1), (2, 0, 0), (0, 0, 2), name) for name in ("a", "b")])
+    view = View((0.3, -3.0, 0.2), target=(0.0, 0.0, 0.0))
+    seen = visible_surfaces(twice, view, (1, 2), 12, 12)
+    assert set(seen.polygon_numbers.tolist()) == {1}
+
+
+def test_what_is_behind_the_eye_is_not_seen() -> None:
+    behind = grid(3, 3, (-1, -9, -1), (2, 0, 0), (0, 0, 2))
+    view = View((0.0, -5.0, 0.0), target=(0.0, 0.0, 0.0))
+    assert len(visible_surfaces(behind, view, (1,), 12, 12).pixels) == 0
+
+
+def test_a_floor_that_runs_from_behind_the_eye_fills_the_picture_up_to_the_horizon() -> None:
+    floor = grid(1, 1, (-1000, -1000, 0), (2000, 0, 0), (0, 2000, 0))
+    view = View((0.0, 0.0, 1.0), direction=(0.0, 1.0, 0.0), field_of_view=60.0)
+    seen = visible_surfaces(floor, view, (1,), 20, 30)
+    assert seen.pixels.tolist() == list(range(10 * 30, 20 * 30))
+
+
+@given(st.integers(1, 7), st.integers(1, 7), rasters)
+def test_polygons_over_the_edge_of_the_picture_fill_it(
+    columns: int, rows: int, raster: tuple[int, int]
+) -> None:
+    wide = grid(columns, rows, (-100, 0, -100), (200, 0, 0), (0, 0, 200))
+    view = View((0.3, -4.0, -0.2), direction=(0.0, 1.0, 0.1), field_of_view=50.0)
+    seen = visible_surfaces(wide, view, (1,), *raster)
+    assert seen.pixels.tolist() == list(range(raster[0] * raster[1]))
+
+
+def test_more_polygons_than_are_taken_at_once_are_seen_as_rays_see_them() -> None:
+    fine = grid(90, 70, (-1, 0, -1), (2, 0, 0), (0, 0, 2))
+    view = View((0.0, -4.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=25.0)
+    lines, elements = 40, 40
+    seen = visible_surfaces(fine, view, (1,), lines, elements)
+    for pixel, polygon in zip(seen.pixels.tolist(), seen.polygon_numbers.tolist(), strict=True):
+        line, element = divmod(pixel, elements)
+        across, _, up = (4 * way for way in ray(view, lines, elements, line, element))
+        column, row = (across + 1) / 2 * 90, (up + 1) / 2 * 70
+        if 1e-6 < column % 1 < 1 - 1e-6 and 1e-6 < row % 1 < 1 - 1e-6:
+            assert polygon == int(row) * 90 + int(column)

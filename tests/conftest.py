@@ -1,0 +1,21 @@
+"""How much hypothesis tries: a little at a desk, the same every time in CI, much on request.
+
+`HYPOTHESIS_PROFILE=thorough python -m pytest` takes minutes.
+"""
+
+from __future__ import annotations
+
+import os
+
+from hypothesis import HealthCheck, settings
+
+UNHURRIED = (HealthCheck.too_slow, HealthCheck.data_too_large)
+
+settings.register_profile("desk", deadline=None, max_examples=25, suppress_health_check=UNHURRIED)
+settings.register_profile(
+    "ci", deadline=None, max_examples=25, derandomize=True, suppress_health_check=UNHURRIED
+)
+settings.register_profile("thorough", deadline=None, max_examples=1000, suppress_health_check=UNHURRIED)
+settings.load_profile(
+    os.environ.get("HYPOTHESIS_PROFILE", "ci" if os.environ.get("CI") == "true" else "desk")
+)
