@@ -17,9 +17,9 @@ from scenes.coupe.parts import Parts
 
 # Side views (x, z) of the center line and of the rail; the same count of control points.
 CENTER = np.array([(-0.68, 0.940), (-0.48, 1.048), (-0.26, 1.168), (-0.07, 1.262), (0.05, 1.274), (0.28, 1.278),
-                   (0.50, 1.270), (0.72, 1.243), (1.08, 1.172), (1.42, 1.092), (1.74, 1.008), (1.98, 0.940)])  # fmt: skip
+                   (0.50, 1.270), (0.72, 1.243), (1.08, 1.172), (1.42, 1.092), (1.74, 1.012), (1.98, 0.950)])  # fmt: skip
 RAIL = np.array([(-0.50, 0.885), (-0.33, 0.980), (-0.13, 1.094), (0.06, 1.200), (0.15, 1.213), (0.36, 1.217),
-                 (0.55, 1.206), (0.76, 1.170), (1.10, 1.098), (1.43, 1.020), (1.72, 0.955), (1.92, 0.914)])  # fmt: skip
+                 (0.55, 1.206), (0.76, 1.170), (1.10, 1.098), (1.43, 1.020), (1.72, 0.963), (1.92, 0.929)])  # fmt: skip
 T_END = float(len(CENTER) - 3)
 HEADER, REAR_HEADER, PILLAR_END = 2.25, 5.45, 6.35
 RIM, DROP, GLASS_FOOT = 0.935, 0.036, 0.016
@@ -79,7 +79,7 @@ def fillet(x: Array, steps: int) -> Array:
 
 def fillet_rise(x: Array) -> Array:
     """Return how far the hollow strip climbs the flank; it runs out with the hatch."""
-    return GLASS_FOOT + 0.016 * ease(x, DOOR_REAR, 0.88) * np.clip((2.03 - x) / 0.5, 0.0, 1)
+    return (GLASS_FOOT + 0.016 * ease(x, DOOR_REAR, 0.88)) * np.clip((2.03 - x) / 0.5, 0.0, 1.0)
 
 
 def t_of_lower_edge(x: float) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 
 from scenes.coupe.body import S_END, s_at, wall
 from scenes.coupe.canopy import crown, flank
-from scenes.coupe.curves import Array, ease, segment
+from scenes.coupe.curves import Array, ease
 from scenes.coupe.panels import skin
 from scenes.coupe.parts import Parts
 
@@ -48,15 +48,14 @@ def spoiler(parts: Parts) -> None:
     inward = np.stack([along[:, 1], -along[:, 0], 0 * s], axis=1)
     inward /= np.linalg.norm(inward, axis=1)[:, None]
     run_out = 1 - ease(-s, -15.6, -14.3)
-    high, deep = 0.006 + 0.048 * run_out, 0.03 + 0.15 * run_out
+    high = -0.004 + 0.058 * run_out
+    deep = 0.03 + 0.15 * run_out * (1 - 0.5 * np.exp(-(((s - 15.7) / 0.7) ** 2)))
     up = np.array([0.0, 0.0, 1.0])
     rows = [edge - inward * 0.002 - up * 0.012]
     for reach, lift in ((0.03, 0.98), (0.12, 1.0), (0.28, 0.76), (0.52, 0.40), (0.78, 0.14), (1.0, -0.10)):
         rows.append(edge + inward * (deep * reach)[:, None] + up * (high * lift + 0.010 * reach)[:, None])
     points = np.stack(rows, axis=1)
     parts.grid("spoiler", points, outward=(0.0, 0.0, 1.0))
-    end = points[-1]
-    parts.grid("spoiler", np.stack([end, segment(end[0], end[-1], 6)], axis=1), outward=(-1.0, 0.0, 0.0))
 
 
 def mirrors(parts: Parts) -> None:
@@ -68,7 +67,7 @@ def mirrors(parts: Parts) -> None:
     round_z = np.sign(np.sin(angle)) * np.abs(np.sin(angle)) ** 0.7
     center = np.array([0.965, 0.945])
     housing = np.stack([
-        x[:, None] + 0.02 * np.abs(round_y)[None] * size[:, None] ** 2 + 0.03 * (round_y[None] + 1) * 0.5,
+        x[:, None] + 0.02 * np.abs(round_y)[None] * size[:, None] ** 2 + 0.015 * (round_y[None] + 1) * size[:, None],
         center[0] + 0.098 * size[:, None] * round_y[None] + 0 * x[:, None],
         center[1] + 0.054 * size[:, None] * round_z[None] - 0.012 * (1 - size[:, None]),
     ], axis=-1)  # fmt: skip
