@@ -39,7 +39,7 @@ def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = Fal
     from autocolor.errors import InputError, UsageError
     from autocolor.files.meshes import MESH_SUFFIXES, read_mesh, read_tables
     from autocolor.files.polygons import UPS
-    from autocolor.files.reading import unreadable
+    from autocolor.files.reading import unnameable, unreadable
 
     if up not in UPS:
         raise UsageError(f"up must be 'x', 'y' or 'z', not {up!r}")
@@ -49,9 +49,7 @@ def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = Fal
     except OSError as error:
         raise unreadable(path, error) from None
     except ValueError:
-        raise InputError(
-            f"a file name must not hold a NUL byte, not {str(path)!r}; rename the file"
-        ) from None
+        raise unnameable(path) from None
     suffix = path.suffix.lower()
 
     if os.path.isdir(path):

@@ -30,7 +30,7 @@ class ObjLines:
     def __init__(self, place: str, statements: Statements) -> None:
         self.place = place
         self.statements = statements
-        self.problems: list[str] = []
+        self.problems: list[tuple[int, str]] = []
         self.coordinates = array("d")
         self.numbers = array("q")
         self.corner_counts = array("q")
@@ -41,9 +41,14 @@ class ObjLines:
 
     def problem(self, sentence: str) -> None:
         """Note a problem of the current line; raise InputError when there are enough."""
-        self.problems.append(f"{self.place}, line {self.line}: {sentence}")
+        self.problems.append((self.line, f"{self.place}, line {self.line}: {sentence}"))
         if len(self.problems) >= MOST_PROBLEMS:
-            raise InputError(self.problems)
+            self.raise_any()
+
+    def raise_any(self) -> None:
+        """Raise InputError with the problems so far, in the order of their lines."""
+        if self.problems:
+            raise InputError([sentence for _, sentence in sorted(self.problems)])
 
     def node(self, words: list[bytes]) -> None:
         """Read `v x y z`; a weight or colors that follow must be numbers and are not used."""
@@ -100,8 +105,7 @@ class ObjLines:
             if before := self.nodes_before[polygon]:
                 rule += f" or from -{before} to -1"
             self.problem(f"a corner must be a node number {rule}, not {self.numbers[corner]}; correct it")
-        if self.problems:
-            raise InputError(self.problems)
+        self.raise_any()
         return tables
 
 
@@ -125,19 +129,19 @@ def read_obj_lines(data: bytes, place: str, statements: Statements) -> ObjTables
 
 def _statements(data: bytes, reader: ObjLines) -> Iterator[tuple[int, bytes]]:
     """Each statement with the number of its first line; a backslash at a line's end continues it."""
-    begun = b""
-    first = 0
+    begun: list[bytes] = []
+    first = size = 0
     for number, line in enumerate(io.BytesIO(data), start=1):
-        if len(begun) + len(line) > LONGEST_LINE:
-            reader.line = first or number
-            reader.problem(
-                f"a line must have at most {LONGEST_LINE:,} bytes, not {len(begun) + len(line):,}; divide it"
-            )
-            raise InputError(reader.problems)
+        first = first if begun else number
+        size = size + len(line) if begun else len(line)
+        if size > LONGEST_LINE:
+            reader.line = first
+            reader.problem(f"a line must have at most {LONGEST_LINE:,} bytes, not {size:,}; divide it")
+            reader.raise_any()
         if line.endswith(b"\\\n"):
-            begun, first = begun + line[:-2] + b" ", first or number
+            begun.append(line[:-2])
             continue
-        yield first or number, begun + line
-        begun, first = b"", 0
+        yield first, b" ".join([*begun, line]) if begun else line
+        begun = []
     if begun:
-        yield first, begun
+        yield first, b" ".join(begun)

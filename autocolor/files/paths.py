@@ -22,7 +22,7 @@ def path_within(problems: list[str], folder: Path, name: str, *, outside: bool =
     elif outside:
         return folder / name
     elif "\\" in name:
-        problems.append(f"must have / between folders, not \\ as in {shown(name)}")
+        problems.append(f"must have / between folders, not \\ as in {shown(name)}; correct it")
     elif os.path.isabs(name) or PureWindowsPath(name).drive or ".." in name.split("/"):
         problems.append(
             f"must be the name of a file in the scene's folder, not {shown(name)}; copy the file there"

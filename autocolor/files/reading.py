@@ -22,7 +22,13 @@ def read_bytes(path: Path, largest: int) -> bytes:
     cannot be read. A pipe or a device is never waited for.
     """
     try:
-        refuse_irregular(path, os.stat(path))
+        status = os.stat(path)
+    except OSError as error:
+        raise unreadable(path, error) from None
+    except ValueError:
+        raise unnameable(path) from None
+    try:
+        refuse_irregular(path, status)
         # A pipe put there in between would block without O_NONBLOCK; look again at what was opened.
         number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with open(number, "rb") as file:
@@ -30,8 +36,6 @@ def read_bytes(path: Path, largest: int) -> bytes:
             data = file.read(largest + 1)
     except OSError as error:
         raise unreadable(path, error) from None
-    except ValueError:
-        raise InputError(f"{str(path)!r}: a file name must not hold a NUL byte; rename the file") from None
     if len(data) > largest:
         raise InputError(
             f"{path.name}: a file must have at most {largest:,} bytes, not more; divide it or thin it out"
@@ -46,6 +50,11 @@ def refuse_irregular(path: Path, status: os.stat_result) -> None:
     kinds = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"))
     kind = next((name for is_kind, name in kinds if is_kind(status.st_mode)), "a device")
     raise InputError(f"{path}: it must be a regular file, not {kind}; name a file")
+
+
+def unnameable(path: Path) -> InputError:
+    """The InputError for a name that the system cannot hold: with a NUL byte, or in no encoding."""
+    return InputError(f"a file name must be one that the system can hold, not {str(path)!r}; correct it")
 
 
 def unreadable(path: Path, error: OSError) -> InputError:

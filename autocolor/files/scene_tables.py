@@ -11,7 +11,7 @@ from autocolor.files.scene_models import FlapKeys, FlapsKeys, LightKeys, Surface
 from autocolor.files.scene_problems import SceneProblems
 from autocolor.files.toml_text import KeyPath
 from autocolor.lights import Flap, Light
-from autocolor.tables import Surface
+from autocolor.tables import MOST_SURFACES, Surface
 from autocolor.view import View
 
 FAR = (1.2345e28, -2.3456e28, 3.4567e28)
@@ -79,6 +79,11 @@ def _flaps(problems: SceneProblems, light: KeyPath, table: object) -> dict[str, 
 def surfaces_of(problems: SceneProblems, tables: Mapping[str, Any]) -> list[Surface]:
     """The given surfaces; a key that is left out is as in the surface that would be created."""
     surfaces: list[Surface] = []
+    if len(tables) > MOST_SURFACES:
+        problems.note(
+            ("surfaces",),
+            f"surfaces must be at most {MOST_SURFACES}, not {len(tables):,}; let parts share a surface",
+        )
     for number, (name, table) in enumerate(tables.items()):
         keys, _ = problems.checked(("surfaces", name), SurfaceKeys, table)
         for group in _independent(keys):

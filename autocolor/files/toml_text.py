@@ -119,6 +119,7 @@ def key_lines(data: bytes) -> dict[KeyPath, int]:
             if array and depth == len(path) - 1:
                 rows[resolved] = rows.get(resolved, -1) + 1
             if resolved in rows:
+                lines.setdefault(resolved, line)
                 resolved = (*resolved, rows[resolved])
             lines.setdefault(resolved, line)
         if header:

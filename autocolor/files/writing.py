@@ -51,7 +51,7 @@ def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bo
         raise _refusal(target, error) from None
     except ValueError:
         raise OutputError(
-            f"a file name must not hold a NUL byte, not {str(path)!r}; choose another name"
+            f"a file name must be one that the system can hold, not {str(path)!r}; choose another name"
         ) from None
 
 

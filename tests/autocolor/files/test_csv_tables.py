@@ -1,0 +1,142 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.errors import InputError, MissingInputError
+from autocolor.files.csv_tables import read_csv_tables
+from autocolor.files.polygons import MeshReport
+
+NODES = "node,x,y,z\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n"
+POLYGONS = "polygon,part,node1,node2,node3,node4\n1,hood,1,2,3,4\n2,roof,1,2,3,\n"
+
+
+def read(folder: Path, nodes: str | bytes = NODES, polygons: str | bytes = POLYGONS) -> MeshReport:
+    paths = folder / "nodes.csv", folder / "polygons.csv"
+    for path, text in zip(paths, (nodes, polygons), strict=True):
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_csv_tables(*paths)
+
+
+def refusal(folder: Path, nodes: str | bytes = NODES, polygons: str | bytes = POLYGONS) -> list[str]:
+    with pytest.raises(InputError) as caught:
+        read(folder, nodes, polygons)
+    return list(caught.value.problems)
+
+
+def test_two_tables_are_a_mesh(tmp_path: Path) -> None:
+    mesh = read(tmp_path).mesh
+    assert mesh.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    assert mesh.node_numbers.tolist() == [[0, 1, 2, 3], [0, 1, 2, 2]]
+    assert mesh.part_names == ("hood", "roof")
+
+
+def test_columns_may_stand_in_any_order_and_optional_ones_be_missing(tmp_path: Path) -> None:
+    nodes = "z, x ,y\n0,0,0\n\n0,1,0\n0,1,1\n,,\n"
+    mesh = read(tmp_path, nodes, "node4,node1,node2,node3\n,1,2,3\n").mesh
+    assert mesh.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
+    assert mesh.part_names == ("polygons",)
+
+
+def test_node_numbers_are_any_whole_numbers(tmp_path: Path) -> None:
+    nodes = "node,x,y,z\n700,0,0,0\n-3,1,0,0\n0,1,1,0\n"
+    mesh = read(tmp_path, nodes, "node1,node2,node3,node4\n0,700,-3\n").mesh
+    assert mesh.node_numbers.tolist() == [[2, 0, 1, 1]]
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
+def test_lines_end_in_any_way_and_cells_may_be_quoted(tmp_path: Path, ending: str) -> None:
+    polygons = '\ufeffpart,node1,node2,node3,node4\n"a, ""b""",1,2,"3",4\n'.replace("\n", ending)
+    assert read(tmp_path, NODES.replace("\n", ending), polygons).mesh.part_names == ('a, "b"',)
+
+
+def test_a_node_that_is_not_in_the_table_is_refused(tmp_path: Path) -> None:
+    assert refusal(tmp_path, polygons=POLYGONS + "3,roof,1,2,40,\n") == [
+        "polygons.csv, row 4: node 40 is not in the node table (1 to 4)"
+    ]
+    assert refusal(tmp_path, NODES + "9,0,0,0\n", POLYGONS + "3,roof,1,2,7,\n") == [
+        "polygons.csv, row 4: node 7 is not in the node table (1 to 9, with gaps)"
+    ]
+
+
+def test_every_problem_of_both_tables_is_named(tmp_path: Path) -> None:
+    nodes = NODES + "1,0,0,0\nx,nan,1e31,\n5,0,0,0,0\n"
+    polygons = POLYGONS + "2,a,1,2,3,4\n1.5,a,1,,x,4\n"
+    rule = "a coordinate must be a decimal number of at most 1e30 in size"
+    assert refusal(tmp_path, nodes, polygons) == [
+        "nodes.csv, row 6: a node number must stand once, not repeat: 1; number it anew",
+        "nodes.csv, row 7: a node number must be a whole number, not 'x'; correct it",
+        f"nodes.csv, row 7: {rule}, not 'nan'; correct it",
+        f"nodes.csv, row 7: {rule}, not '1e31'; correct it",
+        f"nodes.csv, row 7: {rule}, not ''; correct it",
+        "nodes.csv, row 8: a row must have 4 cells, not 5; correct it",
+        "polygons.csv, row 4: a polygon number must stand once, not repeat: 2; number it anew",
+        "polygons.csv, row 5: a polygon number must be a whole number, not '1.5'; correct it",
+        "polygons.csv, row 5: a corner must be a whole number, not ''; correct it",
+        "polygons.csv, row 5: a corner must be a whole number, not 'x'; correct it",
+    ]
+
+
+@pytest.mark.parametrize("number", ["1_0", "0x1", "\u0661", "inf", "1d2", "1,5"])
+def test_numbers_are_strict(tmp_path: Path, number: str) -> None:
+    assert "not " in refusal(tmp_path, f'x,y,z\n"{number}",0,0\n')[0]
+    assert "a whole number" in refusal(tmp_path, polygons=f'node1,node2,node3,node4\n"{number}",2,3,\n')[0]
+
+
+@pytest.mark.parametrize(
+    ("header", "sentence"),
+    [
+        ("node;x;y;z", "nodes.csv, row 1: there is no column 'node;x;y;z'; known are 'node', 'x', 'y', 'z'"),
+        ("nod,x,y,z", "nodes.csv, row 1: there is no column 'nod'; did you mean 'node'?"),
+        ("x,y,z,x", "nodes.csv, row 1: a column must stand once, not repeat: 'x'; leave one out"),
+        ("x,y", "nodes.csv, row 1: there must be a column 'z', not only x, y; add it"),
+    ],
+)
+def test_a_wrong_header_is_refused_with_the_nearest_name(tmp_path: Path, header: str, sentence: str) -> None:
+    assert refusal(tmp_path, header + "\n0,0,0\n") == [sentence]
+
+
+def test_an_empty_table_is_refused(tmp_path: Path) -> None:
+    assert refusal(tmp_path, "") == ["nodes.csv: a table must start with a row of column names, not be empty"]
+    assert refusal(tmp_path, "x,y,z\n")[0] == (
+        "polygons.csv, row 2: node 1 is not in the node table (it is empty)"
+    )
+    assert refusal(tmp_path, polygons="node1,node2,node3,node4\n") == [
+        "polygons.csv: a mesh must have a polygon with area, not none; add polygons"
+    ]
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        NODES.encode("utf-16"),
+        NODES.encode() + b"\0",
+        b"x,y,z\n\xff,0,0",
+        b'x,y,z\n"0',
+        b'x,y,z\n"0"1,0,0',
+        b"x,y,z\n" + b"1" * 2_000_000,
+        b"," * 500_000,
+        b"x,y,z\n" + b"," * 2_000_000,
+    ],
+    ids=["UTF-16", "NUL", "no UTF-8", "open quote", "text after quote", "endless cell", "columns", "cells"],
+)
+def test_what_is_no_table_is_refused_shortly(tmp_path: Path, data: bytes) -> None:
+    assert len("\n".join(refusal(tmp_path, data))) < 3000
+
+
+def test_a_missing_table_is_missing_input(tmp_path: Path) -> None:
+    (tmp_path / "nodes.csv").write_text(NODES)
+    with pytest.raises(MissingInputError):
+        read_csv_tables(tmp_path / "nodes.csv", tmp_path / "polygons.csv")
+
+
+@given(data=st.binary(max_size=100) | st.text('node1234xyz,"\n\r. -', max_size=100).map(str.encode))
+def test_any_bytes_are_read_or_refused(data: bytes, tmp_path_factory: pytest.TempPathFactory) -> None:
+    folder = tmp_path_factory.getbasetemp()
+    with pytest.raises(InputError):
+        read(folder, NODES, data)
+    with pytest.raises(InputError):
+        read(folder, data, POLYGONS)

@@ -1,0 +1,113 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.errors import InputError
+from autocolor.files.mesh_repair import mended
+from autocolor.files.polygons import MeshReport, Polygons, standing
+
+SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [0, 0, 1]]
+
+
+def mesh_of(*polygons: list[int], coordinates: Any = SQUARE, up: str = "z") -> MeshReport:
+    return mended(
+        Polygons(
+            np.array(coordinates, np.float64),
+            np.array([corner for polygon in polygons for corner in polygon], np.intp),
+            np.array([len(polygon) for polygon in polygons], np.intp),
+            np.arange(len(polygons)),
+            tuple(f"part {number}" for number in range(len(polygons))),
+        ),
+        "a.obj",
+        up=up,
+    )
+
+
+def test_a_sound_mesh_is_left_alone() -> None:
+    report = mesh_of([0, 1, 2, 3], [0, 1, 2])
+    assert report.repairs == ()
+    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 3], [0, 1, 2, 2]]
+
+
+@pytest.mark.parametrize("quad", [[0, 0, 1, 2], [0, 1, 1, 2], [0, 1, 2, 2], [0, 1, 2, 0]])
+def test_a_repeated_corner_makes_a_quad_a_triangle(quad: list[int]) -> None:
+    report = mesh_of(quad)
+    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 2]]
+    assert report.repairs == ("a.obj: 1 polygon with repeated corners was mended",)
+
+
+@pytest.mark.parametrize("polygon", [[], [0], [0, 1], [0, 0, 1], [0, 1, 0], [0, 0, 0, 0], [0, 1, 1, 0]])
+def test_fewer_than_three_different_corners_are_dropped(polygon: list[int]) -> None:
+    report = mesh_of([0, 1, 2], polygon, [1, 2, 3], polygon)
+    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 2], [1, 2, 3, 3]]
+    assert report.mesh.part_numbers.tolist() == [0, 2]
+    assert report.repairs == ("a.obj: 2 polygons with fewer than three different corners were dropped",)
+
+
+@pytest.mark.parametrize("polygon", [[0, 1, 4], [0, 1, 0, 3], [0, 1, 4, 1], [0, 4, 1, 0, 4, 1]])
+def test_polygons_without_area_are_dropped(polygon: list[int]) -> None:
+    report = mesh_of([0, 1, 2], polygon)
+    assert len(report.mesh.node_numbers) == 1
+    assert report.repairs == ("a.obj: 1 polygon without area was dropped",)
+
+
+def test_nodes_at_one_place_make_no_area() -> None:
+    report = mesh_of([0, 1, 2], [3, 4, 5], coordinates=[*SQUARE[:3], [7, 7, 7], [7, 7, 7], [8, 8, 8]])
+    assert report.repairs == ("a.obj: 1 polygon without area was dropped",)
+
+
+def test_a_bow_tie_whose_halves_cancel_is_kept() -> None:
+    report = mesh_of([0, 2, 1, 3])
+    assert report.mesh.node_numbers.tolist() == [[0, 2, 1, 3]]
+    assert report.repairs == ()
+
+
+def test_a_polygon_of_more_corners_is_split_and_counted() -> None:
+    report = mesh_of([0, 4, 2, 3, 5])
+    assert len(report.mesh.node_numbers) == 2
+    assert report.repairs == ("a.obj: 1 polygon with more than four corners was split",)
+
+
+def test_unused_nodes_are_kept() -> None:
+    assert len(mesh_of([0, 1, 2]).mesh.coordinates) == len(SQUARE)
+
+
+def test_a_mesh_without_polygons_left_is_refused() -> None:
+    for polygons in ([], [[0, 1, 4]], [[0, 1]]):
+        with pytest.raises(InputError) as caught:
+            mesh_of(*polygons)
+        assert str(caught.value) == "a.obj: a mesh must have a polygon with area, not none; add polygons"
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-20, 1e20, 1e30])
+def test_size_does_not_matter(scale: float) -> None:
+    assert mesh_of([0, 1, 2, 3], coordinates=np.array(SQUARE[:4]) * scale).repairs == ()
+
+
+def test_the_up_axis_becomes_z_and_windings_stay() -> None:
+    axes = np.eye(3)
+    assert standing(axes, "z").tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    assert standing(axes, "y").tolist() == [[1, 0, 0], [0, 0, 1], [0, -1, 0]]
+    assert standing(axes, "x").tolist() == [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
+    for up in "xyz":
+        assert np.linalg.det(standing(axes, up)) == 1
+
+
+def test_turning_makes_no_negative_zero() -> None:
+    assert not np.signbit(standing(np.zeros((1, 3)), "y")).any()
+
+
+@given(st.lists(st.lists(st.integers(0, 5), max_size=9), max_size=6))
+def test_whatever_is_left_has_area_and_normals(polygons: list[list[int]]) -> None:
+    try:
+        mesh = mesh_of(*polygons).mesh
+    except InputError:
+        return
+    assert np.isfinite(mesh.normals.vectors).all()
+    for row in mesh.node_numbers:
+        assert len(set(row.tolist())) >= 3

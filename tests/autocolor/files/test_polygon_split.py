@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.files.polygon_split import clipped_ears, split_polygons
+
+
+def area(points: np.ndarray, rows: object) -> float:
+    """Twice the signed area of a polygon in the plane z = 0."""
+    corners = points[np.asarray(rows)]
+    x, y = corners[:, 0], corners[:, 1]
+    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())
+
+
+def test_triangles_and_quads_stay_what_they_are_in_their_order() -> None:
+    coordinates = np.random.default_rng(1).uniform(size=(5, 3))
+    pieces, owners = split_polygons(coordinates, np.array([0, 1, 2, 3, 2, 1, 0]), np.array([4, 3]))
+    assert pieces.tolist() == [[0, 1, 2, 3], [2, 1, 0, 0]]
+    assert owners.tolist() == [0, 1]
+
+
+def test_polygons_with_fewer_than_three_corners_have_no_piece() -> None:
+    pieces, owners = split_polygons(np.zeros((3, 3)), np.array([0, 1, 0, 1, 2]), np.array([2, 0, 3]))
+    assert pieces.tolist() == [[0, 1, 2, 2]]
+    assert owners.tolist() == [2]
+
+
+@pytest.mark.parametrize("count", [5, 6, 7, 20])
+def test_a_convex_polygon_becomes_quads_and_at_most_one_triangle(count: int) -> None:
+    turns = np.arange(count) * 2 * math.pi / count
+    points = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
+    pieces, _ = split_polygons(points, np.arange(count), np.array([count]))
+    assert len(pieces) == (count - 1) // 2
+    assert (pieces[:, 2] == pieces[:, 3]).sum() == count % 2
+    assert sum(area(points, piece) for piece in pieces) == pytest.approx(area(points, range(count)))
+
+
+def test_pieces_stand_where_their_polygon_stood() -> None:
+    turns = np.arange(6) * math.pi / 3
+    points = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
+    corners = [0, 1, 2, 0, 1, 2, 3, 4, 5, 3, 4, 5]
+    _, owners = split_polygons(points, np.array(corners), np.array([3, 6, 3]))
+    assert owners.tolist() == [0, 1, 1, 2]
+
+
+@given(
+    st.lists(st.integers(1, 20), min_size=5, max_size=24),
+    st.sampled_from([(0, 1, 2), (1, 2, 0), (2, 0, 1), (1, 0, 2), (0, 2, 1)]),
+)
+def test_a_star_shaped_polygon_is_covered_once_in_any_plane(
+    radii: list[int], axes: tuple[int, int, int]
+) -> None:
+    turns = np.arange(len(radii)) * 2 * math.pi / len(radii)
+    points = np.stack([radii * np.cos(turns), radii * np.sin(turns), 0 * turns], axis=1)
+    pieces, _ = split_polygons(points[:, axes], np.arange(len(radii)), np.array([len(radii)]))
+    areas = [area(points, piece) for piece in pieces]
+    assert min(areas) >= -1e-9
+    assert sum(areas) == pytest.approx(area(points, range(len(radii))))
+
+
+@given(st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=5, max_size=30))
+def test_clipping_ends_whatever_crosses(points: list[tuple[float, float]]) -> None:
+    pieces = clipped_ears(points)
+    assert len(pieces) == len(points) - 3
+    assert {row for piece in pieces for row in piece} == set(range(len(points)))

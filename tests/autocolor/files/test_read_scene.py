@@ -1,0 +1,91 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from autocolor.errors import InputError, MissingInputError, UsageError
+from autocolor.files import read_scene, read_scene_with_report
+
+CAR = "v 0 0 0\nv 1 0 0\nv 1 1 3\nv 0 1 0\ng hood\nf 1 2 3 4\n"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "coupe"
+    made.mkdir()
+    (made / "car.obj").write_text(CAR)
+    (made / "scene.toml").write_text('ambient = 0.5\n[[mesh]]\nfile = "car.obj"\n')
+    return made
+
+
+def test_a_scene_comes_from_a_folder_a_scene_file_or_a_mesh_file(folder: Path) -> None:
+    assert read_scene(folder).ambient == 0.5
+    assert read_scene(str(folder / "scene.toml")).name == "coupe"
+    (folder / "night.TOML").write_text('[[mesh]]\nfile = "car.obj"\n')
+    assert read_scene(folder / "night.TOML").name == "night"
+    assert read_scene(folder / "car.obj").name == "car"
+
+
+def test_a_folder_of_two_tables_is_a_scene(tmp_path: Path) -> None:
+    (tmp_path / "nodes.csv").write_text("x,y,z\n0,0,0\n1,0,0\n0,1,0\n")
+    (tmp_path / "polygons.csv").write_text("node1,node2,node3,node4\n1,2,3,\n")
+    report = read_scene_with_report(tmp_path)
+    assert len(report.scene.mesh.node_numbers) == 1
+    assert report.mesh_files == ({"nodes": "nodes.csv", "polygons": "polygons.csv", "up": "z"},)
+
+
+def test_up_is_the_up_axis_of_a_bare_mesh(folder: Path) -> None:
+    assert read_scene(folder / "car.obj", up="y").mesh.coordinates[2].tolist() == [1, -3, 1]
+    with pytest.raises(UsageError, match="up must be 'x', 'y' or 'z', not '-z'"):
+        read_scene(folder, up="-z")
+
+
+def test_strict_reading_refuses_repairs(folder: Path) -> None:
+    read_scene(folder, strict=True)
+    (folder / "car.obj").write_text(CAR + "f 1 2\n")
+    assert len(read_scene(folder).mesh.node_numbers) == 1
+    with pytest.raises(InputError) as caught:
+        read_scene(folder, strict=True)
+    assert str(caught.value) == (
+        "car.obj: 1 polygon with fewer than three different corners was dropped; strict reading repairs"
+        " nothing"
+    )
+
+
+def test_what_is_not_there_is_missing_input(tmp_path: Path) -> None:
+    for name in ("none", "none.obj", "none.toml", "none.npz", "none/none.obj"):
+        with pytest.raises(MissingInputError) as caught:
+            read_scene(tmp_path / name)
+        assert str(caught.value) == f"{tmp_path / name}: there is no such file or folder; check the name"
+
+
+def test_what_is_no_scene_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="a scene's folder must have"):
+        read_scene(tmp_path)
+    (tmp_path / "a.stl").write_text("solid")
+    with pytest.raises(InputError, match=r"ends in .toml, .obj or .npz, not in '.stl'"):
+        read_scene(tmp_path / "a.stl")
+    (tmp_path / "x.obj").mkdir()
+    with pytest.raises(InputError, match="a scene's folder"):
+        read_scene(tmp_path / "x.obj")
+    os.mkfifo(tmp_path / "p.obj")
+    os.mkfifo(tmp_path / "scene.toml")
+    for name in ("p.obj", "scene.toml", ""):
+        with pytest.raises(InputError, match="not a pipe"):
+            read_scene(tmp_path / name)
+    with pytest.raises(InputError, match="must be one that the system can hold"):
+        read_scene(tmp_path / "a\0b")
+
+
+def test_importing_the_readers_is_cheap_and_a_mesh_needs_no_pydantic(folder: Path) -> None:
+    program = (
+        "import sys, autocolor.files;"
+        "assert not {'numpy', 'pydantic', 'tomllib'} & set(sys.modules);"
+        f"autocolor.files.read_scene({str(folder / 'car.obj')!r});"
+        "assert not {'pydantic', 'tomllib', 'csv', 'pygame', 'PIL'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True, env={**os.environ, "PYTHONPATH": os.getcwd()})

@@ -1,0 +1,399 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.errors import InputError, MissingInputError
+from autocolor.files.scene_file import read_scene_file
+from autocolor.files.scene_report import SceneReport
+
+CAR = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng hood\nf 1 2 3 4\ng roof\nf 1 2 3\n"
+MESH = '[[mesh]]\nfile = "car.obj"\n'
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "coupe"
+    made.mkdir()
+    (made / "car.obj").write_text(CAR)
+    return made
+
+
+def read(folder: Path, text: str | bytes, outside: bool = False) -> SceneReport:
+    path = folder / "scene.toml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_scene_file(path, outside=outside)
+
+
+def refusal(folder: Path, text: str | bytes) -> list[str]:
+    with pytest.raises(InputError) as caught:
+        read(folder, text)
+    return list(caught.value.problems)
+
+
+def test_all_but_a_mesh_is_created(folder: Path) -> None:
+    report = read(folder, MESH)
+    assert report.scene.name == "coupe"
+    assert [(part.name, part.surface) for part in report.scene.parts] == [("hood", "hood"), ("roof", "roof")]
+    assert [light.name for light in report.scene.lights] == ["key", "fill", "top", "rim"]
+    assert report.created == (
+        "a view was created that frames the object",
+        "4 studio lights were created",
+        "2 surfaces were created: 'hood', 'roof'",
+    )
+    assert report.repairs == ()
+    assert report.mesh_files == ({"file": "car.obj"},)
+
+
+def test_every_key_arrives(folder: Path) -> None:
+    scene = read(
+        folder,
+        """
+ambient = 0.25
+scaling = "object"
+mapping = [[0, 0], [0.5, 0.75], [1, 1]]
+contrast = "floor"
+background = "#102030"
+[view]
+eye = [8, -10.5, 4]
+target = [0, 0, 0.5]
+angle = 15
+field_of_view = 40.0
+[[mesh]]
+file = "car.obj"
+up = "y"
+crease_angle = 60
+[parts.hood]
+surface = "body"
+[parts.roof]
+surface = "body"
+[surfaces.body]
+diffuse = 0.8
+specular = 0
+exponent = 30
+object_color = "#b01020"
+light_color = "#fffffe"
+blend = 0.25
+light_percentage = 50
+two_sided = false
+levels = 200
+[[lights]]
+name = "key"
+position = [4, -6.0, 5]
+intensity = 2
+on = false
+aim = [0, 0, 0.5]
+concentration = 10
+cone_angle = 25
+flaps.x = { minimum = -1 }
+flaps.z = { minimum = 0.5, maximum = 1.0, on = false }
+[[lights]]
+name = "fill"
+position = [1, 2, 3]
+direction = [0, 0, -2]
+""",
+    ).scene
+    assert (scene.ambient, scene.scaling, scene.contrast) == (0.25, "object", "floor")
+    assert scene.mapping == ((0, 0), (0.5, 0.75), (1, 1))
+    assert scene.background == (16, 32, 48)
+    view = scene.view
+    assert (view.eye, view.target, view.direction) == ((8, -10.5, 4), (0, 0, 0.5), None)
+    assert (view.angle, view.field_of_view) == (15, 40)
+    assert scene.mesh.crease_angle == 60
+    assert scene.mesh.coordinates[2].tolist() == [1, 0, 1]
+    assert [part.surface for part in scene.parts] == ["body", "body"]
+    (body,) = scene.surfaces
+    reflectance, paint = body.reflectance, body.paint
+    assert (reflectance.diffuse, reflectance.specular, reflectance.exponent) == (0.8, 0, 30)
+    assert (paint.object_color, paint.light_color) == ((176, 16, 32), (255, 255, 254))
+    assert (paint.blend, paint.light_percentage) == (0.25, 50)
+    assert (body.two_sided, body.levels) == (False, 200)
+    key, fill = scene.lights
+    assert (key.position, key.intensity, key.on, key.aim) == ((4, -6, 5), 2, False, (0, 0, 0.5))
+    assert (key.concentration, key.cone_angle) == (10, 25)
+    assert key.flaps.x is not None
+    assert (key.flaps.x.minimum, key.flaps.x.maximum, key.flaps.x.on) == (-1, float("inf"), True)
+    assert key.flaps.z is not None
+    assert (key.flaps.z.minimum, key.flaps.z.maximum, key.flaps.z.on) == (0.5, 1, False)
+    assert fill.direction == (0, 0, -2)
+
+
+def test_a_key_of_a_surface_that_is_left_out_is_as_created(folder: Path) -> None:
+    created = read(folder, MESH).scene.surface("hood")
+    assert read(folder, MESH + "[surfaces.hood]\nlevels = 99\n").scene.surface("hood") == created.replace(
+        levels=99
+    )
+
+
+def test_lights_may_be_none(folder: Path) -> None:
+    report = read(folder, "lights = []\n" + MESH)
+    assert report.scene.lights == ()
+    assert not any("lights" in sentence for sentence in report.created)
+
+
+def test_parts_of_the_same_name_in_several_meshes_are_one(folder: Path) -> None:
+    (folder / "n.csv").write_text("x,y,z\n0,0,0\n1,0,0\n0,1,0\n")
+    (folder / "p.csv").write_text("part,node1,node2,node3,node4\ndoor,1,2,3,\n")
+    tables = '[[mesh]]\nnodes = "n.csv"\npolygons = "p.csv"\n'
+    report = read(folder, MESH + MESH + "crease_angle = 90\n" + tables)
+    assert report.scene.mesh.part_names == ("hood", "roof", "door")
+    assert len(report.scene.mesh.node_numbers) == 5
+    assert report.scene.mesh.crease_angle == 90
+
+
+def test_repairs_of_all_meshes_are_reported(folder: Path) -> None:
+    (folder / "car.obj").write_text(CAR + "f 1 1 1\n")
+    assert read(folder, MESH).repairs == (
+        "car.obj: 1 polygon with fewer than three different corners was dropped",
+    )
+
+
+def test_every_problem_is_in_one_report_in_the_order_of_the_lines(folder: Path) -> None:
+    (folder / "bad.obj").write_text(CAR + "f 1 2 9\nf x\n")
+    text = """ambient = true
+scaling = "surfac"
+mapping = "linea"
+colour = 3
+background = "#12"
+[view]
+eye = [0, 0]
+direction = [0.0, 0, 0]
+angl = 3
+[[mesh]]
+file = "bad.obj"
+[[mesh]]
+file = "../car.obj"
+[[mesh]]
+file = "none.obj"
+crease_angle = 200
+[[mesh]]
+file = "car.stl"
+up = "z"
+[[mesh]]
+nodes = "n.csv"
+[surfaces.body]
+exponent = -1
+diffuse = "1.0"
+two_side = true
+[[lights]]
+name = "key"
+positon = [1, 2, 3]
+intensity = inf
+[[lights]]
+name = "key"
+position = [1, 2, 3]
+direction = [0, 0, 0]
+flaps.z = { minimum = 3, maximum = 2 }
+[[lights]]
+name = ""
+position = [1, 2, 3]
+concentration = -1
+"""
+    place = "scene.toml, line"
+    assert refusal(folder, text) == [
+        f"{place} 1, ambient must be a finite number, not true",
+        f"{place} 2, scaling must be 'surface' or 'object', not 'surfac'",
+        f"{place} 3, mapping must be 'linear', 'gamma', 'logarithm', 'equalize', or rising points [x, y] from"
+        " x = 0 to x = 1, not 'linea'; did you mean 'linear'?",
+        f"{place} 4, there is no key \"colour\"; known are 'ambient', 'scaling', 'mapping', 'contrast',"
+        " 'background', 'view', 'mesh', 'lights', 'parts', 'surfaces'",
+        f"{place} 5, background must be \"#rrggbb\" or three whole numbers from 0 to 255, not '#12'",
+        f"{place} 7, [view]: eye must be three finite numbers [x, y, z], not [0, 0]",
+        f"{place} 8, [view]: direction must not be zero, not [0.0, 0, 0]; give it a length",
+        f"{place} 9, [view]: there is no key \"angl\"; did you mean 'angle'?",
+        "bad.obj, line 9: a corner must be a node number from 1 to 4 or from -4 to -1, not 9; correct it",
+        "bad.obj, line 10: a corner must be a node number, alone or with texture and normal numbers as in"
+        " 7/1/3, not 'x'; correct it",
+        f"{place} 13, mesh[2]: file must be the name of a file in the scene's folder, not '../car.obj';"
+        " copy the file there",
+        f"{place} 15, mesh[3]: {folder / 'none.obj'}: there is no such file or folder; check the name",
+        f"{place} 16, mesh[3]: crease_angle must be a number of degrees from 0 to 180, not 200",
+        "car.stl: a mesh file must end in .obj, not in '.stl'; export it as OBJ",
+        f"{place} 20, mesh[5]: it must have a file, or nodes and polygons, not nodes; mend it",
+        f"{place} 23, [surfaces.body]: exponent must be a finite number of at least 0, not -1",
+        f'{place} 24, [surfaces.body]: diffuse must be a finite number, not "1.0"',
+        f"{place} 25, [surfaces.body]: there is no key \"two_side\"; did you mean 'two_sided'?",
+        f"{place} 26, lights[1] 'key': position must be three finite numbers [x, y, z], not missing; add it",
+        f"{place} 28, lights[1] 'key': there is no key \"positon\"; did you mean 'position'?",
+        f"{place} 29, lights[1] 'key': intensity must be a finite number, not Infinity",
+        f"{place} 31, lights[2] 'key': name must differ from all others, not repeat lights[1]; rename it",
+        f"{place} 33, lights[2] 'key': direction must not be zero, not [0, 0, 0]; give it a length",
+        f"{place} 34, lights[2] 'key': a flap's minimum must not be above its maximum, not 3 to 2",
+        f"{place} 36, lights[3] '': name must be a text of at least one letter, not \"\"",
+        f"{place} 38, lights[3] '': concentration must be a finite number of at least 0, not -1",
+    ]
+
+
+def test_names_of_parts_and_surfaces_are_checked(folder: Path) -> None:
+    text = MESH + '[parts.rof]\nsurface = "body"\n[parts.hood]\nsurface = "bodi"\n[surfaces.body]\n'
+    assert refusal(folder, text) == [
+        "scene.toml, line 3, [parts.rof]: no mesh has a part of this name; did you mean 'roof'?",
+        "scene.toml, line 6, [parts.hood]: surface must be a surface or a part of the scene, not 'bodi';"
+        " did you mean 'body'?",
+    ]
+
+
+def test_rules_between_keys_are_checked(folder: Path) -> None:
+    text = (
+        "[view]\neye = [0, 0, 1]\ntarget = [0, 0, 1]\n"
+        + MESH
+        + '[[lights]]\nname = "a"\nposition = [0, 0, 0]\nconcentration = 2\n'
+        + '[[lights]]\nname = "b"\nposition = [0, 0, 0]\naim = [1, 0, 0]\ndirection = [1, 0, 0]\n'
+    )
+    assert refusal(folder, text) == [
+        "scene.toml, line 1, [view]: the target must not be the eye, not both (0.0, 0.0, 1.0); move one of"
+        " them",
+        "scene.toml, line 9, lights[1] 'a': concentration must come with a direction or an aim, not with a"
+        " point source; add an aim",
+        "scene.toml, line 10, lights[2] 'b': it must have a direction or an aim, not both; leave one out",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("ambient", '"0.1"'), ("ambient", "true"), ("ambient", "[1]"), ("ambient", "inf"), ("ambient", "nan"),
+        ("ambient", "1979-05-27"), ("scaling", "1"), ("mapping", "1"), ("mapping", "[[0, 0]]"),
+        ("mapping", '"Linear"'), ("background", "1"), ("background", '"red"'), ("view", "1"), ("view", "[]"),
+        ("lights", "{}"), ("lights", "[1]"), ("lights", '"key"'), ("parts", "[]"), ("parts", "{hood = 1}"),
+        ("surfaces", "1"), ("surfaces", "{hood = {levels = 2.0}}"), ("surfaces", "{hood = {two_sided = 1}}"),
+        ("contrast", "'stretched'"), ("view", "{eye = [1, 2, 3]}"), ("surfaces", "{hood = {levels = true}}"),
+        ("view", "{eye = [true, 2, 3], target = [0, 0, 0]}"), ("ambient", "-1"), ("surfaces", "{'' = {}}"),
+        ("view", "{eye = [1e31, 2, 3], target = [0, 0, 0]}"), ("ambient", "0x" + "f" * 90),
+    ],
+)  # fmt: skip
+def test_types_are_strict(folder: Path, key: str, value: str) -> None:
+    if (key, value) == ("ambient", "0x" + "f" * 90):
+        assert read(folder, f"{key} = {value}\n" + MESH).scene.ambient == float(int(value, 16))
+        return
+    problems = refusal(folder, f"{key} = {value}\n" + MESH)
+    assert len(problems) == 1
+    assert problems[0].startswith("scene.toml, line 1, ")
+
+
+@pytest.mark.parametrize("text", ["", "ambient = 1\n", "mesh = []\n"])
+def test_a_scene_must_have_a_mesh(folder: Path, text: str) -> None:
+    assert refusal(folder, text) == [
+        'scene.toml, there must be a [[mesh]] with file = "NAME.obj", not none; add one'
+    ]
+
+
+def test_only_missing_files_are_missing_input(folder: Path) -> None:
+    text = '[[mesh]]\nfile = "a.obj"\n[[mesh]]\nfile = "b.obj"\n'
+    with pytest.raises(MissingInputError) as caught:
+        read(folder, text)
+    assert len(caught.value.problems) == 2
+    with pytest.raises(InputError) as other:
+        read(folder, "ambient = -1\n" + text)
+    assert other.type is InputError
+
+
+def test_differing_crease_angles_are_refused(folder: Path) -> None:
+    assert refusal(folder, MESH + "crease_angle = 40\n" + MESH + "crease_angle = 50\n") == [
+        "scene.toml, line 6, mesh[2]: crease_angle must be the same in all meshes, 40 as before, not 50;"
+        " give one of them"
+    ]
+
+
+def test_files_outside_the_folder_need_a_flag(folder: Path) -> None:
+    (folder.parent / "car.obj").write_text(CAR)
+    text = '[[mesh]]\nfile = "../car.obj"\n'
+    assert len(refusal(folder, text)) == 1
+    assert len(read(folder, text, outside=True).scene.parts) == 2
+
+
+def test_a_thousand_problems_are_a_hundred_and_a_count(folder: Path) -> None:
+    problems = refusal(folder, MESH + "".join(f"[parts.x{row}]\nsurface = 'y'\n" for row in range(1000)))
+    assert len(problems) == 101
+    assert problems[-1] == "scene.toml: and 1,900 more problems"
+
+
+def test_too_many_surfaces_are_refused(folder: Path) -> None:
+    assert refusal(folder, MESH + "".join(f"[surfaces.x{row}]\n" for row in range(300))) == [
+        "scene.toml, line 3, surfaces must be at most 255, not 300; let parts share a surface"
+    ]
+
+
+def test_too_many_meshes_are_refused(folder: Path) -> None:
+    assert refusal(folder, MESH * 1001) == [
+        "scene.toml, line 1, mesh must be there at most 1,000 times, not 1,001; join some"
+    ]
+
+
+def test_a_scene_file_of_more_than_a_mebibyte_is_refused(folder: Path) -> None:
+    assert refusal(folder, MESH + "#" * (1 << 20)) == [
+        "scene.toml: a file must have at most 1,048,576 bytes, not more; divide it or thin it out"
+    ]
+
+
+def test_windows_line_ends_and_a_byte_order_mark_are_no_matter(folder: Path) -> None:
+    assert read(folder, b"\xef\xbb\xbf" + MESH.replace("\n", "\r\n").encode()).repairs == ()
+    assert refusal(folder, b"\xef\xbb\xbf" + MESH.replace("\n", "\r\n").encode() + b"uq = 1\r\n") == [
+        "scene.toml, line 3, mesh[1]: there is no key \"uq\"; known are 'file', 'nodes', 'polygons', 'up',"
+        " 'crease_angle'"
+    ]
+
+
+VALUES = st.sampled_from(
+    [
+        "1",
+        "-1",
+        "0.5",
+        "true",
+        '"x"',
+        '"#102030"',
+        "[]",
+        "[1, 2, 3]",
+        "{}",
+        "inf",
+        "[[0, 0], [1, 1]]",
+        '"hood"',
+    ]
+)
+KEYS = st.sampled_from(
+    [
+        "ambient",
+        "mapping",
+        "eye",
+        "target",
+        "name",
+        "position",
+        "aim",
+        "flaps.z.minimum",
+        "flaps.q",
+        "surface",
+        "diffuse",
+        "levels",
+        "object_color",
+        "file",
+        "up",
+        "nodes",
+        "x",
+        "'a.b'",
+        "lights",
+        "view",
+        "flaps",
+    ]
+)
+HEADERS = st.sampled_from(
+    ["[view]", "[[mesh]]", "[[lights]]", "[surfaces.hood]", "[parts.hood]", "[parts]", "[mesh]", "[a.b.c]"]
+)
+LINES = st.tuples(KEYS, VALUES).map(" = ".join) | HEADERS
+
+
+@given(lines=st.lists(LINES, max_size=12), whole=st.booleans())
+def test_any_keys_with_any_values_are_read_or_refused(
+    lines: list[str], whole: bool, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    folder = tmp_path_factory.getbasetemp()
+    (folder / "car.obj").write_text(CAR)
+    try:
+        read(folder, "\n".join(lines) + ("\n" + MESH if whole else ""))
+    except InputError as error:
+        problems = error.problems
+    else:
+        problems = ()
+    assert len(set(problems)) == len(problems)
