@@ -4,7 +4,7 @@
 - A polygon with fewer than three corners left, or without area, is dropped.
 - A polygon of more than four corners is split into quads and triangles.
 - Quads that are warped, concave or crossed (bow-ties) are kept as they are, for the renderer goes through
-  them scan line by scan line; `quad_shapes` counts them. Nodes that no polygon uses are kept.
+  them scan line by scan line; `quad_shapes.py` counts them. Nodes that no polygon uses are kept.
 """
 
 from __future__ import annotations

@@ -1,0 +1,49 @@
+"""How many quads of a mesh are warped, concave or crossed: they are kept as they are, and told when asked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from autocolor.tables import Mesh
+
+WARPED = 0.01
+"""Assumed: how far the diagonals pass each other, over the quad's size, from which it is called warped."""
+
+
+@dataclass(frozen=True)
+class QuadShapes:
+    """Counts of quads: all, those not flat, those with a corner pointing inward, and bow-ties."""
+
+    quads: int
+    warped: int
+    concave: int
+    crossed: int
+
+
+def quad_shapes(mesh: Mesh) -> QuadShapes:
+    """The shapes of a mesh's quads; a concave or crossed one may be warped as well."""
+    quads = mesh.node_numbers[mesh.node_numbers[:, 2] != mesh.node_numbers[:, 3]]
+    corners = mesh.coordinates[quads]
+    size = np.ptp(corners, axis=1).max(axis=1)
+    size[size == 0] = 1.0
+    corners = (corners - corners[:, :1]) / size[:, None, None]
+
+    # The cross product of the diagonals is the normal, and stands upright on both.
+    normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    lengths = np.linalg.norm(normals, axis=1)
+    flat = lengths < 1e-12
+    normals /= np.where(flat, 1.0, lengths)[:, None]
+    apart = np.abs(((corners[:, 1] - corners[:, 0]) * normals).sum(axis=1))
+
+    # A corner that turns against the others points inward; two of them make a bow-tie.
+    onward = np.roll(corners, -1, axis=1) - corners
+    turns = (np.cross(np.roll(onward, 1, axis=1), onward) * normals[:, None]).sum(axis=2)
+    against = (turns < -1e-9).sum(axis=1)
+    return QuadShapes(
+        len(quads),
+        int((apart > WARPED).sum()),
+        int((against == 1).sum()),
+        int(((against > 1) | flat).sum()),
+    )
