@@ -158,8 +158,8 @@ def seen_of_winners(
         np.einsum("ij,ij->j", out[POINT], out[POINT], out=out[POINT_SQUARED])
         # Interpolate the normal along the span.
         normal = out[NORMAL]
-        np.multiply(step[:, some], along[part], out=normal)
-        normal += start[:, some]
+        np.multiply(np.take(step, some, axis=1), along[part], out=normal)
+        normal += np.take(start, some, axis=1)
         length = np.sqrt(np.einsum("ij,ij->j", normal, normal))
         normal /= np.maximum(length, np.float32(1e-30), out=length)
         # Mirror the ray to the eye: M = 2 (N.V) N - V, where V = -ray / |ray|.
@@ -220,6 +220,7 @@ def _cut_normals(projected: Projection, numbers: Numbers, line: Numbers) -> tupl
     across = cut.across + (line - cut.first_line) * cut.across_step
     upper = (1 - way) * projected.inverse_depth[a]
     lower = way * projected.inverse_depth[b]
-    return across, upper * projected.normals.T[:, rows[cut.top]] + lower * projected.normals.T[
-        :, rows[cut.bottom]
-    ]
+    # Measured: `take` along the second axis has a quarter of the time of an index there.
+    normals = upper * np.take(projected.normals, rows[cut.top], axis=1)
+    normals += lower * np.take(projected.normals, rows[cut.bottom], axis=1)
+    return across, normals

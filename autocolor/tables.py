@@ -86,6 +86,16 @@ class Mesh:
         return np.ascontiguousarray(self.node_numbers.T)
 
     @cached_property
+    def coordinate_rows(self) -> npt.NDArray[np.float64]:
+        """The coordinates with one row an axis, (3, nodes)."""
+        return np.ascontiguousarray(self.coordinates.T)
+
+    @cached_property
+    def normal_rows(self) -> npt.NDArray[np.float64]:
+        """The normals with one row an axis, (3, normals)."""
+        return np.ascontiguousarray(self.normals.vectors.T)
+
+    @cached_property
     def normal_columns(self) -> npt.NDArray[np.intp]:
         """The numbers of the normals with one row a corner, (4, polygons)."""
         return np.ascontiguousarray(self.normals.numbers.T)

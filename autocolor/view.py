@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -55,7 +56,7 @@ class View:
         if problems:
             raise InputError(problems)
 
-    @property
+    @cached_property
     def axes(self) -> npt.NDArray[np.float64]:
         """Right, down and forward as the rows of a (3, 3) rotation, the axes of camera space.
 
@@ -78,7 +79,9 @@ class View:
         down = np.cross(forward, right)
         turn = math.radians(self.angle)
         cosine, sine = math.cos(turn), math.sin(turn)
-        return np.stack([cosine * right - sine * down, sine * right + cosine * down, forward])
+        axes = np.stack([cosine * right - sine * down, sine * right + cosine * down, forward])
+        axes.flags.writeable = False
+        return axes
 
     def replace(self, **changes: Any) -> View:
         """The view with some fields changed; giving a direction drops the target, and the other way round."""
