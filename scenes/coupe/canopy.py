@@ -152,9 +152,9 @@ def deck(parts: Parts) -> None:
     front = crown(T_END, spaced(0.0, RIM, counts=(10,)))
     front = np.concatenate([front, band(np.array([T_END]), 3)[0, 1:], fillet(np.array([1.90]), 4)[0, ::-1]])
     corner = s_at(2.16, QUARTER_TOP)
-    side = wall(np.linspace(s_at(1.90, QUARTER_TOP), corner, 7), QUARTER_TOP)
+    side = wall(np.linspace(s_at(1.90, QUARTER_TOP), corner, 5), QUARTER_TOP)
     rear = wall(np.linspace(S_END, corner, len(front)), QUARTER_TOP)
-    center = segment(front[0], rear[0], 6)
+    center = segment(front[0], rear[0], 4)
     parts.grid("deck", coons(front, rear, center, side), outward=(0, 0, 1))
 
 

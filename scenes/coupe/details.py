@@ -26,7 +26,8 @@ def raised(parts: Parts, part: str, grid: Array, low: float, high: float, edging
     middle = base.reshape(-1, 3).mean(axis=0)
     face = base + normal * np.linspace(low, high, grid.shape[1])[None, :, None]
     parts.grid(part, face)
-    for edge in (np.s_[:, 0], np.s_[:, -1], np.s_[0], np.s_[-1]):
+    ends = [np.s_[k] for k in (0, -1) if abs(base[k, 0, 1]) > 1e-9]
+    for edge in (np.s_[:, 0], np.s_[:, -1], *ends):
         strip = np.stack([base[edge] - normal[edge] * 0.004, face[edge]], axis=1)
         parts.grid(edging, strip, outward=tuple(strip.reshape(-1, 3).mean(axis=0) - middle))
 
@@ -42,7 +43,7 @@ def patch(x0: float, x1: float, v0: float, v1: float, across: int, up: int) -> A
 
 def spoiler(parts: Parts) -> None:
     """Add the lip on the rear deck, running out forward on the quarter panels."""
-    s = np.linspace(S_END, 14.3, 25)
+    s = np.linspace(S_END, 14.3, 19)
     edge = wall(s, 8.12)
     along = wall(s + 1e-4, 8.12) - wall(s - 1e-4, 8.12)
     inward = np.stack([along[:, 1], -along[:, 0], 0 * s], axis=1)
@@ -104,8 +105,11 @@ def build(parts: Parts) -> None:
     mirrors(parts)
     wipers(parts)
     raised(parts, "handles", patch(0.40, 0.56, 6.35, 6.75, 4, 1), 0.008, 0.008, "handles")
-    raised(parts, "side_markers", patch(-2.08, -1.95, 2.55, 2.95, 2, 1), 0.003, 0.015, "lamp_frames")
-    raised(parts, "side_markers", patch(2.00, 2.13, 3.0, 3.4, 2, 1), 0.003, 0.015, "lamp_frames")
+    raised(parts, "side_markers", patch(-2.08, -1.95, 2.4, 2.8, 2, 1), 0.003, 0.015, "lamp_frames")
+    raised(parts, "side_markers", patch(2.00, 2.13, 2.25, 2.7, 2, 1), 0.003, 0.015, "lamp_frames")
+    for s0, s1, count in ((0.0, float(s_at(-1.88, 3.3)), 11), (S_END, float(s_at(1.85, 3.3)), 10)):
+        s, v = np.meshgrid(np.linspace(s0, s1, count + 1), [3.15, 3.5], indexing="ij")
+        raised(parts, "moldings", np.stack([s, v], axis=-1), 0.009, 0.009, "moldings")
     for x0, x1, count in ((-0.965, -0.572, 4), (-0.548, 0.617, 12), (0.642, 0.80, 2)):
         raised(parts, "moldings", patch(x0, x1, 3.15, 3.5, count, 1), 0.009, 0.009, "moldings")
 

@@ -46,11 +46,13 @@ def ground() -> Parts:
     radius = spaced(0.0, 4.0, 11.0, counts=(3, 4))
     disc = np.stack([radius * np.cos(angle), radius * np.sin(angle), 0 * radius * angle], axis=-1)
     parts.grid("floor", disc, outward=(0, 0, 1), mirror=False)
-    round_x = np.sign(np.cos(angle)) * np.abs(np.cos(angle)) ** 0.35
-    round_y = np.sign(np.sin(angle)) * np.abs(np.sin(angle)) ** 0.35
+    # A superellipse, its nodes crowded toward the corners.
+    angle = np.linspace(0, 2 * np.pi, 65)[:, None]
+    angle = angle - 0.20 * np.sin(4 * angle)
+    rounded = [np.sign(wave) * np.abs(wave) ** 0.4 for wave in (np.cos(angle), np.sin(angle))]
     share = np.array([0.0, 1.0])
-    patch = np.stack([2.08 * share * round_x, 0.83 * share * round_y, 0 * share * angle + 0.005], axis=-1)
-    parts.grid("shade", patch, outward=(0, 0, 1), mirror=False)
+    shade = np.stack([2.1 * share * rounded[0], 0.83 * share * rounded[1], 0 * share * angle + 0.005], axis=-1)
+    parts.grid("shade", shade, outward=(0, 0, 1), mirror=False)
     return parts
 
 

@@ -14,16 +14,16 @@ GAP, GAP_DEPTH = 0.011, 0.005
 FASCIA_CUT, DOOR_FRONT, DOOR_REAR, TAIL_CUT = -1.86, -0.56, 0.63, 1.83
 SILL, DOOR_FOOT, SHOULDER, QUARTER_TOP = 0.35, 1.0, 7.0, 8.55
 HOOD_EDGE = 9.09
+RING_TOP, RING_WIDTH = 10, 0.13
 UPPER_ROWS = spaced(SHOULDER, 7.5, 8.3, QUARTER_TOP, LEDGE, counts=(1, 3, 1, 1))
+LOWER_ROWS = spaced(SILL, CREASE, SHOULDER, counts=(6, 3))
 SIDE_ROWS = spaced(SILL, DOOR_FOOT, 3.2, CREASE, 4.8, SHOULDER, counts=(1, 4, 2, 2, 4))
 
 
-def columns(start: float, end: float, count: int, rows: Array) -> Array:
-    """Return the (count + 1, rows, 2) parameters of a side panel between two upright cuts."""
-    grid = np.zeros((count + 1, len(rows), 2))
-    for i, x in enumerate(np.linspace(start, end, count + 1)):
-        grid[i] = np.stack([s_at(np.full(len(rows), x), rows), rows], axis=1)
-    return grid
+def columns(stations: Array, rows: Array) -> Array:
+    """Return the (stations, rows, 2) parameters of a side panel with upright lines at these x."""
+    x, v = np.meshgrid(stations, rows, indexing="ij")
+    return np.stack([s_at(x, v), v], axis=-1)
 
 
 def skin(grid: Array) -> Array:
@@ -32,21 +32,33 @@ def skin(grid: Array) -> Array:
 
 
 def around_arch(axle: float, front: float, rear: float) -> Array:
-    """Return the parameters of the side panel about a wheel opening, from the front cut round to the rear cut."""
+    """Return the parameters of the ring of panel round a wheel opening, from the front line to the rear line."""
     foot = np.arcsin((0.215 - ARCH_HEIGHT) / ARCH_RADIUS)
     crease = np.arcsin((0.557 - ARCH_HEIGHT) / ARCH_RADIUS)
-    angles = spaced(np.pi - foot, np.pi - crease, 2.15, 0.99, crease, foot, counts=(6, 3, 10, 3, 6))
+    angles = spaced(np.pi - foot, np.pi - crease, 2.2, 0.94, crease, foot, counts=(6, 3, RING_TOP, 3, 6))
     circle = np.stack([axle + ARCH_RADIUS * np.cos(angles), ARCH_HEIGHT + ARCH_RADIUS * np.sin(angles)], axis=1)
     inner = invert(wall, circle, (0, 2), np.stack([s_at(circle[:, 0], 4.0), circle[:, 1] * 9 - 1], axis=1))
-    up = spaced(SILL, CREASE, SHOULDER, counts=(6, 3))
-    ahead = np.stack([s_at(np.full(10, front), up), up], axis=1)
-    behind = np.stack([s_at(np.full(10, rear), up), up], axis=1)[::-1]
-    over = np.linspace(front, rear, 11)[1:-1]
-    above = np.stack([s_at(over, SHOULDER), np.full(9, SHOULDER)], axis=1)
-    outer = np.concatenate([ahead, above, behind])
-    steps = np.array([0.0, 0.12, 0.30, 0.52, 0.76, 1.0])[None, :, None]
+    ahead, behind = columns(np.array([front, rear]), LOWER_ROWS)
+    above = columns(np.linspace(front, rear, RING_TOP + 1)[1:-1], np.array([SHOULDER]))[:, 0]
+    outer = np.concatenate([ahead, above, behind[::-1]])
+    steps = np.array([0.0, 0.16, 0.40, 0.68, 1.0])[None, :, None]
     ring: Array = inner[:, None] * (1 - steps) + outer[:, None] * steps
     return ring
+
+
+def wheel_panel(parts: Parts, part: str, axle: float, cuts: tuple[float, float], rows: Array) -> None:
+    """Add a fender or quarter panel between two cuts: a ring about the wheel, columns beside it, rows above."""
+    front = max(cuts[0], axle - ARCH_RADIUS - RING_WIDTH)
+    rear = min(cuts[1], axle + ARCH_RADIUS + RING_WIDTH)
+    ahead = np.linspace(cuts[0], front, 1 + int(np.ceil((front - cuts[0]) / 0.08)))
+    behind = np.linspace(rear, cuts[1], 1 + int(np.ceil((cuts[1] - rear) / 0.08)))
+    over = np.linspace(front, rear, RING_TOP + 1)
+    parts.grid(part, skin(columns(np.concatenate([ahead[:-1], over, behind[1:]]), rows)))
+    for stations in (ahead, behind):
+        parts.grid(part, skin(columns(stations, LOWER_ROWS)))
+    ring = skin(around_arch(axle, front, rear))
+    parts.grid(part, ring)
+    opening(parts, ring[:, 0], axle)
 
 
 def opening(parts: Parts, edge: Array, axle: float) -> None:
@@ -60,41 +72,31 @@ def opening(parts: Parts, edge: Array, axle: float) -> None:
     well = np.stack([rim, deep], axis=1)
     parts.grid("wheel_wells", well, flip=False)
     foot = segment(deep[0], deep[-1], len(deep) - 1)
-    parts.grid("wheel_wells", np.stack([deep, (deep + foot) / 2, foot], axis=1), outward=(0.0, 1.0, 0.0))
+    parts.grid("wheel_wells", np.stack([deep, foot], axis=1), outward=(0.0, 1.0, 0.0))
 
 
 def side(parts: Parts) -> None:
     """Add fenders, doors, sills and quarter panels with the gaps between them."""
     half = GAP / 2
-    fender = columns(FASCIA_CUT + half, DOOR_FRONT - half, 10, UPPER_ROWS)
-    parts.grid("fender_{side}", skin(fender))
-    ring = around_arch(AXLES[0], FASCIA_CUT + half, DOOR_FRONT - half)
-    parts.grid("fender_{side}", skin(ring))
-    opening(parts, skin(ring[:, 0]), AXLES[0])
-
+    wheel_panel(parts, "fender_{side}", AXLES[0], (FASCIA_CUT + half, DOOR_FRONT - half), UPPER_ROWS)
+    wheel_panel(parts, "quarter_{side}", AXLES[1], (DOOR_REAR + half, TAIL_CUT - half), UPPER_ROWS[:-1])
     door_rows = np.concatenate([SIDE_ROWS[1:-1], UPPER_ROWS])
     door_rows[0] += 0.06
-    parts.grid("door_{side}", skin(columns(DOOR_FRONT + half, DOOR_REAR - half, 16, door_rows)))
+    parts.grid("door_{side}", skin(columns(np.linspace(DOOR_FRONT + half, DOOR_REAR - half, 16), door_rows)))
     sill = np.array([SILL, 0.7, DOOR_FOOT])
-    parts.grid("sill_{side}", skin(columns(DOOR_FRONT - half, DOOR_REAR + half, 8, sill)))
+    parts.grid("sill_{side}", skin(columns(np.linspace(DOOR_FRONT - half, DOOR_REAR + half, 9), sill)))
 
-    quarter = columns(DOOR_REAR + half, TAIL_CUT - half, 10, UPPER_ROWS[:-1])
-    parts.grid("quarter_{side}", skin(quarter))
-    ring = around_arch(AXLES[1], DOOR_REAR + half, TAIL_CUT - half)
-    parts.grid("quarter_{side}", skin(ring))
-    opening(parts, skin(ring[:, 0]), AXLES[1])
-
-    gap(parts, FASCIA_CUT, np.concatenate([spaced(SILL, 6.5, counts=(12,)), UPPER_ROWS]))
+    gap(parts, FASCIA_CUT, np.concatenate([spaced(SILL, 6.5, counts=(8,)), UPPER_ROWS]))
     gap(parts, DOOR_FRONT, np.concatenate([SIDE_ROWS[:-1], UPPER_ROWS]))
     gap(parts, DOOR_REAR, np.concatenate([SIDE_ROWS[:-1], UPPER_ROWS[:-1]]))
-    gap(parts, TAIL_CUT, np.concatenate([spaced(SILL, 6.5, counts=(12,)), UPPER_ROWS[:-1]]))
-    strip = columns(DOOR_FRONT, DOOR_REAR, 8, np.array([DOOR_FOOT - 0.05, DOOR_FOOT + 0.11]))
+    gap(parts, TAIL_CUT, np.concatenate([spaced(SILL, 6.5, counts=(8,)), UPPER_ROWS[:-1]]))
+    strip = columns(np.linspace(DOOR_FRONT, DOOR_REAR, 9), np.array([DOOR_FOOT - 0.05, DOOR_FOOT + 0.11]))
     parts.grid("gaps", skin(strip) - [0, GAP_DEPTH, 0])
 
 
 def gap(parts: Parts, cut: float, rows: Array) -> None:
     """Add the dark bottom of an upright gap: a strip behind the skin, wider than the gap."""
-    points = skin(columns(cut - 2 * GAP, cut + 2 * GAP, 1, rows))
+    points = skin(columns(np.array([cut - 2 * GAP, cut + 2 * GAP]), rows))
     inward = np.stack([0 * rows, -np.ones(len(rows)), -1.6 * (rows > 7.6)], axis=-1)
     parts.grid("gaps", points + GAP_DEPTH * inward)
 
@@ -129,14 +131,14 @@ def hood_rear(y: Array, side_y: float) -> Array:
 
 def hood(parts: Parts) -> None:
     """Add the hood, the gap about it and the cowl vent behind it."""
-    front, flank = hood_outline(10, 18, HOOD_EDGE, -0.61)
+    front, flank = hood_outline(10, 17, HOOD_EDGE, -0.61)
     side_y = float(flank[-1, 1])
     rear = hood_rear(np.linspace(0, side_y, 11), side_y)
-    center = segment(front[0, :2], rear[0], 18)
+    center = segment(front[0, :2], rear[0], 17)
     plan = coons(front[:, :2], rear, center, flank[:, :2])
     points = np.concatenate([plan, top(plan[..., 0], plan[..., 1])[..., None]], axis=2)
     parts.grid("hood", points, outward=(0, 0, 1))
-    below = [np.concatenate([a, b[1:]]) for a, b in (hood_outline(10, 18, v, -0.61) for v in (8.85, 9.3))]
+    below = [np.concatenate([a, b[1:]]) for a, b in (hood_outline(10, 17, v, -0.61) for v in (8.85, 9.3))]
     strip = np.stack(below, axis=1) - [0, 0, GAP_DEPTH]
     parts.grid("gaps", strip, outward=(0, 0, 1))
 

@@ -43,4 +43,4 @@ def build(parts: Parts) -> None:
             hole = disc[i0 : i1 + 1, j0 : j1 + 1]
             loop = np.concatenate([hole[:, 0], hole[-1, 1:], hole[-2::-1, -1], hole[0, -2::-1]])
             parts.grid("wheels", np.stack([loop, loop - [0, 0.028, 0]], axis=1), flip=True)
-        parts.grid("brakes", turned(((0.040, 0.185), (0.044, 0.07)), axle), flip=True)
+        parts.grid("brakes", turned(((0.040, 0.185), (0.044, 0.07)), axle)[::2], flip=True)
