@@ -46,8 +46,7 @@ def visible_surfaces(
     chunks: list[Spans] = []
     span_count = 0
     for first in range(0, projected.corners.shape[1], POLYGONS_AT_ONCE):
-        polygons = np.arange(first, min(first + POLYGONS_AT_ONCE, projected.corners.shape[1]))
-        spans = spans_of_polygons(projected, polygons)
+        spans = spans_of_polygons(projected, first, first + POLYGONS_AT_ONCE)
         keep_front_most(front, spans, span_count)
         chunks.append(spans)
         span_count += len(spans.count)
@@ -71,9 +70,12 @@ class Spans:
     right_edge: npt.NDArray[np.int32]
 
 
-def spans_of_polygons(projected: Projection, polygons: Numbers) -> Spans:
-    """The spans of some polygons, by polygon and line, without those that hold no pixel's center."""
-    first_lines = projected.first_line[projected.corners[:, polygons]]
+def spans_of_polygons(projected: Projection, first: int, beyond: int) -> Spans:
+    """The spans of the polygons from `first` to before `beyond`, by polygon and line.
+
+    Those that hold no pixel's center are left out.
+    """
+    first_lines = projected.first_line[projected.corners[:, first:beyond]]
     top_line, bottom_line = first_lines.min(axis=0), first_lines.max(axis=0)
     height = bottom_line - top_line
     # The slot of (polygon, line) is slot[polygon] + line.
@@ -81,8 +83,8 @@ def spans_of_polygons(projected: Projection, polygons: Numbers) -> Spans:
 
     # Cut the edges: those that go down the raster are one side of a polygon, those that go up the other.
     following = np.roll(first_lines, -1, axis=0)
-    down_side = _cuts(projected, polygons, first_lines < following, slot, int(height.sum()))
-    up_side = _cuts(projected, polygons, first_lines > following, slot, int(height.sum()))
+    down_side = _cuts(projected, first, first_lines < following, slot, int(height.sum()))
+    up_side = _cuts(projected, first, first_lines > following, slot, int(height.sum()))
 
     # Pair the cuts to spans from left to right.
     line = np.arange(int(height.sum())) - np.repeat(slot, height)
@@ -95,15 +97,15 @@ def spans_of_polygons(projected: Projection, polygons: Numbers) -> Spans:
     )
 
     # Keep the spans that hold a pixel's center: left <= center < right.
-    first = np.clip(np.ceil(left - 0.5), 0, projected.elements).astype(np.intp)
-    beyond = np.clip(np.ceil(right - 0.5), 0, projected.elements).astype(np.intp)
-    kept = np.flatnonzero(beyond > first)
-    left, right, left_depth, first = left[kept], right[kept], left_depth[kept], first[kept]
+    begin = np.clip(np.ceil(left - 0.5), 0, projected.elements).astype(np.intp)
+    end = np.clip(np.ceil(right - 0.5), 0, projected.elements).astype(np.intp)
+    kept = np.flatnonzero(end > begin)
+    left, right, left_depth, begin = left[kept], right[kept], left_depth[kept], begin[kept]
     step = (right_depth[kept] - left_depth) / (right - left)
-    start = left_depth + (first + 0.5 - left) * step
+    start = left_depth + (begin + 0.5 - left) * step
     return Spans(
-        line[kept] * projected.elements + first,
-        beyond[kept] - first,
+        line[kept] * projected.elements + begin,
+        end[kept] - begin,
         start.astype(np.float32),
         step.astype(np.float32),
         left_edge[kept].astype(np.int32),
@@ -112,11 +114,14 @@ def spans_of_polygons(projected: Projection, polygons: Numbers) -> Spans:
 
 
 def _cuts(
-    projected: Projection, polygons: Numbers, chosen: npt.NDArray[np.bool_], slot: Numbers, slots: int
+    projected: Projection, first: int, chosen: npt.NDArray[np.bool_], slot: Numbers, slots: int
 ) -> tuple[Floats, Floats, Numbers]:
-    """Where the lines cut the chosen edges: the place across, the inverse depth and the edge, by slot."""
+    """Where the lines cut the chosen edges of polygons from `first` on, by slot.
+
+    They are the place across, the inverse depth and the number of the edge.
+    """
     corner, column = np.nonzero(chosen)
-    edge = corner * projected.corners.shape[1] + polygons[column]
+    edge = corner * projected.corners.shape[1] + first + column
     cut = edges(projected, edge)
     across, inverse_depth, edge_numbers = np.empty(slots), np.empty(slots), np.empty(slots, np.intp)
 
