@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from scenes.figures import Sheet, open_scene
 
+SIDE = (0.5, 0.0, 0.9)
+"""A point of the pyramid's lit side."""
+
 
 def main() -> None:
-    """Render once, then change the one light twice."""
+    """Render once, then aim the one light and concentrate it."""
     studio, display = open_scene("pyramid")
     sheet = Sheet("04")
-    aim = studio.scene.light("lamp").aim
-    studio.light("lamp", aim=None, concentration=0)
     sheet.add(display.field(), "A. Point Source", "a")
-    studio.light("lamp", aim=aim, concentration=1)
+    studio.light("lamp", aim=SIDE, concentration=1)
     sheet.add(display.field(), "B. Directed Flood, C = 1", "b")
     studio.light("lamp", concentration=40)
     sheet.add(display.field(), "C. Directed Spot, C = 40", "c")
