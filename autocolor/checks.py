@@ -21,6 +21,9 @@ Color = tuple[int, int, int]
 LARGEST_COORDINATE = 1e30
 """Assumed: far beyond any object, and its square is still far from the end of the float64 range."""
 
+LARGEST_PLACE = 1e36
+"""Assumed: an eye and lights have room around the largest object."""
+
 COLOR_PATTERN = re.compile(r"#[0-9a-fA-F]{6}")
 
 
@@ -79,8 +82,8 @@ def vector(problems: list[str], what: str, value: object, *, not_zero: bool = Fa
         components = [] if words else [float(component) for component in given]
     except (TypeError, ValueError, OverflowError):
         components = []
-    if len(components) != 3 or not all(abs(component) <= LARGEST_COORDINATE for component in components):
-        problems.append(f"{what} must be three finite numbers of at most 1e30, not {value!r}")
+    if len(components) != 3 or not all(abs(component) <= LARGEST_PLACE for component in components):
+        problems.append(f"{what} must be three finite numbers of at most 1e36, not {value!r}")
         return (0.0, 0.0, 1.0)
     if not_zero and not any(components):
         problems.append(f"{what} must not be zero, not {value!r}; give it a length")

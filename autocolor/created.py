@@ -20,6 +20,9 @@ FILLED = 0.86
 
 ASPECT = 640 / 480
 
+POINT = 1e-12
+"""Assumed: what is smaller than this fraction of its distance from the origin is taken as a point."""
+
 OBJECT_COLORS = (
     "#b3202c", "#2f5fa8", "#c9a227", "#3f7f4f", "#7d4a94", "#c8642c",
     "#3a8c92", "#a8426a", "#7c8a3a", "#5561a8", "#8c5a3c", "#8a949e",
@@ -53,13 +56,12 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
 
     Paper: Figure 5, RESCALE.
     """
-    low, high = mesh.bounds
     axes = view.axes
-    if not len(mesh.node_numbers) or (low == high).all():
-        points: npt.NDArray[np.float64] = np.array([low - 0.5, high + 0.5])
+    middle, radius = _sphere_around(mesh)
+    if _is_a_point(mesh):
+        points: npt.NDArray[np.float64] = middle + radius * np.array([[-0.5] * 3, [0.5] * 3])
     else:
         points = mesh.coordinates[np.unique(mesh.node_numbers)]
-    middle = (low + high) / 2
     places = (points - middle) @ axes.T
     size = float(np.abs(places).max())
 
@@ -79,15 +81,29 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
     return view.replace(eye=tuple(eye), direction=tuple(forward))
 
 
+def _is_a_point(mesh: Mesh) -> bool:
+    """Whether the mesh has no polygon, or none that float64 tells from a point where it lies."""
+    low, high = mesh.bounds
+    return float((high - low).max()) <= POINT * float(np.abs([low, high]).max())
+
+
+def _sphere_around(mesh: Mesh) -> tuple[npt.NDArray[np.float64], float]:
+    """The middle and the radius of a sphere around the object; a point is given some room."""
+    low, high = mesh.bounds
+    if _is_a_point(mesh):
+        return (low + high) / 2, max(1.0, 1e3 * POINT * float(np.abs([low, high]).max()))
+    # Scale by the largest extent first: the squares of a very small one leave the float range.
+    extent = (high - low).max()
+    return (low + high) / 2, float(np.linalg.norm((high - low) / extent) * extent / 2)
+
+
 def created_lights(mesh: Mesh, view: View) -> tuple[Light, ...]:
     """Four studio lights around the object, aimed at it, placed as seen from the eye.
 
     Key from the upper left, fill from the right, top from above, rim from behind: as around a car in a
     photographer's studio (Paper: "Light Controls").
     """
-    low, high = mesh.bounds
-    middle = (low + high) / 2
-    radius = max(float(np.linalg.norm(high - low)) / 2, 1e-30) or 1.0
+    middle, radius = _sphere_around(mesh)
     right, down, forward = view.axes
     if abs(forward[2]) > 0.99:
         up, ahead = -down, forward

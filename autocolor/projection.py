@@ -31,6 +31,9 @@ ROUNDING = 1e-6
 
 POLYGONS_AT_ONCE = 1 << 15
 
+LEAST_UNIT = 2.0**-800
+"""Assumed: far below the size of any object, and still a divisor for the farthest light."""
+
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
 
@@ -93,7 +96,7 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     """The polygons of the mesh that may be seen, each crossed at most twice by any line."""
     axes, eye = view.axes, np.array(view.eye)
     box = (np.array(list(itertools.product(*np.stack(mesh.bounds, axis=1)))) - eye) @ axes.T
-    unit = 2.0 ** math.frexp(float(np.abs(box).max()))[1]
+    unit = max(2.0 ** math.frexp(float(np.abs(box).max()))[1], LEAST_UNIT)
     places = rotated(axes / unit, mesh.coordinate_rows, view.eye)
     normals = rotated(axes, mesh.normal_rows)
     corners, corner_normals = mesh.columns, mesh.normal_columns

@@ -54,7 +54,9 @@ class Scene:
     name: str = "scene"
 
     def __post_init__(self) -> None:
-        problems: list[str] = []
+        problems = self._kind_problems()
+        if problems:
+            raise InputError(problems)
         for table in ("parts", "surfaces", "lights"):
             object.__setattr__(self, table, tuple(getattr(self, table)))
             problems.extend(_repeated(table, [row.name for row in getattr(self, table)]))
@@ -70,6 +72,18 @@ class Scene:
         problems.extend(self._table_problems())
         if problems:
             raise InputError(problems)
+
+    def _kind_problems(self) -> list[str]:
+        problems = [
+            f"{name} must be a {kind.__name__}, not {value!r}"
+            for name, kind, value in (("mesh", Mesh, self.mesh), ("view", View, self.view))
+            if not isinstance(value, kind)
+        ]
+        for table, kind in (("parts", Part), ("surfaces", Surface), ("lights", Light)):
+            rows = getattr(self, table)
+            if not isinstance(rows, (list, tuple)) or not all(isinstance(row, kind) for row in rows):
+                problems.append(f"{table} must be a tuple of {kind.__name__}, not {rows!r}")
+        return problems
 
     def _table_problems(self) -> list[str]:
         problems = []
