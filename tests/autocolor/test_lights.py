@@ -62,7 +62,7 @@ def test_giving_a_direction_drops_the_aim_and_the_other_way_round() -> None:
         ({"intensity": math.nan}, "light 'key': intensity must be a finite number of at least 0, not nan"),
         (
             {"position": (1, 2)},
-            "light 'key': position must be three finite numbers of at most 1e30, not (1, 2)",
+            "light 'key': position must be three finite numbers of at most 1e36, not (1, 2)",
         ),
         (
             {"direction": (0, 0, 0)},

@@ -1,0 +1,114 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Mesh, View, render, scene_of
+from autocolor.created import created_lights, created_view, framed
+from tests.autocolor.meshes import cube, grid, sphere
+from tests.autocolor.strategies import Vector, directions, meshes, numbers, vectors
+
+
+def assert_framed(view: View, mesh: Mesh) -> None:
+    """Every node that a polygon uses is before the eye and within 0.9 of the picture from its middle."""
+    used = mesh.coordinates[np.unique(mesh.node_numbers)]
+    right, down, deep = (used - np.array(view.eye)) @ view.axes.T[:, 0], 0, 0
+    places = (used - np.array(view.eye)) @ view.axes.T
+    right, down, deep = places.T
+    slope = np.tan(np.radians(view.field_of_view) / 2)
+    assert (deep > 0).all()
+    assert (np.abs(down) <= 0.9 * slope * deep).all()
+    assert (np.abs(right) <= 0.9 * slope * 640 / 480 * deep).all()
+
+
+def resized(mesh: Mesh, size: float, middle: Vector = (0, 0, 0)) -> Mesh:
+    return Mesh(
+        mesh.coordinates * size + np.array(middle) * size,
+        mesh.node_numbers,
+        mesh.part_numbers,
+        mesh.part_names,
+    )
+
+
+SIZES = st.sampled_from([1e-200, 1e-20, 1e-6, 1.0, 1e6, 1e20, 2e29])
+
+
+@given(
+    meshes(),
+    SIZES,
+    vectors(),
+    st.one_of(st.none(), directions),
+    numbers(-180, 180),
+    st.sampled_from([1.0, 30.0, 120.0]),
+)
+def test_every_node_is_within_the_picture_with_space_on_all_sides(
+    mesh: Mesh, size: float, middle: Vector, direction: Vector | None, angle: float, field_of_view: float
+) -> None:
+    placed = resized(mesh, size, middle)
+    if direction is None:
+        assert_framed(created_view(placed), placed)
+    else:
+        view = View((0, 0, 0), direction=direction, angle=angle, field_of_view=field_of_view)
+        around = framed(view, placed)
+        assert_framed(around, placed)
+        assert around.axes == pytest.approx(view.axes, abs=1e-9)
+
+
+@pytest.mark.parametrize("mesh", [cube(), sphere(), grid(2, 2, (0, 0, 0), (3, 0, 0), (0, 0, 1))], ids=repr)
+def test_a_framed_object_fills_the_picture(mesh: Mesh) -> None:
+    picture = render(scene_of(mesh), 120, 160)
+    lines, elements = np.nonzero(picture.surface_number)
+    assert max(np.ptp(lines) / 120, np.ptp(elements) / 160) == pytest.approx(0.86, abs=0.03)
+
+
+@given(meshes(), SIZES, vectors())
+def test_a_scene_is_created_for_any_mesh_and_rendered(mesh: Mesh, size: float, middle: Vector) -> None:
+    scene = scene_of(resized(mesh, size, middle))
+    picture = render(scene, 12, 16)
+    assert np.isfinite(picture.intensity).all()
+    assert len(scene.lights) == 4
+
+
+@pytest.mark.parametrize(
+    "place", [(0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (1e20, -1e20, 3.0), (1e-20, 0.0, 0.0), (1e30, 1e30, -1e30)]
+)
+def test_a_scene_of_a_single_point_is_created(place: Vector) -> None:
+    point = Mesh(np.array([place]), np.zeros((1, 4), np.intp), np.zeros(1, np.intp), ("point",))
+    scene = scene_of(point)
+    assert_framed(scene.view, point)
+    assert not render(scene, 12, 16).surface_number.any()
+
+
+def test_a_scene_of_no_polygons_is_created() -> None:
+    empty = Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ())
+    assert not render(scene_of(empty), 12, 16).surface_number.any()
+
+
+def test_a_tiny_object_far_from_the_origin_is_created() -> None:
+    tiny = resized(cube(), 1e-12, (1e12, 0, 0))
+    assert np.isfinite(render(scene_of(tiny), 12, 16).intensity).all()
+
+
+@given(st.floats(0.01, 100))
+def test_created_lights_and_view_grow_with_the_object(size: float) -> None:
+    one, other = scene_of(cube()), scene_of(cube(size))
+    assert np.array(other.view.eye) == pytest.approx(np.array(one.view.eye) * size)
+    for light, larger in zip(one.lights, other.lights, strict=True):
+        assert np.array(larger.position) == pytest.approx(np.array(light.position) * size, abs=1e-9 * size)
+    assert render(one, 24, 32).intensity == pytest.approx(render(other, 24, 32).intensity, abs=1e-4)
+
+
+def test_the_key_light_stands_at_the_upper_left_of_the_eye() -> None:
+    view = created_view(cube())
+    key = created_lights(cube(), view)[0]
+    right, down, _ = view.axes @ (np.array(key.position) - 0.5)
+    assert right < 0
+    assert down < 0
+    assert key.aim == (0.5, 0.5, 0.5)
+
+
+def test_lights_are_created_for_a_view_from_above() -> None:
+    view = framed(View((0, 0, 5), direction=(0, 0, -1)), cube())
+    assert all(np.isfinite(light.position).all() for light in created_lights(cube(), view))

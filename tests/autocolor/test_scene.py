@@ -1,0 +1,156 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from autocolor import InputError, Light, Mesh, Part, Scene, Surface, UsageError, scene_of
+from tests.autocolor.meshes import cube, grid
+from tests.autocolor.strategies import scenes
+
+
+def car() -> Mesh:
+    return Mesh.joined(
+        [grid(1, 1, (0, z, 0), (1, 0, 0), (0, 0, 1), name) for z, name in enumerate(("door", "hood", "pane"))]
+    )
+
+
+def test_a_part_takes_the_surface_that_is_named_for_it_else_the_one_of_its_name_else_a_created_one() -> None:
+    scene = scene_of(
+        car(), surface_of_part={"door": "body"}, surfaces=[Surface("body"), Surface("hood", two_sided=False)]
+    )
+    assert [part.surface for part in scene.parts] == ["body", "hood", "pane"]
+    assert [surface.name for surface in scene.surfaces] == ["body", "hood", "pane"]
+    assert not scene.surface("hood").two_sided
+    assert scene.surface_number_of_part == (1, 2, 3)
+
+
+def test_a_part_that_names_no_known_surface_is_refused_with_the_nearest_name() -> None:
+    with pytest.raises(
+        InputError, match=r"part 'door': surface 'bod' is not in the surface table; did you mean 'body'\?"
+    ):
+        scene_of(car(), surface_of_part={"door": "bod"}, surfaces=[Surface("body")])
+
+
+def test_more_parts_than_surface_numbers_share_the_last_surface() -> None:
+    many = Mesh.joined(
+        [grid(1, 1, (0, number, 0), (1, 0, 0), (0, 0, 1), f"part {number}") for number in range(300)]
+    )
+    scene = scene_of(many)
+    assert len(scene.surfaces) == 255
+    assert scene.parts[299].surface == scene.surfaces[254].name
+
+
+@given(scenes())
+def test_a_scene_replaced_by_nothing_shares_everything(scene: Scene) -> None:
+    same = scene.replace()
+    for name in ("mesh", "parts", "surfaces", "lights", "view"):
+        assert getattr(same, name) is getattr(scene, name)
+
+
+def test_an_edit_shares_all_that_it_does_not_change() -> None:
+    scene = scene_of(car())
+    edited = scene.with_light("key", intensity=2)
+    assert edited.mesh is scene.mesh
+    assert edited.surfaces is scene.surfaces
+    assert edited.lights[1] is scene.lights[1]
+    assert (edited.light("key").intensity, scene.light("key").intensity) == (2.0, 1.0)
+
+
+def test_every_row_is_changed_by_its_name() -> None:
+    scene = scene_of(car(), surface_of_part={"pane": "hood"})
+    assert scene.with_part("door", surface="hood").part("door").surface == "hood"
+    assert scene.with_surface("hood", diffuse=0.1).surface("hood").reflectance.diffuse == 0.1
+    assert scene.with_view(angle=5).view.angle == 5.0
+    assert [light.on for light in scene.only_lights("fill").lights] == [False, True, False, False]
+
+
+@pytest.mark.parametrize(
+    ("ask", "sentence"),
+    [
+        (lambda scene: scene.light("keys"), "there is no light 'keys'; did you mean 'key'?"),
+        (lambda scene: scene.surface("dor"), "there is no surface 'dor'; did you mean 'door'?"),
+        (lambda scene: scene.part("x"), "there is no part 'x'; known are 'door', 'hood', 'pane'"),
+        (lambda scene: scene.only_lights("kee"), "there is no light 'kee'; did you mean 'key'?"),
+    ],
+)
+def test_an_unknown_name_is_refused_with_the_nearest_right_one(ask: Any, sentence: str) -> None:
+    with pytest.raises(UsageError) as refusal:
+        ask(scene_of(car()))
+    assert str(refusal.value) == sentence
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        ({"ambient": -0.1}, "ambient must be a finite number of at least 0, not -0.1"),
+        ({"scaling": "whole"}, "scaling must be 'surface' or 'object', not 'whole'"),
+        ({"scaling": ["object"]}, "scaling must be 'surface' or 'object', not ['object']"),
+        ({"contrast": "high"}, "contrast must be 'stretch' or 'floor', not 'high'"),
+        (
+            {"mapping": "log"},
+            "mapping must be 'linear', 'gamma', 'logarithm', 'equalize', or rising points [x, y] from x = 0 to x = 1,"
+            " not 'log'; did you mean 'logarithm'?",
+        ),
+        (
+            {"background": "black"},
+            "background must be \"#rrggbb\" or three whole numbers from 0 to 255, not 'black'",
+        ),
+        (
+            {"lights": [Light("a", (0, 0, 0))] * 2},
+            "lights: a name must stand once, not repeated: 'a'; rename one",
+        ),
+        ({"parts": [Part("door", "door")]}, "the part table must have the mesh's parts in their order"),
+    ],
+)
+def test_a_scene_that_breaks_a_rule_is_refused(fields: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        scene_of(car()).replace(**fields)
+    assert str(refusal.value).startswith(sentence)
+
+
+@pytest.mark.parametrize(
+    "curve",
+    [
+        (),
+        ((0, 0),),
+        ((0, 0), (0.5, 1)),
+        ((0, 0), (0.5, 0.2), (0.5, 0.3), (1, 1)),
+        ((0, 1), (1, 0)),
+        ((0, -1), (1, 1)),
+        ((0, 0), (1, 2)),
+        ((0, 0), (float("nan"), 0.5), (1, 1)),
+        3,
+    ],
+)
+def test_a_curve_that_falls_or_does_not_span_the_range_is_refused(curve: Any) -> None:
+    with pytest.raises(
+        InputError, match=r"mapping must be .*, or rising points \[x, y\] from x = 0 to x = 1, not"
+    ):
+        scene_of(cube(), mapping=curve)
+
+
+@pytest.mark.parametrize(
+    "rows", [{"lights": ["key"]}, {"surfaces": [None]}, {"parts": 3}, {"view": "front"}, {"mesh": None}]
+)
+def test_a_table_of_something_else_is_refused(rows: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match="must be"):
+        scene_of(cube()).replace(**rows)
+
+
+def test_an_unknown_field_of_a_scene_is_refused() -> None:
+    with pytest.raises(InputError, match=r"scene: there is no 'ambiant'; did you mean 'ambient'\?"):
+        scene_of(cube()).replace(ambiant=1)
+
+
+def test_unused_nodes_do_not_matter_to_what_is_created() -> None:
+    mesh = cube()
+    with_stray = Mesh(
+        np.concatenate([mesh.coordinates, [(1e25, 0, 0)]]),
+        mesh.node_numbers,
+        mesh.part_numbers,
+        mesh.part_names,
+    )
+    assert scene_of(with_stray).view == scene_of(mesh).view
