@@ -15,8 +15,10 @@ def main() -> None:
     """Render once; each panel moves flaps of the one light."""
     studio, display = open_scene("coupe")
     side = autocolor.Light("flapped", (-4.0, -6.0, 2.0), aim=(0.0, 0.0, 0.6), concentration=4)
-    view = studio.scene.view.replace(eye=(-4.6, -7.4, 1.7), target=(0.0, 0.0, 0.52))
-    studio.edit(studio.scene.replace(lights=(side,), view=view, scaling="object", mapping="gamma"))
+    view = studio.scene.view.replace(eye=(-4.9, -8.9, 1.8), target=(0.0, 0.0, 0.52))
+    # The floor keeps what only the ambient light reaches from going black.
+    shown = {"ambient": 0.12, "scaling": "object", "mapping": "gamma", "contrast": "floor"}
+    studio.edit(studio.scene.replace(lights=(side,), view=view, **shown))
     sheet = Sheet("09")
     sheet.add(display.field(), "A. No Flaps", "a")
     studio.light("flapped", flaps={"z": {"minimum": CREASE}})

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from scenes.figures import Sheet, open_scene
 
+COLORS = {"object_color": "#960c1c", "light_color": "#ffdccc"}
+"""The same two colors in all three: a deep red, and a lamp's warm white."""
+
 PANELS = (
     ("a", 1.0, "A. Object Color Only"),
     ("b", 0.5, "B. Blend at Half the Range"),
@@ -17,7 +20,7 @@ def main() -> None:
     words_written = display.frame_buffer.written
     sheet = Sheet("15")
     for panel, blend, caption in PANELS:
-        studio.recolor("body", blend=blend)
+        studio.recolor("body", **COLORS, blend=blend)
         sheet.add(display.field(), caption, panel)
     assert display.frame_buffer.written == words_written
     sheet.write(across=3)
