@@ -94,8 +94,9 @@ class Scene:
                 f" {part_names}"
             )
         surface_names = [surface.name for surface in self.surfaces]
+        known = set(surface_names)
         for part in self.parts:
-            if part.surface not in surface_names:
+            if part.surface not in known:
                 problems.append(
                     f"part {part.name!r}: surface {part.surface!r} is not in the surface table"
                     f"{nearest(part.surface, surface_names)}"
@@ -176,7 +177,8 @@ def scene_of(
     names = {surface.name: None for surface in given} | {part.surface: None for part in parts}
     kept = list(names)[:MOST_SURFACES]
     if len(names) > MOST_SURFACES and len(given) < MOST_SURFACES:
-        parts = [part if part.surface in kept else part.replace(surface=kept[-1]) for part in parts]
+        shown = set(kept)
+        parts = [part if part.surface in shown else Part(part.name, kept[-1]) for part in parts]
     table = {surface.name: surface for surface in given}
     # A part that names a surface of another name than its own must name one that is given.
     named = set((surface_of_part or {}).values())
