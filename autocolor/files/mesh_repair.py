@@ -41,7 +41,10 @@ def mended(
     repairs = list(skipped)
     corners, counts, shortened = _without_repeats(polygons.corners, polygons.corner_counts)
     few = counts < 3
-    node_numbers, owners = split_polygons(coordinates, corners, counts)
+    try:
+        node_numbers, owners = split_polygons(coordinates, corners, counts)
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from None
 
     # Drop pieces without area; a polygon is dropped when no piece of it is left.
     wide = np.concatenate(

@@ -33,6 +33,7 @@ def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) ->
     statements = Statements(path.stem)
     tables = read_plain_obj(data, statements)
     if tables is None or (tables.rows < 0).any():
+        del tables
         statements = Statements(path.stem)
         tables = read_obj_lines(data, path.name, statements)
     del data

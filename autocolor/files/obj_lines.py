@@ -90,13 +90,13 @@ class ObjLines:
         """The tables, when there was no problem and every corner has its node; else InputError."""
         count = len(self.coordinates) // 3
         tables = ObjTables(
-            np.array(self.coordinates, np.float64).reshape(count, 3),
+            np.array(self.coordinates).reshape(count, 3),
             *(
-                np.array(column, np.int64)
+                np.frombuffer(column, np.int64) if column else np.empty(0, np.int64)
                 for column in (self.numbers, self.corner_counts, self.part_numbers, self.nodes_before)
             ),
         )
-        missing = np.flatnonzero(tables.rows < 0)
+        missing = np.flatnonzero(tables.rows < 0)[: MOST_PROBLEMS * MOST_CORNERS]
         polygons = np.searchsorted(np.cumsum(tables.corner_counts), missing, side="right")
         polygons, first = np.unique(polygons, return_index=True)
         for corner, polygon in zip(missing[first].tolist(), polygons.tolist(), strict=True):

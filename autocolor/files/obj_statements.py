@@ -34,6 +34,7 @@ class Statements:
         self.surface: str | None = None
         self.numbers: dict[str, int] = {}
         self.skipped: dict[str, int] = {}
+        self.unknown = ""
 
     @property
     def part_number(self) -> int:
@@ -56,11 +57,10 @@ class Statements:
         elif keyword == b"usemtl":
             self.surface = _name(line.split(None, 1)[1]) if len(words) > 1 else None
         elif keyword not in UNUSED:
-            what = SKIPPED.get(keyword)
-            if what is None:
-                # Name the first unknown one only, so that a file of rubbish makes no endless report.
-                what = next((known for known in self.skipped if known.startswith("unknown")), None)
-                what = what or f"unknown statements (the first is {shown(keyword)})"
+            # Name the first unknown one only, so that a file of rubbish makes no endless report.
+            if keyword not in SKIPPED and not self.unknown:
+                self.unknown = f"unknown statements (the first is {shown(keyword)})"
+            what = SKIPPED.get(keyword, self.unknown)
             self.skipped[what] = self.skipped.get(what, 0) + 1
         return True
 

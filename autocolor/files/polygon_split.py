@@ -9,8 +9,13 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from autocolor.errors import InputError
+
 MOST_CORNERS = 1000
 """Assumed: corners of one polygon; clipping takes time with their square."""
+
+MOST_CLIPPING = 200_000_000
+"""Assumed: the sum of the squared corners of all polygons that are clipped, some minutes at the worst."""
 
 Point = tuple[float, float]
 
@@ -21,6 +26,7 @@ def split_polygons(
     """Pieces (n, 4), each a quad or a triangle that repeats its last node, and the row of each one's polygon.
 
     The pieces stand in the order of the polygons; those with fewer than three corners have none.
+    Raises InputError where the polygons with corners that point inward are too many and too large.
     """
     starts = np.cumsum(counts) - counts
     small = np.flatnonzero((counts == 3) | (counts == 4))
@@ -29,6 +35,7 @@ def split_polygons(
     if not len(large):
         return pieces[0], small
     owners = [small]
+    clipping = 0
     for count in np.flatnonzero(np.bincount(counts[large])).tolist():
         rows = large[counts[large] == count]
         nodes = corners[starts[rows, None] + np.arange(count)]
@@ -36,6 +43,12 @@ def split_polygons(
         fan = np.array([(0, at, at + 1, min(at + 2, count - 1)) for at in range(1, count - 1, 2)])
         pieces.append(nodes[convex][:, fan].reshape(-1, 4))
         owners.append(np.repeat(rows[convex], len(fan)))
+        clipping += int((~convex).sum()) * count * count
+        if clipping > MOST_CLIPPING:
+            raise InputError(
+                f"polygons with corners that point inward must be fewer, not so many with {count} corners;"
+                " split them into triangles"
+            )
         for row in np.flatnonzero(~convex).tolist():
             clipped = np.array(clipped_ears([(x, y) for x, y in flat[row].tolist()]))
             pieces.append(nodes[row][clipped])
@@ -69,15 +82,16 @@ def _in_their_planes(
 def clipped_ears(points: list[Point]) -> list[tuple[int, int, int, int]]:
     """The pieces of one polygon that turns left, as rows of its points; the last has four corners.
 
-    Where it crosses itself and no ear is left, a corner is clipped all the same.
+    One that does not cross itself always has an ear; from another, what is left is clipped as it comes.
     """
     rows = list(range(len(points)))
     pieces = []
-    at = 0
-    looked = 0
+    at = looked = 0
+    crossed = False
     while len(rows) > 4:
         before, here, after = rows[at - 1], rows[at], rows[(at + 1) % len(rows)]
-        if looked >= len(rows) or _is_ear(points, rows, before, here, after):
+        crossed = crossed or looked >= len(rows)
+        if crossed or _is_ear(points, rows, before, here, after):
             pieces.append((before, here, after, after))
             del rows[at]
             # Look at the corner after next: ears taken in a row would make slivers.

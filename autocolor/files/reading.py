@@ -9,8 +9,8 @@ from pathlib import Path
 
 from autocolor.errors import InputError, MissingInputError
 
-LARGEST_MESH_FILE = 512 * 1024 * 1024
-"""Assumed: bytes; some five million polygons as OBJ, and a bound on the memory that a reader takes."""
+LARGEST_MESH_FILE = 256 * 1024 * 1024
+"""Assumed: bytes; some three million polygons as OBJ, and a bound on the memory that a reader takes."""
 
 UTF_8_MARK = b"\xef\xbb\xbf"
 

@@ -100,6 +100,8 @@ def _parts(
     surface_of_part: dict[str, str] = {}
     known_parts, known_surfaces = set(part_names or ()), set(surface_names)
     for name, table in tables.items():
+        if problems.full:
+            break
         keys, _ = problems.checked(("parts", name), PartKeys, table)
         if part_names is None:
             continue

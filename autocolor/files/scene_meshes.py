@@ -40,7 +40,8 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
     entries = [
         entry
         for row, table in enumerate(rows)
-        if (entry := _entry(problems, ("mesh", row), table, folder, outside)) is not None
+        if not problems.full
+        and (entry := _entry(problems, ("mesh", row), table, folder, outside)) is not None
     ]
     crease_angle = _crease_angle(problems, entries)
     size = sum(_size(file) for entry in entries for file in entry.files.values())

@@ -14,6 +14,8 @@ from autocolor.files.toml_text import KeyPath, key_lines
 
 MOST_PROBLEMS = 100
 
+LONGEST_SENTENCE = 400
+
 Model = TypeVar("Model", bound=BaseModel)
 
 
@@ -36,13 +38,20 @@ class SceneProblems:
 
     def _note(self, path: KeyPath, sentence: str, names: tuple[str, Iterable[str]] | None = None) -> None:
         self.count += 1
-        if len(self.found) >= MOST_PROBLEMS:
+        if self.full:
             return
         if names:
             sentence += nearest(*names)
+        if len(sentence) > LONGEST_SENTENCE:
+            sentence = sentence[:LONGEST_SENTENCE] + "..."
         line = self._line(path)
         at = f", line {line}" if line else ""
         self.found.append((line or 0, f"{self.place}{at}, {self._where(path)}{sentence}"))
+
+    @property
+    def full(self) -> bool:
+        """Whether there are as many problems as a report has."""
+        return len(self.found) >= MOST_PROBLEMS
 
     def note_all(self, path: KeyPath, error: InputError, prefix: str = "") -> None:
         """Note what a value's own checks say; a sentence that starts with a key is placed at that key."""
@@ -66,8 +75,8 @@ class SceneProblems:
         if not self.found:
             return
         sentences = [sentence for _, sentence in sorted(self.found, key=lambda found: found[0])]
-        if self.count > len(sentences):
-            sentences.append(f"{self.place}: and {self.count - len(sentences):,} more problems")
+        if self.full:
+            sentences.append(f"{self.place}: there may be more problems; correct these first")
         raise MissingInputError(sentences) if self.all_missing else InputError(sentences)
 
     def checked(self, path: KeyPath, model: type[Model], table: object) -> tuple[dict[str, Any], set[str]]:
@@ -76,7 +85,7 @@ class SceneProblems:
             self.note(path, f"it must be a table, not {shown_toml(table)}; write keys and values")
             return {}, set(model.model_fields)
         known = {key: value for key, value in table.items() if key in model.model_fields}
-        for key in table.keys() - known.keys():
+        for key in [key for key in table if key not in known]:
             self.note((*path, key), f"there is no key {shown_toml(key)}", (key, tuple(model.model_fields)))
         wrong: set[str] = set()
         try:

@@ -43,6 +43,8 @@ def lights_of(problems: SceneProblems, rows: list[Any]) -> list[Light]:
     lights: list[Light] = []
     names: dict[str, int] = {}
     for row, table in enumerate(rows):
+        if problems.full:
+            break
         path = ("lights", row)
         keys, wrong = problems.checked(path, LightKeys, table)
         if not isinstance(table, dict):
@@ -84,6 +86,7 @@ def surfaces_of(problems: SceneProblems, tables: Mapping[str, Any]) -> list[Surf
             ("surfaces",),
             f"surfaces must be at most {MOST_SURFACES}, not {len(tables):,}; let parts share a surface",
         )
+        return []
     for number, (name, table) in enumerate(tables.items()):
         keys, _ = problems.checked(("surfaces", name), SurfaceKeys, table)
         for group in _independent(keys):

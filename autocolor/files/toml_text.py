@@ -18,7 +18,7 @@ LARGEST_TEXT = 1 << 20
 """Bytes of a scene file."""
 
 MOST_NESTED = 16
-MOST_KEY_PARTS = 16
+MOST_KEY_PARTS = 8
 LONGEST_WORD = 100
 """Assumed: letters or digits of a number or a key without quotes; a scene needs a tenth of that."""
 

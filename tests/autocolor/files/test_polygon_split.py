@@ -7,6 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from autocolor.errors import InputError
+from autocolor.files import polygon_split
 from autocolor.files.polygon_split import clipped_ears, split_polygons
 
 
@@ -68,3 +70,15 @@ def test_clipping_ends_whatever_crosses(points: list[tuple[float, float]]) -> No
     pieces = clipped_ears(points)
     assert len(pieces) == len(points) - 3
     assert {row for piece in pieces for row in piece} == set(range(len(points)))
+
+
+def test_clipping_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(polygon_split, "MOST_CLIPPING", 50)
+    notched = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [1, 1, 0], [0, 2, 0]], np.float64)
+    split_polygons(notched, np.tile(np.arange(5), 2), np.array([5, 5]))
+    with pytest.raises(InputError) as caught:
+        split_polygons(notched, np.tile(np.arange(5), 3), np.array([5, 5, 5]))
+    assert str(caught.value) == (
+        "polygons with corners that point inward must be fewer, not so many with 5 corners; split them into"
+        " triangles"
+    )

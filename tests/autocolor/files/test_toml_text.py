@@ -63,7 +63,7 @@ def test_deep_nesting_is_refused_before_parsing(brackets: str) -> None:
 @pytest.mark.parametrize("form", ["{} = 1", "[{}]", "[[{}]]", "a = {{ {} = 1 }}"])
 def test_long_dotted_keys_are_refused_before_parsing(key: str, form: str) -> None:
     assert refusal("\n" + form.format(key)) == (
-        "scene.toml, line 2: a key must have at most 16 parts between dots, not more; write it shorter"
+        "scene.toml, line 2: a key must have at most 8 parts between dots, not more; write it shorter"
     )
 
 
