@@ -5,7 +5,9 @@ Both commands of this distribution run through here, so that they end alike.
 
 import os
 import sys
+import traceback
 from contextlib import suppress
+from typing import NoReturn, TextIO
 
 import click
 
@@ -18,44 +20,84 @@ def run_command(command: click.Command, name: str) -> None:
     """Run a command and leave the process with its exit code.
 
     An error with an `exit_code` is a refusal: its sentence is shown and that code is given. Anything else is
-    a fault of ours. With `--debug`, anywhere on the line, the traceback is shown.
+    a fault of ours. With `--debug`, anywhere on the line before a `--`, the traceback is shown.
     """
-    arguments = sys.argv[1:]
-    debug = "--debug" in arguments
+    debug, arguments = _without_debug(sys.argv[1:])
+    if sys.stdout is None:
+        sys.stdout = _closed_pipe()
     try:
-        code = command.main(
-            [argument for argument in arguments if argument != "--debug"], name, standalone_mode=False
-        )
+        code = _done(command, name, arguments)
         sys.stdout.flush()
-    except click.exceptions.Abort:
-        _end(name, "interrupted", INTERRUPTED)
-    except KeyboardInterrupt:
+    except (click.exceptions.Abort, KeyboardInterrupt):
         _end(name, "interrupted", INTERRUPTED)
     except click.ClickException as refusal:
-        refusal.show()
-        sys.exit(refusal.exit_code)
-    except BrokenPipeError:
-        # What is left in the buffer can't be written either: give it to nobody.
         with suppress(OSError, ValueError):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        _end(name, "stdout must stay open until everything is written, not be closed", WRITING_FAILED)
+            refusal.show()
+        _leave(refusal.exit_code)
+    except BrokenPipeError:
+        _end(name, "stdout must stay open until all is written, not be closed; read it all", WRITING_FAILED)
     except Exception as error:
         if debug:
-            raise
-        code = getattr(error, "exit_code", None)
-        if code is not None:
-            _end(name, str(error), code)
+            with suppress(OSError, ValueError):
+                traceback.print_exc()
+        refused = getattr(error, "exit_code", None)
+        if refused is not None:
+            _end(name, str(error), refused)
         if isinstance(error, OSError) and error.filename is None:
-            _end(name, f"stdout can't be written ({error.strerror or error})", WRITING_FAILED)
+            reason = (error.strerror or str(error)).lower()
+            _end(name, f"stdout must take what is written, not fail ({reason}); make room", WRITING_FAILED)
         fault = f"a fault of this program, not of yours: {type(error).__name__}: {error}"
-        _end(name, f"{fault}; add --debug for the traceback and report it", FAULT)
-    sys.exit(code if isinstance(code, int) else 0)
+        _end(
+            name, f"{fault}; {'report it' if debug else 'add --debug for the traceback and report it'}", FAULT
+        )
+    _leave(code if isinstance(code, int) else 0)
 
 
-def _end(name: str, message: str, code: int) -> None:
+def _done(command: click.Command, name: str, arguments: list[str]) -> object:
+    """The exit code of a command, or None; its `main` would end a broken pipe silently with a code 1."""
+    completion = f"_{name.upper()}_COMPLETE"
+    if completion in os.environ:
+        from click.shell_completion import shell_complete
+
+        return shell_complete(command, {}, name, completion, os.environ[completion])
+    try:
+        with command.make_context(name, arguments) as context:
+            return command.invoke(context)
+    except click.exceptions.Exit as leaving:
+        return leaving.exit_code
+
+
+def _without_debug(arguments: list[str]) -> tuple[bool, list[str]]:
+    """Whether `--debug` is among the options, and the arguments without it."""
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    rest = [argument for argument in arguments[:end] if argument != "--debug"]
+    return len(rest) < end, rest + arguments[end:]
+
+
+def _closed_pipe() -> TextIO:
+    """A pipe that nobody reads, for a process that was started without a stdout."""
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    return os.fdopen(write_end, "w", encoding="utf-8")
+
+
+def _end(name: str, message: str, code: int) -> NoReturn:
     """Say what happened, each line under the command's name, and leave."""
     for line in message.splitlines():
         # A name of a file may hold what the terminal's encoding does not.
         with suppress(OSError, ValueError):
             click.echo(f"{name}: {line}", err=True)
+    _leave(code)
+
+
+def _leave(code: int) -> NoReturn:
+    """Leave with the code, whatever is left in the buffers: it can't be written, or it is written now."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            if stream is not None:
+                stream.flush()
+        except (OSError, ValueError):
+            # Give the rest to nobody; else leaving would fail with another code.
+            with suppress(OSError, ValueError):
+                os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
     sys.exit(code)

@@ -37,10 +37,33 @@ class CommandGroup(click.Group):
         command: click.Command = getattr(import_module(f"autocolor.commands.{cmd_name}"), cmd_name)
         return command
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that the arguments name; a wrong name is told the nearest right one."""
+        if args and args[0] not in COMMANDS and not args[0].startswith("-"):
+            from autocolor.checks import nearest
+
+            ctx.fail(f"there is no command {args[0]!r}{nearest(args[0], COMMANDS)}")
+        return super().resolve_command(ctx, args)
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """The table of commands, without loading any of them."""
         with formatter.section("Commands"):
             formatter.write_dl(list(COMMANDS.items()))
+
+
+def show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
+    """Show the version and leave."""
+    if not asked or context.resilient_parsing:
+        return
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        click.echo(version("autocolor"))
+    except PackageNotFoundError:
+        click.echo("not installed: a checkout, run in its folder")
+    context.exit()
 
 
 @click.group(
@@ -50,7 +73,14 @@ class CommandGroup(click.Group):
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 @click.option("--debug", is_flag=True, help="Show a traceback when something fails.")
-@click.version_option(package_name="autocolor", message="%(version)s")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=show_version,
+    help="Show the version.",
+)
 @click.pass_context
 def autocolor(context: click.Context, debug: bool) -> None:
     """Light a scene and recolor it on an emulated RAMTEK 9300, without computing it again.

@@ -54,7 +54,9 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "parts": {part.name: part.surface for part in scene.parts},
         "surfaces": {
             surface.name: {
-                "levels": list(ranges[surface.name]) if surface.name in ranges else None,
+                "words": [ranges[surface.name].first, ranges[surface.name].last]
+                if surface.name in ranges
+                else None,
                 "intensities": picture.ranges.surfaces.get(surface.name),
             }
             for surface in scene.surfaces
@@ -82,8 +84,8 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
         "surfaces:",
     ]
     for name, surface in facts["surfaces"].items():
-        words, extent = surface["levels"], surface["intensities"]
-        owned = f"words {words[0]} to {words[0] + words[1] - 1}" if words else "no words"
+        words, extent = surface["words"], surface["intensities"]
+        owned = f"words {words[0]} to {words[1]}" if words else "no words"
         seen = f"intensities {extent.minimum:.4g} to {extent.maximum:.4g}" if extent else "not seen"
         lines.append(f"  {name}: {owned}, {seen}")
     if facts["created"]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from autocolor.commands.render import refuse_existing
+from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 
 EXAMPLES = """\b
 Examples:
@@ -18,16 +18,27 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@click.argument("picture")
+@click.argument("picture", type=click.Path())
 @click.argument("surface")
 @click.option("--object", "object_color", metavar="COLOR", help='The object color, "#rrggbb".')
 @click.option("--source", "light_color", metavar="COLOR", help='The light source color, "#rrggbb".')
 @click.option("--blend", type=float, metavar="FRACTION", help="Where the shift begins: 1 never, 0 at once.")
-@click.option("--percentage", type=float, help="How much of the light color there is at the maximum.")
 @click.option(
-    "-o", "--output", metavar="PNG", help="The picture; PICTURE-SURFACE.png if nothing else is asked."
+    "--percentage",
+    type=float,
+    metavar="PERCENT",
+    help="How much of the light color there is at the maximum, 0 to 100.",
 )
-@click.option("--save", metavar="PICTURE.npz", help="Keep the picture with the new colors.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(),
+    metavar="PNG",
+    help="The picture; PICTURE-SURFACE.png if nothing else is asked.",
+)
+@click.option(
+    "--save", type=click.Path(), metavar="PICTURE.npz", help="Keep the picture with the new colors."
+)
 @click.option("--force", is_flag=True, help="Overwrite what exists.")
 def recolor(
     picture: str,
@@ -43,8 +54,7 @@ def recolor(
     """Give SURFACE of a saved PICTURE other colors."""
     if output is None and save is None:
         output = f"{Path(picture).stem}-{surface}.png".replace("/", "_")
-    for path in (output, save):
-        refuse_existing(path, force)
+    refuse_outputs(output, save, force)
 
     from autocolor.files.picture_file import read_picture, write_picture
     from autocolor.studio import send_picture
@@ -66,7 +76,5 @@ def recolor(
         lines, elements = saved.picture.lines, saved.picture.elements
         display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
         send_picture(scene, saved.picture, display)
-        display.save_png(output, overwrite=force)
-    for path in (output, save):
-        if path is not None:
-            click.echo(f"wrote {path}", err=True)
+        write_png(output, display, force)
+    tell_written(output, save)

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options, with_settings
+from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
+from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.settings import with_settings
 
 EXAMPLES = """\b
 Examples:
@@ -22,8 +24,19 @@ Examples:
 
 @click.command(epilog=EXAMPLES)
 @scene_options
-@click.option("-o", "--output", metavar="PNG", help="The picture; the scene's name if nothing else is asked.")
-@click.option("--save", metavar="PICTURE.npz", help="Keep the picture with its scene, to recolor it later.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(),
+    metavar="PNG",
+    help="The picture; the scene's name if nothing else is asked.",
+)
+@click.option(
+    "--save",
+    type=click.Path(),
+    metavar="PICTURE.npz",
+    help="Keep the picture with its scene, to recolor it later.",
+)
 @click.option(
     "--light", "lights", multiple=True, metavar="NAME", help="Render with this light alone; repeatable."
 )
@@ -42,17 +55,16 @@ def render(
     strict: bool,
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a saved picture."""
-    with progress(5) as step:
-        report = read(scene, up)
-        edited = with_settings(report.scene, settings)
-        if lights:
-            edited = edited.only_lights(*lights)
-        if output is None and save is None:
-            output = f"{Path(edited.name).name}.png"
-        for path in (output, save):
-            refuse_existing(path, force)
-        step()
+    report = read(scene, up)
+    edited = with_settings(report.scene, settings)
+    if lights:
+        edited = edited.only_lights(*lights)
+    if output is None and save is None:
+        output = f"{Path(edited.name).name}.png"
+    refuse_outputs(output, save, force)
 
+    with progress(4) as step:
+        from autocolor.files.picture_file import write_picture
         from autocolor.studio import Studio
         from ramtek_emu import Ramtek9300
 
@@ -62,31 +74,19 @@ def render(
         studio = Studio(edited, display)
         step()
         if save is not None:
-            from autocolor.files.picture_file import write_picture
-
             write_picture(save, studio.picture, studio.scene, overwrite=force)
         step()
         if output is not None:
-            display.save_png(output, overwrite=force)
+            write_png(output, display, force)
         step()
-    for path in (output, save):
-        if path is not None:
-            click.echo(f"wrote {path}", err=True)
+    tell_written(output, save)
     context.exit(ended(report, strict))
-
-
-def refuse_existing(path: str | None, force: bool) -> None:
-    """Refuse an output that exists before anything is computed for it."""
-    from autocolor.errors import OutputError
-
-    if path is not None and not force and Path(path).exists():
-        raise OutputError(f"{path}: an output must be new, not exist; choose another name or add --force")
 
 
 @contextmanager
 def progress(steps: int) -> Iterator[Callable[[], None]]:
     """A bar on stderr when it is a terminal; call what it gives after each step."""
-    if not sys.stderr.isatty():
+    if sys.stderr is None or not sys.stderr.isatty():
         yield lambda: None
         return
     with click.progressbar(length=steps, file=sys.stderr, show_eta=False) as bar:

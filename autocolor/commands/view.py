@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from autocolor.commands.scenes import read, scene_options
+from autocolor.commands.scenes import ended, read, scene_options
 
 if TYPE_CHECKING:
     from autocolor.scene import Scene
@@ -23,9 +23,12 @@ Examples:
 @scene_options
 @click.option("--full-screen", is_flag=True, help="Fill the screen.")
 @click.option("--fit", is_flag=True, help="Fill the window, at the cost of uneven pixels.")
-def view(scene: str, up: str, strict: bool, full_screen: bool, fit: bool) -> None:
+@click.pass_context
+def view(context: click.Context, scene: str, up: str, strict: bool, full_screen: bool, fit: bool) -> None:
     """Show SCENE in the window; F1 there lists the keys."""
-    show(read(scene, up).scene, full_screen, fit)
+    report = read(scene, up)
+    show(report.scene, full_screen, fit)
+    context.exit(ended(report, strict))
 
 
 def show_demo() -> None:
