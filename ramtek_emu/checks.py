@@ -79,7 +79,7 @@ def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[n
             f"a run of entries must end at {entries - 1}, not {first + len(array) - 1} "
             f"({len(array)} from {first} on); send fewer"
         )
-    if array.size and (array.max() > 255 or array.min() < 0):
+    if array.dtype != np.uint8 and array.size and (array.max() > 255 or array.min() < 0):
         row, column = np.argwhere((array < 0) | (array > 255))[0]
         raise ColorsError(
             f"a color must be 0 to 255, not {array[row, column]} "

@@ -74,7 +74,7 @@ class Decoder:
 
     def _form(self, word: int) -> Form:
         form = self._forms.get(word >> 8, ILLEGAL)
-        if form.is_normal and word & Flags.OPERANDS_2 and not self._extended:
+        if not self._extended and form.is_normal and word & Flags.OPERANDS_2:
             return ILLEGAL
         return form
 
@@ -87,10 +87,11 @@ class Decoder:
                 return count
             return count + (head[1 + form.fixed.index("length")] + 1) // 2
         flags = head[0]
-        count = 1 + bool(flags & Flags.OPERANDS_1) + bool(flags & Flags.OPERANDS_2)
+        count = FLAG_WORDS[flags & 6]
         if len(head) < count:
             return count
-        count += sum(operand.words for operand in operands_named(*flag_words(head)))
+        if count > 1:
+            count += sum(operand.words for operand in operands_named(*flag_words(head)))
         if flags & Flags.DATA:
             count += 1
             if not form.replies and len(head) >= count:
@@ -112,10 +113,11 @@ class Decoder:
                 else:
                     operands[name] = (word,)
         else:
-            place = 1 + bool(low_byte & Flags.OPERANDS_1) + bool(low_byte & Flags.OPERANDS_2)
-            for operand in operands_named(*flag_words(head)):
-                operands[operand.name] = tuple(head[place : place + operand.words])
-                place += operand.words
+            place = FLAG_WORDS[low_byte & 6]
+            if place > 1:
+                for operand in operands_named(*flag_words(head)):
+                    operands[operand.name] = tuple(head[place : place + operand.words])
+                    place += operand.words
             if low_byte & Flags.DATA:
                 length = head[place]
                 place += 1
@@ -124,10 +126,12 @@ class Decoder:
         )
 
 
+FLAG_WORDS = {0: 1, Flags.OPERANDS_1: 2, Flags.OPERANDS_2: 2, Flags.OPERANDS_1 | Flags.OPERANDS_2: 3}
+"""The instruction word and the flag words that its flags announce."""
+
+
 def flag_words(head: list[int]) -> tuple[int, int]:
     """The two operand flag words of a normal instruction, 0 where there is none."""
     first = head[1] if head[0] & Flags.OPERANDS_1 else 0
-    second = 0
-    if head[0] & Flags.OPERANDS_2:
-        second = head[2 if head[0] & Flags.OPERANDS_1 else 1]
+    second = head[2 if head[0] & Flags.OPERANDS_1 else 1] if head[0] & Flags.OPERANDS_2 else 0
     return first, second

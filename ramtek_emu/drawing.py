@@ -3,38 +3,79 @@
 What is modelled: text in cells with size, spacing and scan order; vectors with both ends.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from .frame_buffer import FrameBuffer, Words, WriteEnable
+from .frame_buffer import FrameBuffer, WriteEnable, starting_position
 from .scan_orders import Point, ScanOrder, Window
 
 Dots = NDArray[np.bool_]
 
 
-def cell(dots: Dots, dimensions: tuple[int, int], size: tuple[int, int]) -> Dots:
-    """A character's dots fitted to a cell of (elements, lines), each dot repeated (across, down)."""
-    elements, lines = (max(1, min(each, 64)) for each in dimensions)
-    shape = np.zeros((lines, elements), np.bool_)
-    part = dots[:lines, :elements]
-    shape[: part.shape[0], : part.shape[1]] = part
-    return np.kron(shape, np.ones((size[1], size[0]), np.bool_))
+LARGEST_CELL = 16
+"""Elements and lines of a cell at most.
+
+Assumed: a programmed character has 12 lines of 8 dots (LIN), so that four bits hold a dimension.
+"""
+MOST_ALONG = 4096
+"""Words along the scan that are drawn in one go: a bound on memory, whatever the host asks for."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TextStyle:
+    """How characters are set: cell, spacing, repeats of a dot, and whether what lies between dots is left."""
+
+    dimensions: tuple[int, int]
+    spacing: tuple[int, int]
+    size: tuple[int, int]
+    foreground: int
+    background: int
+    transparent: bool
+
+    @property
+    def cell(self) -> tuple[int, int]:
+        """Words of a cell along the scan and across it."""
+        along, across = (max(1, min(each, LARGEST_CELL)) for each in self.dimensions)
+        return along * self.size[0], across * self.size[1]
+
+    @property
+    def step(self) -> tuple[int, int]:
+        """Words from a cell to the next, and from a line of text to the next."""
+        return self.cell[0] + self.spacing[0] * self.size[0], self.cell[1] + self.spacing[1] * self.size[1]
+
+    def dots(self, shapes: Dots) -> Dots:
+        """Characters' shapes, (n, lines, elements), side by side as [outer, inner] dots of the cells."""
+        along, across = self.cell[0] // self.size[0], self.cell[1] // self.size[1]
+        cells = np.zeros((len(shapes), across, along), np.bool_)
+        part = shapes[:, :across, :along]
+        cells[:, : part.shape[1], : part.shape[2]] = part
+        cells = np.repeat(np.repeat(cells, self.size[1], axis=1), self.size[0], axis=2)
+        return beside(cells, self.step[0])
+
+
+def beside(cells: Dots, step: int) -> Dots:
+    """Cells, (n, outer, inner), side by side, `step` words from one to the next."""
+    count, across, along = cells.shape
+    if count == 1:
+        single: Dots = cells[0]
+        return single
+    spaced = np.zeros((across, count, step), np.bool_)
+    spaced[:, :, :along] = cells.transpose(1, 0, 2)
+    side_by_side: Dots = spaced.reshape(across, count * step)
+    return side_by_side[:, : (count - 1) * step + along]
 
 
 def write_text(
     frame_buffer: FrameBuffer,
-    characters: Dots,
+    shapes: Dots,
     codes: bytes,
+    style: TextStyle,
     *,
     window: Window,
     order: ScanOrder,
     start: Point,
-    dimensions: tuple[int, int],
-    spacing: tuple[int, int],
-    size: tuple[int, int],
-    foreground: int,
-    background: int,
-    transparent: bool,
     enable: WriteEnable,
 ) -> Point:
     """Write characters from `start` on, along the scan of the window; the place of the next cell is returned.
@@ -45,25 +86,36 @@ def write_text(
     starts; below the last line text goes on at the window's first corner; a cell larger than the window is
     written whole, since clipping is the write window's.
     """
-    across, down = size
-    first_dots = cell(characters[0], dimensions, size)
-    lines, elements = first_dots.shape
-    step, line_step = elements + spacing[0] * across, lines + spacing[1] * down
-    along, runs = order.inner_and_outer(window)
-    place = order.corner(window) if not window.holds(start) else start
-    outer, inner = divmod(order.position(window, place), along) if along and runs else (0, 0)
-    words = np.array((background, foreground), np.uint16)
-    for code in codes:
-        if inner and inner + elements > along:
+    along, across = style.cell
+    step, line_step = style.step
+    width, height = order.inner_and_outer(window)
+    if width and height:
+        corner = order.corner(window)
+        outer, inner = divmod(starting_position(window, order, start), width)
+    else:
+        corner, outer, inner = start, 0, 0
+        width = height = 0x10000
+    words = np.array((style.background, style.foreground), np.uint16)
+    numbers = np.frombuffer(codes, np.uint8)
+    while len(numbers):
+        if inner and inner + along > width:
             inner, outer = 0, outer + line_step
-        if outer and outer + lines > runs:
+        if outer and outer + across > height:
             outer = 0
-        dots = cell(characters[code], dimensions, size)
-        block: Words = words[dots.astype(np.intp)]
-        point = offset(order, place if not (along and runs) else order.corner(window), inner, outer)
-        frame_buffer.write_block(point, order, block, enable, dots if transparent else None)
-        inner += step
-    return offset(order, place if not (along and runs) else order.corner(window), inner, outer)
+        count = min(1 + max(0, width - inner - along) // step, len(numbers), 1 + MOST_ALONG // step)
+        first = offset(order, corner, inner, outer)
+        if (
+            not order.block_window(first, (count - 1) * step + along, across)
+            .intersection(frame_buffer.window)
+            .is_empty
+        ):
+            dots = style.dots(shapes[numbers[:count]])
+            cells = beside(np.ones((count, across, along), np.bool_), step) if step != along else None
+            written = dots if style.transparent else cells
+            frame_buffer.write_block(first, order, words[dots.view(np.uint8)], enable, written)
+        inner += count * step
+        numbers = numbers[count:]
+    return offset(order, corner, inner, outer)
 
 
 def offset(order: ScanOrder, corner: Point, inner: int, outer: int) -> Point:

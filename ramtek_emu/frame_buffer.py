@@ -75,15 +75,16 @@ class FrameBuffer:
 
     def read_run(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
         """`count` words along the scan of a window from a point on, and the point after the last one."""
-        words = np.zeros(count, np.uint16)
         size = window.width * window.height
+        # Once around the window; what comes after is the same again.
+        words = np.zeros(min(count, size), np.uint16)
         if size == 0:
-            return words, start
+            return np.zeros(count, np.uint16), start
         position = starting_position(window, order, start)
-        for block in blocks(window, order, position, count):
+        for block in blocks(window, order, position, len(words)):
             out = words[block.first : block.first + block.inner * block.outer]
             self._load(block, order, out.reshape(block.outer, block.inner))
-        return words, order.point(window, (position + count) % size)
+        return np.resize(words, count), order.point(window, (position + count) % size)
 
     def write_block(
         self,
@@ -121,7 +122,7 @@ class FrameBuffer:
     ) -> None:
         clipped = place.intersection(self.window).intersection(enable.window)
         mask = enable.mask & self._every_plane
-        if not (clipped.width and clipped.height and mask):
+        if clipped.is_empty or not mask:
             return
         memory = order.oriented(
             self._words[clipped.top : clipped.bottom + 1, clipped.left : clipped.right + 1]
@@ -132,7 +133,10 @@ class FrameBuffer:
             dots = None if dots is None else dots[part]
         if mask == self._every_plane and dots is None:
             # The plain case: one pass that copies and drops the bits beyond the planes.
-            np.bitwise_and(block, np.uint16(mask), out=memory)
+            if isinstance(block, np.ndarray):
+                np.bitwise_and(block, np.uint16(mask), out=memory)
+            else:
+                memory[...] = block & np.uint16(mask)
             self.written += memory.size
             return
         mixed = (memory & np.uint16(~mask & 0xFFFF)) | (block & np.uint16(mask))
@@ -142,7 +146,7 @@ class FrameBuffer:
     def _load(self, block: Block, order: ScanOrder, out: Words) -> None:
         place = order.block_window(block.start, block.inner, block.outer)
         clipped = place.intersection(self.window)
-        if clipped.width and clipped.height:
+        if not clipped.is_empty:
             memory = self._words[clipped.top : clipped.bottom + 1, clipped.left : clipped.right + 1]
             out[part_of(place, clipped, order)] = order.oriented(memory)
 

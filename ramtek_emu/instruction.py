@@ -11,7 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import InstructionError
-from .instruction_set import FORM_OF_NAME, ILLEGAL, OPERANDS, OPERANDS_1, OPERANDS_2, Flags, Form
+from .instruction_set import (
+    ADDRESSING_NAMES,
+    FLAG_NAMES,
+    FORM_OF_NAME,
+    ILLEGAL,
+    OPERANDS,
+    OPERANDS_1,
+    OPERANDS_2,
+    Flags,
+    Form,
+)
 
 Words = NDArray[np.uint16]
 Numbers = int | Sequence[int]
@@ -21,7 +31,7 @@ MOST_BYTES = 0xFFFF
 """The longest data field: its length is one word."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Instruction:
     """One instruction: its row of the table, its low byte, its operands as words, its data."""
 
@@ -31,11 +41,6 @@ class Instruction:
     length: int | None = None
     """Bytes of data, None without a data field."""
     data: Words = field(default_factory=lambda: NO_WORDS)
-
-    @property
-    def flags(self) -> Flags:
-        """The low byte of a normal instruction."""
-        return Flags(self.low_byte)
 
     def data_bytes(self) -> bytes:
         """The data as bytes: high byte first, low byte first with reverse packing; a pad byte is left out."""
@@ -50,11 +55,11 @@ class Instruction:
 
     def __str__(self) -> str:
         operands = [f"{name} {', '.join(map(str, words))}" for name, words in self.operands.items()]
-        low = [f"{self.low_byte:02X}h"] if self.low_byte else []
-        if self.form.is_normal and self.low_byte & 0xF8:
-            low = ["|".join(flag.name or "" for flag in Flags(self.low_byte & 0xF8))]
-        elif self.form.is_normal:
-            low = []
+        if self.form.is_normal:
+            low = [name for flag, name in FLAG_NAMES.items() if self.low_byte & flag]
+            low += filter(None, [ADDRESSING_NAMES.get(self.low_byte & Flags.ADDRESSING)])
+        else:
+            low = [str(self.low_byte)] if self.low_byte else []
         length = [] if self.length is None else [f"{self.length} bytes"]
         return f"{self.form.name:<5}{'; '.join(low + operands + length)}".rstrip()
 

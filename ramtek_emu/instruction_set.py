@@ -12,22 +12,25 @@ Assumed: the bits of the second flag word that no source names carry no words.
 """
 
 from dataclasses import dataclass
-from enum import IntFlag
+from functools import lru_cache
+from typing import Final
 
 
-class Flags(IntFlag):
-    """The low byte of a normal instruction."""
+class Flags:
+    """The low byte of a normal instruction, in plain numbers: every instruction is tested for them."""
 
-    DATA = 0x01
-    OPERANDS_1 = 0x02
-    OPERANDS_2 = 0x04
-    REVERSE_PACKING = 0x08
-    SWAP = 0x10
+    DATA: Final = 0x01
+    OPERANDS_1: Final = 0x02
+    OPERANDS_2: Final = 0x04
+    REVERSE_PACKING: Final = 0x08
+    SWAP: Final = 0x10
     """Foreground and background change places."""
-    ADDITIVE = 0x20
-    INDEX_1 = 0x40
-    INDEX_2 = 0x80
-    RELATIVE = 0xC0
+    ADDITIVE: Final = 0x20
+    ADDRESSING: Final = 0xC0
+    """Two bits: 0 absolute, or one of the three below."""
+    INDEX_1: Final = 0x40
+    INDEX_2: Final = 0x80
+    RELATIVE: Final = 0xC0
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,10 +107,17 @@ FORMS = (
     Form(0x0C, "WT", "write text"),
     Form(0x0E, "WVL", "write linked vectors"),
 )
+FLAG_NAMES = {
+    Flags.REVERSE_PACKING: "RP",
+    Flags.SWAP: "BK",
+    Flags.ADDITIVE: "AD",
+}
+ADDRESSING_NAMES = {Flags.INDEX_1: "IX01", Flags.INDEX_2: "IX10", Flags.RELATIVE: "IX11"}
 FORM_OF_OPCODE = {form.opcode: form for form in FORMS}
 FORM_OF_NAME = {form.name: form for form in FORMS}
 
 
+@lru_cache(maxsize=1024)
 def operands_named(flag_word_1: int, flag_word_2: int = 0) -> tuple[Operand, ...]:
     """The operands that two flag words announce, in the order in which they come."""
     return tuple(

@@ -81,12 +81,11 @@ def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple
 def load_entries(first: int, colors: object, entries: int = 1024) -> Words:
     """LAM: (n, 3) colors, 0 to 255, for the entries from `first` on, in the 24-bit format."""
     checked = checked_colors(first, colors, entries)
-    stream = np.empty(3 + 2 * len(checked), np.uint16)
+    stream = np.zeros(3 + 2 * len(checked), "<u2")
     stream[:3] = FORM_OF_NAME["LAM"].opcode << 8, 2 * first, 4 * len(checked)
-    red, green, blue = checked.astype(np.uint16).T
-    stream[3::2] = green << 8 | blue
-    stream[4::2] = red
-    return stream
+    # In the memory of a VAX the two words of an entry are the bytes blue, green, red, 0.
+    stream[3:].view(np.uint8).reshape(-1, 4)[:, 2::-1] = checked
+    return stream.astype(np.uint16, copy=False)
 
 
 def load_short_entries(first: int, colors: object, entries: int = 1024) -> Words:

@@ -66,7 +66,8 @@ class LookupTable:
         first, words = (address + max(0, len(words) - count)) % count, words[-count:]
         before_wrap = count - first
         self._store(first, words[:before_wrap])
-        self._store(0, words[before_wrap:])
+        if len(words) > before_wrap:
+            self._store(0, words[before_wrap:])
 
     def read(self, address: int, count: int) -> Words:
         """`count` words for the wire from a word address on; the counter goes on and wraps at the end."""
@@ -79,8 +80,6 @@ class LookupTable:
         return np.resize(np.roll(table, -(address % self.word_count)), count).astype(np.uint16)
 
     def _store(self, first: int, words: Words) -> None:
-        if not len(words):
-            return
         if self.entry_format is EntryFormat.WORD_12:
             wide = words.astype(np.uint32)
             nibbles = (wide & 0xF00) << 8 | (wide & 0xF0) << 4 | wide & 0xF

@@ -5,6 +5,7 @@ one), the background 0, the mask all ones, the window the whole memory, the scan
 (PRG), and everything else 0; no source lists the values.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from .character_rom import CELL_ELEMENTS, CELL_LINES
@@ -79,25 +80,27 @@ class Parameters:
         """
         return WriteEnable(self.mask, self.write_window)
 
-    def base(self, flags: Flags) -> Point:
+    def base(self, flags: int) -> Point:
         """What coordinates are counted from: the memory's origin, an index register, the operating point.
 
         Hardware: LIN, wtr() sends C0h where it means the operating point.
         """
-        addressing = flags & Flags.RELATIVE
+        addressing = flags & Flags.ADDRESSING
         if addressing == Flags.RELATIVE:
             return self.start
         if addressing == Flags.INDEX_1:
             return self.index_1
         return self.index_2 if addressing == Flags.INDEX_2 else ORIGIN
 
-    def take(self, operands: dict[str, tuple[int, ...]], flags: Flags) -> None:
+    def take(self, operands: Mapping[str, tuple[int, ...]], flags: int) -> None:
         """Set the operands of a normal instruction.
 
         Hardware: LIN, BTL, LONG: a window moves the operating point to the corner where the scan starts.
         Assumed: a start point in the same instruction wins; window and start are counted from the base,
         which is taken before either moves; the corner is that of the scan order after the instruction.
         """
+        if not operands:
+            return
         base = self.base(flags)
         for name, words in operands.items():
             if name in ("window", "start"):

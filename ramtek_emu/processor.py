@@ -66,7 +66,7 @@ class Processor:
     def execute(self, instruction: Instruction) -> None:
         """Take an instruction's operands, then do it; nothing that a host sends raises."""
         if instruction.form.is_normal:
-            self.parameters.take(dict(instruction.operands), instruction.flags)
+            self.parameters.take(instruction.operands, instruction.low_byte)
         EXECUTORS[instruction.form.name](self, instruction)
 
     def reply(self, words: Words) -> None:
@@ -98,7 +98,7 @@ class Processor:
     def colors(self, instruction: Instruction) -> tuple[int, int]:
         """Foreground and background words, in the order that the swap flag asks for."""
         pair = self.parameters.foreground, self.parameters.background
-        return (pair[1], pair[0]) if instruction.flags & Flags.SWAP else pair
+        return (pair[1], pair[0]) if instruction.low_byte & Flags.SWAP else pair
 
 
 Executor = Callable[[Processor, Instruction], None]
@@ -182,7 +182,7 @@ def read_image(processor: Processor, instruction: Instruction) -> None:
     words &= np.uint16(parameters.read_mask)
     if parameters.image_mode & 1:
         data = words.astype(np.uint8).tobytes() + bytes(length % 2)
-        reverse = instruction.flags & Flags.REVERSE_PACKING
+        reverse = instruction.low_byte & Flags.REVERSE_PACKING
         words = np.frombuffer(data, "<u2" if reverse else ">u2").astype(np.uint16)
     processor.reply(words)
 
@@ -195,19 +195,22 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
     """
     parameters = processor.parameters
     foreground, background = processor.colors(instruction)
-    parameters.start = drawing.write_text(
-        processor.frame_buffer,
-        processor.characters,
-        instruction.data_bytes(),
-        window=parameters.window,
-        order=parameters.order,
-        start=parameters.start,
+    style = drawing.TextStyle(
         dimensions=parameters.dimensions,
         spacing=parameters.spacing,
         size=(1 + (parameters.scale & 0x0F), 1 + (parameters.scale >> 8 & 0x0F)),
         foreground=foreground,
         background=background,
-        transparent=bool(instruction.flags & Flags.ADDITIVE),
+        transparent=bool(instruction.low_byte & Flags.ADDITIVE),
+    )
+    parameters.start = drawing.write_text(
+        processor.frame_buffer,
+        processor.characters,
+        instruction.data_bytes(),
+        style,
+        window=parameters.window,
+        order=parameters.order,
+        start=parameters.start,
         enable=parameters.enable,
     )
 
@@ -226,10 +229,10 @@ def write_linked_vectors(processor: Processor, instruction: Instruction) -> None
     if not len(numbers):
         return
     vertices = np.vstack(([parameters.start], numbers)).astype(np.int64)
-    if instruction.flags & Flags.RELATIVE == Flags.RELATIVE:
+    if instruction.low_byte & Flags.ADDRESSING == Flags.RELATIVE:
         vertices = np.cumsum(vertices, axis=0)
     else:
-        vertices[1:] += parameters.base(instruction.flags)
+        vertices[1:] += parameters.base(instruction.low_byte)
     # Coordinates are registers of 16 bits.
     vertices = (vertices + 0x8000) % 0x10000 - 0x8000
     word, _ = processor.colors(instruction)

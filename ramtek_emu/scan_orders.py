@@ -43,6 +43,11 @@ class Window(NamedTuple):
         """Lines of the window."""
         return max(0, self.bottom - self.top + 1)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether the window holds no word."""
+        return self.right < self.left or self.bottom < self.top
+
     def holds(self, point: Point) -> bool:
         """Whether the point lies inside."""
         return self.left <= point.element <= self.right and self.top <= point.line <= self.bottom

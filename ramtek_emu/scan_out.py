@@ -25,7 +25,7 @@ class ScanOut:
         self.elements = configuration.shown_elements
         self._frame_buffer = frame_buffer
         self._lookup_table = lookup_table
-        self._planes = configuration.planes
+        self._words = configuration.largest_word + 1
         # np.take is fastest with indices of the machine's own size; they are renewed when words were written.
         self._indices = np.zeros((self.lines, self.elements), np.intp)
         self._written = 0
@@ -40,9 +40,9 @@ class ScanOut:
         if self._written != self._frame_buffer.written:
             self._written = self._frame_buffer.written
             np.copyto(self._indices, self._frame_buffer.words[: self.lines, : self.elements])
-        table = self._lookup_table.packed
         first = self._partition()
-        np.take(table[first:] if first else table, self._indices, out=pixels, mode="wrap")
+        table = self._lookup_table.packed
+        (table[first:] if first else table).take(self._indices, out=pixels, mode="wrap")
 
     def field(self) -> NDArray[np.uint8]:
         """The field, (lines, elements, 3) uint8: red, green, blue."""
@@ -51,5 +51,5 @@ class ScanOut:
         return pixels.view(np.uint8).reshape(self.lines, self.elements, 4)[:, :, 2::-1].copy()
 
     def _partition(self) -> int:
-        part = 1 << self._planes
-        return self._lookup_table.addressed_entry // part * part
+        part = self._words
+        return self._lookup_table.addressed_entry // part * part if part < self._lookup_table.size else 0

@@ -282,9 +282,8 @@ class Monitor:
         self._shown = None
 
     def _scan_out(self, surface: pygame.Surface) -> None:
-        pixels = pygame.surfarray.pixels2d(surface)
-        self.display.scan_out.scan_out_into(pixels.T)
-        del pixels  # The surface stays locked as long as the array lives.
+        # The surface stays locked as long as the array lives: it ends with this line.
+        self.display.scan_out.scan_out_into(np.asarray(surface.get_view("2")).T)
 
     def _handle(self, event: pygame.event.Event) -> None:
         if event.type in REDRAWN_ON:

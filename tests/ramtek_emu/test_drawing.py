@@ -99,6 +99,26 @@ def test_text_may_run_off_the_screen() -> None:
     assert display.words[475:, 630:].any()
 
 
+def test_text_with_the_widest_spacing_takes_little_time_and_memory() -> None:
+    display = Ramtek9300()
+    window = [0x8000, 0x8000, 0x7FFF, 0x7FFF]
+    head = [0x0C03, 0x0740, *window, 16, 16, 0xFFFF, 0xFFFF, 0x0F0F, 0xFFFE]
+    display.send(np.array(head + [0x4142] * 0x7FFF, np.uint16))
+    assert display.decoder.held_words == 0
+
+
+def test_spacing_leaves_the_pixels_between_the_cells() -> None:
+    display = Ramtek9300()
+    display.send(instructions.erase(word=4))
+    display.send(np.array([0x0C03, 0x0246, 7, 2, 10, 20, 99, 60, 3, 2, 2, 0x4142], np.uint16))
+    shapes = display.processor.characters
+    for element, letter in ((10, "A"), (20, "B")):
+        cell = display.words[20:29, element : element + 7]
+        assert (cell == np.where(shapes[ord(letter)], 7, 2)).all()
+    assert (display.words[20:29, 17:20] == 4).all()
+    assert display.processor.parameters.start == (30, 20)
+
+
 def test_text_of_a_size_that_the_display_does_not_have_is_refused() -> None:
     with pytest.raises(InstructionError) as refusal:
         instructions.write_text("A", 0, 0, size=17)

@@ -42,7 +42,7 @@ def test_an_instruction_is_equal_to_its_own_words_read_again(stream: list[int]) 
 def test_a_listing_names_operands_and_flags() -> None:
     assert str(normal("SET", {"mask": 15, "window": (0, 0, 9, 9)})) == "SET  mask 15; window 0, 0, 9, 9"
     (text,) = Decoder().feed(np.array([0x0C13, 0x0040, 0, 0, 32, 32, 3, 0x3030, 0x3400], np.uint16))
-    assert str(text) == "WT   SWAP; window 0, 0, 32, 32; 3 bytes"
+    assert str(text) == "WT   BK; window 0, 0, 32, 32; 3 bytes"
     assert text.data_bytes() == b"004"
 
 
