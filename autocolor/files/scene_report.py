@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from autocolor.scene import Scene, scene_of
-from autocolor.tables import Mesh
+from autocolor.tables import MOST_SURFACES, Mesh
 
 
 @dataclass(frozen=True)
@@ -44,4 +44,8 @@ def scene_report(
     elif names:
         listed = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")
         created.append(f"{len(names)} surfaces were created: {listed}")
+    asked = fields.get("surface_of_part") or {}
+    sharing = sum(part.surface != asked.get(part.name, part.name) for part in scene.parts)
+    if sharing:
+        created.append(f"{sharing:,} parts share a surface, for a scene has at most {MOST_SURFACES}")
     return SceneReport(scene, repairs, tuple(created), mesh_files)

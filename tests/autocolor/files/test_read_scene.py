@@ -44,6 +44,14 @@ def test_up_is_the_up_axis_of_a_bare_mesh(folder: Path) -> None:
         read_scene(folder, up="-z")
 
 
+def test_parts_beyond_the_surfaces_share_one_and_it_is_said(tmp_path: Path) -> None:
+    path = tmp_path / "car.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 3\n" + "".join(f"o p{part}\nf 1 2 3\n" for part in range(300)))
+    report = read_scene_with_report(path)
+    assert len(report.scene.surfaces) == 255
+    assert report.created[-1] == "45 parts share a surface, for a scene has at most 255"
+
+
 def test_strict_reading_refuses_repairs(folder: Path) -> None:
     read_scene(folder, strict=True)
     (folder / "car.obj").write_text(CAR + "f 1 2\n")
