@@ -1,6 +1,6 @@
-"""Curves and patches: cubic B-splines, natural cubic splines, Coons patches and the inversion of a surface.
+"""Curves and patches: cubic B-splines, natural cubic splines, Coons patches, the inversion of a surface.
 
-Everything that shapes a body panel is twice continuously differentiable, because a highlight shows every kink.
+What shapes a body panel is twice continuously differentiable, because a highlight shows every kink.
 """
 
 from __future__ import annotations
@@ -16,17 +16,15 @@ Surface = Callable[[Array, Array], Array]
 
 def basis(count: int, t: ArrayLike) -> Array:
     """Return the clamped uniform cubic B-spline basis, shape (..., count), at t from 0 to count - 3."""
-    t = np.clip(np.asarray(t, dtype=float), 0.0, count - 3.0)
+    at = np.clip(np.asarray(t, dtype=float), 0.0, count - 3.0)[..., None]
     knots = np.concatenate([np.zeros(3), np.arange(count - 2), np.full(3, count - 3)]).astype(float)
-    span = np.minimum(t.astype(int), count - 4)
-    values = (np.arange(count + 3) == span[..., None] + 3).astype(float)
+    span = np.minimum(at.astype(int), count - 4)
+    values: Array = (np.arange(count + 3) == span + 3).astype(float)
     for degree in (1, 2, 3):
         low, high = knots[: count + 3 - degree], knots[degree + 1 :]
         rise = np.maximum(knots[degree:-1] - low, 1e-12)
         fall = np.maximum(high - knots[1 : count + 4 - degree], 1e-12)
-        values = (
-            values[..., :-1] * (t[..., None] - low) / rise + values[..., 1:] * (high - t[..., None]) / fall
-        )
+        values = values[..., :-1] * (at - low) / rise + values[..., 1:] * (high - at) / fall
     return values
 
 
@@ -38,7 +36,7 @@ def bspline(control: ArrayLike, t: ArrayLike) -> Array:
 
 
 def smooth(knots: Sequence[tuple[float, float]]) -> Callable[[ArrayLike], Array]:
-    """Return the natural cubic spline through the (x, value) pairs as a function of x; straight beyond its ends."""
+    """Return the natural cubic spline through (x, value) pairs, a function of x; straight beyond its ends."""
     x, y = np.array(knots, dtype=float).T
     h, slope = np.diff(x), np.diff(y) / np.diff(x)
     matrix, right = np.eye(len(x)), np.zeros(len(x))
@@ -47,16 +45,16 @@ def smooth(knots: Sequence[tuple[float, float]]) -> Callable[[ArrayLike], Array]
         right[k] = 6 * (slope[k] - slope[k - 1])
     bend = np.linalg.solve(matrix, right)
 
-    def value(at: ArrayLike) -> Array:
-        at = np.asarray(at, dtype=float)
-        k = np.clip(np.searchsorted(x, at) - 1, 0, len(x) - 2)
-        u = np.clip(at, x[0], x[-1]) - x[k]
+    def value(place: ArrayLike) -> Array:
+        at = np.asarray(place, dtype=float)
+        inner = np.clip(at, x[0], x[-1])
+        k = np.clip(np.searchsorted(x, inner) - 1, 0, len(x) - 2)
+        u = inner - x[k]
         first = slope[k] - h[k] * (2 * bend[k] + bend[k + 1]) / 6
         inside = y[k] + u * (first + u * (bend[k] / 2 + u * (bend[k + 1] - bend[k]) / (6 * h[k])))
-        start = slope[0] - h[0] * bend[1] / 6
-        end = slope[-1] + h[-1] * bend[-2] / 6
-        beyond: Array = np.where(at < x[0], start * (at - x[0]), np.where(at > x[-1], end * (at - x[-1]), 0.0))
-        return inside + beyond
+        start, end = slope[0] - h[0] * bend[1] / 6, slope[-1] + h[-1] * bend[-2] / 6
+        height: Array = inside + (at - inner) * np.where(at < inner, start, end)
+        return height
 
     return value
 
@@ -64,7 +62,8 @@ def smooth(knots: Sequence[tuple[float, float]]) -> Callable[[ArrayLike], Array]
 def ease(x: ArrayLike, start: float, end: float) -> Array:
     """Return 0 before start, 1 after end, and a quintic with no jump in curvature between."""
     u = np.clip((np.asarray(x, dtype=float) - start) / (end - start), 0.0, 1.0)
-    return u**3 * (10 - 15 * u + 6 * u * u)
+    eased: Array = u**3 * (10 - 15 * u + 6 * u * u)
+    return eased
 
 
 def spaced(*stops: float, counts: Sequence[int]) -> Array:
@@ -74,13 +73,11 @@ def spaced(*stops: float, counts: Sequence[int]) -> Array:
 
 
 def coons(bottom: Array, top: Array, left: Array, right: Array) -> Array:
-    """Return the (n, m, k) grid between four border curves: bottom and top run along n, left and right along m."""
+    """Return the (n, m, k) grid between border curves: bottom and top of n points, left and right of m."""
     i = np.linspace(0, 1, len(bottom))[:, None, None]
     j = np.linspace(0, 1, len(left))[None, :, None]
     ruled = bottom[:, None] * (1 - j) + top[:, None] * j + left[None] * (1 - i) + right[None] * i
-    twist = (
-        bottom[0] * (1 - i) * (1 - j) + bottom[-1] * i * (1 - j) + top[0] * (1 - i) * j + top[-1] * i * j
-    )
+    twist = (bottom[0] * (1 - i) + bottom[-1] * i) * (1 - j) + (top[0] * (1 - i) + top[-1] * i) * j
     grid: Array = ruled - twist
     return grid
 
@@ -91,21 +88,28 @@ def segment(start: ArrayLike, end: ArrayLike, steps: int) -> Array:
     return np.asarray(start, dtype=float) * (1 - u) + np.asarray(end, dtype=float) * u
 
 
-def invert(surface: Surface, target: Array, axes: tuple[int, int], guess: ArrayLike) -> Array:
-    """Return the parameters (n, 2) at which the two axes of the surface point meet the target (n, 2): Newton's rule."""
-    at = np.array(np.broadcast_to(np.asarray(guess, dtype=float), target.shape))
+def invert(surface: Surface, target: Array, axes: tuple[int, int], guess: Array) -> Array:
+    """Return the parameters (n, 2) at which two coordinates of the surface meet the target (n, 2).
+
+    Newton's rule with difference quotients; raises ValueError where it does not arrive.
+    """
+    at, step = guess.copy(), 1e-5
     for _ in range(40):
         here = surface(at[:, 0], at[:, 1])[:, axes]
-        by_s = (surface(at[:, 0] + 1e-5, at[:, 1])[:, axes] - here) / 1e-5
-        by_v = (surface(at[:, 0], at[:, 1] + 1e-5)[:, axes] - here) / 1e-5
+        by_s = (surface(at[:, 0] + step, at[:, 1])[:, axes] - here) / step
+        by_v = (surface(at[:, 0], at[:, 1] + step)[:, axes] - here) / step
         miss = target - here
-        det = by_s[:, 0] * by_v[:, 1] - by_s[:, 1] * by_v[:, 0]
-        det = np.where(np.abs(det) < 1e-9, 1e-9, det)
-        step = np.stack(
-            [miss[:, 0] * by_v[:, 1] - miss[:, 1] * by_v[:, 0], by_s[:, 0] * miss[:, 1] - by_s[:, 1] * miss[:, 0]],
-            axis=1,
-        )
-        at = at + np.clip(step / det[:, None], -0.5, 0.5)
-    if np.abs(miss).max() > 1e-4:
-        raise ValueError(f"a panel outline must lie on its surface; it misses by {np.abs(miss).max():.3f} m")
+        determinant = by_s[:, 0] * by_v[:, 1] - by_s[:, 1] * by_v[:, 0]
+        s = (miss[:, 0] * by_v[:, 1] - miss[:, 1] * by_v[:, 0]) / determinant
+        v = (by_s[:, 0] * miss[:, 1] - by_s[:, 1] * miss[:, 0]) / determinant
+        at = at + np.clip(np.stack([s, v], axis=1), -0.5, 0.5)
+    if np.abs(miss).max() > 1e-6:
+        raise ValueError(f"a panel outline must lie on its surface, not {np.abs(miss).max():.6f} m off it")
     return at
+
+
+def bezier(start: Array, corner: Array, end: Array, steps: int) -> Array:
+    """Return quadratic Bezier arcs (n, steps + 1, 3) from start to end, tangent to the lines to corner."""
+    u = np.linspace(0, 1, steps + 1)[None, :, None]
+    arc: Array = start[:, None] * (1 - u) ** 2 + corner[:, None] * 2 * u * (1 - u) + end[:, None] * u**2
+    return arc

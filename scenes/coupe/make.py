@@ -1,7 +1,9 @@
 """Write the mesh files of the coupe beside this script: `python -m scenes.coupe.make [FOLDER]`.
 
-The car is a 2 + 2 sports coupe of the early 1980s with a long hood and a glass hatch, in meters: x runs from nose
-to tail, y to the right, z up; the wheels stand on z = 0. The meshes are the same to the last digit at each run.
+The car is a sports coupe of the early 1980s with a long hood and a glass hatch, in meters: x runs from nose
+to tail, y to the right, z up; the wheels stand on z = 0. Each run makes the same meshes to the last digit.
+
+Assumed: the paper's mesh is GM's own design data; this car only has its kind, size and number of polygons.
 """
 
 from __future__ import annotations
@@ -15,17 +17,21 @@ from scenes.coupe import canopy, details, ends, panels, wheels
 from scenes.coupe.curves import spaced
 from scenes.coupe.parts import Parts
 
+# fmt: off
 FILES = {
     "body.obj": (
         "hood", "fender_left", "fender_right", "door_left", "door_right", "quarter_left", "quarter_right",
         "sill_left", "sill_right", "wheel_arches", "front_fascia", "rear_fascia", "roof", "pillar_left",
-        "pillar_right", "sail_left", "sail_right", "deck", "spoiler", "mirrors",
-        "windshield", "window_left", "window_right", "hatch_glass", "mirror_glass", "glass_trim", "gaps", "cowl",
-        "wipers", "grille", "handles", "moldings", "lamp_frames", "head_lamps", "turn_lamps", "tail_lamps",
-        "side_markers", "license_plate",
+        "pillar_right", "sail_left", "sail_right", "deck", "spoiler", "mirrors", "windshield", "window_left",
+        "window_right", "hatch_glass", "mirror_glass", "glass_trim", "gaps", "cowl", "wipers", "handles",
+        "moldings",
+    ),
+    "lamps.obj": (
+        "grille", "lamp_frames", "head_lamps", "turn_lamps", "tail_lamps", "side_markers", "license_plate",
     ),
     "chassis.obj": ("tires", "wheels", "brakes", "wheel_wells", "underbody"),
-}  # fmt: skip
+}
+# fmt: on
 
 
 def car() -> Parts:
@@ -51,7 +57,9 @@ def ground() -> Parts:
     angle = angle - 0.20 * np.sin(4 * angle)
     rounded = [np.sign(wave) * np.abs(wave) ** 0.4 for wave in (np.cos(angle), np.sin(angle))]
     share = np.array([0.0, 1.0])
-    shade = np.stack([2.1 * share * rounded[0], 0.83 * share * rounded[1], 0 * share * angle + 0.005], axis=-1)
+    shade = np.stack(
+        [2.1 * share * rounded[0], 0.83 * share * rounded[1], 0 * share * angle + 0.005], axis=-1
+    )
     parts.grid("shade", shade, outward=(0, 0, 1), mirror=False)
     return parts
 

@@ -1,4 +1,4 @@
-"""The part collector: grids of points become quads of named parts, mirrored left to right, and an OBJ text."""
+"""The part collector: grids of points become quads of named parts, mirrored, and then an OBJ text."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import numpy as np
 
 from scenes.coupe.curves import Array
 
-MIDDLE = np.array([0.0, 0.0, 0.55])
+MIDDLE_HEIGHT = 0.55
+Point = tuple[float, float, float]
 
 
 class Parts:
@@ -14,14 +15,15 @@ class Parts:
 
     def __init__(self) -> None:
         """Start with no part."""
-        self.nodes: dict[str, dict[tuple[float, float, float], int]] = {}
+        self.nodes: dict[str, dict[Point, int]] = {}
         self.polygons: dict[str, list[list[int]]] = {}
 
     def polygon(self, part: str, points: Array) -> None:
         """Add one polygon, counterclockwise from outside; corners that coincide are taken together."""
         nodes = self.nodes.setdefault(part, {})
         corners: list[int] = []
-        for x, y, z in np.round(points, 4) + 0.0:
+        # The factor keeps a number that ends in 5 from rounding one way here and another way elsewhere.
+        for x, y, z in np.round(points * (1 + 1e-9), 4) + 0.0:
             number = nodes.setdefault((float(x), float(y), float(z)), len(nodes))
             if number not in corners:
                 corners.append(number)
@@ -33,7 +35,7 @@ class Parts:
         part: str,
         points: Array,
         *,
-        outward: tuple[float, float, float] | None = None,
+        outward: Point | None = None,
         holes: tuple[tuple[int, int, int, int], ...] = (),
         mirror: bool = True,
         flip: bool | None = None,
@@ -50,7 +52,7 @@ class Parts:
         quads = quads[keep]
         normals = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
         if flip is None:
-            middle = MIDDLE * [0, 0, 1] + quads.mean(axis=1) * [0.85, 0, 0]
+            middle = quads.mean(axis=1) * [0.85, 0, 0] + [0, 0, MIDDLE_HEIGHT]
             away = quads.mean(axis=1) - middle if outward is None else np.array(outward)
             flip = bool((normals * away).sum() < 0)
         if flip:
@@ -61,9 +63,9 @@ class Parts:
             for quad in quads[:, ::-1] * [1.0, -1.0, 1.0]:
                 self.polygon(part.format(side="left"), quad)
 
-    def numbered(self, names: list[str]) -> tuple[list[tuple[float, float, float]], dict[str, list[list[int]]]]:
+    def numbered(self, names: list[str]) -> tuple[list[Point], dict[str, list[list[int]]]]:
         """Return the nodes these parts have together, and their polygons as node numbers from 1."""
-        numbers: dict[tuple[float, float, float], int] = {}
+        numbers: dict[Point, int] = {}
         polygons: dict[str, list[list[int]]] = {}
         for name in names:
             own = [numbers.setdefault(node, len(numbers) + 1) for node in self.nodes[name]]

@@ -6,18 +6,26 @@ import numpy as np
 
 from scenes.coupe.body import AXLES, WHEEL_HEIGHT
 from scenes.coupe.curves import Array
+from scenes.coupe.ends import border
 from scenes.coupe.parts import Parts
 
 CENTER_Y = 0.784
 AROUND = 30
 SPOKES = 5
+# fmt: off
 # (outward offset from the wheel's middle plane, radius), from the outside bead round to the inside.
-TIRE = ((0.088, 0.207), (0.1055, 0.238), (0.1065, 0.278), (0.097, 0.308), (0.078, 0.3225), (-0.078, 0.3225),
-        (-0.104, 0.26))  # fmt: skip
+TIRE = (
+    (0.088, 0.207), (0.1055, 0.238), (0.1065, 0.278), (0.097, 0.308), (0.078, 0.3225), (-0.078, 0.3225),
+    (-0.104, 0.26),
+)
 RIM = ((0.088, 0.207), (0.094, 0.201), (0.056, 0.182))
-# Rows of the disc, from the rim to the hub cap; cells between rows 1 and 3 are open between the spokes.
-DISC = ((0.056, 0.182), (0.062, 0.170), (0.074, 0.130), (0.082, 0.080), (0.082, 0.050), (0.068, 0.044),
-        (0.072, 0.0))  # fmt: skip
+# From the rim to the hub cap; cells between rows 1 and 3 are open between the spokes.
+DISC = (
+    (0.056, 0.182), (0.062, 0.170), (0.074, 0.130), (0.082, 0.080), (0.082, 0.050), (0.068, 0.044),
+    (0.072, 0.0),
+)
+BRAKE = ((0.040, 0.185), (0.044, 0.07))
+# fmt: on
 OPEN_ROWS = (1, 3)
 
 
@@ -25,9 +33,8 @@ def turned(profile: tuple[tuple[float, float], ...], axle: float) -> Array:
     """Return the surface (around, profile, 3) turned about a wheel's axis."""
     angle = np.linspace(0, 2 * np.pi, AROUND + 1)[:, None] + np.pi / 2 + np.pi / SPOKES
     offset, radius = np.array(profile).T
-    return np.stack(
-        [axle + radius * np.cos(angle), CENTER_Y + offset + 0 * angle, WHEEL_HEIGHT + radius * np.sin(angle)], axis=-1
-    )
+    x, z = axle + radius * np.cos(angle), WHEEL_HEIGHT + radius * np.sin(angle)
+    return np.stack([x, np.broadcast_to(CENTER_Y + offset, x.shape), z], axis=-1)
 
 
 def build(parts: Parts) -> None:
@@ -40,7 +47,6 @@ def build(parts: Parts) -> None:
         windows = tuple((k * cells + 1, k * cells + cells - 1, *OPEN_ROWS) for k in range(SPOKES))
         parts.grid("wheels", disc, flip=True, holes=windows)
         for i0, i1, j0, j1 in windows:
-            hole = disc[i0 : i1 + 1, j0 : j1 + 1]
-            loop = np.concatenate([hole[:, 0], hole[-1, 1:], hole[-2::-1, -1], hole[0, -2::-1]])
+            loop = border(disc[i0 : i1 + 1, j0 : j1 + 1])
             parts.grid("wheels", np.stack([loop, loop - [0, 0.028, 0]], axis=1), flip=True)
-        parts.grid("brakes", turned(((0.040, 0.185), (0.044, 0.07)), axle)[::2], flip=True)
+        parts.grid("brakes", turned(BRAKE, axle)[::2], flip=True)

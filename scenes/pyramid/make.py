@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-# Assumed: the paper gives no measures of Figure 4; a base of 2.4 by 2.4 and a height of 2 look like its print.
+# Assumed: the paper gives no measures of Figure 4.
 HALF_BASE, HEIGHT = 1.2, 2.0
 HALF_PLANE, CELLS = 6.0, 24
 

@@ -1,0 +1,145 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from autocolor import read_scene
+from autocolor.tables import Mesh
+from scenes.coupe import make
+from scenes.pyramid.make import pyramid_obj
+
+SCENES = Path(__file__).parents[2] / "scenes"
+CAR = tuple(name for names in make.FILES.values() for name in names)
+
+
+@pytest.fixture(scope="module")
+def texts() -> dict[str, str]:
+    return make.meshes()
+
+
+@pytest.fixture(scope="module")
+def mesh() -> Mesh:
+    return read_scene(SCENES / "coupe").mesh
+
+
+def corners_of(mesh: Mesh, names: tuple[str, ...]) -> NDArray[np.float64]:
+    numbers = [mesh.part_names.index(name) for name in names]
+    return mesh.coordinates[mesh.node_numbers[np.isin(mesh.part_numbers, numbers)]]
+
+
+def area_vectors(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    vectors: NDArray[np.float64] = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]) / 2
+    triangles = (corners[:, 2] == corners[:, 3]).all(axis=1)
+    vectors[triangles] = (
+        np.cross(corners[triangles, 1] - corners[triangles, 0], corners[triangles, 2] - corners[triangles, 0])
+        / 2
+    )
+    return vectors
+
+
+def test_the_modelling_script_makes_the_committed_files_byte_for_byte(texts: dict[str, str]) -> None:
+    for name, text in texts.items():
+        assert (SCENES / "coupe" / name).read_bytes() == text.encode("ascii"), name
+    assert (SCENES / "pyramid" / "pyramid.obj").read_bytes() == pyramid_obj().encode("ascii")
+
+
+def test_each_mesh_file_is_small_enough_to_read_at_a_glance(texts: dict[str, str]) -> None:
+    assert max(map(len, texts.values())) < 450_000
+
+
+def test_the_coupe_has_about_as_many_nodes_and_polygons_as_the_car_of_the_paper() -> None:
+    parts = make.car()
+    counts = np.sum([parts.counts(list(names)) for names in make.FILES.values()], axis=0)
+    assert np.abs(counts / (9619, 8136, 17940) - 1).max() < 0.01
+
+
+def test_the_coupe_has_named_parts_and_five_surfaces_and_a_floor(mesh: Mesh) -> None:
+    scene = read_scene(SCENES / "coupe")
+    assert len(CAR) >= 8
+    assert set(CAR) | {"floor", "shade"} == set(mesh.part_names)
+    assert {part.surface for part in scene.parts if part.name in CAR} == {
+        "body",
+        "glass",
+        "trim",
+        "rubber",
+        "lamps",
+    }
+    assert [light.name for light in scene.lights] == ["key", "side", "back", "rim"]
+
+
+def test_the_coupe_stands_on_the_floor_and_has_the_size_of_its_kind(mesh: Mesh) -> None:
+    corners = corners_of(mesh, CAR).reshape(-1, 3)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    assert 0.0 <= low[2] < 0.005
+    assert high[2] == pytest.approx(1.27, abs=0.02)
+    assert high[0] - low[0] == pytest.approx(4.77, abs=0.03)
+    body = corners_of(mesh, ("door_left", "door_right", "quarter_left", "quarter_right")).reshape(-1, 3)
+    assert 2 * body[:, 1].max() == pytest.approx(1.84, abs=0.03)
+
+
+def test_left_and_right_are_mirror_images(mesh: Mesh) -> None:
+    for part in ("door", "fender", "quarter", "sail", "window"):
+        left = corners_of(mesh, (f"{part}_left",)).reshape(-1, 3) * [1, -1, 1]
+        right = corners_of(mesh, (f"{part}_right",)).reshape(-1, 3)
+        assert sorted(map(tuple, left.tolist())) == sorted(map(tuple, right.tolist()))
+
+
+def test_no_polygon_of_the_coupe_is_degenerate_or_badly_folded(mesh: Mesh) -> None:
+    corners = corners_of(mesh, CAR)
+    areas = np.linalg.norm(area_vectors(corners), axis=1)
+    assert areas.min() > 1e-7
+    for a, b, c, d in ((0, 1, 2, 3), (1, 2, 3, 0)):
+        first = np.cross(corners[:, b] - corners[:, a], corners[:, c] - corners[:, a])
+        second = np.cross(corners[:, c] - corners[:, a], corners[:, d] - corners[:, a])
+        sizes = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
+        quads = (sizes > 1e-14) & (corners[:, 2] != corners[:, 3]).any(axis=1)
+        assert ((first * second).sum(axis=1)[quads] / sizes[quads]).min() > 0.5
+
+
+def test_body_panels_face_away_from_the_middle_of_the_car(mesh: Mesh) -> None:
+    for part, axis, sign in (
+        ("hood", 2, 1), ("roof", 2, 1), ("deck", 2, 1), ("door_right", 1, 1), ("door_left", 1, -1),
+        ("fender_right", 1, 1), ("quarter_left", 1, -1), ("front_fascia", 0, -1), ("rear_fascia", 0, 1),
+        ("windshield", 2, 1), ("window_right", 1, 1), ("underbody", 2, -1),
+    ):  # fmt: skip
+        total = area_vectors(corners_of(mesh, (part,))).sum(axis=0)
+        assert total[axis] * sign > 0, part
+
+
+def test_tires_turn_their_outside_outward(mesh: Mesh) -> None:
+    corners = corners_of(mesh, ("tires",))
+    vectors = area_vectors(corners)
+    for x in (-1.365, 1.205):
+        for side in (-1, 1):
+            near = (np.abs(corners[:, :, 0].mean(axis=1) - x) < 0.5) & (
+                corners[:, :, 1].mean(axis=1) * side > 0
+            )
+            middle = corners[near].mean(axis=1)
+            spoke = (middle - [x, 0, 0.325]) * [1, 0, 1]
+            away = middle - [x, side * 0.784, 0.325] - 0.265 * spoke / np.linalg.norm(spoke, axis=1)[:, None]
+            assert ((vectors[near] * away).sum(axis=1) > -1e-9).all()
+
+
+def test_neighbors_within_a_part_are_wound_alike(mesh: Mesh) -> None:
+    for name in (
+        "hood",
+        "door_left",
+        "fender_right",
+        "quarter_right",
+        "roof",
+        "front_fascia",
+        "rear_fascia",
+        "tires",
+    ):
+        rings = mesh.node_numbers[mesh.part_numbers == mesh.part_names.index(name)].tolist()
+        edges = [(a, b) for ring in rings for a, b in zip(ring, ring[1:] + ring[:1], strict=True) if a != b]
+        assert len(edges) == len(set(edges)), name
+
+
+def test_the_pyramid_is_lit_by_one_light_half_as_high_as_itself() -> None:
+    scene = read_scene(SCENES / "pyramid")
+    (lamp,) = scene.lights
+    top = corners_of(scene.mesh, ("pyramid",))[..., 2].max()
+    assert lamp.position[2] == pytest.approx(top / 2)
+    assert scene.scaling == "object"
