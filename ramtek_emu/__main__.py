@@ -1,9 +1,10 @@
 """The `ramtek` command: the test pattern in a window, or in a picture file."""
 
-import sys
 from pathlib import Path
 
 import click
+
+from .command_line import run_command
 
 EXAMPLES = """\b
 Examples:
@@ -35,7 +36,6 @@ def ramtek(
 
     Without a command it shows the test pattern. F11 is full screen, F12 saves a screenshot, Ctrl+Q quits.
     """
-    context.obj = debug
     if context.invoked_subcommand is not None:
         return
     from .display import Ramtek9300
@@ -52,20 +52,8 @@ def ramtek(
 
 
 def main() -> None:
-    """Run the command; a refusal is one sentence on stderr and an exit code, a traceback only with
-    --debug."""
-    try:
-        sys.exit(ramtek.main(prog_name="ramtek", standalone_mode=False))
-    except click.exceptions.Abort:
-        sys.exit(130)
-    except click.ClickException as refusal:
-        refusal.show()
-        sys.exit(refusal.exit_code)
-    except Exception as fault:
-        if "--debug" in sys.argv:
-            raise
-        print(f"ramtek: {fault}", file=sys.stderr)
-        sys.exit(getattr(fault, "exit_code", 70))
+    """Run the command and leave with its exit code."""
+    run_command(ramtek, "ramtek")
 
 
 if __name__ == "__main__":
