@@ -102,8 +102,9 @@ class Picture:
     @property
     def ranges(self) -> PictureRanges:
         """Minimum and maximum intensity of the whole picture and of each surface seen."""
+        scale = np.float32(self.scale)
         scaled = {
-            number: IntensityRange(each.minimum * self.scale, each.maximum * self.scale)
+            number: IntensityRange(*(float(np.float32(relative) * scale) for relative in each))
             for number, each in self.relative_ranges.items()
         }
         return PictureRanges(

@@ -11,11 +11,15 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Integral
 
 import numpy as np
 
+from autocolor.checks import nearest
+from autocolor.errors import UsageError
 from autocolor.lights import Light
 from autocolor.picture import Picture, Singles, composed
 from autocolor.scene import Scene
@@ -28,6 +32,9 @@ from autocolor.watkins import watkins
 # has seen one of this size go, it keeps them. Measured: 4 to 15 ms a frame.
 _ = np.empty(30 << 20, np.uint8)
 del _
+
+LARGEST_RASTER = 16384
+"""Assumed: a picture of this size on both sides takes tens of gigabytes."""
 
 ALGORITHMS: dict[str, Callable[..., Seen]] = {"batch": visible_surfaces, "watkins": watkins}
 
@@ -45,8 +52,16 @@ def render(scene: Scene, lines: int = 480, elements: int = 640, algorithm: str =
     """The picture of a scene, (lines, elements).
 
     `algorithm` is "batch", all lines at once, or "watkins", the literal one, which gives the same picture
-    some hundred times slower. Raises InputError for intensities that float32 can't hold.
+    some hundred times slower. Raises InputError for intensities that float32 can't hold, UsageError for a
+    raster or an algorithm that there is not.
     """
+    for what, size in (("lines", lines), ("elements", elements)):
+        if isinstance(size, bool) or not isinstance(size, Integral) or not 1 <= size <= LARGEST_RASTER:
+            raise UsageError(
+                f"{what} must be a whole number from 1 to {LARGEST_RASTER}, not {size!r}; choose another size"
+            )
+    if algorithm not in ALGORITHMS:
+        raise UsageError(f"there is no algorithm {algorithm!r}{nearest(str(algorithm), ALGORITHMS)}")
     return rendering(scene, lines, elements, algorithm=algorithm).picture
 
 
@@ -61,6 +76,8 @@ def rendering(
     if before is not None and (before.picture.lines, before.picture.elements) != (lines, elements):
         before = None
     if before is not None and _sees_the_same(before.scene, scene):
+        if _composes_the_same(before.scene, scene):
+            return Rendering(scene, before.seen, before.picture)
         seen = before.seen
     else:
         before = None
@@ -68,11 +85,8 @@ def rendering(
         visible = ALGORITHMS[algorithm]
         seen = visible(scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided)
     planes = _planes(scene, seen, before)
-    if before is not None and _composes_the_same(before.scene, scene):
-        return Rendering(scene, seen, before.picture)
-    return Rendering(
-        scene, seen, composed(seen, planes, scene.surfaces, scene.lights, scene.ambient)
-    )  # fmt: skip
+    picture = composed(seen, planes, scene.surfaces, scene.lights, scene.ambient)
+    return Rendering(scene, seen, picture)
 
 
 def _planes(scene: Scene, seen: Seen, before: Rendering | None) -> dict[str, Singles]:
@@ -90,7 +104,7 @@ def _planes(scene: Scene, seen: Seen, before: Rendering | None) -> dict[str, Sin
         if before is not None and before.scene.surfaces[number - 1].reflectance.exponent != exponent
     )
     for light in scene.lights:
-        same = light.name in old and _shape(old_lights[light.name]) == _shape(light)
+        same = light.name in old and _only_weighs_another(old_lights[light.name], light)
         if same and not changed:
             planes[light.name] = old[light.name]
         elif light.on and light.intensity > 0:
@@ -99,9 +113,13 @@ def _planes(scene: Scene, seen: Seen, before: Rendering | None) -> dict[str, Sin
     return planes
 
 
-def _shape(light: Light) -> Light:
-    """The light without what only weighs its planes."""
-    return light.replace(intensity=1.0, on=True)
+SHAPING = tuple(field.name for field in dataclasses.fields(Light) if field.name not in ("intensity", "on"))
+"""The fields of a light that its planes depend on; the others only weigh them."""
+
+
+def _only_weighs_another(old: Light, new: Light) -> bool:
+    """Whether two lights have the same planes."""
+    return old is new or all(getattr(old, name) == getattr(new, name) for name in SHAPING)
 
 
 def _sees_the_same(old: Scene, new: Scene) -> bool:

@@ -124,15 +124,15 @@ class Scene:
         """The part of that name; UsageError with the nearest right name when there is none."""
         return _row("part", self.parts, name)
 
-    def with_light(self, name: str, **changes: Any) -> Scene:
+    def with_light(self, name: str, /, **changes: Any) -> Scene:
         """The scene with some fields of one light changed."""
         return self.replace(lights=_changed(self.lights, self.light(name), changes))
 
-    def with_surface(self, name: str, **changes: Any) -> Scene:
+    def with_surface(self, name: str, /, **changes: Any) -> Scene:
         """The scene with some fields of one surface changed, its reflectance and paint among them."""
         return self.replace(surfaces=_changed(self.surfaces, self.surface(name), changes))
 
-    def with_part(self, name: str, **changes: Any) -> Scene:
+    def with_part(self, name: str, /, **changes: Any) -> Scene:
         """The scene with some fields of one part changed."""
         return self.replace(parts=_changed(self.parts, self.part(name), changes))
 

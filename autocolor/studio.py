@@ -156,11 +156,11 @@ class Studio:
             raise UsageError(f"recolor takes {', '.join(PAINT_FIELDS)}, not {unknown[0]!r}{guess}")
         self.edit(self.scene.with_surface(surface, **changes))
 
-    def surface(self, name: str, **changes: Any) -> None:
+    def surface(self, name: str, /, **changes: Any) -> None:
         """Change any field of a surface, of its reflectance or of its paint."""
         self.edit(self.scene.with_surface(name, **changes))
 
-    def light(self, name: str, **changes: Any) -> None:
+    def light(self, name: str, /, **changes: Any) -> None:
         """Change any field of a light."""
         self.edit(self.scene.with_light(name, **changes))
 
