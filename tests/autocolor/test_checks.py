@@ -33,7 +33,9 @@ def test_a_number_beyond_a_bound_is_named_with_both_bounds(value: float, fine: b
     assert problems == ([] if fine else [f"blend must be a number from 0 to 1, not {value!r}"])
 
 
-@pytest.mark.parametrize("value", [(1, 2, 3), [1.0, 2.0, 3.0], np.array([1, 2, 3]), np.array([1, 2, 3], np.float32)])
+@pytest.mark.parametrize(
+    "value", [(1, 2, 3), [1.0, 2.0, 3.0], np.array([1, 2, 3]), np.array([1, 2, 3], np.float32)]
+)
 def test_three_numbers_of_any_kind_are_a_vector(value: object) -> None:
     problems: list[str] = []
     assert vector(problems, "eye", value) == (1.0, 2.0, 3.0)

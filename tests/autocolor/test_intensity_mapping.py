@@ -1,0 +1,146 @@
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import InputError, LevelRange, Picture, Scene, render
+from autocolor.intensity_mapping import curve_of, equalized, fractions, levels_of, words_of
+from autocolor.level_ranges import level_ranges
+from autocolor.picture import IntensityRange
+from autocolor.seen import SurfaceSlice
+from tests.autocolor.meshes import ramp
+from tests.autocolor.reference import level_of
+from tests.autocolor.strategies import MAPPINGS, scenes
+
+
+def picture_of(*intensities: list[float]) -> Picture:
+    """A picture of one line, with some intensities of each surface one after the other."""
+    flat = np.array([value for each in intensities for value in each], np.float32)
+    stops = np.cumsum([len(each) for each in intensities]).tolist()
+    slices = tuple(
+        SurfaceSlice(number + 1, stop - len(each), stop)
+        for number, (each, stop) in enumerate(zip(intensities, stops, strict=True))
+    )
+    names = tuple("abcdef"[: len(intensities)])
+    return Picture(1, len(flat) + 2, names, np.arange(1, len(flat) + 1), slices, flat, 1.0)
+
+
+RANGES = {"a": LevelRange(1, 11), "b": LevelRange(12, 101)}
+
+
+def shown_by(mapping: Any, fraction: float) -> float:
+    """How far along the range a fraction is shown, by the slow twin."""
+    if mapping == "gamma":
+        return float(fraction ** (1 / 2.2))
+    if mapping == "logarithm":
+        return math.log1p(15 * fraction) / math.log(16)
+    if mapping == "linear":
+        return fraction
+    for (x, y), (x_next, y_next) in zip(mapping, mapping[1:], strict=False):
+        if fraction <= x_next:
+            return float(y + (fraction - x) / (x_next - x) * (y_next - y))
+    raise AssertionError
+
+
+@given(
+    st.lists(st.integers(0, 1000), min_size=2, max_size=40),
+    st.sampled_from([mapping for mapping in MAPPINGS if mapping != "equalize"]),
+    st.integers(2, 1007),
+)
+def test_every_level_is_the_one_of_the_slow_twin(steps: list[int], mapping: Any, levels: int) -> None:
+    intensities = np.array(steps, np.float32) * np.float32(1.7)
+    least, most = float(intensities.min()), float(intensities.max())
+    shown = fractions(intensities, IntensityRange(least, most), mapping, intensities)
+    for intensity, level in zip(intensities.tolist(), levels_of(shown, levels).tolist(), strict=True):
+        if least == most:
+            assert level == levels - 1
+            continue
+        exact = shown_by(mapping, (intensity - least) / (most - least)) * (levels - 1) + 0.5
+        if abs(exact - round(exact)) > 1e-3:
+            assert level == level_of((exact - 0.5) / (levels - 1), levels)
+
+
+def test_each_surface_has_its_own_minimum_and_maximum() -> None:
+    words = words_of(picture_of([1, 2, 3], [10, 20]), RANGES, "surface", "linear")
+    assert words.tolist() == [[0, 1, 6, 11, 12, 112, 0]]
+
+
+def test_the_whole_object_has_one_minimum_and_maximum() -> None:
+    words = words_of(picture_of([0, 5, 10], [5, 20]), RANGES, "object", "linear")
+    assert words.tolist() == [[0, 1, 4, 6, 37, 112, 0]]
+
+
+@pytest.mark.parametrize("scaling", ["surface", "object"])
+@pytest.mark.parametrize("mapping", MAPPINGS, ids=str)
+def test_a_surface_whose_minimum_is_its_maximum_takes_its_last_level(scaling: str, mapping: Any) -> None:
+    words = words_of(picture_of([3.0, 3.0], [3.0]), RANGES, scaling, mapping)
+    assert words.tolist() == [[0, 11, 11, 112, 0]]
+
+
+@pytest.mark.parametrize("mapping", [mapping for mapping in MAPPINGS if mapping != "equalize"], ids=str)
+def test_a_curve_never_falls_and_ends_at_1(mapping: Any) -> None:
+    shown = curve_of(mapping)(ramp(20_001))
+    assert (np.diff(levels_of(shown, 1007).astype(int)) >= 0).all()
+    assert shown[-1] == pytest.approx(1)
+    assert shown[0] == pytest.approx(0.1 if isinstance(mapping, tuple) else 0)
+
+
+def test_gamma_and_logarithm_lift_the_dark() -> None:
+    for mapping in ("gamma", "logarithm"):
+        middle = curve_of(mapping)(np.array([0.1, 0.5], np.float32))
+        assert (middle > [0.3, 0.7]).all()
+
+
+@given(st.lists(st.integers(0, 100), min_size=2, max_size=60, unique=True))
+def test_equalize_shows_every_level_equally_often(steps: list[int]) -> None:
+    intensities = np.array(steps, np.float32) ** 3
+    shown = equalized(intensities, intensities)
+    assert sorted(shown.tolist()) == pytest.approx(np.linspace(0, 1, len(steps)).tolist())
+    assert np.argsort(shown).tolist() == np.argsort(intensities).tolist()
+
+
+@given(st.lists(st.integers(0, 8), min_size=2, max_size=60).filter(lambda steps: min(steps) < max(steps)))
+def test_equalize_never_falls_and_spans_the_range(steps: list[int]) -> None:
+    intensities = np.array(sorted(steps), np.float32)
+    shown = equalized(intensities, intensities)
+    assert (np.diff(shown) >= 0).all()
+    assert (shown[0], shown[-1]) == (0, 1)
+
+
+@given(scenes())
+def test_every_word_is_the_backgrounds_or_in_its_surfaces_range(scene: Scene) -> None:
+    picture = render(scene, 12, 16)
+    ranges = level_ranges(scene.surfaces, {part.surface for part in scene.parts})
+    words = words_of(picture, ranges, scene.scaling, scene.mapping)
+    assert words.max() <= 1023
+    assert (words[picture.surface_number == 0] == 0).all()
+    for number, name in enumerate(picture.surfaces, 1):
+        on_surface = words[picture.surface_number == number]
+        if len(on_surface):
+            assert on_surface.min() >= ranges[name].first
+            assert on_surface.max() <= ranges[name].last
+            if scene.scaling == "surface":
+                assert on_surface.max() == ranges[name].last
+    assert not words.flags.writeable
+
+
+@given(scenes())
+def test_a_brighter_pixel_of_a_surface_never_has_a_lower_word(scene: Scene) -> None:
+    picture = render(scene, 12, 16)
+    ranges = level_ranges(scene.surfaces, {part.surface for part in scene.parts})
+    words = words_of(picture, ranges, scene.scaling, scene.mapping)
+    for number in np.unique(picture.surface_number[picture.surface_number > 0]):
+        of_surface = picture.surface_number == number
+        order = np.argsort(picture.intensity[of_surface], kind="stable")
+        assert (np.diff(words[of_surface][order].astype(int)) >= 0).all()
+
+
+@pytest.mark.parametrize("wrong", [math.nan, math.inf])
+def test_an_intensity_that_is_not_finite_is_refused_by_name(wrong: float) -> None:
+    with pytest.raises(InputError, match="surface 'b': an intensity must be finite, not "):
+        words_of(picture_of([1, 2], [1, wrong]), RANGES)

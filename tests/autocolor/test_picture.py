@@ -1,0 +1,135 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import InputError, Light, Reflectance, Scene, render
+from autocolor.intensity_mapping import words_of
+from autocolor.level_ranges import level_ranges
+from tests.autocolor.meshes import sphere, wall_scene
+from tests.autocolor.strategies import scenes
+
+
+def close_to(expected: object, largest: float) -> object:
+    return pytest.approx(expected, abs=4e-6 * max(largest, 1e-30), rel=0)
+
+
+@given(scenes())
+def test_minimum_and_maximum_are_those_of_the_arrays(scene: Scene) -> None:
+    picture = render(scene, 12, 16)
+    on_object = picture.surface_number > 0
+    seen = {picture.surfaces[number - 1] for number in np.unique(picture.surface_number[on_object])}
+    assert set(picture.ranges.surfaces) == seen
+    for name, extent in picture.ranges.surfaces.items():
+        of_surface = picture.intensity[picture.surface_number == picture.surfaces.index(name) + 1]
+        assert extent == (of_surface.min(), of_surface.max())
+    if seen:
+        assert picture.ranges.whole == (
+            picture.intensity[on_object].min(),
+            picture.intensity[on_object].max(),
+        )
+    else:
+        assert picture.ranges.whole == (0, 0)
+
+
+@given(scenes())
+def test_the_picture_is_the_ambient_and_the_sum_of_the_single_lights(scene: Scene) -> None:
+    dark = scene.replace(ambient=0.0)
+    singles = [
+        render(dark.replace(lights=(light,)), 12, 16).intensity.astype(np.float64) for light in scene.lights
+    ]
+    picture = render(scene, 12, 16)
+    ambient = np.where(picture.surface_number > 0, scene.ambient, 0.0)
+    assert picture.intensity == close_to(sum(singles, ambient), picture.ranges.whole.maximum)
+
+
+@given(scenes(), st.sampled_from([1e-20, 1e-6, 0.1, 1 / 3, 2.0, 3.7, 1e6, 1e20]))
+def test_every_light_and_the_ambient_k_times_as_strong_change_no_word(scene: Scene, k: float) -> None:
+    times_k = scene.replace(
+        ambient=scene.ambient * k,
+        lights=tuple(light.replace(intensity=light.intensity * k) for light in scene.lights),
+    )
+    assert words(times_k).tolist() == words(scene).tolist()
+
+
+@given(scenes(), st.sampled_from([1e-6, 0.1, 3.7, 1e6]))
+def test_ambient_and_both_coefficients_k_times_as_high_change_no_word(scene: Scene, k: float) -> None:
+    times_k = scene.replace(
+        ambient=scene.ambient * k,
+        surfaces=tuple(
+            surface.replace(
+                diffuse=surface.reflectance.diffuse * k, specular=surface.reflectance.specular * k
+            )
+            for surface in scene.surfaces
+        ),
+    )
+    assert words(times_k).tolist() == words(scene).tolist()
+
+
+def words(scene: Scene) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
+    ranges = level_ranges(scene.surfaces, {part.surface for part in scene.parts})
+    return words_of(render(scene, 12, 16), ranges, scene.scaling, scene.mapping)
+
+
+@given(scenes())
+def test_nothing_is_where_nothing_is_seen_and_arrays_are_read_only(scene: Scene) -> None:
+    picture = render(scene, 9, 13)
+    assert picture.intensity.shape == picture.surface_number.shape == (9, 13)
+    assert (picture.intensity.dtype, picture.surface_number.dtype) == (np.float32, np.uint8)
+    assert (picture.intensity[picture.surface_number == 0] == 0).all()
+    assert np.isfinite(picture.intensity).all()
+    assert (picture.intensity >= 0).all()
+    for array in (picture.intensity, picture.surface_number):
+        assert not array.flags.writeable
+
+
+@given(scenes())
+def test_the_planes_of_the_lights_add_up_to_the_picture(scene: Scene) -> None:
+    picture = render(scene, 12, 16)
+    total = np.where(picture.surface_number > 0, scene.ambient, 0.0)
+    for light in scene.lights:
+        if light.on and light.intensity > 0:
+            plane = picture.planes[light.name]
+            for number, surface in enumerate(scene.surfaces, 1):
+                d, s = surface.reflectance.diffuse, surface.reflectance.specular
+                both = light.intensity * (d * plane.diffuse + s * plane.specular)
+                total += np.where(picture.surface_number == number, both, 0)
+    assert picture.intensity == close_to(total, picture.ranges.whole.maximum)
+
+
+def test_no_light_at_all_is_a_picture_of_zeros() -> None:
+    picture = render(wall_scene(sphere(), lights=[]), 12, 16)
+    assert picture.ranges.whole == (0, 0)
+    assert picture.surface_number.any()
+
+
+@pytest.mark.parametrize("intensity", [1e30, 1e-30])
+def test_strong_and_weak_lights_are_no_different(intensity: float) -> None:
+    one, other = (
+        render(wall_scene(sphere(), lights=[Light("key", (2, -3, 3), strength)]), 24, 32)
+        for strength in (1.0, intensity)
+    )
+    assert one.relative.tobytes() == other.relative.tobytes()
+    assert other.intensity == pytest.approx(one.intensity * np.float32(intensity), rel=1e-6)
+
+
+def test_intensities_that_float32_cannot_hold_are_refused_with_surface_and_light() -> None:
+    lights = [Light("key", (2, -3, 3), 1e39), Light("fill", (2, -3, 3), 1.0)]
+    with pytest.raises(
+        InputError, match=r"surface 'sphere' under light 'key': intensities must stay below 3.4e\+38"
+    ):
+        render(wall_scene(sphere(), lights=lights))
+    with pytest.raises(InputError, match=r"ambient must stay below 3.4e\+38, not 1e\+39; lower it"):
+        render(wall_scene(sphere(), lights=[], ambient=1e39))
+    huge = wall_scene(sphere(), lights=[Light("key", (2, -3, 3), 1e300)])
+    with pytest.raises(InputError, match="lower the light's intensity"):
+        render(huge.with_surface("sphere", reflectance=Reflectance(1e300, 0, 1)))
+
+
+def test_a_picture_shows_itself_and_tells_about_itself() -> None:
+    picture = render(wall_scene(sphere(), lights=[Light("key", (2, -3, 3))]), 12, 16)
+    assert picture._repr_png_().startswith(b"\x89PNG")
+    assert repr(picture).startswith("Picture(12 x 16, ")
+    assert render(wall_scene(sphere(), lights=[]), 12, 16)._repr_png_().startswith(b"\x89PNG")

@@ -1,0 +1,165 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, UsageError, View, render, scene_of
+from autocolor.rendering import Rendering, rendering
+from tests.autocolor.meshes import cube, sphere
+from tests.autocolor.strategies import scenes
+
+
+def two_surfaces() -> Scene:
+    mesh = Mesh.joined([sphere(12, 8), cube(1.2)])
+    return scene_of(mesh, surfaces=[Surface("sphere"), Surface("cube"), Surface("spare")])
+
+
+def edited(scene: Scene, edit: Any) -> tuple[Rendering, Rendering]:
+    before = rendering(scene, 24, 32)
+    return before, rendering(edit(scene), 24, 32, before)
+
+
+RECOLORINGS = [
+    lambda scene: scene.with_surface("cube", object_color="#102030", light_color="#ffffff", blend=0.1),
+    lambda scene: scene.replace(mapping="gamma"),
+    lambda scene: scene.replace(scaling="object"),
+    lambda scene: scene.replace(contrast="floor"),
+    lambda scene: scene.replace(background="#ffffff"),
+    lambda scene: scene.with_surface("cube", levels=50),
+    lambda scene: scene.replace(name="other"),
+]
+WEIGHTS = [
+    lambda scene: scene.replace(ambient=0.5),
+    lambda scene: scene.with_light("key", intensity=3),
+    lambda scene: scene.with_light("key", on=False),
+    lambda scene: scene.with_surface("cube", diffuse=0.1, specular=2),
+    lambda scene: scene.replace(lights=scene.lights[::-1]),
+    lambda scene: scene.replace(lights=scene.lights[:2]),
+]
+KEY_LIGHT = [
+    lambda scene: scene.with_light("key", position=(4, -3, 2)),
+    lambda scene: scene.with_light("key", aim=(0.1, 0, 0)),
+    lambda scene: scene.with_light("key", concentration=30),
+    lambda scene: scene.with_light("key", cone_angle=10),
+    lambda scene: scene.with_light("key", flaps={"x": {"minimum": 0.3}}),
+    lambda scene: scene.with_light("key", name="lamp"),
+]
+EVERYTHING = [
+    lambda scene: scene.with_view(angle=10),
+    lambda scene: scene.with_part("cube", surface="sphere"),
+    lambda scene: scene.with_surface("sphere", two_sided=False),
+    lambda scene: scene.replace(mesh=Mesh.joined([sphere(12, 8), cube(1.3)])),
+]
+
+
+@pytest.mark.parametrize("edit", RECOLORINGS)
+def test_what_only_colors_computes_no_picture_again(edit: Any) -> None:
+    before, after = edited(two_surfaces(), edit)
+    assert after.picture is before.picture
+
+
+@pytest.mark.parametrize("edit", WEIGHTS)
+def test_what_only_weighs_the_lights_keeps_their_planes(edit: Any) -> None:
+    before, after = edited(two_surfaces(), edit)
+    assert after.seen is before.seen
+    assert after.picture is not before.picture
+    for name, planes in after.picture.light_planes.items():
+        assert planes is before.picture.light_planes[name]
+
+
+@pytest.mark.parametrize("edit", KEY_LIGHT)
+def test_one_light_moved_computes_its_planes_alone(edit: Any) -> None:
+    before, after = edited(two_surfaces(), edit)
+    assert after.seen is before.seen
+    for light in after.scene.lights:
+        kept = after.picture.light_planes[light.name] is before.picture.light_planes.get(light.name)
+        assert kept == (light.name not in ("key", "lamp"))
+
+
+@pytest.mark.parametrize("edit", EVERYTHING)
+def test_mesh_view_and_the_surface_of_a_part_compute_everything_again(edit: Any) -> None:
+    before, after = edited(two_surfaces(), edit)
+    assert after.seen is not before.seen
+
+
+def test_an_exponent_computes_its_own_surface_again_and_no_other() -> None:
+    before, after = edited(two_surfaces(), lambda scene: scene.with_surface("cube", exponent=3))
+    assert after.seen is before.seen
+    of_cube = np.zeros(len(after.seen.pixels), np.bool_)
+    for surface in after.seen.slices:
+        of_cube[surface.start : surface.stop] = surface.surface_number == 2
+    changed = np.zeros_like(of_cube)
+    for name, planes in after.picture.light_planes.items():
+        changed |= (planes != before.picture.light_planes[name]).any(axis=0)
+    assert changed.any()
+    assert not (changed & ~of_cube).any()
+
+
+@pytest.mark.parametrize("edit", [*RECOLORINGS, *WEIGHTS, *KEY_LIGHT, *EVERYTHING])
+def test_what_is_kept_gives_the_same_picture_as_a_fresh_one(edit: Any) -> None:
+    _, after = edited(two_surfaces(), edit)
+    fresh = render(edit(two_surfaces()), 24, 32)
+    assert after.picture.intensity.tobytes() == fresh.intensity.tobytes()
+    assert after.picture.surface_number.tobytes() == fresh.surface_number.tobytes()
+
+
+@given(scenes(), scenes())
+def test_any_scene_after_any_other_gives_the_same_picture_as_a_fresh_one(one: Scene, other: Scene) -> None:
+    mixed = other.replace(mesh=one.mesh, view=one.view)
+    after = rendering(mixed, 9, 12, rendering(one, 9, 12))
+    assert after.picture.intensity.tobytes() == render(mixed, 9, 12).intensity.tobytes()
+
+
+def test_a_light_that_was_off_is_computed_when_it_is_switched_on() -> None:
+    dark = two_surfaces().with_light("key", on=False)
+    before = rendering(dark, 24, 32)
+    assert "key" not in before.picture.light_planes
+    lit = rendering(dark.with_light("key", on=True), 24, 32, before)
+    assert lit.picture.intensity.tobytes() == render(two_surfaces(), 24, 32).intensity.tobytes()
+
+
+def test_another_raster_lends_nothing() -> None:
+    scene = two_surfaces()
+    assert rendering(scene, 24, 30, rendering(scene, 24, 32)).picture.intensity.shape == (24, 30)
+
+
+@given(scenes(), st.tuples(st.integers(1, 12), st.integers(1, 12)))
+def test_the_literal_watkins_gives_the_same_picture(scene: Scene, raster: tuple[int, int]) -> None:
+    batch, literal = (render(scene, *raster, algorithm=each) for each in ("batch", "watkins"))
+    assert batch.intensity.tobytes() == literal.intensity.tobytes()
+    assert batch.surface_number.tobytes() == literal.surface_number.tobytes()
+
+
+def test_only_the_named_lights_are_in_a_picture_of_single_lights() -> None:
+    scene = two_surfaces()
+    alone = render(scene.only_lights("rim"), 24, 32)
+    assert (
+        alone.intensity.tobytes()
+        == render(scene.replace(lights=(scene.light("rim"),)), 24, 32).intensity.tobytes()
+    )
+
+
+@pytest.mark.parametrize("size", [(0, 10), (10, 0), (-1, 10), (2.5, 10), (10, "x"), (1 << 20, 10)])
+def test_a_raster_of_no_whole_size_is_refused(size: tuple[Any, Any]) -> None:
+    with pytest.raises(UsageError, match=r"(lines|elements) must be a whole number from 1 to \d+, not "):
+        render(two_surfaces(), *size)
+
+
+def test_an_unknown_algorithm_is_refused_with_the_nearest_name() -> None:
+    with pytest.raises(UsageError, match=r"there is no algorithm 'watkin'; did you mean 'watkins'\?"):
+        render(two_surfaces(), 4, 4, algorithm="watkin")
+
+
+def test_flaps_cut_only_their_own_light() -> None:
+    scene = two_surfaces().replace(
+        lights=[Light("a", (3, -3, 3), flaps=Flaps(x=Flap(9, 10))), Light("b", (3, -3, 3), 0.5)],
+        view=View((3, -4, 2), target=(0, 0, 0)),
+    )
+    assert (
+        render(scene, 12, 12).intensity.tobytes()
+        == render(scene.only_lights("b"), 12, 12).intensity.tobytes()
+    )
