@@ -1,0 +1,406 @@
+"""The studio with a real display: what is sent, and what the display then shows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from autocolor import Flap, Flaps, InputError, Light, Mesh, Scene, Studio, Surface, UsageError, View, scene_of
+from autocolor.level_ranges import SCREENS
+from autocolor.studio import send_picture
+from ramtek_emu import Configuration, Ramtek9300
+from tests.autocolor.meshes import cube, grid, sphere
+from tests.autocolor.strategies import colors, numbers, scenes, vectors
+
+SMALL = Configuration(name="small", elements=32, lines=24, planes=10)
+Edit = tuple[str, str, dict[str, Any]]
+
+
+def car() -> Scene:
+    """A round body, a pane and wheels, under two lights of the studio."""
+    mesh = Mesh.joined(
+        [
+            Mesh(
+                sphere(16, 10).coordinates,
+                sphere(16, 10).node_numbers,
+                sphere(16, 10).part_numbers,
+                ("hood",),
+            ),
+            grid(2, 2, (-1.3, -1.2, -0.4), (1.0, 0.2, 0), (0, 0, 1.0), "pane"),
+            cube(1.2),
+        ]
+    )
+    return scene_of(
+        mesh,
+        surface_of_part={"hood": "body", "pane": "glass", "cube": "wheels"},
+        surfaces=[Surface("body"), Surface("glass"), Surface("wheels")],
+        lights=[
+            Light("key", (2.0, -4.0, 3.0), aim=(0, 0, 0), concentration=5, cone_angle=60),
+            Light("fill", (-3.0, -2.0, 1.0), 0.4, flaps=Flaps(z=Flap(-0.5, 0.9, on=False))),
+        ],
+        view=View((1.0, -4.0, 1.0), target=(0.0, 0.0, 0.0), field_of_view=40.0),
+    )
+
+
+SURFACES = st.sampled_from(["body", "glass", "wheels"])
+
+recolorings = st.tuples(
+    st.just("recolor"),
+    SURFACES,
+    st.fixed_dictionaries(
+        {},
+        optional={
+            "object_color": colors,
+            "light_color": colors,
+            "blend": numbers(0, 1),
+            "light_percentage": numbers(0, 100),
+        },
+    ),
+)
+surface_edits = st.tuples(
+    st.just("surface"),
+    SURFACES,
+    st.fixed_dictionaries(
+        {},
+        optional={
+            "diffuse": numbers(0, 2),
+            "specular": numbers(0, 2),
+            "exponent": st.sampled_from([0.0, 1.0, 30.0]),
+            "two_sided": st.booleans(),
+            "levels": st.none() | st.integers(2, 300),
+            "blend": numbers(0, 1),
+        },
+    ),
+)
+light_edits = st.tuples(
+    st.just("light"),
+    st.sampled_from(["key", "fill"]),
+    st.fixed_dictionaries(
+        {},
+        optional={
+            "position": vectors(numbers(3, 5)),
+            "aim": vectors(numbers(-1, 1)),
+            "intensity": st.just(0.0) | numbers(0, 3),
+            "on": st.booleans(),
+            "concentration": numbers(0, 40),
+            "cone_angle": st.none() | numbers(5, 180),
+            "flaps": st.fixed_dictionaries({"x": st.none() | st.just({"minimum": 0.1})}),
+        },
+    ),
+)
+scene_edits = st.tuples(
+    st.just("scene"),
+    st.just(""),
+    st.fixed_dictionaries(
+        {},
+        optional={
+            "ambient": numbers(0, 1),
+            "scaling": st.sampled_from(["surface", "object"]),
+            "mapping": st.sampled_from(["linear", "gamma", "equalize", ((0.0, 0.0), (0.5, 0.9), (1.0, 1.0))]),
+            "contrast": st.sampled_from(["stretch", "floor"]),
+            "background": colors,
+        },
+    ),
+)
+view_edits = st.tuples(
+    st.just("view"),
+    st.just(""),
+    st.fixed_dictionaries({"angle": numbers(-90, 90), "field_of_view": numbers(20, 60)}),
+)
+any_edits = recolorings | surface_edits | light_edits | scene_edits | view_edits
+
+
+def opened(scene: Scene | None = None) -> tuple[Studio, Ramtek9300]:
+    display = Ramtek9300(SMALL)
+    return Studio(car() if scene is None else scene, display), display
+
+
+def apply(studio: Studio, edit: Edit) -> bool:
+    """Whether the edit was taken; a refused one must leave everything as it was."""
+    kind, name, changes = edit
+    before = (studio.scene, studio.picture, studio.words, repr(studio))
+    try:
+        if kind == "scene":
+            studio.edit(studio.scene.replace(**changes))
+        elif kind == "view":
+            studio.view(**changes)
+        else:
+            getattr(studio, kind)(name, **changes)
+    except InputError:
+        assert (studio.scene, studio.picture, studio.words, repr(studio)) == before
+        return False
+    return True
+
+
+def held(display: Ramtek9300) -> tuple[bytes, bytes]:
+    return display.words.tobytes(), display.entries.tobytes()
+
+
+def fresh(scene: Scene) -> tuple[bytes, bytes]:
+    return held(opened(scene)[1])
+
+
+@given(st.lists(recolorings, min_size=1, max_size=6))
+def test_recoloring_writes_no_word(edits: list[Edit]) -> None:
+    studio, display = opened()
+    words, written = display.words.copy(), display.frame_buffer.written
+    for edit in edits:
+        entries_written = display.lookup_table.written
+        assert apply(studio, edit)
+        range_of_surface = studio.level_ranges[edit[1]]
+        # Two words an entry, and at most those of the one surface.
+        assert display.lookup_table.written - entries_written <= 2 * range_of_surface.levels
+    assert display.frame_buffer.written == written
+    assert (display.words == words).all()
+
+
+@given(recolorings)
+def test_recoloring_a_surface_changes_its_own_pixels_and_entries_only(edit: Edit) -> None:
+    studio, display = opened()
+    field, entries = display.field(), display.entries
+    apply(studio, edit)
+    first, levels = studio.level_ranges[edit[1]]
+    changed_entries = np.flatnonzero((display.entries != entries).any(axis=1))
+    assert set(changed_entries.tolist()) <= set(range(first, first + levels))
+    changed = (display.field() != field).any(axis=2)
+    number = studio.picture.surfaces.index(edit[1]) + 1
+    assert (studio.picture.surface_number[changed] == number).all()
+
+
+@given(st.lists(recolorings, min_size=1, max_size=4))
+def test_a_recolored_picture_is_the_fresh_one_in_the_new_colors(edits: list[Edit]) -> None:
+    studio, display = opened()
+    for edit in edits:
+        apply(studio, edit)
+    _, anew = opened(studio.scene)
+    assert display.field().tobytes() == anew.field().tobytes()
+
+
+@settings(max_examples=40)
+@given(st.lists(any_edits, min_size=1, max_size=6))
+def test_after_any_edits_the_display_holds_what_a_fresh_studio_sends(edits: list[Edit]) -> None:
+    studio, display = opened()
+    for edit in edits:
+        before = held(display)
+        if not apply(studio, edit):
+            assert held(display) == before
+    assert held(display) == fresh(studio.scene)
+    assert display.words.max() < SCREENS.first
+    assert display.words.tobytes() == studio.words.tobytes()
+    assert display.entries.tobytes() == studio.entries.tobytes()
+
+
+@given(st.lists(any_edits, min_size=1, max_size=5))
+def test_undo_and_redo_bring_back_every_word_and_entry(edits: list[Edit]) -> None:
+    studio, display = opened()
+    states = [(studio.scene, held(display))]
+    for edit in edits:
+        if apply(studio, edit):
+            states.append((studio.scene, held(display)))
+    for scene, memories in states[-2::-1]:
+        assert studio.undo()
+        assert (studio.scene, held(display)) == (scene, memories)
+    assert not studio.undo()
+    for scene, memories in states[1:]:
+        assert studio.redo()
+        assert (studio.scene, held(display)) == (scene, memories)
+    assert not studio.redo()
+
+
+@settings(max_examples=15)
+@given(scenes())
+def test_any_scene_is_shown_as_its_words_and_entries_say(scene: Scene) -> None:
+    studio, display = opened(scene)
+    assert held(display) == (studio.words.tobytes(), studio.entries.tobytes())
+    assert display.field().tobytes() == studio.entries[studio.words].tobytes()
+    assert studio._repr_png_() == display._repr_png_()
+
+
+def test_a_new_edit_forgets_what_was_undone() -> None:
+    studio, _ = opened()
+    studio.recolor("body", blend=0.1)
+    studio.undo()
+    studio.recolor("body", blend=0.2)
+    assert not studio.redo()
+    assert studio.scene.surface("body").paint.blend == 0.2
+
+
+def test_a_drag_is_one_step() -> None:
+    studio, display = opened()
+    before = held(display)
+    studio.recolor("body", blend=0.5)
+    for blend in (0.4, 0.3, 0.2):
+        studio.edit(studio.scene.with_surface("body", blend=blend), same_step=True)
+    assert repr(studio) == "Studio('scene', 1 steps to undo, 0 to redo)"
+    studio.undo()
+    assert held(display) == before
+
+
+def test_an_edit_that_is_refused_changes_nothing() -> None:
+    studio, display = opened()
+    studio.recolor("body", blend=0.5)
+    studio.undo()
+    before = (
+        studio.scene,
+        held(display),
+        repr(studio),
+        display.frame_buffer.written,
+        display.lookup_table.written,
+    )
+    refused: list[tuple[Any, type[Exception]]] = [
+        (lambda: studio.recolor("body", object_color="red"), InputError),
+        (lambda: studio.recolor("body", diffuse=1), UsageError),
+        (lambda: studio.recolor("boddy", blend=0.5), UsageError),
+        (lambda: studio.light("key", intensity=-1), InputError),
+        (lambda: studio.light("key", intensity=1e39), InputError),
+        (lambda: studio.light("kee", intensity=1), UsageError),
+        (lambda: studio.surface("body", levels=5000), InputError),
+        (lambda: studio.view(eye=(0, 0, 0)), InputError),
+    ]
+    for edit, kind in refused:
+        with pytest.raises(kind):
+            edit()
+        assert before == (
+            studio.scene,
+            held(display),
+            repr(studio),
+            display.frame_buffer.written,
+            display.lookup_table.written,
+        )
+    assert studio.redo()
+
+
+def test_recolor_takes_only_what_colors() -> None:
+    with pytest.raises(UsageError) as refusal:
+        opened()[0].recolor("body", blent=0.5)
+    assert str(refusal.value) == (
+        "recolor takes object_color, light_color, blend, light_percentage, not 'blent'; did you mean 'blend'?"
+    )
+
+
+def test_the_same_scene_again_is_no_step_and_sends_nothing() -> None:
+    studio, display = opened()
+    written = display.frame_buffer.written, display.lookup_table.written
+    studio.edit(studio.scene)
+    assert not studio.undo()
+    assert written == (display.frame_buffer.written, display.lookup_table.written)
+
+
+@pytest.mark.parametrize(
+    ("edit", "words_sent"),
+    [
+        (lambda studio: studio.recolor("body", object_color="#010203"), False),
+        (lambda studio: studio.edit(studio.scene.replace(contrast="floor")), False),
+        (lambda studio: studio.edit(studio.scene.replace(background="#010203")), False),
+        (lambda studio: studio.edit(studio.scene.replace(scaling="object")), True),
+        (lambda studio: studio.edit(studio.scene.replace(mapping="gamma")), True),
+        (lambda studio: studio.surface("body", levels=40), True),
+        (lambda studio: studio.surface("body", diffuse=0.4), True),
+        (lambda studio: studio.light("key", intensity=2), True),
+        (lambda studio: studio.view(angle=4), True),
+    ],
+)
+def test_words_are_sent_whole_or_not_at_all(edit: Any, words_sent: bool) -> None:
+    studio, display = opened()
+    written, picture = display.frame_buffer.written, studio.picture
+    edit(studio)
+    assert display.frame_buffer.written - written == (32 * 24 if words_sent else 0)
+    if not words_sent:
+        assert studio.picture is picture
+
+
+def test_three_blends_of_the_body_change_body_pixels_only() -> None:
+    # Figure 15: A the object color alone, B and C with the light color from lower and lower levels.
+    studio, display = opened()
+    body = studio.picture.surface_number == studio.picture.surfaces.index("body") + 1
+    colors_of_c = {"object_color": "#802020", "light_color": "#ffffff"}
+    fields = []
+    for blend in (1.0, 0.6, 0.0):
+        studio.recolor("body", blend=blend, **colors_of_c)
+        fields.append(display.field().astype(int))
+    for one, other in zip(fields, fields[1:], strict=False):
+        assert not (one != other).any(axis=2)[~body].any()
+        assert (other >= one)[body].all()
+        assert (other > one)[body].any()
+
+
+def test_the_floor_keeps_the_shading_in_proportion_to_the_intensity() -> None:
+    studio, display = opened(car().replace(contrast="floor"))
+    studio.recolor("body", object_color="#ffffff", blend=1.0)
+    number = studio.picture.surfaces.index("body") + 1
+    of_body = studio.picture.surface_number == number
+    intensity = studio.picture.intensity[of_body]
+    shade = display.field()[of_body][:, 0] / 255
+    assert np.abs(shade - intensity / intensity.max()).max() < 0.01
+
+
+def test_the_floor_of_the_whole_object_is_the_objects() -> None:
+    studio, _ = opened(car().replace(contrast="floor", scaling="object", ambient=1.0))
+    least, most = studio.picture.ranges.whole
+    for name in ("body", "glass"):
+        studio.recolor(name, object_color="#ffffff", blend=1.0)
+        first = studio.level_ranges[name].first
+        assert studio.entries[first, 0] == pytest.approx(255 * least / most, abs=0.51)
+
+
+def test_the_background_and_the_screens_keep_their_words() -> None:
+    studio, display = opened(car().replace(background="#102030"))
+    nothing = studio.picture.surface_number == 0
+    assert nothing.any()
+    assert (display.words[nothing] == 0).all()
+    assert (display.field()[nothing] == (16, 32, 48)).all()
+    assert len({tuple(entry) for entry in display.entries[SCREENS.first :].tolist()}) == SCREENS.levels
+
+
+def test_a_studio_knows_whether_its_scene_is_saved() -> None:
+    studio, _ = opened()
+    assert not studio.is_changed
+    studio.recolor("body", blend=0.1)
+    assert studio.is_changed
+    studio.keep()
+    assert not studio.is_changed
+    studio.undo()
+    assert studio.is_changed
+    studio.redo()
+    assert not studio.is_changed
+
+
+def test_a_saved_picture_is_sent_without_rendering() -> None:
+    studio, display = opened()
+    other = Ramtek9300(SMALL)
+    send_picture(studio.scene, studio.picture, other)
+    assert held(other) == held(display)
+
+
+def test_everything_can_be_sent_again() -> None:
+    studio, display = opened()
+    before = held(display)
+    display.frame_buffer.write(np.full((24, 32), 77, np.uint16))
+    studio.send_everything()
+    assert held(display) == before
+
+
+def test_the_picture_has_the_size_of_its_display_else_640_by_480() -> None:
+    assert opened()[0].words.shape == (24, 32)
+    assert Studio(scene_of(cube()), Ramtek9300()).words.shape == (480, 640)
+
+
+def test_a_display_sees_a_studio_only_through_its_host_port() -> None:
+    class Port:
+        def __init__(self) -> None:
+            self.display = Ramtek9300()
+
+        def send(self, words: Any) -> None:
+            self.display.send(words)
+
+        def receive(self, count: int) -> Any:
+            return self.display.receive(count)
+
+    port = Port()
+    studio = Studio(car(), port)
+    studio.light("key", on=False)
+    assert held(port.display) == (studio.words.tobytes(), studio.entries.tobytes())
