@@ -7,6 +7,8 @@ color of the light is an assumption of the method, which predicts no color.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 import numpy.typing as npt
 
@@ -19,8 +21,9 @@ def blend_level(paint: Paint, levels: int) -> int:
     return half_up(paint.blend * (levels - 1))
 
 
+@lru_cache(maxsize=512)
 def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.uint8]:
-    """The entries of a range, (levels, 3) uint8: red, green, blue from the lowest level to the highest.
+    """The entries of a range, (levels, 3) uint8, read-only: red, green, blue from the lowest level up.
 
     The colors are those of the paint, darkened in proportion to the level. `floor` is how bright the lowest
     level is, as a fraction of the highest: 0 stretches the range to black, minimum / maximum of the
@@ -39,4 +42,5 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     colors = ramps @ np.array([paint.object_color, paint.light_color], np.float64)
     # Mixing in floats may miss a whole color by the last bit, just below a half.
     entries: npt.NDArray[np.uint8] = np.clip(halves_up(colors + 1e-9), 0, 255).astype(np.uint8)
+    entries.flags.writeable = False
     return entries

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import count, cycle
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -86,7 +87,9 @@ def cases() -> Iterator[Case]:
     yield Case("scan-out", scan_out, ("copy of one field", 1.5))
     yield Case("recolor, entries alone", entries)
     yield Case("recolor and scan-out", recolor, ("copy of one field", 2.5))
-    yield Case("a whole picture through the stream", lambda: display.send(instructions.write_image(studio.words)))
+    yield Case(
+        "a whole picture through the stream", lambda: display.send(instructions.write_image(studio.words))
+    )
     yield Case("mapping curve", mapping)
     yield Case("a light's intensity", intensity)
     yield Case("one light of four moved", one_light, ("whole frame", 1 / 8))
@@ -142,7 +145,7 @@ def main() -> None:
     every = list(cases())
     seconds = timed(every, chosen.rounds)
     medians = {name: statistics.median(row) for name, row in seconds.items()}
-    rows = []
+    rows: list[dict[str, Any]] = []
     for case in every:
         median = medians[case.name]
         spread = statistics.quantiles(seconds[case.name], n=4)
@@ -167,7 +170,10 @@ def main() -> None:
         )
     if chosen.large:
         (few, short), (many, long) = large_mesh(7)
-        print(f"{many}: {long * 1e3:.1f} ms, {long / short:.1f} frames of {few} ({short * 1e3:.1f} ms); target 7")
+        print(
+            f"{many}: {long * 1e3:.1f} ms, {long / short:.1f} frames of {few} ({short * 1e3:.1f} ms);"
+            " target 7"
+        )
         rows.append({"case": many, "milliseconds": long * 1e3, f"to {few}": long / short})
     print(f"most memory used: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MiB")
     if chosen.json is not None:
