@@ -12,6 +12,9 @@ from autocolor.errors import InputError, MissingInputError
 LARGEST_MESH_FILE = 256 * 1024 * 1024
 """Assumed: bytes; some three million polygons as OBJ, and a bound on the memory that a reader takes."""
 
+LEAST_READ = 1 << 20
+"""Bytes asked for even of a file that says it has less."""
+
 UTF_8_MARK = b"\xef\xbb\xbf"
 
 
@@ -32,8 +35,10 @@ def read_bytes(path: Path, largest: int) -> bytes:
         # A pipe put there in between would block without O_NONBLOCK; look again at what was opened.
         number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with open(number, "rb") as file:
-            refuse_irregular(path, os.fstat(number))
-            data = file.read(largest + 1)
+            opened = os.fstat(number)
+            refuse_irregular(path, opened)
+            # As many bytes as are asked for are allocated at once, however small the file is.
+            data = file.read(min(largest, max(opened.st_size, LEAST_READ)) + 1)
     except OSError as error:
         raise unreadable(path, error) from None
     if len(data) > largest:
