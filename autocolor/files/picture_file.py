@@ -10,10 +10,11 @@ checked against the bytes that are there before anything is allocated. Nothing i
 
 from __future__ import annotations
 
-import ast
 import io
 import json
 import math
+import re
+import struct
 import zipfile
 from os import PathLike
 from pathlib import Path
@@ -23,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.errors import InputError
-from autocolor.files.reading import read_bytes
+from autocolor.files.reading import read_bytes, shown
 from autocolor.files.scene_values import scene_of_values, values_of_scene
 from autocolor.files.writing import write_atomically
 from autocolor.picture import Picture
@@ -33,7 +34,16 @@ from autocolor.seen import SurfaceSlice
 FORMAT = "autocolor picture 1"
 LARGEST_PICTURE_FILE = 4 << 30
 LARGEST_HEADER = 16 << 20
+MOST_VALUES = 1_000_000
 LARGEST_ARRAY_HEADER = 1024
+MOST_PROBLEMS = 20
+LONGEST_PROBLEM = 400
+LARGEST_SINGLE = float(np.finfo(np.float32).max)
+
+ARRAY_HEADER = re.compile(
+    rb"\{'descr': '([^']*)', 'fortran_order': False, 'shape': \(((?:\d{1,12}, ?)*(?:\d{1,12})?)\), \} *\n"
+)
+"""What numpy writes before an array, as it writes it; it is never evaluated."""
 
 MEMBERS = {
     "header": ("|u1", 1),
@@ -66,7 +76,7 @@ def write_picture(
     relative = np.zeros(picture.lines * picture.elements, np.float32)
     relative[picture.pixels] = picture.relative
     arrays: dict[str, npt.NDArray[Any]] = {
-        "header": np.frombuffer(json.dumps(header, ensure_ascii=False, allow_nan=False).encode(), np.uint8),
+        "header": np.frombuffer(json.dumps(header, allow_nan=False).encode(), np.uint8),
         "relative_intensity": relative.reshape(picture.lines, picture.elements),
         "surface_number": picture.surface_number,
         "coordinates": scene.mesh.coordinates,
@@ -96,12 +106,12 @@ def read_picture(path: str | PathLike[str]) -> SavedPicture:
     try:
         mesh = (arrays["coordinates"], arrays["node_numbers"], arrays["part_numbers"])
         scene = scene_of_values(header["scene"], *mesh)
-        picture = _picture(header, arrays["relative_intensity"], arrays["surface_number"])
-        known = [surface.name for surface in scene.surfaces]
-        if list(picture.surfaces) != known:
-            raise InputError(f"its surfaces must be the scene's, {known}, not {list(picture.surfaces)}")
+        picture = _picture(header, scene, arrays["relative_intensity"], arrays["surface_number"])
     except InputError as error:
-        raise InputError(f"{source.name}: {problem}" for problem in error.problems) from None
+        raise InputError(
+            f"{source.name}: {problem[:LONGEST_PROBLEM]}; save the picture again"
+            for problem in error.problems[:MOST_PROBLEMS]
+        ) from None
     return SavedPicture(picture, scene)
 
 
@@ -110,51 +120,46 @@ def read_picture_scene(path: str | PathLike[str]) -> Scene:
     return read_picture(path).scene
 
 
+def _damaged(source: Path, found: str) -> InputError:
+    return InputError(
+        f"{source.name}: a picture file must be whole and as autocolor wrote it, not {found};"
+        " save the picture again"
+    )
+
+
 def _arrays(source: Path) -> dict[str, npt.NDArray[Any]]:
     """The members of the file, each checked before it is made an array."""
-    whole = f"{source.name}: a picture file must be whole and as autocolor wrote it, not"
     try:
         with zipfile.ZipFile(io.BytesIO(read_bytes(source, LARGEST_PICTURE_FILE))) as archive:
-            found = {member.filename: member for member in archive.infolist()}
-            expected = {f"{name}.npy" for name in MEMBERS}
-            if set(found) != expected or len(archive.infolist()) != len(expected):
-                raise InputError(f"{whole} with the members {sorted(found)[:8]}; save the picture again")
-            if any(member.compress_type != zipfile.ZIP_STORED for member in found.values()):
-                raise InputError(f"{whole} compressed; save the picture again")
+            found = [member.filename for member in archive.infolist()]
+            if sorted(found) != sorted(f"{name}.npy" for name in MEMBERS):
+                raise _damaged(source, f"with members like {', '.join(map(shown, found[:3])) or 'none'}")
+            if any(member.compress_type != zipfile.ZIP_STORED for member in archive.infolist()):
+                raise _damaged(source, "compressed")
             return {name: _array(source, name, archive.read(f"{name}.npy")) for name in MEMBERS}
-    except (zipfile.BadZipFile, EOFError, OSError, NotImplementedError, RuntimeError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{whole} {error or 'cut short'}; save the picture again") from None
+    except InputError:
+        raise
+    except (zipfile.BadZipFile, EOFError, RuntimeError, ValueError, OSError) as error:
+        raise _damaged(source, f"damaged or of another kind ({error or 'cut short'})") from None
+    except (struct.error, LookupError, ArithmeticError) as error:
+        # What zipfile lets out where the offsets in its tables are wrong.
+        raise _damaged(source, f"damaged ({error})") from None
 
 
 def _array(source: Path, name: str, data: bytes) -> npt.NDArray[Any]:
     """One member as an array of the type and the dimensions that it must have."""
     dtype, dimensions = MEMBERS[name]
-    place = f"{source.name}, {name}"
-    problem = InputError(
-        f"{place}: it must be an array of {dtype} with {dimensions} dimensions in as many bytes as its shape"
-        f" says, not {len(data)} bytes beginning {data[:10]!r}; save the picture again"
+    start = 10 + int.from_bytes(data[8:10], "little")
+    described = ARRAY_HEADER.fullmatch(data[10:start]) if start <= LARGEST_ARRAY_HEADER else None
+    if described is not None and data[:8] == b"\x93NUMPY\x01\x00" and described[1].decode() == dtype:
+        shape = [int(count) for count in re.findall(rb"\d+", described[2])]
+        size = math.prod(shape) * np.dtype(dtype).itemsize
+        if len(shape) == dimensions and size == len(data) - start and max(shape) <= len(data):
+            return np.frombuffer(data, dtype, offset=start).reshape(shape)
+    raise InputError(
+        f"{source.name}, {name}: it must be an array of {dtype} with {dimensions} dimensions in as many bytes"
+        f" as its shape says, not {len(data)} bytes that begin {data[:10]!r}; save the picture again"
     )
-    length = int.from_bytes(data[8:10], "little")
-    if data[:8] != b"\x93NUMPY\x01\x00" or length > LARGEST_ARRAY_HEADER or len(data) < 10 + length:
-        raise problem
-    try:
-        described = ast.literal_eval(data[10 : 10 + length].decode("ascii").strip())
-        shape = described["shape"]
-        expected = {"descr": dtype, "fortran_order": False, "shape": shape}
-        counts = [count for count in shape if type(count) is int and 0 <= count <= len(data)]
-    except (ValueError, SyntaxError, KeyError, TypeError, RecursionError, MemoryError):
-        raise problem from None
-    size = math.prod(counts) * np.dtype(dtype).itemsize
-    if (
-        described != expected
-        or len(counts) != len(shape)
-        or len(shape) != dimensions
-        or size != len(data) - 10 - length
-    ):
-        raise problem
-    return np.frombuffer(data, dtype, offset=10 + length).reshape(counts)
 
 
 def _header(source: Path, data: npt.NDArray[Any]) -> dict[str, Any]:
@@ -165,12 +170,14 @@ def _header(source: Path, data: npt.NDArray[Any]) -> dict[str, Any]:
         raise ValueError(f"the number {constant}")
 
     try:
-        if len(data) > LARGEST_HEADER:
-            raise ValueError(f"{len(data)} bytes")
-        header = json.loads(data.tobytes().decode("utf-8"), parse_constant=refuse)
+        text = data.tobytes()
+        if len(text) > LARGEST_HEADER or sum(map(text.count, (b",", b"[", b"{"))) > MOST_VALUES:
+            raise ValueError(f"{len(text):,} bytes of it")
+        header = json.loads(text.decode("utf-8"), parse_constant=refuse)
     except (ValueError, RecursionError) as error:
         raise InputError(
-            f"{place}: it must be JSON of at most 16 MiB, not {error}; save the picture again"
+            f"{place}: it must be JSON of at most {LARGEST_HEADER >> 20} MiB and {MOST_VALUES:,} values, not"
+            f" {error}; save the picture again"
         ) from None
     keys = {"format", "scale", "surfaces", "scene"}
     if not isinstance(header, dict) or set(header) != keys or header["format"] != FORMAT:
@@ -178,26 +185,35 @@ def _header(source: Path, data: npt.NDArray[Any]) -> dict[str, Any]:
     return header
 
 
-def _picture(header: dict[str, Any], relative: npt.NDArray[Any], numbers: npt.NDArray[Any]) -> Picture:
+def _picture(
+    header: dict[str, Any], scene: Scene, relative: npt.NDArray[Any], numbers: npt.NDArray[Any]
+) -> Picture:
     """The picture, with its visible pixels sorted by surface again."""
-    scale, surfaces = header["scale"], header["surfaces"]
-    again = "save the picture again"
-    if isinstance(scale, bool) or not isinstance(scale, (int, float)) or not 0 < scale < 1e39:
-        raise InputError(f"its scale must be a number above 0, not {scale!r}; {again}")
-    if not isinstance(surfaces, list) or not all(isinstance(name, str) for name in surfaces):
-        raise InputError(f"its surfaces must be a list of names, not {surfaces!r}; {again}")
+    scale = header["scale"]
+    names = [surface.name for surface in scene.surfaces]
+    if isinstance(scale, bool) or not isinstance(scale, (int, float)) or not 0 < scale < LARGEST_SINGLE:
+        raise InputError(f"its scale must be a number above 0, not {scale!r}")
+    if header["surfaces"] != names:
+        raise InputError(f"its surfaces must be the scene's, {names}, not {header['surfaces']!r}")
     if relative.shape != numbers.shape or not relative.size:
-        raise InputError(
-            f"its arrays must be of one shape, not {relative.shape} and {numbers.shape}; {again}"
-        )
-    if numbers.max() > len(surfaces):
-        raise InputError(f"a surface number must be 0 to {len(surfaces)}, not {numbers.max()}; {again}")
+        raise InputError(f"its arrays must be of one shape, not {relative.shape} and {numbers.shape}")
     if not (np.isfinite(relative).all() and relative.min() >= 0):
-        raise InputError(f"an intensity must be a finite number of at least 0, not otherwise; {again}")
+        raise InputError("an intensity must be a finite number of at least 0, not otherwise")
+    if float(relative.max()) * scale > LARGEST_SINGLE:
+        raise InputError(
+            f"intensities must stay below {LARGEST_SINGLE:.3g}, not reach {scale:g} times their own"
+        )
     flat = numbers.ravel()
+    counts = np.bincount(flat, minlength=1)
+    counts[0] = 0
+    in_use = set(scene.mesh.parts_in_use)
+    owned = {number for part, number in enumerate(scene.surface_number_of_part) if part in in_use}
+    strange = set(np.flatnonzero(counts).tolist()) - owned
+    if strange:
+        raise InputError(f"a surface number must be that of a surface with polygons, not {min(strange)}")
     pixels = np.flatnonzero(flat)
     pixels = pixels[np.argsort(flat[pixels], kind="stable")]
-    stops = np.cumsum(np.bincount(flat[pixels], minlength=1)).tolist()
+    stops = np.cumsum(counts).tolist()
     slices = tuple(
         SurfaceSlice(number, stops[number - 1], stops[number])
         for number in range(1, len(stops))
@@ -205,4 +221,4 @@ def _picture(header: dict[str, Any], relative: npt.NDArray[Any], numbers: npt.ND
     )
     lines, elements = relative.shape
     intensities = relative.ravel()[pixels].astype(np.float32)
-    return Picture(lines, elements, tuple(surfaces), pixels, slices, intensities, float(scale))
+    return Picture(lines, elements, tuple(names), pixels, slices, intensities, float(scale))

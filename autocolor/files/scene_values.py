@@ -12,8 +12,11 @@ from autocolor.checks import known_fields
 from autocolor.errors import InputError
 from autocolor.lights import Flap, Flaps, Light
 from autocolor.scene import Scene
-from autocolor.tables import Mesh, Paint, Part, Reflectance, Surface
+from autocolor.tables import MOST_SURFACES, Mesh, Paint, Part, Reflectance, Surface
 from autocolor.view import View
+
+MOST_KEYS, MOST_ROWS = 32, 1_000_000
+"""Assumed: more keys than any table of ours has; as many rows as a header has values."""
 
 PLAIN = ("ambient", "scaling", "mapping", "contrast", "background", "name")
 
@@ -41,12 +44,20 @@ def scene_of_values(
         raise InputError(f"scene: its tables must be {sorted(names)}, not {sorted(map(str, tables))}")
     mesh = _table(tables["mesh"], "mesh")
     part_names = _list(mesh.get("part_names"), "part_names")
-    if not all(isinstance(name, str) for name in part_names):
-        raise InputError(f"mesh: part names must be texts, not {part_names!r}")
+    parts = tuple(_made(Part, row, "part") for row in _list(tables["parts"], "parts"))
+    surfaces = tuple(_surface(row) for row in _list(tables["surfaces"], "surfaces", MOST_SURFACES))
+    surface_names = {surface.name for surface in surfaces}
+    _texts("mesh", part_names)
+    _texts("part", [name for part in parts for name in (part.name, part.surface)])
+    _texts("scene", [tables["name"]])
+    # Before the scene looks for the nearest right name of each.
+    for part in parts:
+        if part.surface not in surface_names:
+            raise InputError(f"part {part.name!r}: surface {part.surface!r} is not in the surface table")
     return Scene(
         Mesh(coordinates, node_numbers, part_numbers, tuple(part_names), mesh.get("crease_angle", math.nan)),
-        tuple(_made(Part, row, "part") for row in _list(tables["parts"], "parts")),
-        tuple(_surface(row) for row in _list(tables["surfaces"], "surfaces")),
+        parts,
+        surfaces,
         tuple(_light(row) for row in _list(tables["lights"], "lights")),
         _made(View, tables["view"], "view"),
         **{name: tables[name] for name in PLAIN},
@@ -78,15 +89,21 @@ def _made(cls: type, row: object, place: str) -> Any:
         raise InputError(f"{place}: {error}") from None
 
 
+def _texts(place: str, names: list[Any]) -> None:
+    for name in names:
+        if not isinstance(name, str):
+            raise InputError(f"{place}: a name must be a text, not {name!r}")
+
+
 def _table(value: object, place: str) -> dict[str, Any]:
-    if not isinstance(value, dict):
-        raise InputError(f"{place}: it must be a table, not {value!r}")
+    if not isinstance(value, dict) or len(value) > MOST_KEYS:
+        raise InputError(f"{place}: it must be a table of at most {MOST_KEYS} keys, not {str(value)[:60]}")
     return dict(value)
 
 
-def _list(value: object, place: str) -> list[Any]:
-    if not isinstance(value, list):
-        raise InputError(f"{place}: it must be a list, not {value!r}")
+def _list(value: object, place: str, most: int = MOST_ROWS) -> list[Any]:
+    if not isinstance(value, list) or len(value) > most:
+        raise InputError(f"{place}: it must be a list of at most {most:,} rows, not {str(value)[:60]}")
     return value
 
 
