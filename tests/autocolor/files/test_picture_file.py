@@ -1,0 +1,488 @@
+from __future__ import annotations
+
+import copy
+import dataclasses
+import errno
+import io
+import json
+import os
+import tracemalloc
+import zipfile
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Flap, Flaps, Light, Scene, read_picture, read_scene, render, write_picture
+from autocolor.errors import InputError, MissingInputError, OutputError, WriteError
+from autocolor.files.picture_file import MEMBERS, SavedPicture
+from autocolor.studio import shown
+from tests.autocolor.meshes import cube, wall_scene
+from tests.autocolor.strategies import scenes
+
+LINES, ELEMENTS = 9, 12
+
+
+def lit_wall() -> Scene:
+    """A wall with every kind of field that a file must keep."""
+    lights = (
+        Light("key", (1, -3, 2), aim=(0, 0, 0), concentration=3, cone_angle=50),
+        Light("fill", (-2, -3, 1), intensity=0.25, flaps=Flaps(z=Flap(-0.5), x=Flap(maximum=1, on=False))),
+        Light("off", (0, -1, 0), on=False, direction=(0, 1, 0)),
+    )
+    return wall_scene(ambient=0.125, lights=lights, mapping=((0, 0.1), (0.5, 0.9), (1, 1)), name="lit wall")
+
+
+def saved(path: Path, scene: Scene, lines: int = LINES, elements: int = ELEMENTS) -> SavedPicture:
+    """A scene's picture, written and read again."""
+    write_picture(path, render(scene, lines, elements), scene)
+    return read_picture(path)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The bytes of a small picture file."""
+    path = tmp_path_factory.mktemp("pictures") / "wall.npz"
+    saved(path, lit_wall())
+    return path.read_bytes()
+
+
+def read_bytes(data: bytes, folder: Path) -> SavedPicture:
+    path = folder / "changed.npz"
+    path.write_bytes(data)
+    return read_picture(path)
+
+
+def members_of(data: bytes) -> dict[str, bytes]:
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def zipped(members: dict[str, bytes], compression: int = zipfile.ZIP_STORED) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", compression) as archive:
+        for name, data in members.items():
+            archive.writestr(name, data)
+    return buffer.getvalue()
+
+
+def npy(array: npt.NDArray[Any]) -> bytes:
+    buffer = io.BytesIO()
+    np.save(buffer, array)
+    return buffer.getvalue()
+
+
+def with_array(whole: bytes, name: str, array: npt.NDArray[Any]) -> bytes:
+    return zipped({**members_of(whole), f"{name}.npy": npy(array)})
+
+
+def header_of(whole: bytes) -> dict[str, Any]:
+    header: dict[str, Any] = json.loads(np.load(io.BytesIO(members_of(whole)["header.npy"])).tobytes())
+    return header
+
+
+def with_header(whole: bytes, text: str | bytes) -> bytes:
+    data = text if isinstance(text, bytes) else text.encode()
+    return with_array(whole, "header", np.frombuffer(data, np.uint8))
+
+
+def equal_scenes(one: Scene, other: Scene) -> bool:
+    names = [field.name for field in dataclasses.fields(Scene) if field.name != "mesh"]
+    return (
+        all(getattr(one, name) == getattr(other, name) for name in names)
+        and one.mesh.part_names == other.mesh.part_names
+        and one.mesh.crease_angle == other.mesh.crease_angle
+        and all(
+            np.array_equal(getattr(one.mesh, name), getattr(other.mesh, name))
+            for name in ("coordinates", "node_numbers", "part_numbers")
+        )
+    )
+
+
+def test_a_picture_comes_back_with_its_scene(tmp_path: Path) -> None:
+    scene = lit_wall()
+    picture = render(scene, LINES, ELEMENTS)
+    again = saved(tmp_path / "wall.npz", scene)
+    assert equal_scenes(again.scene, scene)
+    assert (again.picture.intensity == picture.intensity).all()
+    assert (again.picture.surface_number == picture.surface_number).all()
+    assert again.picture.surfaces == picture.surfaces
+    assert again.picture.ranges == picture.ranges
+    assert (shown(again.scene, again.picture).words == shown(scene, picture).words).all()
+
+
+@given(scene=scenes())
+def test_every_scene_that_renders_comes_back_with_equal_words(
+    scene: Scene, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    try:
+        picture = render(scene, LINES, ELEMENTS)
+        now = shown(scene, picture)
+    except InputError:
+        return
+    path = tmp_path_factory.mktemp("pictures") / "scene.npz"
+    write_picture(path, picture, scene)
+    again = read_picture(path)
+    assert equal_scenes(again.scene, scene)
+    then = shown(again.scene, again.picture)
+    assert (then.words == now.words).all()
+    assert (then.entries == now.entries).all()
+
+
+def test_numpy_can_open_a_picture_file(tmp_path: Path) -> None:
+    scene = lit_wall()
+    picture = saved(tmp_path / "wall.npz", scene).picture
+    with np.load(tmp_path / "wall.npz") as arrays:
+        assert set(arrays) == set(MEMBERS)
+        scale = json.loads(arrays["header"].tobytes())["scale"]
+        assert (arrays["relative_intensity"] * np.float32(scale) == picture.intensity).all()
+        assert (arrays["surface_number"] == picture.surface_number).all()
+        assert (arrays["coordinates"] == scene.mesh.coordinates).all()
+
+
+def test_the_same_picture_gives_the_same_bytes(tmp_path: Path) -> None:
+    saved(tmp_path / "one.npz", lit_wall())
+    saved(tmp_path / "two.npz", lit_wall())
+    assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
+
+
+def test_a_picture_that_was_read_is_written_with_the_same_bytes(tmp_path: Path) -> None:
+    picture, scene = saved(tmp_path / "one.npz", lit_wall())
+    write_picture(tmp_path / "two.npz", picture, scene)
+    assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
+
+
+def test_names_in_any_script_and_in_none_come_back(tmp_path: Path) -> None:
+    # The name of a file that is no UTF-8 holds halves of code points.
+    scene = lit_wall().replace(name="купе \udcff")
+    assert saved(tmp_path / "wall.npz", scene).scene.name == scene.name
+
+
+def test_a_scene_in_which_nothing_is_seen_comes_back(tmp_path: Path) -> None:
+    scene = wall_scene(view=lit_wall().view.replace(direction=(0, -1, 0)), ambient=0.0, lights=[])
+    again = saved(tmp_path / "nothing.npz", scene)
+    assert not again.picture.surface_number.any()
+
+
+def test_a_picture_file_is_a_scene(tmp_path: Path) -> None:
+    saved(tmp_path / "wall.npz", lit_wall())
+    assert equal_scenes(read_scene(tmp_path / "wall.npz"), lit_wall())
+
+
+def test_an_existing_file_is_kept_unless_it_may_be_overwritten(tmp_path: Path) -> None:
+    path = tmp_path / "wall.npz"
+    path.write_bytes(b"mine")
+    scene = lit_wall()
+    picture = render(scene, LINES, ELEMENTS)
+    with pytest.raises(OutputError):
+        write_picture(path, picture, scene)
+    assert path.read_bytes() == b"mine"
+    write_picture(path, picture, scene, overwrite=True)
+    assert equal_scenes(read_picture(path).scene, scene)
+
+
+def test_a_full_disk_leaves_the_old_file_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "wall.npz"
+    path.write_bytes(b"mine")
+    picture = render(lit_wall(), LINES, ELEMENTS)
+
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(WriteError, match="no space left on device"):
+        write_picture(path, picture, lit_wall(), overwrite=True)
+    assert path.read_bytes() == b"mine"
+    assert os.listdir(tmp_path) == ["wall.npz"]
+
+
+def test_a_file_that_is_not_there_is_missing(tmp_path: Path) -> None:
+    with pytest.raises(MissingInputError):
+        read_picture(tmp_path / "wall.npz")
+
+
+def test_a_file_cut_short_anywhere_is_refused(whole: bytes, tmp_path: Path) -> None:
+    for length in range(0, len(whole), 13):
+        with pytest.raises(InputError, match=r"^changed\.npz: a picture file must be whole"):
+            read_bytes(whole[:length], tmp_path)
+
+
+@given(data=st.data())
+def test_changed_bytes_are_refused_or_harmless(
+    whole: bytes, data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    changed = bytearray(whole)
+    for _ in range(data.draw(st.integers(1, 4))):
+        place = data.draw(st.integers(0, len(changed) - 1))
+        kind = data.draw(st.sampled_from(["flip", "cut", "insert", "set"]))
+        if kind == "flip":
+            changed[place] ^= 1 << data.draw(st.integers(0, 7))
+        elif kind == "set":
+            changed[place] = data.draw(st.sampled_from([0, 1, 0x7F, 0x80, 0xFF]))
+        elif kind == "cut":
+            del changed[place : place + data.draw(st.integers(1, 100))]
+        else:
+            changed[place:place] = data.draw(st.binary(min_size=1, max_size=40))
+        changed = changed or bytearray(b"P")
+    with suppress(InputError):
+        read_bytes(bytes(changed), tmp_path_factory.mktemp("pictures"))
+
+
+# Members with right checksums but wrong contents.
+
+
+@given(data=st.data())
+def test_changed_members_are_refused_or_give_a_picture_that_can_be_shown(
+    whole: bytes, data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    members = members_of(whole)
+    name = data.draw(st.sampled_from(sorted(members)))
+    changed = bytearray(members[name])
+    for _ in range(data.draw(st.integers(1, 3))):
+        changed[data.draw(st.integers(0, len(changed) - 1))] = data.draw(st.integers(0, 255))
+    with suppress(InputError):
+        picture, scene = read_bytes(
+            zipped({**members, name: bytes(changed)}), tmp_path_factory.mktemp("pictures")
+        )
+        shown(scene, picture)
+
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4),
+    max_leaves=8,
+)
+
+
+def places(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """The path of each value within a JSON value."""
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    return [path, *(place for key, row in inner for place in places(row, (*path, key)))]
+
+
+@given(data=st.data())
+def test_any_value_anywhere_in_the_header_is_refused_or_can_be_shown(
+    whole: bytes, data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    header = header_of(whole)
+    path = data.draw(st.sampled_from(places(header)[1:]))
+    table = header
+    for key in path[:-1]:
+        table = table[key]
+    what = data.draw(st.sampled_from(["value", "none", "extra"]))
+    if what == "value":
+        table[path[-1]] = data.draw(JSON)
+    elif what == "none":
+        del table[path[-1]]
+    elif isinstance(table, dict):
+        table[data.draw(st.text(max_size=8))] = data.draw(JSON)
+    try:
+        picture, scene = read_bytes(
+            with_header(whole, json.dumps(header)), tmp_path_factory.mktemp("pictures")
+        )
+        shown(scene, picture)
+    except InputError:
+        pass
+
+
+def change(**fields: Any) -> Callable[[dict[str, Any]], None]:
+    return lambda header: header.update(fields)
+
+
+def change_scene(table: str, row: int | None = None, **fields: Any) -> Callable[[dict[str, Any]], None]:
+    def run(header: dict[str, Any]) -> None:
+        target = header["scene"][table]
+        (target if row is None else target[row]).update(fields)
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("edit", "sentence"),
+    [
+        (change(format="autocolor picture 2"), "its format must be 'autocolor picture 1'"),
+        (change(scale=0), "its scale must be a number above 0, not 0"),
+        (change(scale=-1.5), "its scale must be a number above 0, not -1.5"),
+        (change(scale=True), "its scale must be a number above 0, not True"),
+        (change(scale="1"), "its scale must be a number above 0, not '1'"),
+        (change(scale=10**300), "its scale must be a number above 0"),
+        (change(scale=3.3e38), "intensities must stay below 3.4e+38"),
+        (change(surfaces=["other"]), "its surfaces must be the scene's, ['wall'], not ['other']"),
+        (change(surfaces=["wall", "more"]), "its surfaces must be the scene's"),
+        (change(surfaces={}), "its surfaces must be the scene's"),
+        (change(scene=[]), "scene: it must be a table"),
+        (change(more=1), "its format must be"),
+        (change_scene("lights", 0, intensity=-1), "intensity must be a finite number of at least 0"),
+        (change_scene("lights", 0, intensity=10**400), "intensity must be a finite number of at least 0"),
+        (change_scene("lights", 0, name=[]), "a light's name must be a text"),
+        (change_scene("lights", 1, flaps={"z": 4}), "flap: it must be a table"),
+        (change_scene("parts", 0, name=["wall"]), "part: a name must be a text"),
+        (change_scene("parts", 0, surface={}), "part: a name must be a text"),
+        (change_scene("parts", 0, surface="walls"), "surface 'walls' is not in the surface table"),
+        (change_scene("mesh", part_names=[1]), "mesh: a name must be a text"),
+        (change_scene("mesh", crease_angle=-1), "crease_angle must be a number from 0 to 180"),
+        (change_scene("surfaces", 0, levels=1), "levels must be a whole number of at least 2"),
+        (change_scene("view", eye=[0, 0]), "view: eye must be three finite numbers"),
+        (change_scene("view", **{str(number): 0 for number in range(40)}), "it must be a table of at most"),
+    ],
+)
+def test_a_header_that_breaks_a_rule_is_refused_in_a_sentence(
+    whole: bytes, tmp_path: Path, edit: Callable[[dict[str, Any]], None], sentence: str
+) -> None:
+    header = copy.deepcopy(header_of(whole))
+    edit(header)
+    with pytest.raises(InputError) as caught:
+        read_bytes(with_header(whole, json.dumps(header)), tmp_path)
+    assert sentence in str(caught.value)
+    assert str(caught.value).startswith("changed.npz")
+    assert str(caught.value).endswith("; save the picture again")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"",
+        b"{",
+        b"null",
+        b"\xff\xfe{}",
+        b'{"format": NaN}',
+        b'{"format": -Infinity}',
+        b"[" * 100_000,
+        b'{"a":' * 100_000,
+        b"9" * 5000,
+        b"[" + b"[]," * 1_000_001 + b"[]]",
+    ],
+)
+def test_a_header_that_is_no_json_of_ours_is_refused(whole: bytes, tmp_path: Path, text: bytes) -> None:
+    with pytest.raises(InputError, match=r"^changed\.npz, header: it"):
+        read_bytes(with_header(whole, text), tmp_path)
+
+
+WRONG_ARRAYS: list[tuple[str, npt.NDArray[Any]]] = [
+    ("relative_intensity", np.zeros((LINES, ELEMENTS), np.float64)),
+    ("relative_intensity", np.zeros((LINES, ELEMENTS), ">f4")),
+    ("relative_intensity", np.asfortranarray(np.zeros((LINES, ELEMENTS), np.float32))),
+    ("relative_intensity", np.zeros(LINES * ELEMENTS, np.float32)),
+    ("relative_intensity", np.zeros((ELEMENTS, LINES), np.float32)),
+    ("relative_intensity", np.zeros((0, ELEMENTS), np.float32)),
+    ("relative_intensity", np.full((LINES, ELEMENTS), np.nan, np.float32)),
+    ("relative_intensity", np.full((LINES, ELEMENTS), np.inf, np.float32)),
+    ("relative_intensity", np.full((LINES, ELEMENTS), -1, np.float32)),
+    ("surface_number", np.full((LINES, ELEMENTS), 2, np.uint8)),
+    ("surface_number", np.zeros((LINES, ELEMENTS), np.int8)),
+    ("surface_number", np.zeros((LINES, ELEMENTS, 1), np.uint8)),
+    ("surface_number", np.array(1, np.uint8)),
+    ("coordinates", np.full((4, 3), np.nan)),
+    ("coordinates", np.full((4, 3), 1e31)),
+    ("coordinates", np.zeros((4, 2))),
+    ("coordinates", np.zeros((0, 3))),
+    ("node_numbers", np.array([[0, 1, 2, -1]], np.int32)),
+    ("node_numbers", np.array([[0, 1, 2, 4]], np.int32)),
+    ("node_numbers", np.array([[0, 1, 2, 3]], np.int64)),
+    ("part_numbers", np.array([1], np.int32)),
+    ("part_numbers", np.array([-1], np.int32)),
+    ("part_numbers", np.array([0, 0], np.int32)),
+    ("part_numbers", np.array([{"a": 1}], object)),
+    ("header", np.array(["{}"])),
+]
+
+
+@pytest.mark.parametrize(("name", "array"), WRONG_ARRAYS)
+def test_a_wrong_array_is_refused(whole: bytes, tmp_path: Path, name: str, array: npt.NDArray[Any]) -> None:
+    with pytest.raises(InputError, match=r"^changed\.npz"):
+        read_bytes(with_array(whole, name, array), tmp_path)
+
+
+def test_a_surface_without_polygons_is_seen_nowhere(tmp_path: Path) -> None:
+    # Such a surface owns no word that its pixels could have.
+    mesh = dataclasses.replace(cube(), part_names=("cube", "none"))
+    saved(tmp_path / "cube.npz", wall_scene(mesh, lights=[]))
+    data = (tmp_path / "cube.npz").read_bytes()
+    scene = read_picture(tmp_path / "cube.npz").scene
+    numbers = np.full((LINES, ELEMENTS), scene.surface_number_of_part[1], np.uint8)
+    with pytest.raises(InputError, match="must be that of a surface with polygons, not 3"):
+        read_bytes(with_array(data, "surface_number", numbers), tmp_path)
+
+
+def described(text: str, data: bytes = b"") -> bytes:
+    """An array file with any description."""
+    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode() + data
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"\x93NUMPY",
+        b"\x93NUMPY\x02\x00" + b"\0" * 100,
+        b"\x93NUMPY\x01\x00\xff\xff",
+        described("{'descr': '<f4', 'fortran_order': False, 'shape': (99999999999, 99999999999), }\n"),
+        described("{'descr': '<f4', 'fortran_order': False, 'shape': (0, 99999999999), }\n"),
+        described("{'descr': '<f4', 'fortran_order': False, 'shape': (-1, 1), }\n"),
+        described("{'descr': '<f4', 'fortran_order': False, 'shape': (True, 1), }\n", b"\0" * 4),
+        described("{'descr': '|O', 'fortran_order': False, 'shape': (1, 1), }\n", b"\x80\x04N."),
+        described("{'descr': ['<f4'], 'fortran_order': False, 'shape': (1, 1), }\n", b"\0" * 4),
+        described("{'descr': '<f4', 'shape': (1, 1), }\n", b"\0" * 4),
+        described("__import__('os')\n"),
+        described("(" * 900),
+        described("\xff\xfe"),
+    ],
+)
+def test_an_array_of_another_description_is_refused(whole: bytes, tmp_path: Path, data: bytes) -> None:
+    members = {**members_of(whole), "relative_intensity.npy": data}
+    with pytest.raises(InputError, match=r"^changed\.npz, relative_intensity: it must be an array of <f4"):
+        read_bytes(zipped(members), tmp_path)
+
+
+def test_other_members_are_refused(whole: bytes, tmp_path: Path) -> None:
+    members = members_of(whole)
+    for changed in (
+        {},
+        {name: data for name, data in members.items() if name != "header.npy"},
+        {**members, "more.npy": b""},
+        {**members, "../header.npy": b""},
+        {f"folder/{name}": data for name, data in members.items()},
+        {"x" * 60_000: b""},
+    ):
+        with pytest.raises(InputError) as caught:
+            read_bytes(zipped(changed), tmp_path)
+        assert len(str(caught.value)) < 400
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_a_member_that_stands_twice_is_refused(whole: bytes, tmp_path: Path) -> None:
+    buffer = io.BytesIO(whole)
+    with zipfile.ZipFile(buffer, "a") as archive:
+        archive.writestr("header.npy", members_of(whole)["header.npy"])
+    with pytest.raises(InputError, match="a picture file must be whole"):
+        read_bytes(buffer.getvalue(), tmp_path)
+
+
+def test_a_small_file_cannot_promise_more_memory_than_it_holds(whole: bytes, tmp_path: Path) -> None:
+    # A thousand times its size, if it were unpacked.
+    zeros = {**members_of(whole), "coordinates.npy": npy(np.zeros((3_000_000, 3)))}
+    bomb = zipped(zeros, zipfile.ZIP_DEFLATED)
+    assert len(bomb) < 100_000
+    (tmp_path / "bomb.npz").write_bytes(bomb)
+    tracemalloc.start()
+    with pytest.raises(InputError, match="not compressed"):
+        read_picture(tmp_path / "bomb.npz")
+    assert tracemalloc.get_traced_memory()[1] < 4_000_000
+    tracemalloc.stop()
+
+
+@pytest.mark.parametrize("data", [b"", b"x", b"PK\x05\x06" + b"\0" * 18, b"\x80\x04N.", b"PK" * 500])
+def test_a_file_of_another_kind_is_refused(tmp_path: Path, data: bytes) -> None:
+    with pytest.raises(InputError, match=r"^changed\.npz: a picture file must be whole"):
+        read_bytes(data, tmp_path)
+
+
+def test_a_folder_is_no_picture_file(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="must be a regular file, not a folder"):
+        read_picture(tmp_path)
