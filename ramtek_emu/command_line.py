@@ -7,7 +7,8 @@ import os
 import sys
 import traceback
 from contextlib import suppress
-from typing import NoReturn, TextIO
+from io import TextIOWrapper
+from typing import NoReturn
 
 import click
 
@@ -25,6 +26,9 @@ def run_command(command: click.Command, name: str) -> None:
     debug, arguments = _without_debug(sys.argv[1:])
     if sys.stdout is None:
         sys.stdout = _closed_pipe()
+    if isinstance(sys.stdout, TextIOWrapper):
+        # A file's name may hold what is no text at all.
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         code = _done(command, name, arguments)
         sys.stdout.flush()
@@ -74,11 +78,11 @@ def _without_debug(arguments: list[str]) -> tuple[bool, list[str]]:
     return len(rest) < end, rest + arguments[end:]
 
 
-def _closed_pipe() -> TextIO:
+def _closed_pipe() -> TextIOWrapper:
     """A pipe that nobody reads, for a process that was started without a stdout."""
     read_end, write_end = os.pipe()
     os.close(read_end)
-    return os.fdopen(write_end, "w", encoding="utf-8")
+    return open(write_end, "w", encoding="utf-8")
 
 
 def _end(name: str, message: str, code: int) -> NoReturn:

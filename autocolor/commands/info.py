@@ -28,7 +28,7 @@ def info(context: click.Context, scene: str, as_json: bool, up: str, strict: boo
     report = read(scene, up)
     facts = facts_of(report)
     if as_json:
-        click.echo(json.dumps(facts, indent=2, ensure_ascii=False))
+        click.echo(json.dumps(facts, indent=2))
     else:
         click.echo("\n".join(lines_of(facts)))
     context.exit(ended(report, strict))

@@ -60,7 +60,7 @@ def render(
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None:
-        output = f"{Path(edited.name).name}.png"
+        output = f"{Path(edited.name).name or 'scene'}.png"
     refuse_outputs(output, save, force)
 
     with progress(4) as step:

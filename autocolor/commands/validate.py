@@ -26,10 +26,10 @@ def validate(context: click.Context, scene: str, as_json: bool, up: str, strict:
         report = read(scene, up)
     except InputError as error:
         if as_json:
-            click.echo(json.dumps({"problems": error.problems, "repairs": []}, indent=2, ensure_ascii=False))
+            click.echo(json.dumps({"problems": error.problems, "repairs": []}, indent=2))
         raise
     if as_json:
-        click.echo(json.dumps({"problems": [], "repairs": report.repairs}, indent=2, ensure_ascii=False))
+        click.echo(json.dumps({"problems": [], "repairs": report.repairs}, indent=2))
     else:
         click.echo(f"{scene}: no problem")
     context.exit(ended(report, strict))
