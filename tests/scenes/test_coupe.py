@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 
 from autocolor import read_scene
 from autocolor.tables import Mesh
-from scenes.coupe import make
-from scenes.pyramid.make import pyramid_obj
+from scenes.modeling.coupe import make
+from scenes.modeling.pyramid import pyramid_obj
 
 SCENES = Path(__file__).parents[2] / "scenes"
 CAR = tuple(name for names in make.FILES.values() for name in names)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenes.coupe.body import S_END, columns_at, s_at, skin, wall
-from scenes.coupe.canopy import crown, flank
-from scenes.coupe.curves import Array, ease
-from scenes.coupe.parts import Parts
+from scenes.modeling.coupe.body import S_END, columns_at, s_at, skin, wall
+from scenes.modeling.coupe.canopy import crown, flank
+from scenes.modeling.coupe.curves import Array, ease
+from scenes.modeling.coupe.parts import Parts
 
 STRIP = np.array([3.15, 3.5])
 

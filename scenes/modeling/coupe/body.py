@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from scenes.coupe.curves import Array, basis, ease, smooth
+from scenes.modeling.coupe.curves import Array, basis, ease, smooth
 
 AXLES = (-1.365, 1.205)
 WHEEL_HEIGHT = 0.325

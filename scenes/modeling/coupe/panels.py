@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenes.coupe.body import (
+from scenes.modeling.coupe.body import (
     ARCH_HEIGHT,
     ARCH_RADIUS,
     AXLES,
@@ -17,8 +17,8 @@ from scenes.coupe.body import (
     top,
     wall,
 )
-from scenes.coupe.curves import Array, coons, invert, segment, spaced
-from scenes.coupe.parts import Parts
+from scenes.modeling.coupe.curves import Array, coons, invert, segment, spaced
+from scenes.modeling.coupe.parts import Parts
 
 GAP, GAP_DEPTH = 0.011, 0.005
 # Upright cuts between panels, at these x.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenes.coupe.curves import Array
+from scenes.modeling.coupe.curves import Array
 
 MIDDLE_HEIGHT = 0.55
 Point = tuple[float, float, float]

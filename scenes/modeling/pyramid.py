@@ -1,4 +1,4 @@
-"""Write the mesh of the pyramid on a plane beside this script: `python -m scenes.pyramid.make [FOLDER]`."""
+"""Write the mesh of the pyramid on a plane: `python -m scenes.modeling.pyramid [FOLDER]`."""
 
 from __future__ import annotations
 
@@ -34,4 +34,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parents[1] / "pyramid")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenes.coupe.body import CREASE, S_END, s_at, skin
-from scenes.coupe.curves import Array, spaced
-from scenes.coupe.panels import FASCIA_CUT, GAP, SHOULDER, SILL, TAIL_CUT, UPPER_ROWS
-from scenes.coupe.parts import Parts
+from scenes.modeling.coupe.body import CREASE, S_END, s_at, skin
+from scenes.modeling.coupe.curves import Array, spaced
+from scenes.modeling.coupe.panels import FASCIA_CUT, GAP, SHOULDER, SILL, TAIL_CUT, UPPER_ROWS
+from scenes.modeling.coupe.parts import Parts
 
 Hole = tuple[int, int, int, int]
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from scenes.coupe.body import LEDGE, S_END, s_at, wall
-from scenes.coupe.curves import Array, bezier, bspline, coons, ease, segment
-from scenes.coupe.panels import COWL, DOOR_FRONT, DOOR_REAR, QUARTER_TOP, hood_rear
-from scenes.coupe.parts import Parts
+from scenes.modeling.coupe.body import LEDGE, S_END, s_at, wall
+from scenes.modeling.coupe.curves import Array, bezier, bspline, coons, ease, segment
+from scenes.modeling.coupe.panels import COWL, DOOR_FRONT, DOOR_REAR, QUARTER_TOP, hood_rear
+from scenes.modeling.coupe.parts import Parts
 
 # fmt: off
 # Side views (x, z) of the center line and of the rail; the same count of control points.

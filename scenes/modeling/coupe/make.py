@@ -1,4 +1,4 @@
-"""Write the mesh files of the coupe beside this script: `python -m scenes.coupe.make [FOLDER]`.
+"""Write the mesh files of the coupe: `python -m scenes.modeling.coupe.make [FOLDER]`.
 
 The car is a sports coupe of the early 1980s with a long hood and a glass hatch, in meters: x runs from nose
 to tail, y to the right, z up; the wheels stand on z = 0. Each run makes the same meshes to the last digit.
@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from scenes.coupe import canopy, details, ends, panels, wheels
-from scenes.coupe.curves import spaced
-from scenes.coupe.parts import Parts
+from scenes.modeling.coupe import canopy, details, ends, panels, wheels
+from scenes.modeling.coupe.curves import spaced
+from scenes.modeling.coupe.parts import Parts
 
 # fmt: off
 FILES = {
@@ -82,4 +82,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parents[2] / "coupe")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenes.coupe.body import AXLES, WHEEL_HEIGHT
-from scenes.coupe.curves import Array
-from scenes.coupe.ends import border
-from scenes.coupe.parts import Parts
+from scenes.modeling.coupe.body import AXLES, WHEEL_HEIGHT
+from scenes.modeling.coupe.curves import Array
+from scenes.modeling.coupe.ends import border
+from scenes.modeling.coupe.parts import Parts
 
 CENTER_Y = 0.784
 AROUND = 30

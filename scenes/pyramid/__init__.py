@@ -1,1 +1,0 @@
-"""The pyramid on a plane of the paper's Figure 4."""
