@@ -12,6 +12,7 @@ COMMANDS = {
     "view": "a scene in the window of the display",
     "info": "what a scene holds: counts, sizes, ranges",
     "validate": "every problem of a scene at once",
+    "tables": "the tables of a scene, also those created for it",
 }
 
 EXAMPLES = """\b

@@ -1,0 +1,55 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import autocolor
+from autocolor.commands.tables import tables
+
+SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng lid\nf 1 2 3 4\n"
+
+
+@pytest.fixture
+def mesh(tmp_path: Path) -> Path:
+    path = tmp_path / "box" / "square.obj"
+    path.parent.mkdir()
+    path.write_text(SQUARE)
+    return path
+
+
+def test_created_tables_fed_back_give_the_same_picture(mesh: Path) -> None:
+    bare = autocolor.read_scene(mesh)
+    result = CliRunner().invoke(tables, [str(mesh), "--write"])
+    assert result.exit_code == 0, result.output
+    again = autocolor.read_scene(mesh.parent)
+    assert (again.parts, again.surfaces, again.lights) == (bare.parts, bare.surfaces, bare.lights)
+    assert again.view == bare.view
+    first, second = autocolor.render(bare, 48, 64), autocolor.render(again, 48, 64)
+    assert (first.intensity == second.intensity).all()
+    assert (first.surface_number == second.surface_number).all()
+
+
+def test_tables_on_stdout_are_the_scene_file_that_write_writes(mesh: Path) -> None:
+    shown = CliRunner().invoke(tables, [str(mesh)])
+    CliRunner().invoke(tables, [str(mesh), "--write"])
+    assert shown.stdout == (mesh.parent / "scene.toml").read_text()
+
+
+def test_a_scene_file_is_not_overwritten_without_force(mesh: Path) -> None:
+    scene = mesh.parent / "scene.toml"
+    scene.write_text("ambient = 0.5\n")
+    refused = CliRunner().invoke(tables, [str(mesh), "--write"])
+    assert isinstance(refused.exception, autocolor.OutputError)
+    assert scene.read_text() == "ambient = 0.5\n"
+    assert CliRunner().invoke(tables, [str(mesh), "--write", "--force"]).exit_code == 0
+    assert 'surface = "lid"' in scene.read_text()
+
+
+def test_tables_as_json_hold_every_table(mesh: Path) -> None:
+    values = json.loads(CliRunner().invoke(tables, [str(mesh), "--json"]).stdout)
+    assert values["parts"] == [{"name": "lid", "surface": "lid"}]
+    assert len(values["lights"]) == 4
+    assert {"surfaces", "view", "ambient", "mesh"} <= set(values)
