@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -41,7 +42,7 @@ def shown_by(mapping: Any, fraction: float) -> float:
         return math.log1p(15 * fraction) / math.log(16)
     if mapping == "linear":
         return fraction
-    for (x, y), (x_next, y_next) in zip(mapping, mapping[1:], strict=False):
+    for (x, y), (x_next, y_next) in itertools.pairwise(mapping):
         if fraction <= x_next:
             return float(y + (fraction - x) / (x_next - x) * (y_next - y))
     raise AssertionError

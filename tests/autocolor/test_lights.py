@@ -79,11 +79,13 @@ def test_giving_a_direction_drops_the_aim_and_the_other_way_round() -> None:
         ),
         (
             {"concentration": 3},
-            "light 'key': concentration must come with a direction or an aim, not with a point source; add an aim",
+            "light 'key': concentration must come with a direction or an aim, not with a point source;"
+            " add an aim",
         ),
         (
             {"cone_angle": 30},
-            "light 'key': cone_angle must come with a direction or an aim, not with a point source; add an aim",
+            "light 'key': cone_angle must come with a direction or an aim, not with a point source;"
+            " add an aim",
         ),
         (
             {"direction": (1, 0, 0), "aim": (1, 1, 1)},

@@ -91,8 +91,8 @@ def test_an_unknown_name_is_refused_with_the_nearest_right_one(ask: Any, sentenc
         ({"contrast": "high"}, "contrast must be 'stretch' or 'floor', not 'high'"),
         (
             {"mapping": "log"},
-            "mapping must be 'linear', 'gamma', 'logarithm', 'equalize', or rising points [x, y] from x = 0 to x = 1,"
-            " not 'log'; did you mean 'logarithm'?",
+            "mapping must be 'linear', 'gamma', 'logarithm', 'equalize', or rising points [x, y] from x = 0"
+            " to x = 1, not 'log'; did you mean 'logarithm'?",
         ),
         (
             {"background": "black"},

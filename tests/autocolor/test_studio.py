@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -322,7 +323,7 @@ def test_three_blends_of_the_body_change_body_pixels_only() -> None:
     for blend in (1.0, 0.6, 0.0):
         studio.recolor("body", blend=blend, **colors_of_c)
         fields.append(display.field().astype(int))
-    for one, other in zip(fields, fields[1:], strict=False):
+    for one, other in itertools.pairwise(fields):
         assert not (one != other).any(axis=2)[~body].any()
         assert (other >= one)[body].all()
         assert (other > one)[body].any()

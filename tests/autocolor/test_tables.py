@@ -76,7 +76,8 @@ def test_the_bounds_hold_the_nodes_that_polygons_use_and_no_other(mesh: Mesh) ->
         ),
         (
             {"node_numbers": [[0, 1, -1]]},
-            "polygon table: a node number must be a row of the node table (0 to 2), not [0, 1, -1, -1] (row 0)",
+            "polygon table: a node number must be a row of the node table (0 to 2), not [0, 1, -1, -1]"
+            " (row 0)",
         ),
         (
             {"part_numbers": [1]},

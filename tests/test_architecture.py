@@ -1,0 +1,212 @@
+"""The plan of the house, read off its imports."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+PUBLIC_NAMES = {
+    "autocolor": [
+        "AutocolorError", "Flap", "Flaps", "InputError", "LevelRange", "Light", "Mesh", "MissingInputError",
+        "OutputError", "Paint", "Part", "Picture", "Reflectance", "Scene", "Studio", "Surface",
+        "UnavailableError", "UsageError", "View", "WriteError", "read_picture", "read_scene", "render",
+        "scene_of", "write_picture",
+    ],
+    "ramtek_emu": [
+        "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
+        "InstructionError", "NoScreenError", "OutputExistsError", "PRINCETON_9300", "Ramtek9300",
+        "RamtekError", "Recorder", "ReplyError", "WordsError", "WriteError",
+    ],
+}  # fmt: skip
+
+KNOWING_THE_DISPLAY = ("autocolor.studio", "autocolor.picture", "autocolor.__main__")
+ROOMS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
+DOORS_OF_THE_DISPLAY = {
+    "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration", "ramtek_emu.errors",
+    "ramtek_emu.host_port", "ramtek_emu.instructions", "ramtek_emu.png", "ramtek_emu.server",
+    "ramtek_emu.window",
+}  # fmt: skip
+OUTSIDE = {"numpy", "click", "pydantic", "PIL", "pygame"}
+
+
+class Import(NamedTuple):
+    """A module that another imports, and whether it does so when it is loaded itself."""
+
+    target: str
+    at_once: bool
+
+
+def modules() -> dict[str, Path]:
+    found = {}
+    for package in PUBLIC_NAMES:
+        for path in sorted((ROOT / package).rglob("*.py")):
+            name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+            found[name] = path
+    return found
+
+
+MODULES = modules()
+
+
+def imports_in(nodes: list[ast.stmt], name: str, is_package: bool, at_once: bool = True) -> Iterator[Import]:
+    for node in nodes:
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            yield from imports_in(node.body, name, is_package, at_once=False)
+            yield from imports_in(node.orelse, name, is_package, at_once)
+        elif isinstance(node, ast.Import):
+            yield from (Import(alias.name, at_once) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                parts = name.split(".")
+                kept = parts[: len(parts) - node.level + is_package]
+                base = ".".join([*kept, *([node.module] if node.module else [])])
+            for alias in node.names:
+                whole = f"{base}.{alias.name}"
+                yield Import(whole if whole in MODULES else base, at_once)
+        else:
+            inner = at_once and not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
+            for field in ("body", "orelse", "finalbody", "handlers"):
+                for child in getattr(node, field, None) or []:
+                    body = child.body if isinstance(child, ast.ExceptHandler) else [child]
+                    yield from imports_in(body, name, is_package, inner)
+
+
+def imports_of(name: str) -> list[Import]:
+    path = MODULES[name]
+    return list(imports_in(ast.parse(path.read_text("utf-8")).body, name, path.stem == "__init__"))
+
+
+def outer(target: str) -> str:
+    return target.split(".")[0]
+
+
+@pytest.mark.parametrize("name", [name for name in MODULES if outer(name) == "ramtek_emu"])
+def test_the_display_knows_nothing_of_the_renderer(name: str) -> None:
+    assert "autocolor" not in {outer(each.target) for each in imports_of(name)}
+
+
+@pytest.mark.parametrize("name", [name for name in MODULES if outer(name) == "autocolor"])
+def test_the_renderer_knows_the_display_only_where_they_meet_and_only_by_its_doors(name: str) -> None:
+    used = {each.target for each in imports_of(name) if outer(each.target) == "ramtek_emu"}
+    if name not in KNOWING_THE_DISPLAY and not name.startswith(ROOMS_KNOWING_THE_DISPLAY):
+        assert not used
+    assert used <= DOORS_OF_THE_DISPLAY
+
+
+def test_pygame_is_in_one_file() -> None:
+    having = {name for name in MODULES for each in imports_of(name) if outer(each.target) == "pygame"}
+    assert having == {"ramtek_emu.window"}
+
+
+def test_pillow_is_in_one_file() -> None:
+    having = {name for name in MODULES for each in imports_of(name) if outer(each.target) == "PIL"}
+    assert having == {"ramtek_emu.png"}
+
+
+def test_nothing_is_imported_that_is_no_dependency() -> None:
+    used = {outer(each.target) for name in MODULES for each in imports_of(name)}
+    assert used <= {*PUBLIC_NAMES, *OUTSIDE, *sys.stdlib_module_names}
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    state: dict[str, str] = {}
+
+    def visit(name: str, path: tuple[str, ...]) -> None:
+        assert state.get(name) != "open", f"circle: {' -> '.join((*path, name))}"
+        if name in state:
+            return
+        state[name] = "open"
+        for each in imports_of(name):
+            # A module of a package loads the package before it; that is no circle of theirs.
+            if each.at_once and each.target in MODULES and not name.startswith(f"{each.target}."):
+                visit(each.target, (*path, name))
+        state[name] = "done"
+
+    for name in MODULES:
+        visit(name, ())
+
+
+def run(code: str) -> str:
+    return subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=60
+    ).stdout
+
+
+def test_each_module_imports_alone_and_only_the_window_loads_pygame() -> None:
+    # One fresh interpreter forks for each module: loading numpy once is enough.
+    names = [name for name in MODULES if not name.endswith("__main__")]
+    code = f"""
+import importlib, os, sys
+import numpy
+for name in {names!r}:
+    child = os.fork()
+    if child == 0:
+        importlib.import_module(name)
+        if ("pygame" in sys.modules) != (name == "ramtek_emu.window"):
+            print(name, "and pygame", flush=True)
+        if "PIL" in sys.modules and name not in ("ramtek_emu.png", "ramtek_emu.window"):
+            print(name, "and Pillow", flush=True)
+        os._exit(0)
+    if os.waitpid(child, 0)[1]:
+        print(name, "does not import alone", flush=True)
+"""
+    if not hasattr(os, "fork"):
+        pytest.skip("needs os.fork")
+    output = run(code)
+    assert [line for line in output.splitlines() if not line.startswith("pygame")] == []
+
+
+def test_the_packages_import_no_numpy_and_no_screen() -> None:
+    code = (
+        "import sys, autocolor, ramtek_emu;"
+        "print([name for name in ('numpy', 'pygame', 'PIL') if name in sys.modules])"
+    )
+    assert run(code).strip() == "[]"
+
+
+@pytest.mark.parametrize("package", PUBLIC_NAMES)
+def test_the_public_names_are_these_and_can_be_imported(package: str) -> None:
+    module = importlib.import_module(package)
+    assert sorted(module.__all__) == sorted(PUBLIC_NAMES[package])
+    for name in PUBLIC_NAMES[package]:
+        assert getattr(module, name) is not None
+        assert name in dir(module)
+    with pytest.raises(AttributeError, match=f"module '{package}' has no attribute 'nothing'"):
+        _ = module.nothing
+
+
+@pytest.mark.parametrize("package", PUBLIC_NAMES)
+def test_what_type_checkers_see_is_what_can_be_imported(package: str) -> None:
+    tree = ast.parse((ROOT / package / "__init__.py").read_text("utf-8"))
+    seen = {
+        alias.asname
+        for node in tree.body
+        if isinstance(node, ast.If)
+        for statement in node.body
+        if isinstance(statement, ast.ImportFrom)
+        for alias in statement.names
+    }
+    assert seen == set(PUBLIC_NAMES[package])
+
+
+def test_a_scene_is_rendered_and_shown_without_a_screen() -> None:
+    code = """
+import sys
+import autocolor, numpy
+from ramtek_emu import Ramtek9300
+mesh = autocolor.Mesh(numpy.eye(3), numpy.array([[0, 1, 2]]), numpy.array([0]), ("part",))
+autocolor.Studio(autocolor.scene_of(mesh), Ramtek9300())
+print("pygame" in sys.modules)
+"""
+    assert run(code).strip() == "False"

@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+import pytest
+
+from tests.fidelity_ledger import KINDS, ROOT, document, lines_of_packages, lines_of_source
+
+BEARING_FORMULAS = [
+    "autocolor.color_blending", "autocolor.created", "autocolor.intensity_mapping", "autocolor.level_ranges",
+    "autocolor.light_controls", "autocolor.lights", "autocolor.node_normals", "autocolor.picture",
+    "autocolor.projection", "autocolor.reflection", "autocolor.scene", "autocolor.seen", "autocolor.shading",
+    "autocolor.tables", "autocolor.view", "autocolor.visible_surfaces", "autocolor.watkins",
+    "ramtek_emu.character_rom", "ramtek_emu.configuration", "ramtek_emu.decoder", "ramtek_emu.drawing",
+    "ramtek_emu.frame_buffer", "ramtek_emu.host_port", "ramtek_emu.lookup_table", "ramtek_emu.parameters",
+    "ramtek_emu.processor", "ramtek_emu.scan_out",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("module", BEARING_FORMULAS)
+def test_a_module_with_formulas_or_rules_says_where_they_come_from(module: str) -> None:
+    assert [line for line in lines_of_packages() if line.module == module]
+
+
+def test_the_document_is_up_to_date() -> None:
+    written = (ROOT / "docs" / "FIDELITY.md").read_text("utf-8")
+    assert written == document(), "run: python -m tests.fidelity_ledger > docs/FIDELITY.md"
+
+
+def test_every_line_says_something() -> None:
+    for line in lines_of_packages():
+        assert line.kind in KINDS
+        assert len(line.text) > 3, line
+
+
+@pytest.mark.parametrize(
+    "departure", ["the paper prints the test as cos(L) <= cos(A)", "linear in the picture"]
+)
+def test_where_the_program_differs_from_the_paper_is_in_the_ledger(departure: str) -> None:
+    assert any(departure in line.text for line in lines_of_packages() if line.kind == "Departs")
+
+
+def test_a_line_is_found_in_texts_constants_brackets_and_comments() -> None:
+    source = '''"""Module. Paper: Figure 1. Assumed: nothing
+more (at all).
+
+Plain.
+"""
+
+NEAR = 1
+"""Assumed: near."""
+
+
+class Box:
+    """A box (Hardware: LIN, f(x)) of words."""
+
+    def open(self) -> None:
+        # Departs: it opens
+        # twice.
+        pass
+'''
+    assert [tuple(line) for line in lines_of_source(source, "m")] == [
+        ("Paper", "m", "", "Figure 1."),
+        ("Assumed", "m", "", "nothing more (at all)."),
+        ("Assumed", "m", "NEAR", "near."),
+        ("Hardware", "m", "Box", "LIN, f(x)."),
+        ("Departs", "m", "", "it opens twice."),
+    ]
