@@ -151,28 +151,33 @@ def first_hit(mesh: Mesh, eye: Vector, direction: Vector) -> Hit:
     """Brute force: the ray against every triangle of the mesh, each quad as two; polygon -1 for none."""
     best = Hit(-1, math.inf, math.inf)
     clear = math.inf
-    for number, (a, b, c, d) in enumerate(mesh.node_numbers.tolist()):
-        for triangle in ((a, b, c), (a, c, d)):
-            if len(set(triangle)) < 3:
-                continue
-            depth, inside = _triangle(mesh.coordinates[list(triangle)], np.array(eye), np.array(direction))
-            if math.isnan(depth) or depth <= 0:
-                continue
-            clear = min(clear, abs(inside))
-            if inside < 0:
-                continue
-            clear = min(clear, abs(depth - best.depth) / depth)
-            if depth < best.depth:
-                best = Hit(number, depth, 0.0)
+    for number, depth, inside in _meetings(mesh, np.array(eye), np.array(direction)):
+        clear = min(clear, abs(inside))
+        if inside < 0:
+            continue
+        clear = min(clear, abs(depth - best.depth) / depth)
+        if depth < best.depth:
+            best = Hit(number, depth, 0.0)
     return best._replace(clear=clear)
 
 
-def _triangle(
-    corners: npt.NDArray[np.float64], eye: npt.NDArray[np.float64], direction: npt.NDArray[np.float64]
-) -> tuple[float, float]:
-    """How far along the ray the triangle's plane is, and the least barycentric coordinate there."""
-    columns = np.stack([corners[0] - corners[1], corners[0] - corners[2], direction], axis=1)
-    if abs(np.linalg.det(columns)) < 1e-9:
-        return math.nan, -1.0
-    second, third, depth = np.linalg.solve(columns, corners[0] - eye)
-    return float(depth), float(min(second, third, 1 - second - third))
+def _meetings(
+    mesh: Mesh, eye: npt.NDArray[np.float64], direction: npt.NDArray[np.float64]
+) -> list[tuple[int, float, float]]:
+    """Polygon, depth and least barycentric coordinate where the ray meets each triangle's plane."""
+    corners = mesh.coordinates[mesh.node_numbers[:, [0, 1, 2, 0, 2, 3]]].reshape(-1, 3, 3)
+    number = np.repeat(np.arange(len(mesh.node_numbers)), 2)
+    columns = np.stack(
+        [
+            corners[:, 0] - corners[:, 1],
+            corners[:, 0] - corners[:, 2],
+            np.broadcast_to(direction, corners[:, 0].shape),
+        ],
+        axis=2,
+    )
+    real = np.abs(np.linalg.det(columns)) > 1e-9
+    second, third, depth = np.linalg.solve(columns[real], (corners[real, 0] - eye)[..., None])[..., 0].T
+    inside = np.minimum(np.minimum(second, third), 1 - second - third)
+    before = depth > 0
+    rows = (number[real][before], depth[before], inside[before])
+    return list(zip(*(row.tolist() for row in rows), strict=True))
