@@ -45,6 +45,8 @@ class Key(NamedTuple):
     control: bool = False
     shift: bool = False
     alt: bool = False
+    repeated: bool = False
+    """Whether it was down already: what a key does while it is held can be one step."""
 
 
 class Pointer(NamedTuple):
@@ -153,6 +155,7 @@ class Monitor:
         self._open = False
         self._shown: tuple[object, ...] | None = None
         self._enter = False
+        self._down: set[int] = set()
 
     @property
     def is_open(self) -> bool:
@@ -298,8 +301,12 @@ class Monitor:
                     bool(event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META)),
                     bool(event.mod & pygame.KMOD_SHIFT),
                     bool(event.mod & pygame.KMOD_ALT),
+                    event.key in self._down,
                 )
             )
+            self._down.add(event.key)
+        elif event.type == pygame.KEYUP:
+            self._down.discard(event.key)
         elif event.type == pygame.DROPFILE:
             if self.on_drop is not None:
                 self.on_drop(Path(event.file))

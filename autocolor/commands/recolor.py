@@ -53,7 +53,9 @@ def recolor(
 ) -> None:
     """Give SURFACE of a saved PICTURE other colors."""
     if output is None and save is None:
-        output = f"{Path(picture).stem}-{surface}.png".replace("/", "_")
+        from autocolor.files.file_stem import file_stem
+
+        output = f"{Path(picture).stem}-{file_stem(surface)}.png"
     refuse_outputs(output, save, force)
 
     from autocolor.files.picture_file import read_picture, write_picture

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 import click
 
@@ -60,7 +59,9 @@ def render(
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None:
-        output = f"{Path(edited.name).name or 'scene'}.png"
+        from autocolor.files.file_stem import file_stem
+
+        output = f"{file_stem(edited.name)}.png"
     refuse_outputs(output, save, force)
 
     with progress(4) as step:

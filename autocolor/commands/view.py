@@ -60,7 +60,7 @@ def show(scene: Scene, full_screen: bool = False, fit: bool = False) -> None:
             monitor.caption = viewer.caption
 
         def on_key(key: Key) -> bool:
-            taken = viewer.on_key(key.name, key.control, key.shift, key.text)
+            taken = viewer.on_key(key.name, key.control, key.shift, key.text, key.repeated)
             monitor.caption = viewer.caption
             return taken
 

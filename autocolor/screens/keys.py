@@ -17,6 +17,11 @@ class Chord:
     control: bool = False
     shift: bool = False
 
+    @property
+    def is_sign(self) -> bool:
+        """Whether it is a digit or a sign, which keyboards have in different places."""
+        return len(self.name) == 1 and not self.name.isalpha()
+
     def __str__(self) -> str:
         held = ["Ctrl"] * self.control + ["Shift"] * self.shift
         names = {

@@ -1,0 +1,87 @@
+"""What every key of the viewer does, in the order of the help page."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from autocolor.screens.keys import Binding, Chord
+
+if TYPE_CHECKING:
+    from autocolor.screens.viewer import Viewer
+
+TURN = 5.0
+"""Degrees that one press of an arrow goes around the object."""
+
+CLOSER = 0.9
+BLEND = 0.05
+
+BINDINGS: tuple[Binding[Viewer], ...] = (
+    Binding((Chord("f1"),), "this help, and back", lambda viewer, _: viewer.show_help()),
+    Binding(
+        (Chord("f4"),), "the 1024 entries of the table, and back", lambda viewer, _: viewer.show_entries()
+    ),
+    Binding(
+        (Chord("left"), Chord("right")),
+        "go around the object",
+        lambda viewer, number: viewer.turn((-TURN, TURN)[number], 0),
+        held=True,
+    ),
+    Binding(
+        (Chord("up"), Chord("down")),
+        "look from higher, from lower",
+        lambda viewer, number: viewer.turn(0, (TURN, -TURN)[number]),
+        held=True,
+    ),
+    Binding(
+        (Chord("+"), Chord("="), Chord("-")),
+        "move closer, farther",
+        lambda viewer, number: viewer.move((CLOSER, CLOSER, 1 / CLOSER)[number]),
+        label="+, -",
+        held=True,
+    ),
+    Binding(
+        (Chord(","), Chord(".")),
+        "turn the picture's horizontal axis",
+        lambda viewer, number: viewer.tilt((-TURN, TURN)[number]),
+        held=True,
+    ),
+    Binding((Chord("r"),), "rescale: fill the picture with the object", lambda viewer, _: viewer.rescale()),
+    Binding(
+        tuple(Chord(str(digit)) for digit in range(1, 10)),
+        "switch a light on or off",
+        lambda viewer, number: viewer.switch_light(number),
+        label="1 to 9",
+    ),
+    Binding(
+        (Chord("s"), Chord("s", shift=True)),
+        "choose the next surface, the one before",
+        lambda viewer, number: viewer.choose_surface((1, -1)[number]),
+    ),
+    Binding(
+        (Chord("["), Chord("]")),
+        "blend: the light color from lower, from higher levels",
+        lambda viewer, number: viewer.blend((-BLEND, BLEND)[number]),
+        held=True,
+    ),
+    Binding(
+        (Chord("c"), Chord("c", shift=True)),
+        "the next object color, the one before",
+        lambda viewer, number: viewer.repaint((1, -1)[number]),
+    ),
+    Binding((Chord("z", control=True),), "undo", lambda viewer, _: viewer.undo()),
+    Binding(
+        (Chord("y", control=True), Chord("z", control=True, shift=True)),
+        "do again",
+        lambda viewer, _: viewer.redo(),
+    ),
+    Binding((Chord("s", control=True),), "save the picture with its scene", lambda viewer, _: viewer.save()),
+    Binding(
+        (Chord("escape"),), "one step back; leave, if nothing is unsaved", lambda viewer, _: viewer.escape()
+    ),
+)
+WINDOW_KEYS = (
+    ("F11, Alt+Enter", "full screen, and back"),
+    ("F12", "save a numbered screenshot"),
+    ("Ctrl+Q", "leave"),
+)
+"""The keys that the window itself answers to."""

@@ -1,0 +1,56 @@
+"""Views from around an object: the eye goes around what it looks at, closer and farther."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.checks import Vector
+from autocolor.scene import Scene
+from autocolor.view import View
+
+HIGHEST = math.radians(85)
+"""Assumed: nearer to straight above, the picture would turn under the eye."""
+
+
+def turned(scene: Scene, right: float, up: float) -> View:
+    """The view after going around the object by degrees, keeping the distance."""
+    target = target_of(scene)
+    away = np.array(scene.view.eye) - target
+    distance = float(np.linalg.norm(away)) or 1.0
+    azimuth = math.atan2(away[1], away[0]) + math.radians(right)
+    before = math.asin(max(-1.0, min(1.0, float(away[2]) / distance)))
+    elevation = max(-HIGHEST, min(HIGHEST, before + math.radians(up)))
+    # At the top, rounding would make another view of the same place.
+    if up and math.isclose(elevation, before, abs_tol=1e-9):
+        return scene.view
+    across = math.cos(elevation)
+    eye = target + distance * np.array(
+        [across * math.cos(azimuth), across * math.sin(azimuth), math.sin(elevation)]
+    )
+    return scene.view.replace(eye=_vector(eye), target=_vector(target))
+
+
+def moved(scene: Scene, ratio: float) -> View:
+    """The view from the same direction at another distance from the object."""
+    target = target_of(scene)
+    return scene.view.replace(eye=_vector(target + (np.array(scene.view.eye) - target) * ratio))
+
+
+def target_of(scene: Scene) -> npt.NDArray[np.float64]:
+    """What the eye goes around: the view's target, else the point before it that is as far as the object."""
+    view = scene.view
+    if view.target is not None:
+        return np.array(view.target)
+    low, high = scene.mesh.bounds
+    eye = np.array(view.eye)
+    forward = view.axes[2]
+    depth = float(((low + high) / 2 - eye) @ forward)
+    least = float(np.linalg.norm(high - low)) / 2 or 1.0
+    return np.asarray(eye + forward * max(depth, least))
+
+
+def _vector(values: npt.NDArray[np.float64]) -> Vector:
+    return (float(values[0]), float(values[1]), float(values[2]))
