@@ -1,0 +1,61 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import View
+from autocolor.screens.orbit import moved, target_of, turned
+from tests.autocolor.meshes import wall_scene
+
+
+def distance(view: View) -> float:
+    assert view.target is not None
+    return math.dist(view.eye, view.target)
+
+
+@given(st.floats(-180, 180), st.floats(-40, 40))
+def test_going_around_keeps_the_distance_and_the_target(right: float, up: float) -> None:
+    scene = wall_scene(view=View((3, -4, 1), target=(0, 0, 0.5)))
+    view = turned(scene, right, up)
+    assert view.target == (0, 0, 0.5)
+    assert distance(view) == pytest.approx(distance(scene.view))
+
+
+def test_going_around_right_and_left_again_comes_back() -> None:
+    scene = wall_scene(view=View((3, -4, 1), target=(0, 0, 0)))
+    there = turned(scene, 5, 0)
+    assert there.eye[2] == pytest.approx(1)
+    assert turned(scene.replace(view=there), -5, 0).eye == pytest.approx(scene.view.eye)
+
+
+def test_the_eye_stays_away_from_straight_above() -> None:
+    scene = wall_scene(view=View((0, -4, 0), target=(0, 0, 0)))
+    for _ in range(40):
+        scene = scene.replace(view=turned(scene, 0, 5))
+    assert scene.view.eye[2] == pytest.approx(4 * math.sin(math.radians(85)))
+    assert turned(scene, 0, 5) is scene.view
+    assert turned(scene, 0, -5) != scene.view
+
+
+def test_a_direction_is_gone_around_without_a_jump() -> None:
+    scene = wall_scene(view=View((0, -4, 0), direction=(0, 2, 0)))
+    assert np.allclose(target_of(scene), 0)
+    view = turned(scene, 0, 0)
+    assert view.eye == pytest.approx(scene.view.eye)
+    assert np.allclose(view.axes, scene.view.axes)
+
+
+def test_what_lies_behind_the_eye_is_not_gone_around() -> None:
+    scene = wall_scene(view=View((0, -4, 0), direction=(0, -1, 0)))
+    assert target_of(scene)[1] < -4
+
+
+def test_moving_closer_and_farther_again_comes_back() -> None:
+    scene = wall_scene(view=View((3, -4, 1), target=(0, 0, 0)))
+    closer = moved(scene, 0.5)
+    assert distance(closer) == pytest.approx(0.5 * distance(scene.view))
+    assert moved(scene.replace(view=closer), 2).eye == pytest.approx(scene.view.eye)

@@ -1,0 +1,408 @@
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from autocolor import Light, Mesh, Scene, Surface, View, read_picture, scene_of
+from autocolor.screens.entries_screen import cell_words
+from autocolor.screens.viewer import Viewer
+from autocolor.studio import Studio
+from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import cube
+
+KEY = Light("key", (2, -3, 4), aim=(0, 0, 0))
+
+
+def box_scene() -> Scene:
+    """A cube of two surfaces under two lights, and a surface that no part has."""
+    mesh = Mesh(cube().coordinates, cube().node_numbers, np.array([0, 0, 0, 1, 1, 1]), ("low", "high"))
+    lights = [KEY, Light("fill", (-3, -3, 1), intensity=0.5)]
+    view = View((-2, -3, 2), target=(0.5, 0.5, 0.5))
+    return scene_of(mesh, surfaces=[Surface("unused"), Surface("low")], lights=lights, view=view, name="box")
+
+
+@pytest.fixture
+def viewer(tmp_path: Path) -> Viewer:
+    return Viewer(box_scene(), Ramtek9300(), folder=tmp_path)
+
+
+def display_of(viewer: Viewer) -> Ramtek9300:
+    assert isinstance(viewer.display, Ramtek9300)
+    return viewer.display
+
+
+def is_true_to(viewer: Viewer, scene: Scene) -> bool:
+    """Whether the display has what it has after that scene alone was sent to it."""
+    fresh = Ramtek9300()
+    Studio(scene, fresh)
+    display = display_of(viewer)
+    return np.array_equal(display.words, fresh.words) and np.array_equal(display.entries, fresh.entries)
+
+
+def control(viewer: Viewer, letter: str, shift: bool = False) -> None:
+    viewer.on_key(letter, control=True, shift=shift)
+
+
+def press_c(viewer: Viewer) -> None:
+    viewer.on_key("c", typed="c")
+
+
+EDITS: dict[str, Callable[[Viewer], object]] = {
+    "left": lambda viewer: viewer.on_key("left"),
+    "right": lambda viewer: viewer.on_key("right"),
+    "up": lambda viewer: viewer.on_key("up"),
+    "down": lambda viewer: viewer.on_key("down"),
+    "plus": lambda viewer: viewer.on_key("=", shift=True, typed="+"),
+    "equals": lambda viewer: viewer.on_key("=", typed="="),
+    "minus": lambda viewer: viewer.on_key("-", typed="-"),
+    "keypad plus": lambda viewer: viewer.on_key("[+]", typed="+"),
+    "comma": lambda viewer: viewer.on_key(",", typed=","),
+    "point": lambda viewer: viewer.on_key(".", typed="."),
+    "rescale": lambda viewer: viewer.on_key("r", typed="r"),
+    "light 1": lambda viewer: viewer.on_key("1", typed="1"),
+    "light 2 of a French keyboard": lambda viewer: viewer.on_key("é", shift=True, typed="2"),
+    "light 2 of the keypad": lambda viewer: viewer.on_key("[2]", typed="2"),
+    "bracket": lambda viewer: viewer.on_key("[", typed="["),
+    "bracket of a German keyboard": lambda viewer: viewer.on_key("8", typed="["),
+    "closing bracket": lambda viewer: viewer.on_key("]", typed="]"),
+    "color": press_c,
+    "color before": lambda viewer: viewer.on_key("c", shift=True, typed="C"),
+}
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_each_edit_is_shown_undone_and_done_again(viewer: Viewer, name: str) -> None:
+    before = viewer.studio.scene
+    EDITS[name](viewer)
+    after = viewer.studio.scene
+    assert after is not before
+    assert is_true_to(viewer, after)
+    control(viewer, "z")
+    assert viewer.studio.scene is before
+    assert viewer.message == "undone"
+    assert is_true_to(viewer, before)
+    control(viewer, "y")
+    assert viewer.studio.scene is after
+    assert viewer.message == "done again"
+    control(viewer, "z")
+    control(viewer, "z", shift=True)
+    assert viewer.studio.scene is after
+    assert is_true_to(viewer, after)
+
+
+def test_keys_do_what_they_say(viewer: Viewer) -> None:
+    def scene() -> Scene:
+        return viewer.studio.scene
+
+    EDITS["plus"](viewer)
+    assert np.linalg.norm(np.subtract(scene().view.eye, 0.5)) < np.linalg.norm([2.5, 3.5, 1.5])
+    EDITS["up"](viewer)
+    EDITS["point"](viewer)
+    assert scene().view.angle == 5
+    EDITS["light 2 of the keypad"](viewer)
+    assert [light.on for light in scene().lights] == [True, False]
+    assert viewer.message == "light fill off"
+    EDITS["bracket of a German keyboard"](viewer)
+    assert scene().surface("low").paint.blend == pytest.approx(0.55)
+    assert viewer.message == "blend 0.55"
+
+
+def test_without_a_step_there_is_nothing_to_undo_or_to_do_again(viewer: Viewer) -> None:
+    control(viewer, "z")
+    assert viewer.message == "nothing to undo"
+    control(viewer, "y")
+    assert viewer.message == "nothing to do again"
+
+
+def test_a_light_that_is_not_there_is_told(viewer: Viewer) -> None:
+    before = viewer.studio.scene
+    viewer.on_key("9", typed="9")
+    assert viewer.message == "there are 2 lights"
+    assert viewer.studio.scene is before
+
+
+@pytest.mark.parametrize(("name", "typed"), [("left", ""), ("=", "+"), (",", ","), ("]", "]")])
+def test_a_key_held_down_is_one_step(viewer: Viewer, name: str, typed: str) -> None:
+    before = viewer.studio.scene
+    viewer.on_key(name, typed=typed)
+    once = viewer.studio.scene
+    for _ in range(3):
+        viewer.on_key(name, typed=typed, repeated=True)
+    assert viewer.studio.scene is not once
+    control(viewer, "z")
+    assert viewer.studio.scene is before
+    assert not viewer.studio.undo()
+
+
+def test_a_key_pressed_again_is_a_step_of_its_own(viewer: Viewer) -> None:
+    viewer.on_key("left")
+    once = viewer.studio.scene
+    viewer.on_key("left")
+    control(viewer, "z")
+    assert viewer.studio.scene is once
+
+
+def test_a_key_held_down_after_another_is_not_mixed_into_its_step(viewer: Viewer) -> None:
+    before = viewer.studio.scene
+    press_c(viewer)
+    colored = viewer.studio.scene
+    # Held down while c was pressed: its own first edit is one that is marked as repeated.
+    viewer.on_key("left", repeated=True)
+    control(viewer, "z")
+    assert viewer.studio.scene is colored
+    control(viewer, "z")
+    assert viewer.studio.scene is before
+
+
+def test_what_changes_nothing_is_no_step(viewer: Viewer) -> None:
+    for _ in range(30):
+        viewer.on_key("]", typed="]")
+        viewer.on_key("up")
+    viewer.on_key("r", typed="r")
+    scene = viewer.studio.scene
+    viewer.on_key("]", typed="]")
+    viewer.on_key("up")
+    viewer.on_key("r", typed="r")
+    assert viewer.studio.scene is scene
+
+
+def test_keys_that_do_nothing_are_not_taken(viewer: Viewer) -> None:
+    assert not viewer.on_key("q", typed="q")
+    assert not viewer.on_key("s", control=True, shift=True)
+    assert not viewer.on_key("f1", control=True)
+    assert not viewer.on_key("tab", typed="\t")
+
+
+@pytest.mark.parametrize("page", ["f1", "f4"])
+@pytest.mark.parametrize("back", ["the same key", "escape"])
+def test_a_page_and_back_gives_the_words_byte_for_byte(viewer: Viewer, page: str, back: str) -> None:
+    display = display_of(viewer)
+    words, entries = display.words.copy(), display.entries.copy()
+    assert viewer.on_key(page)
+    assert not np.array_equal(display.words, words)
+    assert np.array_equal(display.entries, entries)
+    assert viewer.on_key(page if back == "the same key" else "escape")
+    assert np.array_equal(display.words, words)
+    assert np.array_equal(display.entries, entries)
+    assert viewer.page == "picture"
+
+
+def test_one_page_leads_to_the_other_and_back_to_the_picture(viewer: Viewer) -> None:
+    display = display_of(viewer)
+    words = display.words.copy()
+    viewer.on_key("f1")
+    viewer.on_key("f4")
+    assert np.array_equal(display.words, cell_words(viewer.studio.level_ranges))
+    viewer.on_key("f1")
+    viewer.on_key("f1")
+    assert np.array_equal(display.words, words)
+
+
+def test_recoloring_writes_no_word_on_any_page(viewer: Viewer) -> None:
+    display = display_of(viewer)
+    for page in (None, "f1", "f4"):
+        if page:
+            viewer.on_key(page)
+        written, entries = display.frame_buffer.written, display.entries.copy()
+        press_c(viewer)
+        viewer.on_key("[", typed="[")
+        assert display.frame_buffer.written == written
+        assert not np.array_equal(display.entries, entries)
+    viewer.on_key("escape")
+    assert is_true_to(viewer, viewer.studio.scene)
+
+
+@pytest.mark.parametrize("name", [name for name in EDITS if "color" not in name and "bracket" not in name])
+@pytest.mark.parametrize("page", ["f1", "f4"])
+def test_an_edit_of_the_picture_leads_back_to_it(viewer: Viewer, page: str, name: str) -> None:
+    viewer.on_key(page)
+    EDITS[name](viewer)
+    assert viewer.page == "picture"
+    assert is_true_to(viewer, viewer.studio.scene)
+
+
+def test_undo_on_a_page_leads_back_to_the_picture(viewer: Viewer) -> None:
+    before = viewer.studio.scene
+    press_c(viewer)
+    viewer.on_key("f4")
+    control(viewer, "z")
+    assert is_true_to(viewer, before)
+
+
+def test_the_chosen_surface_is_the_one_that_is_recolored(viewer: Viewer) -> None:
+    names = ["low", "high"]
+    seen = []
+    for _ in names:
+        seen.append(viewer.surface_name)
+        assert f"[{viewer.surface_name}]" in viewer.caption
+        viewer.on_key("s", typed="s")
+    assert seen == names
+    assert viewer.surface_name == names[0]
+    viewer.on_key("s", shift=True, typed="S")
+    assert viewer.surface_name == names[-1]
+    before = viewer.studio.scene
+    press_c(viewer)
+    changed = [
+        old.name for old, new in zip(before.surfaces, viewer.studio.scene.surfaces, strict=True) if old != new
+    ]
+    assert changed == [names[-1]]
+
+
+def test_the_colors_come_round_in_both_directions(viewer: Viewer) -> None:
+    def color() -> tuple[int, int, int]:
+        return viewer.studio.scene.surface("low").paint.object_color
+
+    press_c(viewer)
+    first = color()
+    press_c(viewer)
+    assert color() != first
+    viewer.on_key("c", shift=True, typed="C")
+    assert color() == first
+
+
+def test_an_edit_that_is_refused_is_told_and_changes_nothing(viewer: Viewer) -> None:
+    far = View((0, -9.9e35, 0), target=(0, 0, 0))
+    viewer.studio.edit(viewer.studio.scene.replace(view=far))
+    before = viewer.studio.scene
+    assert viewer.on_key("-", typed="-")
+    assert viewer.studio.scene is before
+    assert "must be three finite numbers" in viewer.message
+    assert viewer.message in viewer.caption
+
+
+def test_a_mesh_without_anything_can_be_looked_at(tmp_path: Path) -> None:
+    nothing = Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ())
+    scene = Scene(nothing, (), (), (), View((0, -1, 0), target=(0, 0, 0)))
+    viewer = Viewer(scene, Ramtek9300(), folder=tmp_path)
+    for press in EDITS.values():
+        press(viewer)
+    for key in ("s", "f1", "f4", "escape"):
+        viewer.on_key(key)
+    control(viewer, "s")
+    assert viewer.caption.startswith("autocolor - scene - saved ")
+
+
+# Saving, leaving, opening.
+
+
+def test_the_caption_marks_what_is_not_saved(viewer: Viewer) -> None:
+    assert viewer.caption == "autocolor - box - [low] - F1 help"
+    press_c(viewer)
+    assert viewer.caption.startswith("autocolor - box* - [low]")
+    control(viewer, "z")
+    assert viewer.caption == "autocolor - box - [low] - undone"
+
+
+def test_saving_makes_a_new_file_and_then_overwrites_that_alone(viewer: Viewer, tmp_path: Path) -> None:
+    (tmp_path / "box.npz").write_bytes(b"mine")
+    (tmp_path / "box-2.npz").symlink_to(tmp_path / "nowhere")
+    press_c(viewer)
+    control(viewer, "s")
+    path = tmp_path / "box-3.npz"
+    assert viewer.message == f"saved {path}"
+    assert not viewer.studio.is_changed
+    first = path.read_bytes()
+    viewer.on_key("left")
+    control(viewer, "s")
+    assert path.read_bytes() != first
+    assert read_picture(path).scene.view == viewer.studio.scene.view
+    assert sorted(os.listdir(tmp_path)) == ["box-2.npz", "box-3.npz", "box.npz"]
+    assert (tmp_path / "box.npz").read_bytes() == b"mine"
+
+
+@pytest.mark.parametrize("name", ["a/b\0c", "..", "", "x" * 300, "\udcff"])
+def test_a_scene_of_any_name_can_be_saved(name: str, tmp_path: Path) -> None:
+    viewer = Viewer(box_scene().replace(name=name), Ramtek9300(), folder=tmp_path)
+    control(viewer, "s")
+    assert viewer.message.startswith("saved ")
+    assert len(os.listdir(tmp_path)) == 1
+
+
+def test_what_cannot_be_saved_is_told_and_stays_unsaved(viewer: Viewer, tmp_path: Path) -> None:
+    viewer.folder = tmp_path / "none"
+    press_c(viewer)
+    control(viewer, "s")
+    assert "no such file or directory" in viewer.message
+    assert viewer.studio.is_changed
+    assert viewer.saved is None
+
+
+def test_escape_leaves_when_nothing_is_unsaved(viewer: Viewer) -> None:
+    assert not viewer.on_key("escape")
+    assert viewer.on_close()
+
+
+def test_escape_never_leaves_unsaved_work(viewer: Viewer) -> None:
+    press_c(viewer)
+    for _ in range(5):
+        assert viewer.on_key("escape")
+    assert viewer.message == "not saved: Ctrl+S saves, Ctrl+Q twice leaves without it"
+    control(viewer, "s")
+    assert not viewer.on_key("escape")
+
+
+def test_closing_with_unsaved_work_takes_two_times_in_a_row(viewer: Viewer) -> None:
+    press_c(viewer)
+    assert not viewer.on_close()
+    assert viewer.message == "not saved: Ctrl+S saves, close again to leave without it"
+    viewer.on_key("f1")
+    assert not viewer.on_close()
+    assert viewer.on_close()
+
+
+def test_closing_after_undoing_everything_needs_no_question(viewer: Viewer) -> None:
+    press_c(viewer)
+    control(viewer, "z")
+    assert viewer.on_close()
+
+
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 0 1\ng roof\nf 1 2 3\n"
+
+
+def test_a_dropped_mesh_is_opened(viewer: Viewer, tmp_path: Path) -> None:
+    (tmp_path / "roof.obj").write_text(TRIANGLE)
+    viewer.on_key("s", typed="s")
+    viewer.on_key("f1")
+    viewer.on_drop(tmp_path / "roof.obj")
+    assert viewer.caption == "autocolor - roof - [roof] - F1 help"
+    assert viewer.page == "picture"
+    assert is_true_to(viewer, viewer.studio.scene)
+    control(viewer, "z")
+    assert viewer.message == "nothing to undo"
+
+
+def test_a_dropped_file_that_is_none_of_ours_is_told_and_changes_nothing(
+    viewer: Viewer, tmp_path: Path
+) -> None:
+    display = display_of(viewer)
+    words, scene = display.words.copy(), viewer.studio.scene
+    (tmp_path / "bad.obj").write_text("v 0 0 zero\n")
+    for name, sentence in (("bad.obj", "bad.obj, line 1"), ("none.obj", "there is no such file")):
+        viewer.on_drop(tmp_path / name)
+        assert sentence in viewer.message
+        assert "\n" not in viewer.message
+    assert viewer.studio.scene is scene
+    assert np.array_equal(display.words, words)
+
+
+def test_a_file_dropped_on_unsaved_work_is_opened_the_second_time(viewer: Viewer, tmp_path: Path) -> None:
+    (tmp_path / "roof.obj").write_text(TRIANGLE)
+    press_c(viewer)
+    scene = viewer.studio.scene
+    viewer.on_drop(tmp_path / "roof.obj")
+    assert viewer.studio.scene is scene
+    assert viewer.message == "not saved: Ctrl+S saves, drop it again to open it all the same"
+    viewer.on_drop(tmp_path / "roof.obj")
+    assert viewer.studio.scene.name == "roof"
+
+
+def test_a_dropped_scene_is_saved_under_its_own_name(viewer: Viewer, tmp_path: Path) -> None:
+    (tmp_path / "roof.obj").write_text(TRIANGLE)
+    control(viewer, "s")
+    viewer.on_drop(tmp_path / "roof.obj")
+    control(viewer, "s")
+    assert {"box.npz", "roof.npz"} <= set(os.listdir(tmp_path))
