@@ -21,8 +21,8 @@ def test_a_module_with_formulas_or_rules_says_where_they_come_from(module: str) 
 
 
 def test_the_document_is_up_to_date() -> None:
-    written = (ROOT / "docs" / "FIDELITY.md").read_text("utf-8")
-    assert written == document(), "run: python -m tests.fidelity_ledger > docs/FIDELITY.md"
+    is_up_to_date = (ROOT / "docs" / "FIDELITY.md").read_text("utf-8") == document()
+    assert is_up_to_date, "run: python -m tests.fidelity_ledger > docs/FIDELITY.md"
 
 
 def test_every_line_says_something() -> None:

@@ -137,3 +137,13 @@ def test_normals_are_interpolated_right_in_perspective() -> None:
     expected = (1 - way)[:, None] * ends[0] + way[:, None] * ends[1]
     expected /= np.linalg.norm(expected, axis=1)[:, None]
     assert np.abs(seen.normals[on_floor] - expected).max() < 1e-5
+
+
+@pytest.mark.parametrize(("one_sided", "sign"), [(frozenset[int](), -1), (frozenset({1}), 1)])
+def test_from_within_a_sphere_the_normals_point_inward_unless_it_is_one_sided(
+    one_sided: frozenset[int], sign: int
+) -> None:
+    view = View((0.3, -0.4, 0.2), direction=(1.0, 2.0, 0.5), field_of_view=90)
+    seen = visible_surfaces(sphere(24, 16), view, (1,), 30, 30, one_sided)
+    along = seen.points / np.linalg.norm(seen.points, axis=1)[:, None]
+    assert np.abs(seen.normals - sign * along).max() < 0.02

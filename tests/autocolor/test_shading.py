@@ -142,6 +142,20 @@ def test_a_light_that_almost_touches_the_wall_is_still_right_beside_the_spot(
     assert_as_the_paper(wall_scene(lights=[Light("light", place)]), tolerance=0.02)
 
 
+@given(
+    place=st.tuples(numbers(-0.9, 0.9), numbers(-2e-3, -1e-3), numbers(-0.9, 0.9)),
+    toward=st.tuples(numbers(-1, 1), numbers(-1, 1)),
+)
+def test_the_spot_of_a_light_that_almost_touches_the_wall_is_right(
+    place: tuple[float, float, float], toward: tuple[float, float]
+) -> None:
+    x, _, z = place
+    view = View((x, -4.0, z), target=(x, 0.0, z), field_of_view=0.1)
+    directed = Light("light", place, direction=(toward[0], 1.0, toward[1]), concentration=2)
+    for light in (Light("light", place), directed):
+        assert_as_the_paper(wall_scene(view=view, lights=[light]), tolerance=2e-3)
+
+
 def test_a_light_within_the_wall_gives_finite_light() -> None:
     scene = wall_scene(
         lights=[
@@ -216,12 +230,15 @@ def test_an_aim_is_the_direction_from_the_light_to_it() -> None:
     assert pictures[0] == pytest.approx(pictures[1], abs=1e-6)
 
 
+@pytest.mark.parametrize("away", [2.0, 0.05])
 @pytest.mark.parametrize(
     ("limits", "lit_side"),
     [(Flaps(x=Flap(minimum=0.0)), 1), (Flaps(x=Flap(maximum=0.0)), -1), (Flaps(z=Flap(0.0, 9.0)), 1)],
 )
-def test_a_flap_along_the_middle_of_the_wall_lights_exactly_its_side(limits: Flaps, lit_side: int) -> None:
-    light = Light("light", (0.0, -2.0, 0.0), flaps=limits)
+def test_a_flap_along_the_middle_of_the_wall_lights_exactly_its_side(
+    limits: Flaps, lit_side: int, away: float
+) -> None:
+    light = Light("light", (0.0, -away, 0.0), flaps=limits)
     picture = render(wall_scene(lights=[light]), 40, 40)
     on_wall = picture.surface_number == 1
     line, element = np.indices((40, 40))

@@ -390,6 +390,19 @@ def test_the_picture_has_the_size_of_its_display_else_640_by_480() -> None:
     assert Studio(scene_of(cube()), Ramtek9300()).words.shape == (480, 640)
 
 
+def test_on_the_papers_display_edits_come_to_the_same_as_a_fresh_picture() -> None:
+    display, anew = Ramtek9300(), Ramtek9300()
+    studio = Studio(car(), display)
+    studio.light("key", position=(3, -3, 2), concentration=20)
+    studio.surface("body", exponent=60, diffuse=0.5)
+    studio.light("fill", flaps={"z": {"on": True}})
+    studio.recolor("glass", object_color="#203040", blend=0.2)
+    studio.edit(studio.scene.replace(mapping="equalize", ambient=0.3))
+    Studio(studio.scene, anew)
+    assert held(display) == held(anew)
+    assert display.field().tobytes() == anew.field().tobytes()
+
+
 def test_a_display_sees_a_studio_only_through_its_host_port() -> None:
     class Port:
         def __init__(self) -> None:
