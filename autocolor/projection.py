@@ -1,4 +1,4 @@
-"""The polygons as the eye sees them: in camera space, cut at the near plane, and projected to the raster.
+"""The polygons as the eye sees them: projected to the raster.
 
 Both hidden-surface algorithms start from this value, so that they work on the same numbers. The paper does
 not say how its picture plane is reached; the lens is a plain perspective one with square pixels whose
@@ -7,7 +7,6 @@ centers stand at half-integers, line 0 on top.
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -16,23 +15,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.checks import Vector
+from autocolor.camera_space import camera_space
 from autocolor.tables import Mesh
 from autocolor.view import View
-
-NEAR = 1e-4
-"""Assumed: the near plane, as a fraction of the depth of the object's farthest corner."""
-
-LEAST_NEAR = 1e-12
-"""Assumed: the near plane, in units, where even that corner is hardly before the eye."""
 
 ROUNDING = 1e-6
 """In pixels, far above what the cut of an edge is rounded by."""
 
 POLYGONS_AT_ONCE = 1 << 15
-
-LEAST_UNIT = 2.0**-800
-"""Assumed: far below the size of any object, and still a divisor for the farthest light."""
 
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
@@ -94,32 +84,19 @@ class Projection:
 
 def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     """The polygons of the mesh that may be seen, each crossed at most twice by any line."""
-    axes, eye = view.axes, np.array(view.eye)
-    box = (np.array(list(itertools.product(*np.stack(mesh.bounds, axis=1)))) - eye) @ axes.T
-    unit = max(2.0 ** math.frexp(float(np.abs(box).max()))[1], LEAST_UNIT)
-    places = rotated(axes / unit, mesh.coordinate_rows, view.eye)
-    normals = rotated(axes, mesh.normal_rows)
-    corners, corner_normals = mesh.columns, mesh.normal_columns
-    polygon_numbers = np.arange(corners.shape[1])
-
-    # Cut at the near plane what reaches through it, and drop what is behind it.
-    depth = places[2]
-    near = max(NEAR * float(box[:, 2].max()) / unit, LEAST_NEAR)
-    if depth.min(initial=near) < near:
-        places, normals, corners, corner_normals, polygon_numbers = _cut_at_near_plane(
-            near, places, normals, corners, corner_normals, polygon_numbers
-        )
+    camera = camera_space(mesh, view)
+    corners, corner_normals = camera.corners, camera.corner_normals
 
     # Project.
-    inverse_depth = 1.0 / np.maximum(places[2], near)
+    inverse_depth = 1.0 / np.maximum(camera.places[2], camera.near)
     scale = lens(lines, elements, view.field_of_view).focal_length * inverse_depth
-    across = places[0] * scale + elements / 2
-    down = places[1] * scale + lines / 2
+    across = camera.places[0] * scale + elements / 2
+    down = camera.places[1] * scale + lines / 2
     first_line = np.clip(np.ceil(down - 0.5), 0, lines).astype(np.intp)
 
     kept = _seen_at_all(first_line, across, corners, elements)
     corners, corner_normals = np.take(corners, kept, axis=1), np.take(corner_normals, kept, axis=1)
-    polygon_numbers, first_lines = polygon_numbers[kept], first_line[corners]
+    polygon_numbers, first_lines = camera.polygon_numbers[kept], first_line[corners]
 
     # Clockwise on the raster (lines grow downward) is counterclockwise from the outside: the front.
     x, y = across[corners], down[corners]
@@ -136,32 +113,17 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     return Projection(
         lines,
         elements,
-        unit,
+        camera.unit,
         across,
         down,
         inverse_depth,
         first_line,
         corners,
         corner_normals,
-        normals,
+        camera.normals,
         polygon_numbers,
         from_behind,
     )
-
-
-def rotated(axes: Floats, rows: Floats, origin: Vector = (0.0, 0.0, 0.0)) -> Floats:
-    """Points (3, n) around an origin, in other axes.
-
-    Measured: a matrix product of so few rows takes as long alone, and up to thirty times as long when another
-    process has the second processor, for its threads wait for each other.
-    """
-    turned = np.empty(rows.shape)
-    moved = [row - start for row, start in zip(rows, origin, strict=True)]
-    for axis, out in zip(axes, turned, strict=True):
-        np.multiply(moved[0], axis[0], out=out)
-        out += moved[1] * axis[1]
-        out += moved[2] * axis[2]
-    return turned
 
 
 def _seen_at_all(first_line: Numbers, across: Floats, corners: Numbers, elements: int) -> Numbers:
@@ -214,67 +176,3 @@ def _cut_in_two(
         table[3, first] = table[2, first]
         table[3, first + 1] = table[2, first + 1]
     return cut_corners, cut_normals, parents
-
-
-def _cut_at_near_plane(
-    near: float,
-    places: Floats,
-    normals: Floats,
-    corners: Numbers,
-    corner_normals: Numbers,
-    polygon_numbers: Numbers,
-) -> tuple[Floats, Floats, Numbers, Numbers, Numbers]:
-    """The polygons with what lies before the near plane cut off, with the nodes that the cuts made.
-
-    An edge is cut from its lower to its higher node number, once for all polygons that share it, so that
-    they still share it afterwards.
-    """
-    before = (places[2] < near)[corners]
-    whole = np.flatnonzero(~before.any(axis=0))
-    through = np.flatnonzero(before.any(axis=0) & ~before.all(axis=0))
-    node_of_edge: dict[tuple[int, int], int] = {}
-    new_places: list[Floats] = []
-    new_normals: list[Floats] = []
-    new_rows: list[tuple[list[int], list[int], int]] = []
-
-    for column in through.tolist():
-        nodes, rows = corners[:, column].tolist(), corner_normals[:, column].tolist()
-        cut_nodes: list[int] = []
-        cut_rows: list[int] = []
-        for corner in range(4):
-            a, b = nodes[corner], nodes[(corner + 1) % 4]
-            if not before[corner, column]:
-                cut_nodes.append(a)
-                cut_rows.append(rows[corner])
-            if before[corner, column] != before[(corner + 1) % 4, column]:
-                low, high = min(a, b), max(a, b)
-                way = (near - places[2, low]) / (places[2, high] - places[2, low])
-                if (low, high) not in node_of_edge:
-                    node_of_edge[low, high] = places.shape[1] + len(new_places)
-                    place = places[:, low] + way * (places[:, high] - places[:, low])
-                    place[2] = near
-                    new_places.append(place)
-                cut_nodes.append(node_of_edge[low, high])
-                cut_rows.append(normals.shape[1] + len(new_normals))
-                low_row, high_row = rows[corner], rows[(corner + 1) % 4]
-                if low != a:
-                    low_row, high_row = high_row, low_row
-                new_normals.append(normals[:, low_row] + way * (normals[:, high_row] - normals[:, low_row]))
-        # Cut a polygon of five or six sides into a quad and what is left.
-        for first in range(1, len(cut_nodes) - 1, 2):
-            picked = [0, first, first + 1, min(first + 2, len(cut_nodes) - 1)]
-            new_rows.append(
-                ([cut_nodes[corner] for corner in picked], [cut_rows[corner] for corner in picked], column)
-            )
-
-    if new_places:
-        places = np.column_stack([places, *new_places])
-        normals = np.column_stack([normals, *new_normals])
-    columns = np.concatenate([whole, np.array([column for _, _, column in new_rows], np.intp)])
-    cut_corners = np.array([nodes for nodes, _, _ in new_rows], np.intp).reshape(-1, 4).T
-    cut_normals = np.array([rows for _, rows, _ in new_rows], np.intp).reshape(-1, 4).T
-    corners = np.concatenate([corners[:, whole], cut_corners], axis=1)
-    corner_normals = np.concatenate([corner_normals[:, whole], cut_normals], axis=1)
-    # Keep the order of the polygon table, which settles ties.
-    order = np.argsort(columns, kind="stable")
-    return places, normals, corners[:, order], corner_normals[:, order], polygon_numbers[columns[order]]

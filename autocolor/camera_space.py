@@ -1,0 +1,147 @@
+"""The polygons in camera space, with what lies before the near plane cut off.
+
+Camera space has the eye at its origin and the axes of the view: right, down and forward.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.checks import Vector
+from autocolor.tables import Mesh
+from autocolor.view import View
+
+NEAR = 1e-4
+"""Assumed: the near plane, as a fraction of the depth of the object's farthest corner."""
+
+LEAST_NEAR = 1e-12
+"""Assumed: the near plane, in units, where even that corner is hardly before the eye."""
+
+LEAST_UNIT = 2.0**-800
+"""Assumed: far below the size of any object, and still a divisor for the farthest light."""
+
+Floats = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class CameraPolygons:
+    """Nodes and polygons in camera space, measured in `unit`, a power of two near the size of the view.
+
+    """Nodes and polygons in camera space, in lengths of `unit`, a power of two near the size of the view.
+    intp, one column a polygon, numbers of nodes and of normals. `polygon_numbers` are the rows of the mesh's
+    polygon table. No corner is nearer than `near`.
+    """
+
+    unit: float
+    near: float
+    places: Floats
+    normals: Floats
+    corners: Numbers
+    corner_normals: Numbers
+    polygon_numbers: Numbers
+
+
+def camera_space(mesh: Mesh, view: View) -> CameraPolygons:
+    """The polygons of the mesh that lie at least partly before the eye."""
+    axes, eye = view.axes, np.array(view.eye)
+    box = (np.array(list(itertools.product(*np.stack(mesh.bounds, axis=1)))) - eye) @ axes.T
+    unit = max(2.0 ** math.frexp(float(np.abs(box).max()))[1], LEAST_UNIT)
+    polygons = CameraPolygons(
+        unit,
+        max(NEAR * float(box[:, 2].max()) / unit, LEAST_NEAR),
+        rotated(axes / unit, mesh.coordinate_rows, view.eye),
+        rotated(axes, mesh.normal_rows),
+        mesh.columns,
+        mesh.normal_columns,
+        np.arange(mesh.columns.shape[1]),
+    )
+    reaches_through = polygons.places[2].min(initial=polygons.near) < polygons.near
+    return cut_at_near_plane(polygons) if reaches_through else polygons
+
+
+def rotated(axes: Floats, rows: Floats, origin: Vector = (0.0, 0.0, 0.0)) -> Floats:
+    """Points (3, n) around an origin, in other axes.
+
+    Measured: a matrix product of so few rows takes as long alone, and up to thirty times as long when another
+    process has the second processor, for its threads wait for each other.
+    """
+    turned = np.empty(rows.shape)
+    moved = [row - start for row, start in zip(rows, origin, strict=True)]
+    for axis, out in zip(axes, turned, strict=True):
+        np.multiply(moved[0], axis[0], out=out)
+        out += moved[1] * axis[1]
+        out += moved[2] * axis[2]
+    return turned
+
+
+def cut_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
+    """The polygons with what lies before the near plane cut off, with the nodes that the cuts made.
+
+    An edge is cut from its lower to its higher node number, once for all polygons that share it, so that
+    they still share it afterwards.
+    """
+    places, normals, near = polygons.places, polygons.normals, polygons.near
+    corners, corner_normals = polygons.corners, polygons.corner_normals
+    before = (places[2] < near)[corners]
+    whole = np.flatnonzero(~before.any(axis=0))
+    through = np.flatnonzero(before.any(axis=0) & ~before.all(axis=0))
+    node_of_edge: dict[tuple[int, int], int] = {}
+    new_places: list[Floats] = []
+    new_normals: list[Floats] = []
+    new_rows: list[tuple[list[int], list[int], int]] = []
+
+    for column in through.tolist():
+        nodes, rows = corners[:, column].tolist(), corner_normals[:, column].tolist()
+        cut_nodes: list[int] = []
+        cut_rows: list[int] = []
+        for corner in range(4):
+            a, b = nodes[corner], nodes[(corner + 1) % 4]
+            if not before[corner, column]:
+                cut_nodes.append(a)
+                cut_rows.append(rows[corner])
+            if before[corner, column] != before[(corner + 1) % 4, column]:
+                low, high = min(a, b), max(a, b)
+                way = (near - places[2, low]) / (places[2, high] - places[2, low])
+                if (low, high) not in node_of_edge:
+                    node_of_edge[low, high] = places.shape[1] + len(new_places)
+                    place = places[:, low] + way * (places[:, high] - places[:, low])
+                    place[2] = near
+                    new_places.append(place)
+                cut_nodes.append(node_of_edge[low, high])
+                cut_rows.append(normals.shape[1] + len(new_normals))
+                low_row, high_row = rows[corner], rows[(corner + 1) % 4]
+                if low != a:
+                    low_row, high_row = high_row, low_row
+                new_normals.append(normals[:, low_row] + way * (normals[:, high_row] - normals[:, low_row]))
+        # Cut a polygon of five or six sides into a quad and what is left.
+        for first in range(1, len(cut_nodes) - 1, 2):
+            picked = [0, first, first + 1, min(first + 2, len(cut_nodes) - 1)]
+            new_rows.append(
+                ([cut_nodes[corner] for corner in picked], [cut_rows[corner] for corner in picked], column)
+            )
+
+    if new_places:
+        places = np.column_stack([places, *new_places])
+        normals = np.column_stack([normals, *new_normals])
+    columns = np.concatenate([whole, np.array([column for _, _, column in new_rows], np.intp)])
+    cut_corners = np.array([nodes for nodes, _, _ in new_rows], np.intp).reshape(-1, 4).T
+    cut_normals = np.array([rows for _, rows, _ in new_rows], np.intp).reshape(-1, 4).T
+    corners = np.concatenate([corners[:, whole], cut_corners], axis=1)
+    corner_normals = np.concatenate([corner_normals[:, whole], cut_normals], axis=1)
+    # Keep the order of the polygon table, which settles ties.
+    order = np.argsort(columns, kind="stable")
+    return dataclasses.replace(
+        polygons,
+        places=places,
+        normals=normals,
+        corners=corners[:, order],
+        corner_normals=corner_normals[:, order],
+        polygon_numbers=polygons.polygon_numbers[columns[order]],
+    )
