@@ -34,7 +34,7 @@ Numbers = npt.NDArray[np.intp]
 class CameraPolygons:
     """Nodes and polygons in camera space, measured in `unit`, a power of two near the size of the view.
 
-    """Nodes and polygons in camera space, in lengths of `unit`, a power of two near the size of the view.
+    `places` is (3, nodes), `normals` (3, normals) float64. `corners` and `corner_normals` are (4, polygons)
     intp, one column a polygon, numbers of nodes and of normals. `polygon_numbers` are the rows of the mesh's
     polygon table. No corner is nearer than `near`.
     """
