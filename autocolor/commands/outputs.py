@@ -47,8 +47,8 @@ def _refuse(path: str, force: bool) -> None:
         folder = target.parent
         if not folder.is_dir():
             raise OutputError(
-                f"an output must have a folder to be in, and there is no folder {folder}; make it, or choose"
-                " another place"
+                f"an output must have a folder to be in, not {folder}, which is none; make it or choose"
+                " another"
             )
         if not os.access(folder, os.W_OK):
             raise OutputError(

@@ -1,0 +1,102 @@
+"""A folder to run commands in, with a small mesh, and two ways to run one: here, and in its own process."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from autocolor.commands import autocolor
+from ramtek_emu.command_line import run_command
+
+ROOT = Path(__file__).parents[3]
+
+MESH = """\
+v 0 0 0
+v 1 0 0
+v 1 0 1
+v 0 0 1
+v 0 1 0
+v 0 1 1
+g front.low
+f 1 2 3 4
+g side
+f 1 4 6 5
+"""
+
+SCENE = """\
+[[mesh]]
+file = "two.obj"
+[surfaces."front.low"]
+object_color = "#102030"
+[[lights]]
+name = "key"
+position = [2.0, -3.0, 4.0]
+aim = [0, 0, 0]
+flaps.z = { minimum = 0.0, maximum = 0.5 }
+[[lights]]
+name = "key.2"
+position = [-2.0, -3.0, 4.0]
+"""
+
+
+class Ran(NamedTuple):
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
+
+
+Run = Callable[..., Ran]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder: two.obj, a mesh of two parts, and scene/scene.toml, a scene of it."""
+    (tmp_path / "two.obj").write_text(MESH)
+    (tmp_path / "scene").mkdir()
+    (tmp_path / "scene" / "two.obj").write_text(MESH)
+    (tmp_path / "scene" / "scene.toml").write_text(SCENE)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Run:
+    """Run `autocolor` with the arguments in this process."""
+
+    def run_here(*arguments: str) -> Ran:
+        monkeypatch.setattr(sys, "argv", ["autocolor", *arguments])
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as left:
+            run_command(autocolor, "autocolor")
+        out, err = capsys.readouterr()
+        assert isinstance(left.value.code, int)
+        return Ran(left.value.code, out, err)
+
+    return run_here
+
+
+@pytest.fixture
+def process(folder: Path) -> Run:
+    """Run `autocolor` with the arguments in a process of its own, without a screen."""
+
+    def run_process(*arguments: str, **options: Any) -> Ran:
+        hidden = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
+        environment = {key: value for key, value in os.environ.items() if key not in hidden}
+        environment |= {"PYTHONPATH": str(ROOT), **options.pop("environment", {})}
+        command = options.pop("command", [sys.executable, "-m", "autocolor", *arguments])
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
+        done: subprocess.CompletedProcess[bytes] = subprocess.run(
+            command, cwd=folder, env=environment, timeout=60, check=False, **streams
+        )
+        out, err = ((data or b"").decode(errors="replace") for data in (done.stdout, done.stderr))
+        return Ran(done.returncode, out, err)
+
+    return run_process

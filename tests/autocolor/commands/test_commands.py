@@ -1,0 +1,257 @@
+"""The command as it is started: help, errors, pipes, signals and environments."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from autocolor.commands import COMMANDS, autocolor
+from tests.autocolor.commands.conftest import Run
+
+SLOW = ("numpy", "pygame", "pydantic", "PIL")
+POSIX = pytest.mark.skipif(os.name != "posix", reason="needs what POSIX says about pipes and signals")
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_help_of_each_command_has_an_example(command: str) -> None:
+    shown = CliRunner().invoke(autocolor, [command, "--help"], terminal_width=100)
+    assert shown.exit_code == 0
+    assert "Examples:" in shown.output
+    assert f"\n    autocolor {command} " in shown.output
+    assert max(map(len, shown.output.splitlines())) <= 100
+
+
+def test_the_help_names_every_command(run: Run) -> None:
+    for flag in ("--help", "-h"):
+        ran = run(flag)
+        assert ran.code == 0
+        assert ran.err == ""
+        for command, does in COMMANDS.items():
+            assert command in ran.out
+            assert does in ran.out
+
+
+@pytest.mark.parametrize("command", ["", *COMMANDS])
+def test_help_comes_without_loading_anything_slow(process: Run, command: str) -> None:
+    program = (
+        "import sys, autocolor.__main__ as m\n"
+        f"sys.argv[1:] = {[command, '--help'] if command else ['--help']!r}\n"
+        "try:\n    m.main()\n"
+        "except SystemExit as left:\n    assert left.code == 0\n"
+        f"print([name for name in {SLOW!r} if name in sys.modules], file=sys.stderr)\n"
+    )
+    ran = process(command=[sys.executable, "-c", program])
+    assert ran.code == 0
+    assert ran.out.startswith("Usage: autocolor")
+    assert ran.err == "[]\n"
+
+
+def test_the_version_is_told_even_where_nothing_is_installed(run: Run) -> None:
+    ran = run("--version")
+    assert (ran.code, ran.err) == (0, "")
+    assert ran.out.strip()
+
+
+def test_a_wrong_command_is_told_the_nearest_right_one(run: Run) -> None:
+    ran = run("rendr", "two.obj")
+    assert ran.code == 2
+    assert "there is no command 'rendr'; did you mean 'render'?" in ran.err
+
+
+@pytest.mark.parametrize(
+    "arguments", [("info",), ("info", "two.obj", "more"), ("info", "--jsn", "two.obj"), ("--nothing",)]
+)
+def test_wrong_usage_says_how_to_get_help(folder: Path, run: Run, arguments: tuple[str, ...]) -> None:
+    ran = run(*arguments)
+    assert (ran.code, ran.out) == (2, "")
+    assert "--help' for help." in ran.err
+
+
+@pytest.mark.parametrize(
+    "arguments", [("--debug", "info", "no.obj"), ("info", "--debug", "no.obj"), ("info", "no.obj", "--debug")]
+)
+def test_debug_anywhere_gives_the_traceback_and_the_same_exit_code(
+    folder: Path, run: Run, arguments: tuple[str, ...]
+) -> None:
+    ran = run(*arguments)
+    assert ran.code == 66
+    assert "Traceback" in ran.err
+    assert ran.err.endswith("\nautocolor: no.obj: there is no such file or folder; check the name\n")
+
+
+def test_a_fault_of_ours_is_said_to_be_one(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    from autocolor.commands import info
+
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("of ours")
+
+    monkeypatch.setattr(info, "read", broken)
+    expected = (
+        "autocolor: a fault of this program, not of yours: ZeroDivisionError: of ours;"
+        " add --debug for the traceback and report it\n"
+    )
+    assert run("info", "two.obj") == (70, "", expected)
+    assert "Traceback" in run("info", "two.obj", "--debug").err
+
+
+def test_an_interrupt_ends_with_130(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    from autocolor.commands import info
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(info, "read", interrupted)
+    assert run("info", "two.obj") == (130, "", "autocolor: interrupted\n")
+
+
+# What only a process of its own shows.
+
+
+@POSIX
+def test_a_real_interrupt_ends_with_130_and_leaves_nothing(process: Run, folder: Path) -> None:
+    program = (
+        "import os, signal, sys, autocolor.files.writing as writing, autocolor.__main__ as m\n"
+        "sync = os.fsync\n"
+        "os.fsync = lambda number: os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.argv[1:] = ['render', 'two.obj']\n"
+        "m.main()\n"
+    )
+    before = sorted(os.listdir(folder))
+    ran = process(command=[sys.executable, "-c", program])
+    assert (ran.code, ran.err) == (130, "autocolor: interrupted\n")
+    assert sorted(os.listdir(folder)) == before
+
+
+@POSIX
+def test_a_reader_that_goes_away_is_told_once(process: Run, folder: Path) -> None:
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    ran = process("info", "two.obj", stdout=write_end)
+    os.close(write_end)
+    assert ran.code == 74
+    assert ran.err == "autocolor: stdout must stay open until all is written, not be closed; read it all\n"
+
+
+@POSIX
+@pytest.mark.parametrize("arguments", ["info two.obj", "validate scene --json", "--help", "info --help"])
+def test_a_closed_stdout_is_told(process: Run, arguments: str) -> None:
+    ran = process(command=["sh", "-c", f'exec "$0" -m autocolor {arguments} >&-', sys.executable])
+    assert ran.code == 74
+    assert ran.err == "autocolor: stdout must stay open until all is written, not be closed; read it all\n"
+
+
+@POSIX
+def test_a_closed_stdout_or_stderr_keeps_no_picture_from_being_written(process: Run, folder: Path) -> None:
+    for number, closed in enumerate((">&-", "2>&-", "<&- >&- 2>&-")):
+        line = f'exec "$0" -m autocolor render two.obj -o {number}.png {closed}'
+        assert process(command=["sh", "-c", line, sys.executable]).code == 0
+    assert (folder / "0.png").read_bytes() == (folder / "2.png").read_bytes()
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no /dev/full")
+def test_a_stdout_that_is_full_is_told(process: Run) -> None:
+    with open("/dev/full", "wb") as full:
+        ran = process("info", "two.obj", stdout=full)
+        assert ran.code == 74
+        assert ran.err == (
+            "autocolor: stdout must take what is written, not fail (no space left on device); make room\n"
+        )
+        assert process("info", "none.obj", stderr=full).code == 66
+
+
+def test_without_a_utf_8_locale_foreign_names_work(process: Run, folder: Path) -> None:
+    ascii_only = {
+        "LC_ALL": "C",
+        "LANG": "C",
+        "PYTHONIOENCODING": "ascii",
+        "PYTHONUTF8": "0",
+        "PYTHONCOERCECLOCALE": "0",
+    }
+    (folder / "é ж.obj").write_bytes((folder / "two.obj").read_bytes())
+    for arguments in (("info", "é ж.obj"), ("validate", "é ж.obj"), ("render", "é ж.obj")):
+        ran = process(*arguments, environment=ascii_only)
+        assert ran.code == 0, ran.err
+    assert (folder / "é ж.png").is_file()
+    ran = process("info", "é ж.obj", "--json", environment=ascii_only)
+    json.loads(ran.out)
+    assert process("info", "ж.obj", environment=ascii_only).code == 66
+    assert process("render", "two.obj", "--set", "ж=1", environment=ascii_only).code == 2
+
+
+@POSIX
+def test_a_file_name_that_is_no_text_works(process: Run, folder: Path) -> None:
+    name = os.fsdecode(b"\xff\xfe.obj")
+    try:
+        (folder / name).write_bytes((folder / "two.obj").read_bytes())
+    except OSError:
+        pytest.skip("this file system takes text alone")
+    for arguments in (("info", name), ("render", name, "--save", "x.npz"), ("render", name)):
+        ran = process(*arguments)
+        assert ran.code == 0, ran.err
+    assert (folder / os.fsdecode(b"\xff\xfe.png")).is_file()
+    assert process("info", "x.npz").code == 0
+
+
+def test_nothing_is_needed_of_a_home(process: Run, folder: Path) -> None:
+    home = {"HOME": "/nonexistent", "XDG_CACHE_HOME": "/nonexistent", "XDG_CONFIG_HOME": "/nonexistent"}
+    assert process("render", "two.obj", environment=home).code == 0
+    assert (folder / "two.png").is_file()
+
+
+@POSIX
+def test_a_screen_that_does_not_answer_is_no_screen(process: Run, folder: Path) -> None:
+    ran = process("view", "scene", environment={"DISPLAY": ":4711", "XDG_RUNTIME_DIR": str(folder)})
+    assert (ran.code, ran.out) == (69, "")
+    assert ran.err.count("\n") == 1
+    assert "autocolor render SCENE -o PNG" in ran.err
+
+
+@POSIX
+def test_a_progress_bar_is_shown_on_a_terminal_alone(process: Run, folder: Path) -> None:
+    import pty
+
+    outer, inner = pty.openpty()
+    ran = process("render", "two.obj", stderr=inner)
+    os.close(inner)
+    shown = b""
+    # The end of a terminal that nobody holds open is an error.
+    while chunk := _read(outer):
+        shown += chunk
+    os.close(outer)
+    assert ran.code == 0
+    assert b"100%" in shown
+    assert shown.endswith(b"wrote two.png\r\n")
+    assert process("render", "two.obj", "--force").err == "wrote two.png\n"
+
+
+def _read(number: int) -> bytes:
+    try:
+        return os.read(number, 4096)
+    except OSError:
+        return b""
+
+
+@POSIX
+def test_a_shell_can_complete_commands_and_options(process: Run) -> None:
+    completion = {"_AUTOCOLOR_COMPLETE": "bash_complete", "COMP_WORDS": "autocolor re", "COMP_CWORD": "1"}
+    assert process(environment=completion).out.split() == ["plain,render", "plain,recolor"]
+
+
+def test_a_terminated_render_leaves_the_old_picture_whole(process: Run, folder: Path) -> None:
+    if os.name != "posix":
+        pytest.skip("needs what POSIX says about signals")
+    (folder / "two.png").write_bytes(b"mine")
+    program = (
+        "import os, signal, sys, autocolor.files.writing, autocolor.__main__ as m\n"
+        "os.fsync = lambda number: os.kill(os.getpid(), signal.SIGKILL)\n"
+        "sys.argv[1:] = ['render', 'two.obj', '--force']\n"
+        "m.main()\n"
+    )
+    assert process(command=[sys.executable, "-c", program]).code == -signal.SIGKILL
+    assert (folder / "two.png").read_bytes() == b"mine"

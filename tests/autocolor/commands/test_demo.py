@@ -1,0 +1,18 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autocolor import MissingInputError
+from autocolor.commands import demo
+
+
+def test_the_demo_of_a_checkout_is_the_coupe() -> None:
+    assert (demo.demo_folder() / "scene.toml").is_file()
+
+
+def test_a_demo_that_is_not_there_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(demo, "PLACES", (tmp_path,))
+    with pytest.raises(MissingInputError, match="install autocolor again"):
+        demo.demo_folder()

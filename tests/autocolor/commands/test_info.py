@@ -1,0 +1,68 @@
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from autocolor import read_scene, render, write_picture
+from tests.autocolor.commands.conftest import Run
+from tests.autocolor.meshes import wall_scene
+
+
+def test_the_facts_stand_on_stdout_and_nothing_on_stderr(folder: Path, run: Run) -> None:
+    ran = run("info", "two.obj")
+    assert (ran.code, ran.err) == (0, "")
+    assert ran.out.splitlines()[0] == "two: 6 nodes, 2 polygons (0 with three sides), 7 edges"
+    assert "parts: front.low (front.low), side (side)" in ran.out
+    assert "lights: key, fill, top, rim" in ran.out
+    assert "created: a view was created that frames the object" in ran.out
+
+
+def test_json_has_the_same_facts(folder: Path, run: Run) -> None:
+    ran = run("info", "scene", "--json")
+    assert (ran.code, ran.err) == (0, "")
+    facts = json.loads(ran.out)
+    picture = render(read_scene("scene"))
+    assert (facts["name"], facts["nodes"], facts["polygons"], facts["edges"]) == ("scene", 6, 2, 7)
+    assert facts["bounds"] == [[0, 0, 0], [1, 1, 1]]
+    assert facts["parts"] == {"front.low": "front.low", "side": "side"}
+    assert facts["lights"] == ["key", "key.2"]
+    assert facts["pixels"] == len(picture.pixels)
+    assert facts["intensities"] == list(picture.ranges.whole)
+    assert facts["surfaces"]["side"]["words"] == [504, 1006]
+    assert facts["surfaces"]["side"]["intensities"] == list(picture.ranges.surfaces["side"])
+    assert facts["repairs"] == []
+    assert len(facts["created"]) == 2
+
+
+def test_repairs_are_told_and_counted_under_strict(folder: Path, run: Run) -> None:
+    (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\n")
+    ran = run("info", "two.obj", "--json", "--strict")
+    assert ran.code == 1
+    assert [f"autocolor: {repair}" for repair in json.loads(ran.out)["repairs"]] == ran.err.splitlines()
+    assert run("info", "two.obj").code == 0
+
+
+def test_a_surface_that_is_not_seen_or_has_no_part_says_so(folder: Path, run: Run) -> None:
+    scene = wall_scene(lights=[], view=wall_scene().view.replace(direction=(0, -1, 0)))
+    scene = scene.replace(surfaces=(*scene.surfaces, scene.surfaces[0].replace(name="more")))
+    write_picture("wall.npz", render(scene), scene)
+    ran = run("info", "wall.npz")
+    assert "seen at 0 pixels" in ran.out
+    assert "lights: none" in ran.out
+    assert "  wall: words 1 to 1007, not seen" in ran.out
+    assert "  more: no words, not seen" in ran.out
+
+
+def test_names_that_are_no_text_are_shown_with_backslashes(folder: Path, run: Run) -> None:
+    scene = wall_scene(lights=[], name="\udcff")
+    write_picture("wall.npz", render(scene), scene)
+    assert json.loads(run("info", "wall.npz", "--json").out)["name"] == "\udcff"
+
+
+@pytest.mark.parametrize(("name", "code"), [("none.obj", 66), ("scene/none", 66), (".", 65)])
+def test_what_cannot_be_read_gives_no_facts(folder: Path, run: Run, name: str, code: int) -> None:
+    ran = run("info", name, "--json")
+    assert (ran.code, ran.out) == (code, "")
+    assert ran.err.startswith("autocolor: ")

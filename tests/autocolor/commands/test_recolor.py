@@ -1,0 +1,141 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from autocolor import read_picture, render, write_picture
+from tests.autocolor.commands.conftest import Run
+from tests.autocolor.meshes import wall_scene
+
+
+@pytest.fixture
+def saved(folder: Path, run: Run) -> Path:
+    """A saved picture of the scene, scene.npz, beside its picture scene.png."""
+    assert run("render", "scene", "-o", "scene.png", "--save", "scene.npz").code == 0
+    return folder / "scene.npz"
+
+
+def test_nothing_changed_gives_the_rendered_picture_byte_for_byte(saved: Path, run: Run) -> None:
+    assert run("recolor", "scene.npz", "side") == (0, "", "wrote scene-side.png\n")
+    assert (saved.parent / "scene-side.png").read_bytes() == (saved.parent / "scene.png").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("options", "settings"),
+    [
+        (("--object", "#00ff80"), ("surfaces.side.object_color=#00ff80",)),
+        (
+            ("--source", "#ffe9c0", "--blend", "0"),
+            ("surfaces.side.light_color=#ffe9c0", "surfaces.side.blend=0"),
+        ),
+        (
+            ("--object", "#123456", "--blend", "0.25", "--percentage", "50"),
+            (
+                "surfaces.side.object_color=#123456",
+                "surfaces.side.blend=0.25",
+                "surfaces.side.light_percentage=50",
+            ),
+        ),
+    ],
+)
+def test_a_recolored_picture_is_the_one_rendered_in_the_new_colors(
+    saved: Path, run: Run, options: tuple[str, ...], settings: tuple[str, ...]
+) -> None:
+    assert run("recolor", "scene.npz", "side", *options, "-o", "one.png").code == 0
+    arguments = [part for setting in settings for part in ("--set", setting)]
+    assert run("render", "scene", *arguments, "-o", "two.png").code == 0
+    assert (saved.parent / "one.png").read_bytes() == (saved.parent / "two.png").read_bytes()
+    assert (saved.parent / "one.png").read_bytes() != (saved.parent / "scene.png").read_bytes()
+
+
+def test_the_mesh_is_not_needed(saved: Path, run: Run) -> None:
+    for name in ("scene.toml", "two.obj"):
+        (saved.parent / "scene" / name).unlink()
+    assert run("recolor", "scene.npz", "side", "--object", "#00ff80").code == 0
+
+
+def test_new_colors_are_kept_where_that_is_asked(saved: Path, run: Run) -> None:
+    assert (
+        run("recolor", "scene.npz", "side", "--object", "#00ff80", "--save", "new.npz").err
+        == "wrote new.npz\n"
+    )
+    assert read_picture("new.npz").scene.surface("side").paint.object_color == (0, 255, 128)
+    assert run("recolor", "new.npz", "side", "-o", "one.png").code == 0
+    assert run("recolor", "scene.npz", "side", "--object", "#00ff80", "-o", "two.png").code == 0
+    assert (saved.parent / "one.png").read_bytes() == (saved.parent / "two.png").read_bytes()
+
+
+def test_a_picture_may_be_recolored_in_its_own_file(saved: Path, run: Run) -> None:
+    before = saved.read_bytes()
+    assert run("recolor", "scene.npz", "side", "--blend", "1", "--save", "scene.npz").code == 73
+    assert saved.read_bytes() == before
+    assert run("recolor", "scene.npz", "side", "--blend", "1", "--save", "scene.npz", "--force").code == 0
+    assert read_picture(saved).scene.surface("side").paint.blend == 1
+
+
+def test_the_surface_s_name_in_the_output_s_is_made_one_of_a_file(folder: Path, run: Run) -> None:
+    scene = wall_scene(lights=[])
+    surface = scene.surfaces[0].replace(name="a/b")
+    part = scene.parts[0].replace(surface="a/b")
+    scene = scene.replace(surfaces=(surface,), parts=(part,))
+    write_picture("wall.npz", render(scene), scene)
+    assert run("recolor", "wall.npz", "a/b").err == "wrote wall-b.png\n"
+
+
+def test_pictures_of_another_size_keep_it(folder: Path, run: Run) -> None:
+    from PIL import Image
+
+    scene = wall_scene(lights=[], ambient=0.5)
+    write_picture("wall.npz", render(scene, 30, 50), scene)
+    assert run("recolor", "wall.npz", "wall").code == 0
+    with Image.open("wall-wall.png") as image:
+        assert image.size == (50, 30)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "sentence"),
+    [
+        (("scene.npz", "sid"), 2, "there is no surface 'sid'; did you mean 'side'?"),
+        (("scene.npz", "side", "--object", "red"), 65, "surface 'side': object_color must be \"#rrggbb\""),
+        (("scene.npz", "side", "--blend", "2"), 65, "blend must be a number from 0 to 1, not 2.0"),
+        (("scene.npz", "side", "--blend", "nan"), 65, "blend must be a number from 0 to 1, not nan"),
+        (("scene.npz", "side", "--blend", "much"), 2, "'much' is not a valid float"),
+        (("scene.npz", "side", "--percentage", "101"), 65, "light_percentage must be a number from 0 to 100"),
+        (("scene.npz",), 2, "Missing argument 'SURFACE'"),
+        (("none.npz", "side"), 66, "none.npz: there is no such file or folder"),
+        (("two.obj", "side"), 65, "two.obj: a picture file must be whole and as autocolor wrote it"),
+        (("scene", "side"), 65, "scene: it must be a regular file, not a folder"),
+        (("scene.npz", "side", "-o", "scene.png"), 73, "not scene.png, which exists"),
+        (("scene.npz", "side", "-o", "new.gif"), 2, "-o must be the name of a PNG, not 'new.gif'"),
+    ],
+)
+def test_what_is_refused_writes_nothing(
+    saved: Path, run: Run, arguments: tuple[str, ...], code: int, sentence: str
+) -> None:
+    before = {path: (saved.parent / path).stat().st_mtime_ns for path in os.listdir(saved.parent)}
+    ran = run("recolor", *arguments)
+    assert ran.code == code
+    assert sentence in ran.err
+    assert ran.out == ""
+    after = {path: (saved.parent / path).stat().st_mtime_ns for path in os.listdir(saved.parent)}
+    assert after == before
+
+
+def test_a_picture_cut_short_is_bad_input_and_old_files_stay(saved: Path, run: Run) -> None:
+    whole = saved.read_bytes()
+    (saved.parent / "out.png").write_bytes(b"mine")
+    # Around each member's beginning and end, and at both ends of the file.
+    starts = [place for place in range(len(whole)) if whole.startswith((b"PK", b"\x93NUMPY"), place)]
+    assert len(starts) >= 19
+    lengths = {0, 1, 2, len(whole) // 2, len(whole) - 1, len(whole) - 23}
+    lengths |= {
+        place + step for place in starts for step in (-1, 0, 1, 4, 10, 30) if place + step < len(whole)
+    }
+    for length in sorted(lengths):
+        saved.write_bytes(whole[: max(0, length)])
+        ran = run("recolor", "scene.npz", "side", "-o", "out.png", "--force")
+        assert ran.code == 65
+        assert ran.err.startswith("autocolor: scene.npz: a picture file must be whole")
+    assert (saved.parent / "out.png").read_bytes() == b"mine"

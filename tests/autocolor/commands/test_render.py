@@ -1,0 +1,145 @@
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from autocolor import Studio, read_picture, read_scene
+from ramtek_emu import Ramtek9300
+from tests.autocolor.commands.conftest import Run
+
+
+def pixels(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
+    with Image.open(path) as image:
+        return np.asarray(image.convert("RGB"))
+
+
+def test_a_bare_mesh_becomes_a_picture_of_its_name(folder: Path, run: Run) -> None:
+    assert run("render", "two.obj") == (0, "", "wrote two.png\n")
+    display = Ramtek9300()
+    Studio(read_scene("two.obj"), display)
+    assert (pixels(folder / "two.png") == display.field()).all()
+
+
+def test_a_folder_with_a_scene_becomes_a_picture_of_its_name(folder: Path, run: Run) -> None:
+    assert run("render", "scene") == (0, "", "wrote scene.png\n")
+    assert pixels(folder / "scene.png").shape == (480, 640, 3)
+
+
+def test_an_output_in_another_folder_is_written_there_alone(folder: Path, run: Run) -> None:
+    (folder / "out").mkdir()
+    before = sorted(os.listdir(folder))
+    assert run("render", "two.obj", "-o", "out/x.png").err == "wrote out/x.png\n"
+    assert sorted(os.listdir(folder)) == before
+    assert os.listdir(folder / "out") == ["x.png"]
+
+
+def test_saving_alone_writes_no_png(folder: Path, run: Run) -> None:
+    assert run("render", "two.obj", "--save", "two.npz").err == "wrote two.npz\n"
+    assert not (folder / "two.png").exists()
+    picture, scene = read_picture("two.npz")
+    assert picture.surfaces == ("front.low", "side")
+    assert scene.name == "two"
+
+
+def test_a_saved_picture_renders_as_its_scene(folder: Path, run: Run) -> None:
+    run("render", "scene", "-o", "one.png", "--save", "two.npz")
+    assert run("render", "two.npz", "-o", "two.png").code == 0
+    assert (folder / "one.png").read_bytes() == (folder / "two.png").read_bytes()
+
+
+def test_one_light_alone_is_the_scene_with_the_others_off(folder: Path, run: Run) -> None:
+    assert run("render", "scene", "--light", "key", "-o", "one.png").code == 0
+    assert run("render", "scene", "--set", "lights.key.2.on=false", "-o", "two.png").code == 0
+    assert run("render", "scene", "--light", "key", "--light", "key.2", "-o", "both.png").code == 0
+    assert run("render", "scene", "-o", "all.png").code == 0
+    assert (folder / "one.png").read_bytes() == (folder / "two.png").read_bytes()
+    assert (folder / "one.png").read_bytes() != (folder / "both.png").read_bytes()
+    assert (folder / "all.png").read_bytes() == (folder / "both.png").read_bytes()
+
+
+def test_an_unknown_light_is_told_the_nearest_right_name(folder: Path, run: Run) -> None:
+    expected = "autocolor: there is no light 'kye'; did you mean 'key'?\n"
+    assert run("render", "scene", "--light", "kye") == (2, "", expected)
+    assert not (folder / "scene.png").exists()
+
+
+def test_the_up_axis_turns_a_bare_mesh(folder: Path, run: Run) -> None:
+    for up in "xyz":
+        assert run("render", "two.obj", "--up", up, "-o", f"{up}.png").code == 0
+    pictures = {(folder / f"{up}.png").read_bytes() for up in "xyz"}
+    assert len(pictures) == 3
+    wrong = run("render", "two.obj", "--up", "w")
+    assert wrong.code == 2
+    assert "'x', 'y', 'z'" in wrong.err
+
+
+def test_an_existing_output_is_kept_without_force(folder: Path, run: Run) -> None:
+    for name, option in (("mine.png", "-o"), ("mine.npz", "--save")):
+        (folder / name).write_bytes(b"mine")
+        expected = (
+            f"autocolor: an output must be a new file, not {name}, which exists; choose another name or add"
+            " --force\n"
+        )
+        assert run("render", "two.obj", option, name) == (73, "", expected)
+        assert (folder / name).read_bytes() == b"mine"
+        assert run("render", "two.obj", option, name, "--force").code == 0
+        assert (folder / name).read_bytes() != b"mine"
+
+
+def test_a_full_disk_leaves_what_was_there(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    (folder / "mine.png").write_bytes(b"mine")
+    before = sorted(os.listdir(folder))
+
+    def full(_: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    for arguments in (("-o", "mine.png", "--force"), ("-o", "new.png"), ("--save", "new.npz")):
+        ran = run("render", "two.obj", *arguments)
+        assert ran.code == 74
+        assert "it could not be written (no space left on device)" in ran.err
+    assert sorted(os.listdir(folder)) == before
+    assert (folder / "mine.png").read_bytes() == b"mine"
+
+
+def test_names_with_spaces_dashes_dots_and_foreign_letters_are_names(folder: Path, run: Run) -> None:
+    for name in ("a b", "-x", ".hid", "купе é", "x" * 250, "--debug"):
+        (folder / f"{name}.obj").write_bytes((folder / "two.obj").read_bytes())
+        ran = run("render", "--", f"{name}.obj")
+        assert ran.code == 0
+        assert ran.err == f"wrote {name[:100]}.png\n"
+
+
+def test_what_was_repaired_is_told_and_counts_under_strict(folder: Path, run: Run) -> None:
+    (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\n")
+    ran = run("render", "two.obj", "-o", "a.png")
+    assert ran.code == 0
+    assert ran.err.startswith("autocolor: two.obj")
+    assert ran.err.endswith("\nwrote a.png\n")
+    assert run("render", "two.obj", "-o", "b.png", "--strict").code == 1
+    assert (folder / "a.png").read_bytes() == (folder / "b.png").read_bytes()
+
+
+def test_problems_are_listed_each_on_a_line_of_its_own(folder: Path, run: Run) -> None:
+    (folder / "scene" / "scene.toml").write_text(
+        'ambient = -1\nscalling = "object"\n[[mesh]]\nfile = "no.obj"\n'
+    )
+    ran = run("render", "scene")
+    assert ran.code == 65
+    assert len(ran.err.splitlines()) == 3
+    assert all(line.startswith("autocolor: scene.toml, line ") for line in ran.err.splitlines())
+    assert "did you mean 'scaling'?" in ran.err
+
+
+def test_a_broken_mesh_is_bad_input_and_one_that_is_not_there_is_missing(folder: Path, run: Run) -> None:
+    (folder / "bad.obj").write_text("v 0 0\n")
+    assert run("render", "bad.obj").code == 65
+    expected = "autocolor: no.obj: there is no such file or folder; check the name\n"
+    assert run("render", "no.obj") == (66, "", expected)
+    assert run("render", "").code == 65
+    assert run("render", "x" * 5000).code in (65, 66)

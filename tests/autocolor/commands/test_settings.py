@@ -1,0 +1,178 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import pytest
+
+from autocolor import Scene, read_scene
+from autocolor.commands.settings import value_of, with_settings
+from autocolor.errors import InputError, UsageError
+from tests.autocolor.commands.conftest import Run
+
+
+@pytest.fixture
+def scene(folder: Path) -> Scene:
+    return read_scene("scene")
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("2", 2),
+        ("2.5", 2.5),
+        ("[1, 2]", [1, 2]),
+        ("true", True),
+        ("#b01020", "#b01020"),
+        ('"#b01020"', "#b01020"),
+        ("gamma", "gamma"),
+        ("", ""),
+        ("{minimum = 0.5}", {"minimum": 0.5}),
+        ("[[0, 0], [1, 2], [2, 3], [3, 3], [4, 5]]", [[0, 0], [1, 2], [2, 3], [3, 3], [4, 5]]),
+        ("1\nother = 2", "1\nother = 2"),
+        ("{a=" * 2000, "{a=" * 2000),
+        ("[" * 2000, "[" * 2000),
+        ("9" * 5000, "9" * 5000),
+        ("a." * 2000, "a." * 2000),
+        ("\udcff", "\udcff"),
+    ],
+)
+def test_a_value_is_written_as_in_a_scene_file(text: str, value: object) -> None:
+    assert value_of(text) == value
+
+
+def test_every_kind_of_key_can_be_set(scene: Scene) -> None:
+    changed = with_settings(
+        scene,
+        (
+            "ambient=0.25",
+            "scaling=object",
+            "mapping=[[0,0],[0.5,0.75],[1,1]]",
+            "contrast=floor",
+            "background=#102030",
+            "view.angle=10",
+            "view.eye=[3, -4, 5]",
+            "lights.key.intensity=2",
+            " lights.key.aim = [1, 0, 0] ",
+            "surfaces.side.exponent=40",
+            "surfaces.side.light_color=[1, 2, 3]",
+            "surfaces.side.levels=20",
+            "parts.side.surface=front.low",
+        ),
+    )
+    assert (changed.ambient, changed.scaling, changed.contrast) == (0.25, "object", "floor")
+    assert changed.mapping == ((0, 0), (0.5, 0.75), (1, 1))
+    assert changed.background == (16, 32, 48)
+    assert (changed.view.angle, changed.view.eye) == (10, (3, -4, 5))
+    assert (changed.light("key").intensity, changed.light("key").aim) == (2, (1, 0, 0))
+    side = changed.surface("side")
+    assert (side.reflectance.exponent, side.paint.light_color, side.levels) == (40, (1, 2, 3), 20)
+    assert changed.part("side").surface == "front.low"
+
+
+def test_flaps_are_set_whole_or_field_by_field(scene: Scene) -> None:
+    flaps = with_settings(scene, ("lights.key.flaps.z.maximum=0.75",)).light("key").flaps
+    assert flaps.z is not None
+    assert (flaps.z.minimum, flaps.z.maximum) == (0, 0.75)
+    flaps = with_settings(scene, ("lights.key.flaps.x={maximum = 0.25, on = false}",)).light("key").flaps
+    assert flaps.x is not None
+    assert flaps.z is not None
+    assert (flaps.x.maximum, flaps.x.on, flaps.z.maximum) == (0.25, False, 0.5)
+
+
+def test_the_order_of_the_settings_of_a_row_does_not_matter(scene: Scene) -> None:
+    # Each alone would break a rule.
+    settings = ("lights.key.2.concentration=5", "lights.key.2.aim=[0, 0, 0]")
+    flaps = ("lights.key.flaps.z.minimum=2", "lights.key.flaps.z.maximum=3")
+    for order in (settings, settings[::-1]):
+        assert with_settings(scene, order).light("key.2").concentration == 5
+    for order in (flaps, flaps[::-1]):
+        assert with_settings(scene, order).light("key").flaps.z is not None
+
+
+def test_the_last_of_two_settings_of_one_key_counts(scene: Scene) -> None:
+    assert with_settings(scene, ("ambient=1", "ambient=2")).ambient == 2
+
+
+@pytest.mark.parametrize("name", ["front.low", '"front.low"', "'front.low'"])
+def test_a_name_may_hold_points_and_stand_in_quotes(scene: Scene, name: str) -> None:
+    changed = with_settings(scene, (f"surfaces.{name}.blend=0.125",))
+    assert changed.surface("front.low").paint.blend == 0.125
+
+
+def test_of_two_names_the_longer_is_meant(scene: Scene) -> None:
+    changed = with_settings(scene, ("lights.key.2.intensity=3", "lights.key.intensity=2"))
+    assert [light.intensity for light in changed.lights] == [2, 3]
+
+
+@pytest.mark.parametrize(
+    ("setting", "sentence"),
+    [
+        ("ambiet=1", "--set ambiet: there is nothing of this name to set; did you mean 'ambient'?"),
+        ("light.k.on=true", "--set light.k.on: there is nothing of this name to set; did you mean 'lights'?"),
+        ("lights.kye.on=true", "--set lights.kye.on: there is no light 'kye'; did you mean 'key'?"),
+        ("surfaces.sid.blend=1", "--set surfaces.sid.blend: there is no surface 'sid'; did you mean 'side'?"),
+        ("parts.sid.surface=x", "--set parts.sid.surface: there is no part 'sid'; did you mean 'side'?"),
+        ("lights=1", "--set lights: it must name one field; write it as in lights.key.intensity=2"),
+        ("lights.key=1", "--set lights.key: it must name one field; write it as in lights.key.intensity=2"),
+        ("view=1", "--set view: it must name one field; write it as in view.angle=10"),
+        ("view.=1", "--set view.: it must name one field; write it as in view.angle=10"),
+        ("ambient.x=1", "--set ambient.x: there is nothing of this name to set; did you mean 'ambient'?"),
+        ("lights.key.name=a", "--set lights.key.name: a name stays; rename it in the scene file"),
+        ("surfaces.side.name=a", "--set surfaces.side.name: a name stays; rename it in the scene file"),
+        (
+            "lights.key.a.x=1",
+            "--set lights.key.a.x: there is no such field; flaps alone have some, as in flaps.z.maximum=1",
+        ),
+    ],
+)
+def test_a_key_that_names_nothing_is_refused(scene: Scene, setting: str, sentence: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        with_settings(scene, (setting,))
+    assert str(caught.value) == sentence
+
+
+@pytest.mark.parametrize(
+    ("setting", "sentence"),
+    [
+        ("view.angel=1", "view: there is no 'angel'; did you mean 'angle'?"),
+        ("lights.key.intesity=1", "light 'key': there is no 'intesity'; did you mean 'intensity'?"),
+        ("lights.key.flaps.z.min=1", "there is no 'min'; did you mean 'minimum'?"),
+        ("lights.key.flaps.w.minimum=1", "there is no 'w'; known are 'x', 'y', 'z'"),
+        ("surfaces.side.difuse=1", "surface 'side': there is no 'difuse'; did you mean 'diffuse'?"),
+        ("mapping=gama", "not 'gama'; did you mean 'gamma'?"),
+        ("ambient=-1", "ambient must be a finite number of at least 0, not -1"),
+        ("ambient=nan", "ambient must be a finite number of at least 0, not nan"),
+        ("background=red", 'background must be "#rrggbb"'),
+        ("lights.key.on=1", "light 'key': on must be true or false, not 1"),
+        ("parts.side.surface=sid", "surface 'sid' is not in the surface table; did you mean 'side'?"),
+    ],
+)
+def test_a_value_that_breaks_a_rule_is_refused(scene: Scene, setting: str, sentence: str) -> None:
+    with pytest.raises(InputError) as caught:
+        with_settings(scene, (setting,))
+    assert sentence in str(caught.value)
+
+
+def test_a_setting_without_an_equals_sign_is_wrong_usage(scene: Scene) -> None:
+    with pytest.raises(click.UsageError, match="--set must be KEY=VALUE, not 'ambient'"):
+        with_settings(scene, ("ambient",))
+
+
+@pytest.mark.parametrize(("setting", "code"), [("ambiet=1", 2), ("ambient", 2), ("ambient=x", 65)])
+def test_a_wrong_setting_ends_before_anything_is_written(
+    folder: Path, run: Run, setting: str, code: int
+) -> None:
+    ran = run("render", "two.obj", "--set", setting)
+    assert ran.code == code
+    assert len([line for line in ran.err.splitlines() if "set" in line or "ambient" in line]) >= 1
+    assert not (folder / "two.png").exists()
+
+
+def test_a_setting_colors_the_picture(folder: Path, run: Run) -> None:
+    assert run("render", "two.obj", "-o", "one.png").code == 0
+    assert (
+        run("render", "two.obj", "--set", "surfaces.front.low.object_color=#00ff00", "-o", "two.png").code
+        == 0
+    )
+    assert (folder / "one.png").read_bytes() != (folder / "two.png").read_bytes()

@@ -1,0 +1,103 @@
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.autocolor.commands.conftest import Run
+
+pygame = pytest.importorskip("pygame")
+
+
+@pytest.fixture
+def monitors(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """The monitors that a command opens; each is driven by `script` instead of by a user."""
+    from ramtek_emu import window
+
+    opened: list[Any] = []
+
+    class Driven(window.Monitor):
+        script: Callable[[Any], object] = staticmethod(lambda monitor: None)
+
+        def run(self) -> None:
+            opened.append(self)
+            type(self).script(self)
+
+    monkeypatch.setattr(window, "Monitor", Driven)
+    monkeypatch.setattr(window, "open_screen", lambda: None)
+    opened.append(Driven)
+    return opened
+
+
+def test_a_scene_is_shown_until_the_window_is_closed(folder: Path, run: Run, monitors: list[Any]) -> None:
+    assert run("view", "scene") == (0, "", "")
+    monitor = monitors[1]
+    assert monitor.caption == "autocolor - scene - [front.low] - F1 help"
+    assert not monitor.full_screen
+    assert not monitor.fit
+    assert monitor.display.words.any()
+
+
+def test_options_of_the_window_reach_it(folder: Path, run: Run, monitors: list[Any]) -> None:
+    assert run("view", "two.obj", "--up", "y", "--full-screen", "--fit").code == 0
+    assert monitors[1].full_screen
+    assert monitors[1].fit
+
+
+def test_repairs_count_under_strict(folder: Path, run: Run, monitors: list[Any]) -> None:
+    (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\n")
+    assert run("view", "two.obj").code == 0
+    assert run("view", "two.obj", "--strict").code == 1
+
+
+def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
+    from ramtek_emu.window import Key
+
+    captions = []
+
+    def script(monitor: Any) -> None:
+        assert monitor.on_key(Key("c", "c"))
+        assert not monitor.on_key(Key("tab", "\t"))
+        captions.append(monitor.caption)
+        captions.append(str(monitor.on_close()))
+        captions.append(monitor.caption)
+        monitor.on_drop(folder / "none.obj")
+        monitor.on_drop(folder / "none.obj")
+        captions.append(monitor.caption)
+        monitor.tell("saved somewhere")
+        captions.append(monitor.caption)
+
+    monitors[0].script = staticmethod(script)
+    assert run("view", "scene").code == 0
+    assert captions[0].startswith("autocolor - scene* - [front.low] - object color #")
+    assert captions[1] == "False"
+    assert captions[2].endswith("not saved: Ctrl+S saves, close again to leave without it")
+    assert captions[3].endswith("none.obj: there is no such file or folder; check the name")
+    assert captions[4].endswith("saved somewhere")
+
+
+def test_a_bare_command_shows_the_demo(folder: Path, run: Run, monitors: list[Any]) -> None:
+    assert run() == (0, "", "")
+    assert monitors[1].caption.startswith("autocolor - coupe - ")
+
+
+def test_bad_input_opens_no_window(folder: Path, run: Run, monitors: list[Any]) -> None:
+    assert run("view", "none.obj").code == 66
+    assert len(monitors) == 1
+
+
+@pytest.mark.parametrize("arguments", [(), ("view", "scene")])
+def test_without_a_screen_render_is_named(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...]
+) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
+        monkeypatch.delenv(name, raising=False)
+    if os.name == "nt":
+        pytest.skip("Windows always has a screen")
+    ran = run(*arguments)
+    assert (ran.code, ran.out) == (69, "")
+    assert ran.err.count("\n") == 1
+    assert "`autocolor render SCENE -o PNG` makes the picture without a screen" in ran.err

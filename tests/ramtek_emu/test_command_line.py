@@ -1,0 +1,115 @@
+"""How a command leaves the process; what only a process of its own shows is tried with `autocolor`."""
+
+from __future__ import annotations
+
+import errno
+import sys
+from collections.abc import Callable
+from typing import NamedTuple
+
+import click
+import pytest
+
+from ramtek_emu.command_line import run_command
+from ramtek_emu.errors import OutputExistsError
+
+
+class Left(NamedTuple):
+    code: int
+    out: str
+    err: str
+
+
+End = Callable[..., Left]
+
+
+@pytest.fixture
+def end(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> End:
+    """Run a command that does what it is given, and tell how it ended."""
+
+    def run(does: Callable[[], object], *arguments: str) -> Left:
+        @click.command()
+        @click.argument("names", nargs=-1)
+        def command(names: tuple[str, ...]) -> None:
+            click.echo(" ".join(names))
+            does()
+
+        monkeypatch.setattr(sys, "argv", ["tool", *arguments])
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as left:
+            run_command(command, "tool")
+        assert isinstance(left.value.code, int)
+        return Left(left.value.code, *capsys.readouterr())
+
+    return run
+
+
+def raising(error: BaseException) -> Callable[[], None]:
+    def does() -> None:
+        raise error
+
+    return does
+
+
+def test_what_goes_well_ends_with_0(end: End) -> None:
+    assert end(lambda: None, "a", "b") == (0, "a b\n", "")
+
+
+def test_a_command_may_end_with_a_code_of_its_own(end: End) -> None:
+    assert end(lambda: click.get_current_context().exit(1)).code == 1
+
+
+def test_a_refusal_ends_with_its_sentence_and_its_code(end: End) -> None:
+    refusal = OutputExistsError("the file must be a new one\nor another")
+    assert end(raising(refusal)) == (
+        73,
+        "\n",
+        "tool: the file must be a new one\ntool: or another\n",
+    )
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "sentence"),
+    [
+        (click.UsageError("no"), 2, "Error: no"),
+        (click.Abort(), 130, "tool: interrupted"),
+        (KeyboardInterrupt(), 130, "tool: interrupted"),
+        (BrokenPipeError(errno.EPIPE, "Broken pipe"), 74, "tool: stdout must stay open"),
+        (OSError(errno.ENOSPC, "No space left on device"), 74, "not fail (no space left on device)"),
+        (OSError(errno.EIO, "Input/output error", "a/file"), 70, "a fault of this program"),
+        (MemoryError(), 70, "a fault of this program, not of yours: MemoryError: ; add --debug"),
+        (RecursionError("deep"), 70, "RecursionError: deep"),
+    ],
+)
+def test_each_failure_has_its_code_and_no_traceback(
+    end: End, error: BaseException, code: int, sentence: str
+) -> None:
+    left = end(raising(error))
+    assert left.code == code
+    assert sentence in left.err
+    assert "Traceback" not in left.err
+
+
+def test_debug_shows_the_traceback_and_is_no_argument(end: End) -> None:
+    left = end(raising(ValueError("x")), "a", "--debug", "b")
+    assert (left.code, left.out) == (70, "a b\n")
+    assert "Traceback" in left.err
+    assert left.err.endswith("ValueError: x; report it\n")
+
+
+def test_debug_after_two_dashes_is_an_argument(end: End) -> None:
+    assert end(lambda: None, "--", "a", "--debug") == (0, "a --debug\n", "")
+
+
+def test_names_that_are_no_text_are_told_with_backslashes(end: End) -> None:
+    assert end(lambda: None, "\udcff").out == "\\udcff\n"
+
+
+def test_a_process_without_a_stdout_is_told_when_it_answers(
+    end: End, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "stdout", None)
+    left = end(lambda: None)
+    assert left.code == 74
+    assert "stdout must stay open" in left.err
+    sys.stdout.close()
