@@ -5,9 +5,10 @@ import pytest
 from tests.fidelity_ledger import KINDS, ROOT, document, lines_of_packages, lines_of_source
 
 BEARING_FORMULAS = [
-    "autocolor.color_blending", "autocolor.created", "autocolor.intensity_mapping", "autocolor.level_ranges",
+    "autocolor.camera_space", "autocolor.color_blending", "autocolor.created", "autocolor.intensity_mapping",
+    "autocolor.level_ranges",
     "autocolor.light_controls", "autocolor.lights", "autocolor.node_normals", "autocolor.picture",
-    "autocolor.projection", "autocolor.reflection", "autocolor.scene", "autocolor.seen", "autocolor.shading",
+    "autocolor.reflection", "autocolor.scene", "autocolor.seen", "autocolor.shading",
     "autocolor.tables", "autocolor.view", "autocolor.visible_surfaces", "autocolor.watkins",
     "ramtek_emu.character_rom", "ramtek_emu.configuration", "ramtek_emu.decoder", "ramtek_emu.drawing",
     "ramtek_emu.frame_buffer", "ramtek_emu.host_port", "ramtek_emu.lookup_table", "ramtek_emu.parameters",
