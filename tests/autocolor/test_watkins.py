@@ -40,8 +40,16 @@ def test_batch_and_watkins_see_the_same_where_polygons_pass_through_each_other(
     assert_same(visible_surfaces(mesh, view, (1,), *raster), watkins(mesh, view, (1,), *raster))
 
 
+THROUGH_EACH_OTHER = Mesh(
+    np.random.default_rng(83).uniform(-1, 1, (90, 3)),
+    np.arange(90).reshape(-1, 3),
+    np.zeros(30, np.intp),
+    ("soup",),
+)
+
+
 @pytest.mark.parametrize(
-    "mesh", [cube(), sphere(), grid(9, 7, (-1, 0, -1), (2, 0.3, 0), (0, 0, 2))], ids=repr
+    "mesh", [cube(), sphere(), THROUGH_EACH_OTHER, grid(9, 7, (-1, 0, -1), (2, 0.3, 0), (0, 0, 2))], ids=repr
 )
 def test_batch_and_watkins_see_the_same_of_a_closer_picture(mesh: Mesh) -> None:
     view = View((3.0, -5.0, 2.0), target=(0.2, 0.1, 0.0))
