@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from autocolor.lights import Flap as Flap
     from autocolor.lights import Flaps as Flaps
     from autocolor.lights import Light as Light
+    from autocolor.mesh import Mesh as Mesh
     from autocolor.picture import Picture as Picture
     from autocolor.rendering import render as render
     from autocolor.scene import Scene as Scene
     from autocolor.scene import scene_of as scene_of
     from autocolor.studio import Studio as Studio
-    from autocolor.tables import Mesh as Mesh
     from autocolor.tables import Paint as Paint
     from autocolor.tables import Part as Part
     from autocolor.tables import Reflectance as Reflectance
@@ -46,7 +46,7 @@ _HOME = {
     "InputError": "errors",
     "LevelRange": "level_ranges",
     "Light": "lights",
-    "Mesh": "tables",
+    "Mesh": "mesh",
     "MissingInputError": "errors",
     "OutputError": "errors",
     "Paint": "tables",

@@ -14,10 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.checks import Vector
-from autocolor.tables import Mesh
+from autocolor.mesh import Mesh
 from autocolor.view import View
 
-NEAR = 1e-4
+NEAR = 1e-6
 """Assumed: the near plane, as a fraction of the depth of the object's farthest corner."""
 
 LEAST_NEAR = 1e-12

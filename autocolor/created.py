@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.lights import Light
-from autocolor.tables import Mesh, Paint, Part, Surface
+from autocolor.mesh import Mesh
+from autocolor.tables import Paint, Part, Surface
 from autocolor.view import View
 
 FILLED = 0.86

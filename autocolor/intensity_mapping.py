@@ -82,7 +82,7 @@ def curve_of(mapping: str | Curve) -> Callable[[Singles], Singles]:
 
 
 def equalized(intensities: Singles, everything: Singles) -> Singles:
-    """How many of all intensities are below each, so that every level is shown equally often."""
+    """The share of all intensities above the least that each reaches, so that all levels are as frequent."""
     values, counts = np.unique(everything, return_counts=True)
     below = np.cumsum(counts) - counts[0]
     place = np.searchsorted(values, intensities)

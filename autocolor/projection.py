@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.camera_space import camera_space
-from autocolor.tables import Mesh
+from autocolor.mesh import Mesh
 from autocolor.view import View
 
 ROUNDING = 1e-6

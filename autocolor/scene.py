@@ -17,7 +17,8 @@ from autocolor.checks import Color, color, finite, known_fields, nearest
 from autocolor.created import created_lights, created_parts, created_surface, created_view
 from autocolor.errors import InputError, UsageError
 from autocolor.lights import Light
-from autocolor.tables import MOST_SURFACES, Mesh, Part, Surface
+from autocolor.mesh import Mesh
+from autocolor.tables import MOST_SURFACES, Part, Surface
 from autocolor.view import View
 
 SCALINGS = ("surface", "object")

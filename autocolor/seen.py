@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.edges import edges
+from autocolor.mesh import Mesh
 from autocolor.projection import Projection, lens
-from autocolor.tables import Mesh
 from autocolor.view import View
 
 PIXELS_AT_ONCE = 1 << 14

@@ -37,17 +37,15 @@ def light_planes(
     """The diffuse and the specular plane of a light, (2, n) float32 in the order of `seen.pixels`.
 
     `exponents` has N for each surface number that is seen. Both planes are 0 where the light has no effect.
-    `kept` are planes of the same light to take over but for the `changed` surface numbers.
+    `kept` are planes of the same light to take over but for the surfaces with the `changed` numbers.
     """
     planes = np.zeros((2, len(seen.pixels)), np.float32) if kept is None else kept.copy()
     ready = controls(light, seen)
     position = seen.camera_point(light.position)
     position *= min(FARTHEST / max(float(np.abs(position).max()), 1.0), 1.0)
     for surface in seen.slices:
-        if kept is not None:
-            if surface.surface_number not in changed:
-                continue
-            planes[:, surface.start : surface.stop] = 0
+        if kept is not None and surface.surface_number not in changed:
+            continue
         for first in range(surface.start, surface.stop, PIXELS_AT_ONCE):
             part = slice(first, min(first + PIXELS_AT_ONCE, surface.stop))
             _shade(planes[:, part], seen.rows[:, part], position, ready, exponents[surface.surface_number])

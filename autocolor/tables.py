@@ -1,152 +1,20 @@
-"""The tables of the data base: nodes and polygons (the mesh), parts, and surfaces.
+"""The tables of parts and surfaces.
 
-Paper: "Introduction". The shape of an object is a mesh of polygons with three or four sides, held in a node
-table and a polygon table; polygons are grouped to parts; a part has a surface type; a surface type has
-colors and reflectance properties. Everything here is checked when it is made and never changes afterwards.
+Paper: "Introduction". Polygons are grouped to parts; a part has a surface type; a surface type has colors and
+reflectance properties. Everything here is checked when it is made and never changes afterwards.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
-from autocolor.checks import LARGEST_COORDINATE, Color, color, finite, known_fields, switch
+from autocolor.checks import Color, color, finite, known_fields, switch
 from autocolor.errors import InputError
-from autocolor.node_normals import CREASE_ANGLE, NodeNormals, node_normals
 
 MOST_SURFACES = 255
 """Surface numbers are held in 8 bits, and 0 means that nothing is seen."""
-
-
-@dataclass(frozen=True, eq=False)
-class Mesh:
-    """The node table and the polygon table.
-
-    `coordinates` is (nodes, 3) float64. `node_numbers` is (polygons, 4) intp, rows of the node table counted
-    from 0; a triangle repeats its last node, and (polygons, 3) is accepted where all are triangles.
-    `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0. Polygons that meet at more than
-    `crease_angle` degrees keep a sharp edge.
-    """
-
-    coordinates: npt.NDArray[np.float64]
-    node_numbers: npt.NDArray[np.intp]
-    part_numbers: npt.NDArray[np.intp]
-    part_names: tuple[str, ...]
-    crease_angle: float = CREASE_ANGLE
-
-    def __post_init__(self) -> None:
-        problems: list[str] = []
-        coordinates = _array(problems, "node table", self.coordinates, np.float64, (3,))
-        node_numbers = _array(problems, "polygon table", self.node_numbers, np.intp, (3, 4))
-        if node_numbers.shape[1] == 3:
-            node_numbers = node_numbers[:, [0, 1, 2, 2]]
-        part_numbers = np.atleast_1d(_numbers(problems, "part numbers", self.part_numbers, np.intp))
-        names = tuple(self.part_names)
-        angle = finite(problems, "mesh: crease_angle", self.crease_angle, at_least=0.0, at_most=180.0)
-        if not (np.abs(coordinates) <= LARGEST_COORDINATE).all():
-            row = int(np.flatnonzero(~(np.abs(coordinates) <= LARGEST_COORDINATE).all(axis=1))[0])
-            problems.append(
-                f"node table: coordinates must be finite and at most 1e30 in size, not"
-                f" {coordinates[row].tolist()} (row {row})"
-            )
-        _check_rows(problems, "polygon table: a node number", node_numbers, len(coordinates), "node table")
-        _check_rows(problems, "polygon table: a part number", part_numbers, len(names), "part table")
-        if part_numbers.shape != (len(node_numbers),):
-            problems.append(
-                f"polygon table: there must be one part number a polygon ({len(node_numbers)}), not an"
-                f" array of shape {part_numbers.shape}"
-            )
-        if len(set(names)) != len(names):
-            problems.append("part table: part names must differ, not repeat")
-        if problems:
-            raise InputError(problems)
-        for name, value in zip(
-            ("coordinates", "node_numbers", "part_numbers", "part_names", "crease_angle"),
-            (coordinates, node_numbers, part_numbers, names, angle),
-            strict=True,
-        ):
-            if isinstance(value, np.ndarray):
-                value.flags.writeable = False
-            object.__setattr__(self, name, value)
-
-    @cached_property
-    def normals(self) -> NodeNormals:
-        """Unit normals at the corners of the polygons, made from the adjoining polygons."""
-        return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
-
-    @cached_property
-    def columns(self) -> npt.NDArray[np.intp]:
-        """The node numbers with one row a corner, (4, polygons), as batches of polygons are worked on."""
-        return np.ascontiguousarray(self.node_numbers.T)
-
-    @cached_property
-    def coordinate_rows(self) -> npt.NDArray[np.float64]:
-        """The coordinates with one row an axis, (3, nodes)."""
-        return np.ascontiguousarray(self.coordinates.T)
-
-    @cached_property
-    def normal_rows(self) -> npt.NDArray[np.float64]:
-        """The normals with one row an axis, (3, normals)."""
-        return np.ascontiguousarray(self.normals.vectors.T)
-
-    @cached_property
-    def normal_columns(self) -> npt.NDArray[np.intp]:
-        """The numbers of the normals with one row a corner, (4, polygons)."""
-        return np.ascontiguousarray(self.normals.numbers.T)
-
-    @cached_property
-    def bounds(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """The least and the largest coordinates of the nodes that polygons use; zeros for an empty mesh."""
-        if not len(self.node_numbers):
-            return np.zeros(3), np.zeros(3)
-        used = self.coordinates[np.unique(self.node_numbers)]
-        return used.min(axis=0), used.max(axis=0)
-
-    @cached_property
-    def parts_in_use(self) -> tuple[int, ...]:
-        """The part numbers that have a polygon."""
-        counts = np.bincount(self.part_numbers, minlength=len(self.part_names))
-        return tuple(np.flatnonzero(counts).tolist())
-
-    @property
-    def edge_count(self) -> int:
-        """How many distinct edges the polygons have (the paper counts 17,940 for its car)."""
-        ends = np.stack([self.node_numbers, np.roll(self.node_numbers, -1, axis=1)], axis=-1).reshape(-1, 2)
-        ends = np.sort(ends[ends[:, 0] != ends[:, 1]], axis=1)
-        return len(np.unique(ends[:, 0] * (len(self.coordinates) + 1) + ends[:, 1]))
-
-    @property
-    def triangle_count(self) -> int:
-        """How many polygons have three sides."""
-        return int((self.node_numbers[:, 2] == self.node_numbers[:, 3]).sum())
-
-    @staticmethod
-    def joined(meshes: Sequence[Mesh]) -> Mesh:
-        """One mesh of several; parts of the same name become one part. The first crease angle is kept."""
-        if len(meshes) == 1:
-            return meshes[0]
-        names = tuple(dict.fromkeys(name for mesh in meshes for name in mesh.part_names))
-        first_nodes = np.cumsum([0] + [len(mesh.coordinates) for mesh in meshes[:-1]])
-        rows = [np.array([names.index(name) for name in mesh.part_names], dtype=np.intp) for mesh in meshes]
-        return Mesh(
-            np.concatenate([mesh.coordinates for mesh in meshes]),
-            np.concatenate(
-                [mesh.node_numbers + first for mesh, first in zip(meshes, first_nodes, strict=True)]
-            ),
-            np.concatenate([row[mesh.part_numbers] for mesh, row in zip(meshes, rows, strict=True)]),
-            names,
-            meshes[0].crease_angle,
-        )
-
-    def __repr__(self) -> str:
-        nodes, polygons, parts = len(self.coordinates), len(self.node_numbers), len(self.part_names)
-        return f"Mesh({nodes} nodes, {polygons} polygons, {parts} parts)"
 
 
 @dataclass(frozen=True)
@@ -255,43 +123,3 @@ class Surface:
 
 def _fields(cls: type) -> list[str]:
     return [entry.name for entry in dataclasses.fields(cls)]
-
-
-def _numbers(problems: list[str], what: str, value: object, dtype: type) -> npt.NDArray[Any]:
-    """A copy of the value as an array of the type, or an empty one after a problem was noted."""
-    try:
-        array = np.array(value)
-    except (TypeError, ValueError, OverflowError):
-        array = np.array(None)
-    if array.size and array.dtype.kind not in ("iu" if dtype is np.intp else "iuf"):
-        kind = "whole numbers" if dtype is np.intp else "numbers"
-        problems.append(f"{what}: it must be an array of {kind}, not {type(value).__name__}")
-        array = np.empty(0)
-    return array.astype(dtype, copy=False)
-
-
-def _array(
-    problems: list[str], what: str, value: object, dtype: type, widths: tuple[int, ...]
-) -> npt.NDArray[Any]:
-    """A copy of the value as (rows, width) of the type, or an empty one after a problem was noted."""
-    array = _numbers(problems, what, value, dtype)
-    if array.size == 0:
-        array = array.reshape(0, widths[-1])
-    if array.ndim != 2 or array.shape[1] not in widths:
-        shape = " or ".join(f"(rows, {width})" for width in widths)
-        problems.append(f"{what}: its shape must be {shape}, not {array.shape}")
-        array = np.empty((0, widths[-1]), dtype)
-    return np.ascontiguousarray(array)
-
-
-def _check_rows(
-    problems: list[str], what: str, numbers: npt.NDArray[np.intp], count: int, table: str
-) -> None:
-    """Note the first number that is no row of a table."""
-    missing = (numbers < 0) | (numbers >= count)
-    bad = np.flatnonzero(missing.any(axis=1) if missing.ndim > 1 else missing)
-    if len(bad):
-        problems.append(
-            f"{what} must be a row of the {table} (0 to {count - 1}), not {numbers[bad[0]].tolist()}"
-            f" (row {bad[0]})"
-        )

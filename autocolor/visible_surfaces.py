@@ -16,9 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.edges import edges
+from autocolor.mesh import Mesh
 from autocolor.projection import Projection, projection
 from autocolor.seen import Seen, Winners, seen_of_winners
-from autocolor.tables import Mesh
 from autocolor.view import View
 
 POLYGONS_AT_ONCE = 4096

@@ -14,9 +14,9 @@ from itertools import pairwise
 import numpy as np
 
 from autocolor.edges import edges
+from autocolor.mesh import Mesh
 from autocolor.projection import Projection, projection
 from autocolor.seen import Seen, Winners, seen_of_winners
-from autocolor.tables import Mesh
 from autocolor.view import View
 
 CLEARLY = 1e-5

@@ -15,8 +15,8 @@ import numpy.typing as npt
 from autocolor.errors import InputError
 from autocolor.files.polygon_split import split_polygons
 from autocolor.files.polygons import MeshReport, Polygons, standing
+from autocolor.mesh import Mesh
 from autocolor.node_normals import CREASE_ANGLE
-from autocolor.tables import Mesh
 
 AT_A_TIME = 1 << 14
 """Polygons whose corners are looked at together, so that the arrays stay near the processor."""

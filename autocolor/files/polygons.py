@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.tables import Mesh
+from autocolor.mesh import Mesh
 
 UPS = ("x", "y", "z")
 

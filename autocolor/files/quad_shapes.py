@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from autocolor.tables import Mesh
+from autocolor.mesh import Mesh
 
 WARPED = 0.01
 """Assumed: how far the diagonals pass each other, over the quad's size, from which it is called warped."""

@@ -11,8 +11,9 @@ import numpy.typing as npt
 from autocolor.checks import known_fields
 from autocolor.errors import InputError
 from autocolor.lights import Flap, Flaps, Light
+from autocolor.mesh import Mesh
 from autocolor.scene import Scene
-from autocolor.tables import MOST_SURFACES, Mesh, Paint, Part, Reflectance, Surface
+from autocolor.tables import MOST_SURFACES, Paint, Part, Reflectance, Surface
 from autocolor.view import View
 
 MOST_KEYS, MOST_ROWS = 32, 1_000_000
