@@ -36,13 +36,14 @@ BINDINGS: tuple[Binding[Viewer], ...] = (
         (Chord("+"), Chord("="), Chord("-")),
         "move closer, farther",
         lambda viewer, number: viewer.move((CLOSER, CLOSER, 1 / CLOSER)[number]),
-        label="+, -",
+        label="+ and -",
         held=True,
     ),
     Binding(
         (Chord(","), Chord(".")),
         "turn the picture's horizontal axis",
         lambda viewer, number: viewer.tilt((-TURN, TURN)[number]),
+        label="comma, period",
         held=True,
     ),
     Binding((Chord("r"),), "rescale: fill the picture with the object", lambda viewer, _: viewer.rescale()),
@@ -61,6 +62,7 @@ BINDINGS: tuple[Binding[Viewer], ...] = (
         (Chord("["), Chord("]")),
         "blend: the light color from lower, from higher levels",
         lambda viewer, number: viewer.blend((-BLEND, BLEND)[number]),
+        label="[ and ]",
         held=True,
     ),
     Binding(
@@ -83,5 +85,6 @@ WINDOW_KEYS = (
     ("F11, Alt+Enter", "full screen, and back"),
     ("F12", "save a numbered screenshot"),
     ("Ctrl+Q", "leave"),
+    ("a file dropped", "open it: a scene, a mesh or a picture file"),
 )
 """The keys that the window itself answers to."""

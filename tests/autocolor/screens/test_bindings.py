@@ -40,3 +40,4 @@ def test_every_key_says_what_it_does_in_words_of_its_own() -> None:
 def test_the_keys_of_the_window_are_not_taken_by_the_viewer() -> None:
     taken = {str(chord) for binding in BINDINGS for chord in binding.chords}
     assert not taken & {"F11", "F12", "Ctrl+Q"}
+    assert {keys for keys, _ in WINDOW_KEYS} >= {"F12", "Ctrl+Q"}
