@@ -1,0 +1,176 @@
+"""Sessions in the real window of `autocolor view`, on a virtual screen, with real keys.
+
+Beside it a viewer without a window gets the same keys; the window must show the field of its display, every
+display pixel a block of 2 x 2.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from autocolor import read_picture, read_scene
+from autocolor.screens.viewer import Viewer
+from ramtek_emu import Ramtek9300
+from tests.virtual_screen import VirtualScreen, virtual_screen
+
+pytest.importorskip("pygame")
+
+ROOT = Path(__file__).parents[2]
+PATIENCE = 20.0
+MESH = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 1 0\nv 0 1 1\ng front\nf 1 2 3 4\ng side\nf 1 4 6 5\n"
+
+
+@pytest.fixture(scope="module")
+def screen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[VirtualScreen]:
+    """A screen on which the window shows its field twice as large."""
+    if shutil.which("xdotool") is None:
+        pytest.skip("xdotool is not installed; no key can be pressed for real")
+    with virtual_screen(tmp_path_factory.mktemp("screen"), "1400x1100") as screen:
+        yield screen
+
+
+class Session:
+    """The command with its window, and a viewer that gets the same keys."""
+
+    def __init__(self, screen: VirtualScreen, folder: Path) -> None:
+        self.screen = screen
+        (folder / "box.obj").write_text(MESH)
+        self.environment = {**os.environ, "DISPLAY": screen.name, "PYTHONPATH": str(ROOT)}
+        self.environment["XDG_RUNTIME_DIR"] = str(folder)
+        self.environment.pop("SDL_VIDEODRIVER", None)
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "autocolor", "view", "box.obj"],
+            cwd=folder,
+            env=self.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.display = Ramtek9300()
+        self.viewer = Viewer(read_scene(folder / "box.obj"), self.display, folder / "elsewhere")
+
+    def tool(self, *arguments: str) -> str:
+        return subprocess.run(
+            ["xdotool", *arguments], env=self.environment, check=False, capture_output=True, text=True
+        ).stdout
+
+    def press(self, key: str, name: str = "", control: bool = False) -> None:
+        """Press a key for real; the viewer gets it too when its name is given."""
+        self.tool("key", key)
+        if name:
+            self.viewer.on_key(name, control, typed=name if len(name) == 1 else "")
+
+    def window(self) -> str:
+        return self.tool("search", "--class", ".").split("\n")[0]
+
+    def caption(self) -> str:
+        return self.tool("getwindowname", self.window()).strip()
+
+    def shown(self) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
+        """The pixels of the window, (height, width, 3)."""
+        geometry = self.tool("getwindowgeometry", "--shell", self.window())
+        values = dict(line.split("=") for line in geometry.split() if "=" in line)
+        left, top, width, height = (int(values[key]) for key in ("X", "Y", "WIDTH", "HEIGHT"))
+        return self.screen.pixels()[top : top + height, left : left + width]
+
+    def shows_the_field(self) -> bool:
+        if not self.window():
+            return False
+        blocks = self.display.field().repeat(2, axis=0).repeat(2, axis=1)
+        return np.array_equal(self.shown(), blocks)
+
+    def wait_for(self, happened: Callable[[], object]) -> None:
+        end = time.monotonic() + PATIENCE
+        while not happened():
+            assert self.process.poll() is None, self.process.communicate()
+            assert time.monotonic() < end, f"not within {PATIENCE} s; the window is called {self.caption()!r}"
+            time.sleep(0.02)
+
+    def wait_for_the_field(self) -> None:
+        self.wait_for(self.shows_the_field)
+
+    def end(self) -> tuple[int, str, str]:
+        out, err = self.process.communicate(timeout=PATIENCE)
+        return self.process.returncode, out, err
+
+
+@pytest.fixture
+def session(screen: VirtualScreen, tmp_path: Path) -> Iterator[Session]:
+    session = Session(screen, tmp_path)
+    try:
+        session.wait_for_the_field()
+        yield session
+    finally:
+        session.process.kill()
+        session.process.communicate()
+
+
+def test_the_window_shows_the_field_after_every_key(session: Session, tmp_path: Path) -> None:
+    picture = session.display.field()
+    for key in ("F1", "F4", "F1", "Escape", "F4", "Escape"):
+        session.press(key, key.lower())
+        session.wait_for_the_field()
+    assert np.array_equal(session.display.field(), picture)
+    for key, name in (("Left", "left"), ("Up", "up"), ("plus", "+"), ("c", "c"), ("bracketleft", "[")):
+        session.press(key, name)
+        session.wait_for_the_field()
+    for _ in range(2):
+        session.press("ctrl+z", "z", control=True)
+        session.wait_for_the_field()
+    session.press("ctrl+y", "y", control=True)
+    session.wait_for_the_field()
+    assert session.caption() == "autocolor - box* - [front] - done again"
+
+    session.press("F12")
+    session.wait_for(lambda: "saved" in session.caption())
+    screenshot = tmp_path / "autocolor-0001.png"
+    assert session.caption() == f"autocolor - box* - [front] - saved {screenshot}"
+    assert screenshot.read_bytes() == session.display._repr_png_()
+
+    session.press("ctrl+s")
+    session.wait_for(lambda: "box.npz" in session.caption())
+    assert session.caption() == f"autocolor - box - [front] - saved {tmp_path / 'box.npz'}"
+    assert read_picture(tmp_path / "box.npz").scene.view == session.viewer.studio.scene.view
+    session.press("ctrl+q")
+    assert session.end() == (0, "", "")
+
+
+def test_a_key_held_down_is_undone_at_once(session: Session) -> None:
+    session.tool("keydown", "Right")
+    session.wait_for(lambda: not session.shows_the_field())
+    time.sleep(0.8)
+    session.tool("keyup", "Right")
+    session.press("ctrl+z")
+    session.wait_for_the_field()
+    assert session.caption() == "autocolor - box - [front] - undone"
+    session.press("Escape")
+    assert session.end() == (0, "", "")
+
+
+def test_unsaved_work_is_left_only_by_asking_twice(session: Session) -> None:
+    session.press("c", "c")
+    session.wait_for_the_field()
+    session.press("Escape")
+    session.wait_for(lambda: "Ctrl+Q twice" in session.caption())
+    session.press("ctrl+q")
+    session.wait_for(lambda: "close again" in session.caption())
+    assert session.process.poll() is None
+    session.press("ctrl+q")
+    assert session.end() == (0, "", "")
+
+
+def test_an_interrupt_closes_the_window(session: Session) -> None:
+    started = time.monotonic()
+    session.process.send_signal(signal.SIGINT)
+    assert session.end() == (130, "", "autocolor: interrupted\n")
+    assert time.monotonic() - started < 2
