@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from .command_line import run_command
+from .command_line import run_command, version_option
 
 EXAMPLES = """\b
 Examples:
@@ -27,7 +27,7 @@ Examples:
 @click.option("--full-screen", is_flag=True, help="Fill the screen.")
 @click.option("--fit", is_flag=True, help="Fill the window, at the cost of uneven pixels.")
 @click.option("--debug", is_flag=True, help="Show a traceback when something fails.")
-@click.version_option(package_name="autocolor", message="%(version)s")
+@version_option
 @click.pass_context
 def ramtek(
     context: click.Context, output: Path | None, force: bool, full_screen: bool, fit: bool, debug: bool

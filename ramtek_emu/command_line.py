@@ -17,6 +17,29 @@ INTERRUPTED = 130
 WRITING_FAILED = 74
 
 
+def _show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
+    if not asked or context.resilient_parsing:
+        return
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        click.echo(version("autocolor"))
+    except PackageNotFoundError:
+        click.echo("not installed: a checkout, run in its folder")
+    context.exit()
+
+
+version_option = click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_show_version,
+    help="Show the version and leave.",
+)
+"""`--version`, which a checkout that was never installed answers too."""
+
+
 def run_command(command: click.Command, name: str) -> None:
     """Run a command and leave the process with its exit code.
 

@@ -6,6 +6,8 @@ from importlib import import_module
 
 import click
 
+from ramtek_emu.command_line import version_option
+
 COMMANDS = {
     "render": "the picture of a scene, without a window",
     "recolor": "a saved picture in other colors, without computing it again",
@@ -54,19 +56,6 @@ class CommandGroup(click.Group):
             formatter.write_dl(list(COMMANDS.items()))
 
 
-def show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
-    """Show the version and leave."""
-    if not asked or context.resilient_parsing:
-        return
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        click.echo(version("autocolor"))
-    except PackageNotFoundError:
-        click.echo("not installed: a checkout, run in its folder")
-    context.exit()
-
-
 @click.group(
     cls=CommandGroup,
     invoke_without_command=True,
@@ -74,14 +63,7 @@ def show_version(context: click.Context, _: click.Parameter, asked: bool) -> Non
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 @click.option("--debug", is_flag=True, help="Show a traceback when something fails.")
-@click.option(
-    "--version",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=show_version,
-    help="Show the version.",
-)
+@version_option
 @click.pass_context
 def autocolor(context: click.Context, debug: bool) -> None:
     """Light a scene and recolor it on an emulated RAMTEK 9300, without computing it again.
