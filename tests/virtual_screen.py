@@ -42,7 +42,8 @@ def virtual_screen(folder: Path, size: str) -> Iterator[VirtualScreen]:
     server = subprocess.Popen(
         [
             *("Xvfb", "-displayfd", str(write_end), "-screen", "0", f"{size}x24"),
-            *("-nolisten", "tcp", "-fbdir", str(folder)),
+            # Between two clients a server starts again, and does not answer meanwhile.
+            *("-nolisten", "tcp", "-noreset", "-fbdir", str(folder)),
         ],
         pass_fds=[write_end],
         stderr=subprocess.DEVNULL,
