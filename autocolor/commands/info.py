@@ -75,9 +75,9 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
     low, high = facts["bounds"]
     size = " x ".join(f"{b - a:.4g}" for a, b in zip(low, high, strict=True))
     lines = [
-        f"{facts['name']}: {facts['nodes']:,} nodes, {facts['polygons']:,} polygons"
-        f" ({facts['triangles']:,} with three sides), {facts['edges']:,} edges",
-        f"size {size}, seen at {facts['pixels']:,} pixels,"
+        f"{facts['name']}: nodes {facts['nodes']:,}, polygons {facts['polygons']:,}"
+        f" (three-sided {facts['triangles']:,}), edges {facts['edges']:,}",
+        f"size {size}, pixels {facts['pixels']:,},"
         f" intensities {facts['intensities'].minimum:.4g} to {facts['intensities'].maximum:.4g}",
         f"parts: {', '.join(f'{part} ({surface})' for part, surface in facts['parts'].items())}",
         f"lights: {', '.join(facts['lights']) or 'none'}",

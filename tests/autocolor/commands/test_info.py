@@ -13,7 +13,7 @@ from tests.autocolor.meshes import wall_scene
 def test_the_facts_stand_on_stdout_and_nothing_on_stderr(folder: Path, run: Run) -> None:
     ran = run("info", "two.obj")
     assert (ran.code, ran.err) == (0, "")
-    assert ran.out.splitlines()[0] == "two: 6 nodes, 2 polygons (0 with three sides), 7 edges"
+    assert ran.out.splitlines()[0] == "two: nodes 6, polygons 2 (three-sided 0), edges 7"
     assert "parts: front.low (front.low), side (side)" in ran.out
     assert "lights: key, fill, top, rim" in ran.out
     assert "created: a view was created that frames the object" in ran.out
