@@ -49,7 +49,7 @@ def test_a_surface_that_is_not_seen_or_has_no_part_says_so(folder: Path, run: Ru
     scene = scene.replace(surfaces=(*scene.surfaces, scene.surfaces[0].replace(name="more")))
     write_picture("wall.npz", render(scene), scene)
     ran = run("info", "wall.npz")
-    assert "seen at 0 pixels" in ran.out
+    assert "pixels 0," in ran.out
     assert "lights: none" in ran.out
     assert "  wall: words 1 to 1007, not seen" in ran.out
     assert "  more: no words, not seen" in ran.out
