@@ -10,6 +10,7 @@ import dataclasses
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, TypeVar
 
@@ -127,26 +128,40 @@ class Scene:
 
     def with_light(self, name: str, /, **changes: Any) -> Scene:
         """The scene with some fields of one light changed."""
-        return self.replace(lights=_changed(self.lights, self.light(name), changes))
+        return self._with_row("lights", self.light(name), changes)
 
     def with_surface(self, name: str, /, **changes: Any) -> Scene:
         """The scene with some fields of one surface changed, its reflectance and paint among them."""
-        return self.replace(surfaces=_changed(self.surfaces, self.surface(name), changes))
+        return self._with_row("surfaces", self.surface(name), changes)
 
     def with_part(self, name: str, /, **changes: Any) -> Scene:
         """The scene with some fields of one part changed."""
-        return self.replace(parts=_changed(self.parts, self.part(name), changes))
+        return self._with_row("parts", self.part(name), changes)
 
     def with_view(self, **changes: Any) -> Scene:
         """The scene with some fields of the view changed."""
-        return self.replace(view=self.view.replace(**changes))
+        return self._with("view", self.view.replace(**changes))
 
     def only_lights(self, *names: str) -> Scene:
         """The scene with the named lights on and all others off (Paper: Figure 8)."""
         wanted = [self.light(name).name for name in names]
         return self.replace(lights=tuple(light.replace(on=light.name in wanted) for light in self.lights))
 
-    @property
+    def _with_row(self, table: str, row: Row, changes: dict[str, Any]) -> Scene:
+        changed = row.replace(**changes)
+        rows = tuple(changed if other is row else other for other in getattr(self, table))
+        # Only names lead from table to table: without a new one there is nothing to check again.
+        return (
+            self.replace(**{table: rows}) if {"name", "surface"} & set(changes) else self._with(table, rows)
+        )
+
+    def _with(self, name: str, value: object) -> Scene:
+        """The scene with a field changed to a value that was checked when it was made."""
+        scene = object.__new__(Scene)
+        scene.__dict__.update(self.__dict__, **{name: value})
+        return scene
+
+    @cached_property
     def surface_number_of_part(self) -> tuple[int, ...]:
         """The surface number, counted from 1, of each part."""
         number = {surface.name: row + 1 for row, surface in enumerate(self.surfaces)}
@@ -202,11 +217,6 @@ def _row(kind: str, rows: Sequence[Row], name: str) -> Row:
         if row.name == name:
             return row
     raise UsageError(f"there is no {kind} {name!r}{nearest(str(name), [row.name for row in rows])}")
-
-
-def _changed(rows: tuple[Row, ...], row: Row, changes: dict[str, Any]) -> tuple[Row, ...]:
-    changed = row.replace(**changes)
-    return tuple(changed if other is row else other for other in rows)
 
 
 def _repeated(table: str, names: list[str]) -> list[str]:
