@@ -71,7 +71,7 @@ def _flap_sides(light: Light, seen: Seen) -> Singles:
             continue
         coordinate = seen.world_coordinate(axis)
         # A surface that lies on the flap is lit: allow what float32 rounds a point by.
-        slack = 4 * ROUNDING * (seen.depth + abs(float(coordinate[3])))
+        slack = 4 * ROUNDING * seen.reach
         for sign, limit in ((1.0, flap.minimum), (-1.0, flap.maximum)):
             if math.isfinite(limit):
                 beyond = min(max(sign * limit / seen.unit, -FAR_FLAP), FAR_FLAP)

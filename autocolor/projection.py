@@ -30,15 +30,13 @@ Numbers = npt.NDArray[np.intp]
 
 @dataclass(frozen=True, eq=False)
 class Lens:
-    """The ray through each pixel's center, (across, down, 1) in camera space, and the focal length in pixels.
+    """The focal length in pixels, and what of the rays does not depend on where the eye is.
 
-    `across`, `down` and `inverse_length` (of the ray) are (lines * elements,) float32, line by line; they do
-    not depend on where the eye is.
+    The ray through a pixel's center is (across, down, 1) in camera space; `inverse_length` is one over its
+    length, (lines * elements,) float32, line by line.
     """
 
     focal_length: float
-    across: npt.NDArray[np.float32]
-    down: npt.NDArray[np.float32]
     inverse_length: npt.NDArray[np.float32]
 
 
@@ -51,8 +49,7 @@ def lens(lines: int, elements: int, field_of_view: float) -> Lens:
         (np.arange(lines) + 0.5 - lines / 2) / focal_length,
     )
     inverse_length = 1 / np.sqrt(across * across + down * down + 1)
-    rays = (table.ravel().astype(np.float32) for table in (across, down, inverse_length))
-    return Lens(focal_length, *rays)
+    return Lens(focal_length, inverse_length.ravel().astype(np.float32))
 
 
 @dataclass(frozen=True, eq=False)

@@ -64,9 +64,9 @@ class Seen:
     middle: Floats
 
     @cached_property
-    def depth(self) -> float:
-        """The largest distance from the eye's plane in units; the rounding of the points is in proportion."""
-        return float(1 / self.inverse_depth.min()) if len(self.pixels) else 1.0
+    def reach(self) -> float:
+        """The largest distance of a point from the middle in units; the points' rounding is in proportion."""
+        return float(np.sqrt(self.rows[POINT_SQUARED].max(initial=0.0)))
 
     def camera_point(self, point: tuple[float, float, float]) -> Floats:
         """A point of the world as the rows of points are: in camera space, around the middle."""
@@ -133,37 +133,38 @@ def seen_of_winners(
     inverse_depth = winners.inverse_depth[order]
 
     # Turn to the eye the normals of polygons that are seen from behind.
-    turned = projected.from_behind[column] & ~np.isin(surface, list(one_sided))
-    start, step = _normals_along_spans(winners, projected)
-    start[:, turned] *= -1
-    step[:, turned] *= -1
-
     low, high = mesh.bounds
     middle = view.axes @ ((low + high) / 2 - np.array(view.eye)) / projected.unit
-    rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
     rays = lens(projected.lines, projected.elements, view.field_of_view)
+    start, step = _along_spans(winners, projected, rays.focal_length, middle)
+    turned = projected.from_behind[column] & ~np.isin(surface, list(one_sided))
+    start[:3, turned] *= -1
+    step[:3, turned] *= -1
+
+    rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
+    center = middle.astype(np.float32)[:, None]
     along = (pixels - winners.first_pixel[span]).astype(np.float32)
     for first in range(0, len(pixels), PIXELS_AT_ONCE):
         part = slice(first, first + PIXELS_AT_ONCE)
-        seen_at, some, far = pixels[part], span[part], 1 / inverse_depth[part]
+        nearness, some = inverse_depth[part], span[part]
         out = rows[:, part]
-        # Place the point along the ray.
-        ray = (rays.across[seen_at], rays.down[seen_at])
-        to_eye = rays.inverse_length[seen_at]
-        np.multiply(ray[0], far, out=out[0])
-        np.multiply(ray[1], far, out=out[1])
-        out[2] = far
-        out[POINT] -= middle.astype(np.float32)[:, None]
+        # Interpolate along the span.
+        between = np.take(step, some, axis=1)
+        between *= along[part]
+        between += np.take(start, some, axis=1)
+        # Place the point.
+        np.divide(between[3:], nearness, out=out[POINT])
         out[ONE] = 1
         np.einsum("ij,ij->j", out[POINT], out[POINT], out=out[POINT_SQUARED])
-        # Interpolate the normal along the span.
+        # Make the normal a unit vector.
         normal = out[NORMAL]
-        np.multiply(np.take(step, some, axis=1), along[part], out=normal)
-        normal += np.take(start, some, axis=1)
+        normal[:] = between[:3]
         length = np.sqrt(np.einsum("ij,ij->j", normal, normal))
         normal /= np.maximum(length, np.float32(1e-30), out=length)
         # Mirror the ray to the eye: M = 2 (N.V) N - V, where V = -ray / |ray|.
-        view_ray = np.stack([ray[0] * to_eye, ray[1] * to_eye, to_eye])
+        view_ray = between[3:]
+        view_ray += center * nearness
+        view_ray *= rays.inverse_length[pixels[part]]
         facing = np.einsum("ij,ij->j", normal, view_ray)
         np.multiply(normal, -2 * facing, out=out[MIRROR])
         out[MIRROR] += view_ray
@@ -195,32 +196,52 @@ def seen_of_winners(
     )
 
 
-def _normals_along_spans(winners: Winners, projected: Projection) -> tuple[Singles, Singles]:
-    """Normal times inverse depth at the first pixel of each span, and what each further pixel adds.
+def _along_spans(
+    winners: Winners, projected: Projection, focal_length: float, middle: Floats
+) -> tuple[Singles, Singles]:
+    """What is linear along each span: its value at the first pixel, and what each further pixel adds.
 
-    Both are (3, spans) float32.
+    Both are (6, spans) float32: the normal times the inverse depth, and the point around the middle times
+    the inverse depth, which is the ray less the middle times it. That difference is taken here in float64, so
+    that a point is as exact from afar as from near.
     """
     line, first = np.divmod(winners.first_pixel, projected.elements)
-    left, left_normal = _cut_normals(projected, winners.left_edge, line)
-    right, right_normal = _cut_normals(projected, winners.right_edge, line)
-    step = (right_normal - left_normal) / (right - left)
-    start = left_normal + step * (first + 0.5 - left)
-    # Bring all to about the size of 1, so that float32 holds them however far the object is.
+    left, left_depth, left_normal = _at_cuts(projected, winners.left_edge, line)
+    right, right_depth, right_normal = _at_cuts(projected, winners.right_edge, line)
+    width, begin = right - left, first + 0.5 - left
+
+    # Bring the normals to about the size of 1, so that float32 holds them however far the object is.
     size = np.abs(left_normal).max(axis=0) + np.abs(right_normal).max(axis=0)
     size[size == 0] = 1
-    return (start / size).astype(np.float32), (step / size).astype(np.float32)
+    start, step = np.empty((2, 6, len(line)), np.float32)
+    normal_step = (right_normal - left_normal) / width
+    start[:3] = (left_normal + normal_step * begin) / size
+    step[:3] = normal_step / size
+
+    depth_step = (right_depth - left_depth) / width
+    depth = left_depth + depth_step * begin
+    ray = (
+        (first + 0.5 - projected.elements / 2) / focal_length,
+        (line + 0.5 - projected.lines / 2) / focal_length,
+        1.0,
+    )
+    ray_step = (1 / focal_length, 0.0, 0.0)
+    for axis in range(3):
+        start[3 + axis] = ray[axis] - middle[axis] * depth
+        step[3 + axis] = ray_step[axis] - middle[axis] * depth_step
+    return start, step
 
 
-def _cut_normals(projected: Projection, numbers: Numbers, line: Numbers) -> tuple[Floats, Floats]:
-    """Where each edge is cut by its line, and normal times inverse depth there, (3, spans)."""
+def _at_cuts(projected: Projection, numbers: Numbers, line: Numbers) -> tuple[Floats, Floats, Floats]:
+    """Where each edge is cut by its line, with inverse depth and normal times inverse depth, (3, spans)."""
     cut = edges(projected, numbers)
     corners, rows = projected.corners.ravel(), projected.corner_normals.ravel()
     a, b = corners[cut.top], corners[cut.bottom]
+    below_first = line - cut.first_line
+    across = cut.across + below_first * cut.across_step
+    inverse_depth = cut.inverse_depth + below_first * cut.inverse_depth_step
     way = (line + 0.5 - projected.down[a]) / (projected.down[b] - projected.down[a])
-    across = cut.across + (line - cut.first_line) * cut.across_step
-    upper = (1 - way) * projected.inverse_depth[a]
-    lower = way * projected.inverse_depth[b]
     # Measured: `take` along the second axis has a quarter of the time of an index there.
-    normals = upper * np.take(projected.normals, rows[cut.top], axis=1)
-    normals += lower * np.take(projected.normals, rows[cut.bottom], axis=1)
-    return across, normals
+    normals = (1 - way) * projected.inverse_depth[a] * np.take(projected.normals, rows[cut.top], axis=1)
+    normals += way * projected.inverse_depth[b] * np.take(projected.normals, rows[cut.bottom], axis=1)
+    return across, inverse_depth, normals
