@@ -13,6 +13,8 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
 from autocolor.errors import InputError
 
 Vector = tuple[float, float, float]
@@ -91,10 +93,23 @@ def vector(problems: list[str], what: str, value: object, *, not_zero: bool = Fa
     return (components[0], components[1], components[2])
 
 
-def switch(problems: list[str], what: str, value: object) -> None:
-    """Note a problem unless the value is true or false."""
-    if not isinstance(value, bool):
+def switch(problems: list[str], what: str, value: object) -> bool:
+    """The value as a bool, when it is true or false."""
+    if not isinstance(value, (bool, np.bool_)):
         problems.append(f"{what} must be true or false, not {value!r}")
+    return bool(value)
+
+
+def text(problems: list[str], what: str, value: object) -> None:
+    """Note a problem unless the value is a text of at least one letter."""
+    if not isinstance(value, str) or not value:
+        problems.append(f"{what} must be a text of at least one letter, not {value!r}")
+
+
+def kind(problems: list[str], what: str, value: object, cls: type) -> None:
+    """Note a problem unless the value is of a class."""
+    if not isinstance(value, cls):
+        problems.append(f"{what} must be a {cls.__name__}, not {value!r}")
 
 
 def color(problems: list[str], what: str, value: object) -> Color:

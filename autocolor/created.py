@@ -20,6 +20,7 @@ FILLED = 0.86
 """Assumed: the fraction of the picture's width or height that a framed object fills."""
 
 ASPECT = 640 / 480
+"""Assumed: the paper's display; a picture of another shape shows more or less on its left and right."""
 
 POINT = 1e-12
 """Assumed: what is smaller than this fraction of its distance from the origin is taken as a point."""

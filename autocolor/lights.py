@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from autocolor.checks import Vector, finite, known_fields, switch, vector
+from autocolor.checks import Vector, finite, known_fields, switch, text, vector
 from autocolor.errors import InputError
 
 
@@ -37,7 +37,7 @@ class Flap:
             if not (isinstance(value, float) and value == open_end):
                 value = finite(problems, f"a flap's {name}", value)
             object.__setattr__(self, name, value)
-        switch(problems, "a flap's switch", self.on)
+        object.__setattr__(self, "on", switch(problems, "a flap's switch", self.on))
         if not problems and self.minimum > self.maximum:
             problems.append(
                 f"a flap's minimum must not be above its maximum, not {self.minimum:g} to {self.maximum:g}"
@@ -101,8 +101,7 @@ class Light:
 
     def __post_init__(self) -> None:
         problems: list[str] = []
-        if not isinstance(self.name, str) or not self.name:
-            problems.append(f"a light's name must be a text of at least one letter, not {self.name!r}")
+        text(problems, "a light's name", self.name)
         place = f"light {self.name!r}"
 
         def keep(name: str, value: object) -> None:
@@ -111,7 +110,7 @@ class Light:
         keep("position", vector(problems, f"{place}: position", self.position))
         keep("intensity", finite(problems, f"{place}: intensity", self.intensity, at_least=0.0))
         keep("concentration", finite(problems, f"{place}: concentration", self.concentration, at_least=0.0))
-        switch(problems, f"{place}: on", self.on)
+        keep("on", switch(problems, f"{place}: on", self.on))
         if self.direction is not None:
             keep("direction", vector(problems, f"{place}: direction", self.direction, not_zero=True))
         if self.aim is not None:

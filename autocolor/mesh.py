@@ -7,7 +7,7 @@ are made and never change afterwards.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -43,7 +43,10 @@ class Mesh:
         if node_numbers.shape[1] == 3:
             node_numbers = node_numbers[:, [0, 1, 2, 2]]
         part_numbers = np.atleast_1d(_numbers(problems, "part numbers", self.part_numbers, np.intp))
-        names = tuple(self.part_names)
+        names = () if isinstance(self.part_names, str) else self.part_names
+        names = tuple(names) if isinstance(names, Iterable) else ()
+        if isinstance(self.part_names, str) or not all(isinstance(name, str) and name for name in names):
+            problems.append(f"part table: part names must be texts, one a part, not {self.part_names!r}")
         angle = finite(problems, "mesh: crease_angle", self.crease_angle, at_least=0.0, at_most=180.0)
         if not (np.abs(coordinates) <= LARGEST_COORDINATE).all():
             row = int(np.flatnonzero(~(np.abs(coordinates) <= LARGEST_COORDINATE).all(axis=1))[0])
@@ -142,7 +145,7 @@ class Mesh:
 
     def __repr__(self) -> str:
         nodes, polygons, parts = len(self.coordinates), len(self.node_numbers), len(self.part_names)
-        return f"Mesh({nodes} nodes, {polygons} polygons, {parts} parts)"
+        return f"Mesh(nodes {nodes}, polygons {polygons}, parts {parts})"
 
 
 def _numbers(problems: list[str], what: str, value: object, dtype: type) -> npt.NDArray[Any]:

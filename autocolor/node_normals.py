@@ -2,9 +2,9 @@
 
 Paper: "The Lighting Model" interpolates the normal between node normals; how they are made is not said.
 Assumed: the mean of the normals of the adjoining polygons, each weighted by its angle at the node, so that
-it does not depend on how a face was cut into polygons. A normal is not shared across parts, nor across an
-edge where the polygons meet at more than the crease angle. Nodes at the same place count as one, so that a
-file that repeats its nodes is as smooth as one that shares them.
+it does not depend on how a flat side was cut into polygons. A normal is not shared across parts, nor across
+an edge where the polygons meet at more than the crease angle. Nodes at the same place count as one, so that
+a file that repeats its nodes is as smooth as one that shares them.
 """
 
 from __future__ import annotations

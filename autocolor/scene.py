@@ -114,6 +114,14 @@ class Scene:
         """The scene with some fields changed."""
         return dataclasses.replace(self, **known_fields(Scene, changes, "scene"))
 
+    def equals(self, other: Scene) -> bool:
+        """Whether every field is equal; meshes are compared by identity."""
+        return all(
+            getattr(self, name) is getattr(other, name)
+            or (name != "mesh" and getattr(self, name) == getattr(other, name))
+            for name in FIELDS
+        )
+
     def light(self, name: str) -> Light:
         """The light of that name; UsageError with the nearest right name when there is none."""
         return _row("light", self.lights, name)
@@ -169,8 +177,11 @@ class Scene:
 
     def __repr__(self) -> str:
         return (
-            f"Scene({self.name!r}: {self.mesh!r}, {len(self.surfaces)} surfaces, {len(self.lights)} lights)"
+            f"Scene({self.name!r}: {self.mesh!r}, surfaces {len(self.surfaces)}, lights {len(self.lights)})"
         )  # fmt: skip
+
+
+FIELDS = tuple(field.name for field in dataclasses.fields(Scene))
 
 
 def scene_of(
@@ -188,6 +199,11 @@ def scene_of(
     is created for it. Where that would be more surfaces than numbers, the parts past them share the last.
     `fields` are the other fields of Scene. Raises InputError.
     """
+    missing = [name for name in surface_of_part or {} if name not in mesh.part_names]
+    if missing:
+        raise InputError(
+            f"there is no part {name!r} to take a surface{nearest(name, mesh.part_names)}" for name in missing
+        )
     given = list(surfaces or ())
     parts = list(created_parts(mesh, surface_of_part or {}))
     names = {surface.name: None for surface in given} | {part.surface: None for part in parts}

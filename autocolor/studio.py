@@ -28,7 +28,7 @@ from autocolor.picture import Picture
 from autocolor.rendering import rendering
 from autocolor.scene import Scene
 from autocolor.tables import Paint
-from ramtek_emu import GMR_9300, HostPort, instructions
+from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -70,6 +70,22 @@ def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
     _send(None, shown(scene, picture), display)
 
 
+def configuration_of(display: HostPort) -> Configuration:
+    """The display's sizes and formats; those of the paper's display where the port does not tell.
+
+    Raises UsageError for a display whose words or entries are fewer than the paper's: the ranges of the
+    surfaces would run over its end.
+    """
+    configuration: Configuration = getattr(display, "configuration", GMR_9300)
+    if configuration.largest_word < WORDS - 1 or configuration.entries < WORDS:
+        raise UsageError(
+            f"a display for a studio must have {WORDS} words and entries, not"
+            f" {configuration.largest_word + 1} and {configuration.entries} ({configuration.name}); choose"
+            " another configuration"
+        )
+    return configuration
+
+
 def _send(before: Shown | None, now: Shown, display: HostPort) -> None:
     """Send the entries and the words that differ."""
     if before is None:
@@ -78,7 +94,9 @@ def _send(before: Shown | None, now: Shown, display: HostPort) -> None:
         changed = np.flatnonzero((before.entries != now.entries).any(axis=1))
     if len(changed):
         first, last = int(changed[0]), int(changed[-1])
-        display.send(instructions.load_entries(first, now.entries[first : last + 1]))
+        short = configuration_of(display).entry_format is EntryFormat.WORD_12
+        load = instructions.load_short_entries if short else instructions.load_entries
+        display.send(load(first, now.entries[first : last + 1]))
     if before is None or before.words is not now.words:
         display.send(instructions.write_image(now.words))
 
@@ -110,7 +128,7 @@ class Studio:
     """
 
     def __init__(self, scene: Scene, display: HostPort) -> None:
-        configuration = getattr(display, "configuration", GMR_9300)
+        configuration = configuration_of(display)
         self._display = display
         self._rendering = rendering(scene, configuration.shown_lines, configuration.shown_elements)
         self._shown = shown(scene, self._rendering.picture)
@@ -171,10 +189,10 @@ class Studio:
     def edit(self, scene: Scene, same_step: bool = False) -> None:
         """Make a scene the current one; with `same_step` it is undone together with the edit before.
 
-        A drag is many edits and one step.
+        A drag is many edits and one step. A scene that equals the current one is no step.
         """
         before = self.scene
-        if scene is before:
+        if scene.equals(before):
             return
         self._show(scene)
         if not (same_step and self._done):
@@ -233,4 +251,4 @@ class Studio:
         return png_bytes(self.entries[self.words])
 
     def __repr__(self) -> str:
-        return f"Studio({self.scene.name!r}, {len(self._done)} steps to undo, {len(self._undone)} to redo)"
+        return f"Studio({self.scene.name!r}, to undo {len(self._done)}, to redo {len(self._undone)})"

@@ -10,7 +10,9 @@ import dataclasses
 from dataclasses import dataclass, field
 from typing import Any
 
-from autocolor.checks import Color, color, finite, known_fields, switch
+import numpy as np
+
+from autocolor.checks import Color, color, finite, kind, known_fields, switch, text
 from autocolor.errors import InputError
 
 MOST_SURFACES = 255
@@ -23,6 +25,13 @@ class Part:
 
     name: str
     surface: str
+
+    def __post_init__(self) -> None:
+        problems: list[str] = []
+        text(problems, "a part's name", self.name)
+        text(problems, f"part {self.name!r}: surface", self.surface)
+        if problems:
+            raise InputError(problems)
 
     def replace(self, **changes: Any) -> Part:
         """The part with some fields changed."""
@@ -89,15 +98,17 @@ class Surface:
 
     def __post_init__(self) -> None:
         problems: list[str] = []
-        if not isinstance(self.name, str) or not self.name:
-            problems.append(f"a surface's name must be a text of at least one letter, not {self.name!r}")
-        switch(problems, f"surface {self.name!r}: two_sided", self.two_sided)
-        if self.levels is not None and (
-            isinstance(self.levels, bool) or not isinstance(self.levels, int) or self.levels < 2
-        ):
-            problems.append(
-                f"surface {self.name!r}: levels must be a whole number of at least 2, not {self.levels!r}"
-            )
+        place = f"surface {self.name!r}"
+        text(problems, "a surface's name", self.name)
+        kind(problems, f"{place}: reflectance", self.reflectance, Reflectance)
+        kind(problems, f"{place}: paint", self.paint, Paint)
+        object.__setattr__(self, "two_sided", switch(problems, f"{place}: two_sided", self.two_sided))
+        if self.levels is not None:
+            whole = isinstance(self.levels, (int, np.integer)) and not isinstance(self.levels, bool)
+            if not whole or self.levels < 2:
+                problems.append(f"{place}: levels must be a whole number of at least 2, not {self.levels!r}")
+            else:
+                object.__setattr__(self, "levels", int(self.levels))
         if problems:
             raise InputError(problems)
 
@@ -113,7 +124,7 @@ class Surface:
         names = [*_fields(Surface), *_fields(Reflectance), *_fields(Paint)]
         try:
             for name, fields in inner.items():
-                if fields:
+                if fields and isinstance(changes.get(name, getattr(self, name)), type(getattr(self, name))):
                     changes[name] = dataclasses.replace(changes.get(name, getattr(self, name)), **fields)
         except InputError as error:
             raise InputError([f"{place}: {problem}" for problem in error.problems]) from None

@@ -78,16 +78,16 @@ def spans_of_polygons(projected: Projection, first: int, beyond: int) -> Spans:
     first_lines = projected.first_line[projected.corners[:, first:beyond]]
     top_line, bottom_line = first_lines.min(axis=0), first_lines.max(axis=0)
     height = bottom_line - top_line
-    # The slot of (polygon, line) is slot[polygon] + line.
-    slot = np.cumsum(height) - height - top_line
+    # The cuts of (polygon, line) stand in row base[polygon] + line.
+    base = np.cumsum(height) - height - top_line
 
     # Cut the edges: those that go down the raster are one side of a polygon, those that go up the other.
     following = np.roll(first_lines, -1, axis=0)
-    down_side = _cuts(projected, first, first_lines < following, slot, int(height.sum()))
-    up_side = _cuts(projected, first, first_lines > following, slot, int(height.sum()))
+    down_side = _cuts(projected, first, first_lines < following, base, int(height.sum()))
+    up_side = _cuts(projected, first, first_lines > following, base, int(height.sum()))
 
     # Pair the cuts to spans from left to right.
-    line = np.arange(int(height.sum())) - np.repeat(slot, height)
+    line = np.arange(int(height.sum())) - np.repeat(base, height)
     swapped = down_side[0] > up_side[0]
     left, left_depth, left_edge = (
         np.where(swapped, up, down) for down, up in zip(down_side, up_side, strict=True)
@@ -114,22 +114,22 @@ def spans_of_polygons(projected: Projection, first: int, beyond: int) -> Spans:
 
 
 def _cuts(
-    projected: Projection, first: int, chosen: npt.NDArray[np.bool_], slot: Numbers, slots: int
+    projected: Projection, first: int, chosen: npt.NDArray[np.bool_], base: Numbers, rows: int
 ) -> tuple[Floats, Floats, Numbers]:
-    """Where the lines cut the chosen edges of polygons from `first` on, by slot.
+    """Where the lines cut the chosen edges of polygons from `first` on, by row.
 
     They are the place across, the inverse depth and the number of the edge.
     """
     corner, column = np.nonzero(chosen)
     edge = corner * projected.corners.shape[1] + first + column
     cut = edges(projected, edge)
-    across, inverse_depth, edge_numbers = np.empty(slots), np.empty(slots), np.empty(slots, np.intp)
+    across, inverse_depth, edge_numbers = np.empty(rows), np.empty(rows), np.empty(rows, np.intp)
 
     # Step every edge from its first line to its last.
     before = np.repeat(np.cumsum(cut.count) - cut.count, cut.count)
     step = np.arange(len(before)) - before
     row = np.repeat(np.arange(len(edge)), cut.count)
-    place = (slot[column] + cut.first_line)[row] + step
+    place = (base[column] + cut.first_line)[row] + step
     across[place] = cut.across[row] + step * cut.across_step[row]
     inverse_depth[place] = cut.inverse_depth[row] + step * cut.inverse_depth_step[row]
     edge_numbers[place] = edge[row]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import autocolor
-from scenes.figures import Sheet, open_scene
+from scenes.figures import Sheet, open_studio, read_scene
 
 CREASE = 0.63
 """The height in meters of the line that runs along the side."""
@@ -13,12 +13,12 @@ ROOF = 1.0
 
 def main() -> None:
     """Render once; each panel moves flaps of the one light."""
-    studio, display = open_scene("coupe")
+    coupe = read_scene("coupe")
     side = autocolor.Light("flapped", (-4.0, -6.0, 2.0), aim=(0.0, 0.0, 0.6), concentration=4)
-    view = studio.scene.view.replace(eye=(-4.9, -8.9, 1.8), target=(0.0, 0.0, 0.52))
+    view = coupe.view.replace(eye=(-4.9, -8.9, 1.8), target=(0.0, 0.0, 0.52))
     # The floor keeps what only the ambient light reaches from going black.
     shown = {"ambient": 0.12, "scaling": "object", "mapping": "gamma", "contrast": "floor"}
-    studio.edit(studio.scene.replace(lights=(side,), view=view, **shown))
+    studio, display = open_studio(coupe.replace(lights=(side,), view=view, **shown))
     sheet = Sheet("09")
     sheet.add(display.field(), "A. No Flaps", "a")
     studio.light("flapped", flaps={"z": {"minimum": CREASE}})

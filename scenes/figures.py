@@ -1,7 +1,7 @@
 """The figures of the paper, each made by a script of its own: `python -m scenes.figures` makes them all.
 
 Paper: D. R. Warn, "Lighting Controls for Synthetic Images", Figures 4, 6, 7, 8, 9, 10 and 15. Each script
-renders once, then relights or recolors for every panel, and writes labelled pictures into `figures/`, or into
+renders once, then relights or recolors for every panel, and writes labeled pictures into `figures/`, or into
 the folder that it is given: `python -m scenes.figure_04 elsewhere`.
 """
 
@@ -28,8 +28,18 @@ Field = npt.NDArray[np.uint8]
 
 def open_scene(name: str) -> tuple[autocolor.Studio, Ramtek9300]:
     """A studio on one of the scenes beside this file, and its display."""
+    return open_studio(read_scene(name))
+
+
+def read_scene(name: str) -> autocolor.Scene:
+    """One of the scenes beside this file."""
+    return autocolor.read_scene(SCENES / name)
+
+
+def open_studio(scene: autocolor.Scene) -> tuple[autocolor.Studio, Ramtek9300]:
+    """A studio on a scene, which is rendered now, and its display."""
     display = Ramtek9300()
-    return autocolor.Studio(autocolor.read_scene(SCENES / name), display), display
+    return autocolor.Studio(scene, display), display
 
 
 def captioned(field: Field, text: str) -> Field:
@@ -46,6 +56,8 @@ class Sheet:
     def __init__(self, figure: str) -> None:
         self.figure = figure
         self.folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
+        if str(self.folder).startswith("-"):
+            sys.exit(f"usage: python -m scenes.figure_{figure} [FOLDER]")
         self.panels: list[Field] = []
 
     def add(self, field: Field, caption: str, panel: str = "") -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -80,6 +81,7 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
         f"size {size}, pixels {facts['pixels']:,},"
         f" intensities {facts['intensities'].minimum:.4g} to {facts['intensities'].maximum:.4g}",
         f"parts: {', '.join(f'{part} ({surface})' for part, surface in facts['parts'].items())}",
+        f"view: from {_point(facts['view']['eye'])} toward {_point(facts['view']['forward'])}",
         f"lights: {', '.join(facts['lights']) or 'none'}",
         "surfaces:",
     ]
@@ -91,3 +93,7 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
     if facts["created"]:
         lines.append(f"created: {', '.join(facts['created'])}")
     return lines
+
+
+def _point(components: Sequence[float]) -> str:
+    return f"({', '.join(f'{component:.4g}' for component in components)})"

@@ -67,6 +67,8 @@ def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = Fal
                 f"{path}: a scene's folder must have a scene.toml, or nodes.csv and polygons.csv, not"
                 " neither; name the mesh file to read that alone"
             )
+    if up != "z" and suffix in (".toml", ".npz"):
+        raise UsageError(f"up must go with a mesh, not with {path}, which says its own; leave it out")
     if suffix == ".toml":
         from autocolor.files.scene_file import read_scene_file
 

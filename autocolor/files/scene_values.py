@@ -48,9 +48,8 @@ def scene_of_values(
     parts = tuple(_made(Part, row, "part") for row in _list(tables["parts"], "parts"))
     surfaces = tuple(_surface(row) for row in _list(tables["surfaces"], "surfaces", MOST_SURFACES))
     surface_names = {surface.name for surface in surfaces}
-    _texts("mesh", part_names)
-    _texts("part", [name for part in parts for name in (part.name, part.surface)])
-    _texts("scene", [tables["name"]])
+    if not isinstance(tables["name"], str):
+        raise InputError(f"scene: its name must be a text, not {tables['name']!r}")
     # Before the scene looks for the nearest right name of each.
     for part in parts:
         if part.surface not in surface_names:
@@ -88,12 +87,6 @@ def _made(cls: type, row: object, place: str) -> Any:
         return cls(**known_fields(cls, _table(row, place), place))
     except TypeError as error:
         raise InputError(f"{place}: {error}") from None
-
-
-def _texts(place: str, names: list[Any]) -> None:
-    for name in names:
-        if not isinstance(name, str):
-            raise InputError(f"{place}: a name must be a text, not {name!r}")
 
 
 def _table(value: object, place: str) -> dict[str, Any]:

@@ -20,7 +20,7 @@ def turned(scene: Scene, right: float, up: float) -> View:
     target = target_of(scene)
     away = np.array(scene.view.eye) - target
     distance = float(np.linalg.norm(away)) or 1.0
-    azimuth = math.atan2(away[1], away[0]) + math.radians(right)
+    azimuth = _azimuth(scene.view, away) + math.radians(right)
     before = math.asin(max(-1.0, min(1.0, float(away[2]) / distance)))
     elevation = max(-HIGHEST, min(HIGHEST, before + math.radians(up)))
     # At the top, rounding would make another view of the same place.
@@ -31,6 +31,15 @@ def turned(scene: Scene, right: float, up: float) -> View:
         [across * math.cos(azimuth), across * math.sin(azimuth), math.sin(elevation)]
     )
     return scene.view.replace(eye=_vector(eye), target=_vector(target))
+
+
+def _azimuth(view: View, away: npt.NDArray[np.float64]) -> float:
+    """Where the eye stands around the object; from straight above or below, as the picture lies."""
+    if math.hypot(away[0], away[1]) < 1e-9 * abs(away[2]):
+        # The side that the picture's bottom points to is the one that a lower eye would stand on.
+        toward = view.axes[1] if away[2] > 0 else -view.axes[1]
+        return math.atan2(toward[1], toward[0])
+    return math.atan2(away[1], away[0])
 
 
 def moved(scene: Scene, ratio: float) -> View:

@@ -210,7 +210,7 @@ class Viewer:
         """Switch a light, counted from 0, on or off."""
         lights = self.studio.scene.lights
         if number >= len(lights):
-            self.message = f"there are {len(lights)} lights"
+            self.message = f"the scene has no light {number + 1}"
             return
         light = lights[number]
         self.back()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 from typing import Any
 
@@ -13,8 +14,8 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, InputError, Light, Mesh, Scene, Studio, Surface, UsageError, View, scene_of
 from autocolor.level_ranges import SCREENS
 from autocolor.studio import send_picture
-from ramtek_emu import Configuration, Ramtek9300
-from tests.autocolor.meshes import cube, grid, sphere
+from ramtek_emu import GMR_9300, Configuration, EntryFormat, Ramtek9300
+from tests.autocolor.meshes import cube, grid, sphere, wall_scene
 from tests.autocolor.strategies import colors, numbers, scenes, vectors
 
 SMALL = Configuration(name="small", elements=32, lines=24, planes=10)
@@ -200,7 +201,8 @@ def test_undo_and_redo_bring_back_every_word_and_entry(edits: list[Edit]) -> Non
     studio, display = opened()
     states = [(studio.scene, held(display))]
     for edit in edits:
-        if apply(studio, edit):
+        # An edit that changes nothing leaves the scene, and is no step.
+        if apply(studio, edit) and studio.scene is not states[-1][0]:
             states.append((studio.scene, held(display)))
     for scene, memories in states[-2::-1]:
         assert studio.undo()
@@ -230,13 +232,25 @@ def test_a_new_edit_forgets_what_was_undone() -> None:
     assert studio.scene.surface("body").paint.blend == 0.2
 
 
+def test_an_edit_to_an_equal_scene_is_no_step() -> None:
+    studio, display = opened()
+    scene, written = studio.scene, display.frame_buffer.written
+    studio.recolor("body", object_color=scene.surface("body").paint.object_color)
+    studio.light(scene.lights[0].name, on=scene.lights[0].on)
+    studio.edit(scene.replace(ambient=scene.ambient))
+    assert studio.scene is scene
+    assert not studio.is_changed
+    assert not studio.undo()
+    assert display.frame_buffer.written == written
+
+
 def test_a_drag_is_one_step() -> None:
     studio, display = opened()
     before = held(display)
     studio.recolor("body", blend=0.5)
     for blend in (0.4, 0.3, 0.2):
         studio.edit(studio.scene.with_surface("body", blend=blend), same_step=True)
-    assert repr(studio) == "Studio('scene', 1 steps to undo, 0 to redo)"
+    assert repr(studio) == "Studio('scene', to undo 1, to redo 0)"
     studio.undo()
     assert held(display) == before
 
@@ -418,3 +432,18 @@ def test_a_display_sees_a_studio_only_through_its_host_port() -> None:
     studio = Studio(car(), port)
     studio.light("key", on=False)
     assert held(port.display) == (studio.words.tobytes(), studio.entries.tobytes())
+
+
+def test_a_display_with_a_12_bit_table_gets_12_bit_entries() -> None:
+    display = Ramtek9300(dataclasses.replace(GMR_9300, entry_format=EntryFormat.WORD_12))
+    studio = Studio(wall_scene(), display)
+    studio.recolor("wall", object_color="#80c0f0", blend=1)
+    assert (display.entries >> 4 == studio.entries >> 4).all()
+    assert (display.words == studio.words).all()
+
+
+@pytest.mark.parametrize("changes", [{"planes": 8}, {"entries": 256}])
+def test_a_display_with_fewer_words_or_entries_than_the_papers_is_refused(changes: dict[str, int]) -> None:
+    smaller = dataclasses.replace(GMR_9300, name="small", **changes)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match=r"must have 1024 words and entries, not \d+ and \d+ \(small\)"):
+        Studio(wall_scene(), Ramtek9300(smaller))

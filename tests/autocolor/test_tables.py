@@ -158,3 +158,21 @@ def test_a_refused_field_is_told_with_the_surface() -> None:
         Surface("body").replace(difuse=2)
     with pytest.raises(InputError, match=r"part 'door': there is no 'surfaces'; did you mean 'surface'\?"):
         Part("door", "body").replace(surfaces="glass")
+
+
+def test_parts_and_surfaces_of_other_kinds_are_refused_in_a_sentence() -> None:
+    with pytest.raises(InputError, match="a part's name must be a text of at least one letter, not 3"):
+        Part(3, "wall")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="part 'hood': surface must be a text"):
+        Part("hood", None)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="surface 'a': paint must be a Paint, not"):
+        Surface("a", paint={"blend": 0.5})  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="surface 'a': reflectance must be a Reflectance, not 5"):
+        Surface("a").replace(reflectance=5, diffuse=0.5)
+
+
+def test_numpy_scalars_serve_as_numbers_and_switches() -> None:
+    surface = Surface("a", two_sided=np.False_, levels=np.int64(5))  # type: ignore[arg-type]
+    assert (surface.two_sided, surface.levels) == (False, 5)
+    assert type(surface.two_sided) is bool
+    assert type(surface.levels) is int

@@ -23,7 +23,7 @@ EXPECTED = {
 
 
 @pytest.mark.parametrize("number", figures.FIGURES)
-def test_each_figure_leaves_its_labelled_pictures(
+def test_each_figure_leaves_its_labeled_pictures(
     number: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("sys.argv", ["figure", str(tmp_path / "made")])

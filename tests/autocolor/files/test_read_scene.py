@@ -97,3 +97,10 @@ def test_importing_the_readers_is_cheap_and_a_mesh_needs_no_pydantic(folder: Pat
         "assert not {'pydantic', 'tomllib', 'csv', 'pygame', 'PIL'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", program], check=True, env={**os.environ, "PYTHONPATH": os.getcwd()})
+
+
+def test_an_up_axis_goes_with_a_mesh_alone(tmp_path: Path) -> None:
+    (tmp_path / "square.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 0 1\nf 1 2 3\n")
+    (tmp_path / "scene.toml").write_text('[[mesh]]\nfile = "square.obj"\n')
+    with pytest.raises(UsageError, match=r"up must go with a mesh, not with .*scene\.toml, which says"):
+        read_scene(tmp_path, up="y")

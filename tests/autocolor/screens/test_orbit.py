@@ -59,3 +59,12 @@ def test_moving_closer_and_farther_again_comes_back() -> None:
     closer = moved(scene, 0.5)
     assert distance(closer) == pytest.approx(0.5 * distance(scene.view))
     assert moved(scene.replace(view=closer), 2).eye == pytest.approx(scene.view.eye)
+
+
+@pytest.mark.parametrize("height", [10.0, -10.0])
+def test_going_around_from_straight_above_or_below_does_not_turn_the_picture(height: float) -> None:
+    scene = wall_scene(view=View((0, 0, height), target=(0, 0, 0)))
+    before = scene.view.axes
+    after = turned(scene, 1e-6, 0).axes
+    assert after[0] == pytest.approx(before[0], abs=1e-5)
+    assert float(after[2] @ before[2]) > np.cos(np.radians(6))

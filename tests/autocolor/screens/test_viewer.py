@@ -121,7 +121,7 @@ def test_without_a_step_there_is_nothing_to_undo_or_to_do_again(viewer: Viewer) 
 def test_a_light_that_is_not_there_is_told(viewer: Viewer) -> None:
     before = viewer.studio.scene
     viewer.on_key("9", typed="9")
-    assert viewer.message == "there are 2 lights"
+    assert viewer.message == "the scene has no light 9"
     assert viewer.studio.scene is before
 
 
