@@ -25,22 +25,30 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .configuration import GMR_9300 as GMR_9300
-    from .configuration import PRINCETON_9300 as PRINCETON_9300
     from .configuration import Configuration as Configuration
     from .configuration import EntryFormat as EntryFormat
+    from .configuration import GMR_9300 as GMR_9300
+    from .configuration import PRINCETON_9300 as PRINCETON_9300
     from .display import Ramtek9300 as Ramtek9300
     from .errors import ColorsError as ColorsError
     from .errors import ConfigurationError as ConfigurationError
     from .errors import InstructionError as InstructionError
+    from .errors import ListingError as ListingError
+    from .errors import MissingInputError as MissingInputError
     from .errors import NoScreenError as NoScreenError
+    from .errors import OutputError as OutputError
     from .errors import OutputExistsError as OutputExistsError
+    from .errors import PortError as PortError
     from .errors import RamtekError as RamtekError
     from .errors import ReplyError as ReplyError
+    from .errors import SnapshotError as SnapshotError
     from .errors import WordsError as WordsError
     from .errors import WriteError as WriteError
     from .host_port import HostPort as HostPort
     from .host_port import Recorder as Recorder
+    from .host_port import TcpPort as TcpPort
+    from .snapshot import read_snapshot as read_snapshot
+    from .snapshot import write_snapshot as write_snapshot
 
 _HOME = {
     "ColorsError": "errors",
@@ -50,15 +58,23 @@ _HOME = {
     "GMR_9300": "configuration",
     "HostPort": "host_port",
     "InstructionError": "errors",
+    "ListingError": "errors",
+    "MissingInputError": "errors",
     "NoScreenError": "errors",
+    "OutputError": "errors",
     "OutputExistsError": "errors",
     "PRINCETON_9300": "configuration",
+    "PortError": "errors",
     "Ramtek9300": "display",
     "RamtekError": "errors",
     "Recorder": "host_port",
     "ReplyError": "errors",
+    "SnapshotError": "errors",
+    "TcpPort": "host_port",
     "WordsError": "errors",
     "WriteError": "errors",
+    "read_snapshot": "snapshot",
+    "write_snapshot": "snapshot",
 }
 
 __all__ = list(_HOME)

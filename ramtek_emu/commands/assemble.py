@@ -1,0 +1,37 @@
+"""`ramtek assemble`: a listing back into its stream."""
+
+import io
+
+import click
+
+from ramtek_emu.commands.displays import open_stream, tell
+from ramtek_emu.writing import refuse_output, write_atomically
+
+EXAMPLES = """\b
+Examples:
+  ramtek assemble drawing.txt -o drawing.ramtek
+  ramtek list drawing.ramtek | ramtek assemble - -o same.ramtek
+  echo 'WVL FORE=255 STRT=10,10  ; a line' | ramtek assemble - -o - | ramtek play -
+"""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("listing", type=click.Path())
+@click.option(
+    "-o", "--output", type=click.Path(), metavar="STREAM", required=True, help="The stream; - is stdout."
+)
+@click.option("--force", is_flag=True, help="Overwrite what exists.")
+def assemble(listing: str, output: str, force: bool) -> None:
+    """Assemble LISTING, what `ramtek list` printed or a program in the same manner; - is stdin."""
+    if output != "-":
+        refuse_output(output, force)
+    file = io.TextIOWrapper(open_stream(listing), encoding="latin-1")
+
+    from ramtek_emu import assembly
+
+    data = b"".join(assembly.assemble(iter(lambda: file.readline(assembly.MOST_LINE + 1), "")))
+    if output == "-":
+        click.get_binary_stream("stdout").write(data)
+        return
+    write_atomically(output, data, overwrite=force)
+    tell(f"wrote {output}")

@@ -1,0 +1,118 @@
+"""What the commands share: the display that is asked for, streams that are read, and what is written at the end."""
+
+import difflib
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO, TypeVar
+
+import click
+
+from ramtek_emu.errors import ConfigurationError, MissingInputError
+from ramtek_emu.writing import refuse_output, write_atomically
+
+if TYPE_CHECKING:
+    from ramtek_emu.configuration import Configuration
+    from ramtek_emu.display import Ramtek9300
+
+Function = TypeVar("Function", bound=Callable[..., object])
+
+
+def display_options(function: Function) -> Function:
+    """The options of every command that has a display: which one, and what is written of it at the end."""
+    for option in (
+        click.option("--force", is_flag=True, help="Overwrite what exists."),
+        click.option("--configuration", metavar="NAME", help="The display; GMR_9300 if not given."),
+        click.option(
+            "--snapshot", type=click.Path(), metavar="PNG", help="Keep the display: words, table, parameters."
+        ),
+        click.option("-o", "--output", type=click.Path(), metavar="PNG", help="The picture at the end."),
+    ):
+        function = option(function)
+    return function
+
+
+def configuration_named(name: str | None) -> "Configuration":
+    """The configuration of that name, capitals or not; ConfigurationError names those there are."""
+    from ramtek_emu import configuration
+
+    known = {
+        value.name: value
+        for value in vars(configuration).values()
+        if isinstance(value, configuration.Configuration)
+    }
+    if name is None:
+        return configuration.GMR_9300
+    asked = name.upper().replace("-", "_")
+    if asked not in known:
+        near = difflib.get_close_matches(asked, known, n=1)
+        advice = f"did you mean {near[0]}?" if near else "choose one of them"
+        raise ConfigurationError(
+            f"a configuration must be one of {', '.join(sorted(known))}, not {name!r}; {advice}"
+        )
+    return known[asked]
+
+
+def refuse_outputs(force: bool, *paths: str | None) -> None:
+    """Refuse outputs that cannot be made, before anything is done; None is no output."""
+    for path in paths:
+        if path is not None:
+            if path in ("", "-"):
+                raise click.UsageError(f"an output must be the name of a file, not {path!r}; give it one")
+            refuse_output(path, force)
+
+
+def write_outputs(display: "Ramtek9300", output: str | None, snapshot: str | None, force: bool) -> None:
+    """Write the picture and the snapshot, whichever is asked for, and say so on stderr."""
+    if output is not None:
+        from ramtek_emu.png import png_bytes
+
+        write_atomically(output, png_bytes(display.field()), overwrite=force)
+        tell(f"wrote {output}")
+    if snapshot is not None:
+        from ramtek_emu.snapshot import write_snapshot
+
+        write_snapshot(display, snapshot, overwrite=force)
+        tell(f"wrote {snapshot}")
+
+
+def open_stream(path: str) -> BinaryIO:
+    """A file of words to read, `-` for stdin; MissingInputError when there is none."""
+    if path == "-":
+        if sys.stdin is None:
+            raise MissingInputError("a stream must come from stdin, which is closed; name a file instead")
+        return sys.stdin.buffer
+    try:
+        if Path(path).is_dir():
+            raise MissingInputError(f"a stream must be a file, not the folder {path}; name a file in it")
+        return open(path, "rb")
+    except MissingInputError:
+        raise
+    except (OSError, ValueError) as cause:
+        reason = (getattr(cause, "strerror", None) or str(cause)).lower()
+        raise MissingInputError(
+            f"a stream must be a file that can be read, not {path!r} ({reason}); check the name"
+        ) from None
+
+
+def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
+    """What gives the bytes that are there, at most so many, without waiting for more; nothing at the end."""
+    number = file.fileno()
+    return lambda most: os.read(number, most)
+
+
+def tell(message: str) -> None:
+    """Say something that is no answer: on stderr."""
+    click.echo(message, err=True)
+
+
+def tell_the_end(display: "Ramtek9300", held_words: int, odd_byte: bytes) -> None:
+    """Say what of a stream was not done: words that begin no instruction, an unfinished one, half a word."""
+    illegal = display.processor.illegal_words
+    if illegal:
+        tell(f"{illegal} {'word begins' if illegal == 1 else 'words begin'} no instruction: skipped")
+    if held_words:
+        tell(f"the stream ends within an instruction: its {held_words} words were dropped")
+    if odd_byte:
+        tell("the stream ends within a word: its last byte was dropped")

@@ -1,0 +1,89 @@
+"""`ramtek play`: a stream of instructions from a file, in a window or into a picture."""
+
+from typing import TYPE_CHECKING
+
+import click
+
+from ramtek_emu.commands.displays import (
+    configuration_named,
+    display_options,
+    open_stream,
+    reader_of,
+    refuse_outputs,
+    tell,
+    tell_the_end,
+    write_outputs,
+)
+
+if TYPE_CHECKING:
+    from ramtek_emu.display import Ramtek9300
+    from ramtek_emu.pipe import Read
+
+EXAMPLES = """\b
+Examples:
+  ramtek play drawing.ramtek
+  ramtek play drawing.ramtek -o drawing.png --configuration princeton_9300
+  old_program | ramtek play - -o drawing.png --record drawing.ramtek
+"""
+
+TICK_SECONDS = 0.01
+"""How long the stream is played between two looks at the window."""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("stream", type=click.Path())
+@display_options
+@click.option("--record", type=click.Path(), metavar="OUT", help="Keep the words that were played.")
+@click.option("--window", is_flag=True, help="Open the window even if a picture is written.")
+def play(
+    stream: str,
+    output: str | None,
+    snapshot: str | None,
+    configuration: str | None,
+    force: bool,
+    record: str | None,
+    window: bool,
+) -> None:
+    """Run STREAM, a file of 16-bit words with the low byte first; - is stdin.
+
+    Without -o or --snapshot it is shown in a window. What it asks to read back is read by nobody.
+    """
+    chosen = configuration_named(configuration)
+    refuse_outputs(force, output, snapshot, record)
+    file = open_stream(stream)
+
+    from ramtek_emu.display import Ramtek9300
+    from ramtek_emu.host_session import HostSession
+    from ramtek_emu.pipe import serve_pipe
+    from ramtek_emu.writing import write_atomically
+
+    display = Ramtek9300(chosen)
+    played = bytearray()
+    read = reader_of(file)
+
+    def noted(most: int) -> bytes:
+        data = read(most)
+        if record is not None:
+            played.extend(data)
+        return data
+
+    if window or (output is None and snapshot is None):
+        show(display, noted)
+    else:
+        session = HostSession(display)
+        serve_pipe(session, noted, None)
+        tell_the_end(display, session.held_words, session.odd_byte)
+    if record is not None:
+        write_atomically(record, bytes(played[: len(played) & ~1]), overwrite=force)
+        tell(f"wrote {record}")
+    write_outputs(display, output, snapshot, force)
+
+
+def show(display: "Ramtek9300", read: "Read") -> None:
+    """Play in a window until it is closed."""
+    from ramtek_emu.pipe import PolledPipe
+    from ramtek_emu.window import Monitor
+
+    pipe = PolledPipe(display, read)
+    name = display.configuration.name.replace("_", " ")
+    Monitor(display, f"RAMTEK {name}", on_tick=lambda: pipe.serve_for(TICK_SECONDS)).run()

@@ -1,0 +1,159 @@
+"""`ramtek serve`: a display for programs, over TCP or on a pipe."""
+
+import os
+import signal
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import click
+
+from ramtek_emu.commands.displays import (
+    configuration_named,
+    display_options,
+    refuse_outputs,
+    tell,
+    tell_the_end,
+    write_outputs,
+)
+
+if TYPE_CHECKING:
+    from ramtek_emu.display import Ramtek9300
+    from ramtek_emu.pipe import Read, Write
+    from ramtek_emu.server import Server
+
+EXAMPLES = """\b
+Examples:
+  ramtek serve --port 9300                          a display at tcp://127.0.0.1:9300
+  ramtek serve --port 0 --window                    any free port, which is printed, and a window
+  old_program | ramtek serve --stdio -o out.png     a program that only draws
+  socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
+"""
+
+TICK_SECONDS = 0.01
+STEP_SECONDS = 0.25
+
+
+@click.command(epilog=EXAMPLES)
+@click.option("--port", type=click.IntRange(0, 65535), help="Listen here; 0 is any free port.")
+@click.option("--stdio", is_flag=True, help="Words on stdin, what is read back on stdout.")
+@click.option("--host", default="127.0.0.1", show_default=True, help="The address to listen at.")
+@click.option("--window", is_flag=True, help="Show what is drawn, as it is drawn.")
+@click.option(
+    "--idle",
+    type=click.FloatRange(min=0.1),
+    default=600.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Show a silent host out after this long.",
+)
+@click.option("--once", is_flag=True, help="End when the first host has left.")
+@display_options
+def serve(
+    port: int | None,
+    stdio: bool,
+    host: str,
+    window: bool,
+    idle: float,
+    once: bool,
+    output: str | None,
+    snapshot: str | None,
+    configuration: str | None,
+    force: bool,
+) -> None:
+    """Be a display that a program sends words to, low byte first, and receives words from.
+
+    Over TCP it serves one host after the other until Ctrl+C; a second one at the same time is refused. With
+    --stdio it ends at the end of its input. Nobody is asked for a password: keep to the loopback address
+    unless everyone who reaches the port may draw.
+    """
+    if stdio == (port is not None):
+        raise click.UsageError("a display must be served on one of --port and --stdio; give one of them")
+    chosen = configuration_named(configuration)
+    refuse_outputs(force, output, snapshot)
+
+    from ramtek_emu.display import Ramtek9300
+
+    display = Ramtek9300(chosen)
+    if stdio:
+        serve_stdio(display, window)
+    else:
+        serve_port(display, port or 0, host, idle, window, once)
+    write_outputs(display, output, snapshot, force)
+
+
+def serve_stdio(display: "Ramtek9300", window: bool) -> None:
+    """Serve the program on the other ends of stdin and stdout until it sends no more."""
+    from ramtek_emu.host_session import HostSession
+    from ramtek_emu.pipe import PolledPipe, serve_pipe
+
+    read, write = standard_streams()
+    if window:
+        show(display, PolledPipe(display, read, write).serve_for)
+        return
+    session = HostSession(display)
+    serve_pipe(session, read, write)
+    tell_the_end(display, session.held_words, session.odd_byte)
+
+
+def standard_streams() -> "tuple[Read, Write | None]":
+    """What reads stdin and what writes all of its bytes to stdout; nothing else gets there from here on."""
+    if sys.stdin is None:
+        return lambda _: b"", None
+    number = sys.stdin.fileno()
+
+    def read(most: int) -> bytes:
+        return os.read(number, most)
+
+    try:
+        kept = os.dup(sys.stdout.fileno())
+        # Whatever prints from here on must not come between the words.
+        os.dup2(sys.stderr.fileno() if sys.stderr is not None else kept, sys.stdout.fileno())
+    except OSError:
+        return read, None
+
+    def write(data: bytes) -> None:
+        view = memoryview(data)
+        while view:
+            view = view[os.write(kept, view) :]
+
+    return read, write
+
+
+def serve_port(display: "Ramtek9300", port: int, host: str, idle: float, window: bool, once: bool) -> None:
+    """Serve hosts over TCP until Ctrl+C, until the window is closed, or until the first one has left."""
+    from ramtek_emu.server import Server
+
+    with Server(display, port, host, idle_seconds=idle) as server:
+        if host not in ("127.0.0.1", "localhost", "::1"):
+            tell(
+                f"warning: whoever reaches {server.address} can draw on this display and read it back; "
+                "leave --host out to keep to this machine"
+            )
+        click.echo(server.address)
+        sys.stdout.flush()
+        if window:
+            show(display, server.serve_for)
+        else:
+            serve_until_told(server, once)
+
+
+def serve_until_told(server: "Server", once: bool) -> None:
+    """Serve until Ctrl+C or a termination signal, which is how a server is ended: no failure."""
+    asked: list[int] = []
+    signals = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, lambda given, _: asked.append(given)) for number in signals}
+    try:
+        while not asked and not (once and server.served):
+            server.step(STEP_SECONDS)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def show(display: "Ramtek9300", serve_for: Callable[[float], None]) -> None:
+    """Serve in between the fields of a window until it is closed."""
+    from ramtek_emu.window import Monitor
+
+    name = display.configuration.name.replace("_", " ")
+    Monitor(display, f"RAMTEK {name}", on_tick=lambda: serve_for(TICK_SECONDS)).run()
