@@ -139,3 +139,17 @@ def characters() -> NDArray[np.bool_]:
         code += 8
     shapes[128:] = shapes[:128]
     return shapes
+
+
+LOADED_ELEMENTS: Final = 8
+LOADED_LINES: Final = 12
+
+
+def loadable(shapes: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Room for characters that a host loads, (256, 12, 8), with the shapes of the ROM until it does.
+
+    Hardware: LIN (twelve rows of a byte each).
+    """
+    loaded = np.zeros((256, LOADED_LINES, LOADED_ELEMENTS), np.bool_)
+    loaded[:, :CELL_LINES, :CELL_ELEMENTS] = shapes
+    return loaded
