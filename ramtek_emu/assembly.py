@@ -7,9 +7,9 @@ A line is an instruction: its name, flags, operands by either of their names, th
     WVL STRT=10,501                       ; what comes after a semicolon is for readers
       to 100,451  200,300                 ; points; `text "HELLO"` for characters, `words 0010*640` for others
 
-Numbers are decimal or, after 0x, hexadecimal; `raw` and `words` take hexadecimal words, `byte` the odd byte at
-the end of a stream. A length that is not given is that of the data. The words at the left of a listing are for
-readers: the text at the right is what counts.
+Numbers are decimal or, after 0x, hexadecimal; `raw` and `words` take hexadecimal words, `byte` the odd byte
+at the end of a stream. A length that is not given is that of the data. The words at the left of a listing are
+for readers: the text at the right is what counts.
 """
 
 import re
@@ -139,7 +139,7 @@ class Draft:
             if len(words) not in allowed:
                 raise _refusal(
                     self.number,
-                    f"{name} must be {' or '.join(map(str, allowed))} numbers, not {value!r}; give all of them",
+                    f"{name} must be {' or '.join(map(str, allowed))} numbers, not {value!r}; give all",
                 )
             self.operands[operand.name] = words
         elif not self.form.is_normal and name in (self.form.fixed or ()) and name != "length":
@@ -256,7 +256,7 @@ def hexadecimal_words(tokens: list[str], number: int) -> Words:
         if found is None or int(found["times"] or 1) > MOST_TIMES:
             raise _refusal(
                 number,
-                f"a word must be 0000 to FFFF, or one with *times to {MOST_TIMES}, not {token!r}; write it so",
+                f"a word must be 0000 to FFFF, or one with *times to {MOST_TIMES}, not {token!r}; mend it",
             )
         values.append(int(found["word"], 16))
         times.append(int(found["times"] or 1))

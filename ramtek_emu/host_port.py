@@ -60,8 +60,8 @@ class Recorder:
 class TcpPort:
     """A host port to a display behind a TCP port, as `ramtek serve` opens one: `tcp://host:port`.
 
-    Words go and come low byte first. `receive` waits for the display up to `timeout` seconds. What the display
-    sends while words are being sent is taken in, so that neither side waits for the other forever.
+    Words go and come low byte first. `receive` waits for the display up to `timeout` seconds. What the
+    display sends while words are being sent is taken in, so that neither side waits for the other forever.
     """
 
     def __init__(self, address: str, timeout: float = 30.0) -> None:

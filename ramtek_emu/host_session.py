@@ -1,8 +1,8 @@
 """HostSession: bytes of a host into a display, bytes of its replies back; the same for a socket and a pipe.
 
 What is modelled: words low byte first both ways (Hardware: PRG, JPL, V8K: the words of a PDP-11's or a VAX's
-memory as they are); an instruction cut anywhere; replies as soon as they exist and in order; whole words: of an
-odd number of bytes the last is dropped at the end (Hardware: PRG DRIVER.c, V8K round down).
+memory as they are); an instruction cut anywhere; replies as soon as they exist and in order; whole words: of
+an odd number of bytes the last is dropped at the end (Hardware: PRG DRIVER.c, V8K round down).
 
 Words are handed to the display in pieces. A piece that may ask for replies is short, so that no more than
 MOST_WAITING words ever wait: what a host sends next is not read before its replies are taken.

@@ -4,14 +4,15 @@
     00004: 0E01 0004                      WVL 4 bytes
     00006: 0064 01C3                        to 100,451
 
-At the left the place of the first word in the stream and the words themselves, at the right what they mean; the
-right side alone is what `assembly` reads, and it gives the words at the left back, all of them, for any words
-at all. What has no better name is `raw`: a word that begins no instruction, an instruction cut off by the end
-of the stream, flag bits that no source names. Data are complete; `0010*640` is a word 640 times.
+At the left the place of the first word in the stream and the words themselves, at the right what they mean;
+the right side alone is what `assembly` reads, and it gives the words at the left back, all of them, for any
+words at all. What has no better name is `raw`: a word that begins no instruction, an instruction cut off by
+the end of the stream, flag bits that no source names. Data are complete; `0010*640` is a word 640 times.
 """
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
@@ -189,7 +190,7 @@ def _runs(data: Words) -> Iterator[tuple[Words, str]]:
     starts = [0, *edges.tolist(), len(data)] if len(data) else [0]
     texts: list[str] = []
     begin = 0
-    for first, end in zip(starts[:-1], starts[1:], strict=True):
+    for first, end in pairwise(starts):
         word = f"{int(data[first]):04X}"
         texts += [word] * (end - first) if end - first < 3 else [f"{word}*{end - first}"]
         if len(texts) >= 8:

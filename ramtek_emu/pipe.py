@@ -25,7 +25,8 @@ Write = Callable[[bytes], object]
 def serve_pipe(session: HostSession, read: Read, write: Write | None) -> None:
     """Do what comes from `read` until it gives nothing more; hand each reply to `write` at once.
 
-    `read` returns what is there, at most as many bytes as it is asked for; without `write` replies are dropped.
+    `read` returns what is there, at most as many bytes as it is asked for; without `write` replies are
+    dropped.
     """
     while data := read(READ_BYTES):
         for reply in session.feed(data):

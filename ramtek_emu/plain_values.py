@@ -33,7 +33,6 @@ LIMITS: Final = {
     "address": (0, 0xFFFF),
 }
 """Numbers that are no words, by the name of the field."""
-MOST_ITEMS: Final = 4096
 
 
 def plain(value: Any) -> Any:
@@ -84,10 +83,10 @@ def restored(pattern: Any, value: Any, place: str) -> Any:
     raise TypeError(f"a state must be made of plain values, not {type(pattern).__name__} ({place})")
 
 
-def listed(pattern: Any, value: Any, place: str) -> list[Any]:
-    """A list of any length, each item as the pattern is."""
-    if not isinstance(value, list) or len(value) > MOST_ITEMS:
-        raise refusal(place, f"a list of at most {MOST_ITEMS}", value)
+def listed(pattern: Any, value: Any, place: str, most: int) -> list[Any]:
+    """A list of so many items at most, each as the pattern is."""
+    if not isinstance(value, list) or len(value) > most:
+        raise refusal(place, f"a list of at most {most}", value)
     return [restored(pattern, item, f"{place}[{number}]") for number, item in enumerate(value)]
 
 

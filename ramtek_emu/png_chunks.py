@@ -1,9 +1,9 @@
 """PNG chunks: 16-bit gray pictures with texts beside them, written and read within bounds.
 
 Snapshots are read from anywhere, so every size is checked before anything of that size is made: the file, the
-picture, each text, and what the pixels unpack to. Pillow, which writes the pictures for people, unpacks before it
-asks, raises a dozen kinds of errors and changes 16-bit pixels on the way; this is the small part of the format
-that is needed, and it refuses the rest: other depths, interlacing, filters, critical chunks that it doesn't know.
+picture, each text, and what the pixels unpack to. Pillow, which writes the pictures for people, raises a
+dozen kinds of errors for such files and is kept in one place; this is the small part of the format that is
+needed, and it refuses the rest: other depths, interlacing, filters, critical chunks that it does not know.
 """
 
 import struct
@@ -67,6 +67,11 @@ def picture_of(data: bytes) -> tuple[NDArray[np.uint16], dict[str, str]]:
     if kind != b"IEND" or size is None:
         raise _refusal(f"end within {MOST_CHUNKS} chunks", "go on")
     return _words(packed, *size), texts
+
+
+def _chunk(kind: bytes, content: bytes) -> bytes:
+    """A chunk with its length and its checksum."""
+    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
 
 
 def _next_chunk(data: bytes, place: int) -> tuple[bytes, bytes, int]:

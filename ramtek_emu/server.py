@@ -81,10 +81,8 @@ class Server:
         """Serve what has come, waiting for it up to `seconds`; returns whether anything was done."""
         client = self._client
         if client is not None:
-            if client.has_work:
-                seconds = 0.0
-            else:
-                seconds = min(seconds, max(0.0, client.deadline - time.monotonic()))
+            left = max(0.0, client.deadline - time.monotonic())
+            seconds = 0.0 if client.has_work else min(seconds, left)
             self._selector.modify(client.socket, client.wanted or selectors.EVENT_WRITE)
         done = False
         for key, events in self._selector.select(seconds):
@@ -101,7 +99,7 @@ class Server:
         return done
 
     def serve_for(self, seconds: float) -> None:
-        """Serve without waiting until nothing is left to do, or the time is over: what a window's tick does."""
+        """Serve without waiting until nothing is left to do, or the time is over; for a window's tick."""
         end = time.monotonic() + seconds
         while self.step() and time.monotonic() < end:
             pass

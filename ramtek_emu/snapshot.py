@@ -1,8 +1,9 @@
 """Snapshots: a whole display in a 16-bit PNG file, its words as pixels, everything else in text chunks.
 
 What is kept: the configuration, the words, the lookup table and its address counter, the parameters and what
-PUSHE put aside, loaded characters, cursors and switches, the status, the time. What is **not**: an instruction
-of which not all words have come, and replies that nobody has read; both belong to a host that is not in the file.
+PUSHE put aside, loaded characters, cursors and switches, the status, the time. What is **not**: an
+instruction of which not all words have come, and replies that nobody has read; both belong to a host that is
+not in the file.
 
 The pixels are the words themselves, so that any program that reads 16-bit gray pictures reads them; they look
 dark, since ten bits of sixteen are used.
@@ -19,6 +20,7 @@ import numpy as np
 
 from .configuration import GMR_9300, Configuration
 from .display import Ramtek9300
+from .environment_instructions import MOST_SAVED
 from .errors import ConfigurationError, MissingInputError, SnapshotError
 from .plain_values import listed, plain, refusal, restored, whole_number
 from .png_chunks import MOST_FILE, picture_bytes, picture_of
@@ -66,8 +68,8 @@ def display_of(data: bytes) -> Ramtek9300:
     configuration = configuration_of(_state(texts, "configuration"))
     if words.shape != (configuration.lines, configuration.elements):
         raise SnapshotError(
-            f"a snapshot must have {configuration.elements} x {configuration.lines} words, as its configuration "
-            f"says, not {words.shape[1]} x {words.shape[0]}; take a new one with --snapshot"
+            f"a snapshot must have {configuration.elements} x {configuration.lines} words, as its "
+            f"configuration says, not {words.shape[1]} x {words.shape[0]}; take a new one with --snapshot"
         )
     if int(words.max()) > configuration.largest_word:
         raise refusal("a word", f"0 to {configuration.largest_word}", int(words.max()))
@@ -156,7 +158,7 @@ def _restore_processor(display: Ramtek9300, parameters: dict[str, Any], state: d
     processor = display.processor
     pattern = processor.parameters
     processor.parameters = restored(pattern, parameters["now"], "parameters")
-    processor.saved[:] = listed(pattern, parameters["saved"], "saved")
+    processor.saved[:] = listed(pattern, parameters["saved"], "saved", MOST_SAVED)
     for name in ("loaded_characters", "illegal_words", "named_only"):
         setattr(processor, name, restored(getattr(processor, name), state[name], name))
     if restored(False, state["illegal"], "illegal"):
@@ -173,7 +175,7 @@ def _restore_cursors(display: Ramtek9300, state: dict[str, Any]) -> None:
             setattr(cursor, each.name, getattr(kept, each.name))
     cursors.track = restored(False, state["track"], "track")
     cursors.enter_is_pressed = restored(False, state["enter_is_pressed"], "enter_is_pressed")
-    cursors.driven = {device: mask for device, mask in listed((0, 0), state["driven"], "driven")}
+    cursors.driven = {device: mask for device, mask in listed((0, 0), state["driven"], "driven", 256)}
     cursors.changed += 1
 
 

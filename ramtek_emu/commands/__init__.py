@@ -1,6 +1,7 @@
 """The command line of the display: one file a command, each loaded only when it is named."""
 
 from pathlib import Path
+from typing import ClassVar
 
 import click
 
@@ -20,7 +21,7 @@ class RamtekGroup(CommandGroup):
     """The commands of the display."""
 
     package = "ramtek_emu.commands"
-    table = {
+    table: ClassVar[dict[str, str]] = {
         "play": "run a stream of instructions from a file",
         "list": "a stream as instructions with named operands",
         "assemble": "a listing back into its stream",

@@ -1,6 +1,8 @@
 """`ramtek assemble`: a listing back into its stream."""
 
 import io
+import sys
+from collections.abc import Iterator
 
 import click
 
@@ -29,9 +31,13 @@ def assemble(listing: str, output: str, force: bool) -> None:
 
     from ramtek_emu import assembly
 
-    data = b"".join(assembly.assemble(iter(lambda: file.readline(assembly.MOST_LINE + 1), "")))
+    def lines() -> Iterator[str]:
+        while line := file.readline(assembly.MOST_LINE + 1):
+            yield line
+
+    data = b"".join(assembly.assemble(lines()))
     if output == "-":
-        click.get_binary_stream("stdout").write(data)
+        sys.stdout.buffer.write(data)
         return
     write_atomically(output, data, overwrite=force)
     tell(f"wrote {output}")

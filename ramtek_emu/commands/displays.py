@@ -1,4 +1,4 @@
-"""What the commands share: the display that is asked for, streams that are read, and what is written at the end."""
+"""What the commands share: the display, the streams that are read, and what is written at the end."""
 
 import difflib
 import os
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from ramtek_emu.display import Ramtek9300
 
 Function = TypeVar("Function", bound=Callable[..., object])
+
+TICK_SECONDS = 0.01
+"""How long a host is served between two looks at the window."""
 
 
 def display_options(function: Function) -> Function:
@@ -105,6 +108,14 @@ def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
 def tell(message: str) -> None:
     """Say something that is no answer: on stderr."""
     click.echo(message, err=True)
+
+
+def show(display: "Ramtek9300", serve_for: Callable[[float], None]) -> None:
+    """Show the display in a window until it is closed; `serve_for` is called between its fields."""
+    from ramtek_emu.window import Monitor
+
+    name = display.configuration.name.replace("_", " ")
+    Monitor(display, f"RAMTEK {name}", on_tick=lambda: serve_for(TICK_SECONDS)).run()
 
 
 def tell_the_end(display: "Ramtek9300", held_words: int, odd_byte: bytes) -> None:

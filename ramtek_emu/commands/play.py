@@ -1,7 +1,5 @@
 """`ramtek play`: a stream of instructions from a file, in a window or into a picture."""
 
-from typing import TYPE_CHECKING
-
 import click
 
 from ramtek_emu.commands.displays import (
@@ -10,14 +8,11 @@ from ramtek_emu.commands.displays import (
     open_stream,
     reader_of,
     refuse_outputs,
+    show,
     tell,
     tell_the_end,
     write_outputs,
 )
-
-if TYPE_CHECKING:
-    from ramtek_emu.display import Ramtek9300
-    from ramtek_emu.pipe import Read
 
 EXAMPLES = """\b
 Examples:
@@ -25,9 +20,6 @@ Examples:
   ramtek play drawing.ramtek -o drawing.png --configuration princeton_9300
   old_program | ramtek play - -o drawing.png --record drawing.ramtek
 """
-
-TICK_SECONDS = 0.01
-"""How long the stream is played between two looks at the window."""
 
 
 @click.command(epilog=EXAMPLES)
@@ -54,7 +46,7 @@ def play(
 
     from ramtek_emu.display import Ramtek9300
     from ramtek_emu.host_session import HostSession
-    from ramtek_emu.pipe import serve_pipe
+    from ramtek_emu.pipe import PolledPipe, serve_pipe
     from ramtek_emu.writing import write_atomically
 
     display = Ramtek9300(chosen)
@@ -68,7 +60,7 @@ def play(
         return data
 
     if window or (output is None and snapshot is None):
-        show(display, noted)
+        show(display, PolledPipe(display, noted).serve_for)
     else:
         session = HostSession(display)
         serve_pipe(session, noted, None)
@@ -77,13 +69,3 @@ def play(
         write_atomically(record, bytes(played[: len(played) & ~1]), overwrite=force)
         tell(f"wrote {record}")
     write_outputs(display, output, snapshot, force)
-
-
-def show(display: "Ramtek9300", read: "Read") -> None:
-    """Play in a window until it is closed."""
-    from ramtek_emu.pipe import PolledPipe
-    from ramtek_emu.window import Monitor
-
-    pipe = PolledPipe(display, read)
-    name = display.configuration.name.replace("_", " ")
-    Monitor(display, f"RAMTEK {name}", on_tick=lambda: pipe.serve_for(TICK_SECONDS)).run()

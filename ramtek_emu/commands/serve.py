@@ -3,7 +3,6 @@
 import os
 import signal
 import sys
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import click
@@ -12,6 +11,7 @@ from ramtek_emu.commands.displays import (
     configuration_named,
     display_options,
     refuse_outputs,
+    show,
     tell,
     tell_the_end,
     write_outputs,
@@ -30,7 +30,6 @@ Examples:
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
 """
 
-TICK_SECONDS = 0.01
 STEP_SECONDS = 0.25
 
 
@@ -149,11 +148,3 @@ def serve_until_told(server: "Server", once: bool) -> None:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-def show(display: "Ramtek9300", serve_for: Callable[[float], None]) -> None:
-    """Serve in between the fields of a window until it is closed."""
-    from ramtek_emu.window import Monitor
-
-    name = display.configuration.name.replace("_", " ")
-    Monitor(display, f"RAMTEK {name}", on_tick=lambda: serve_for(TICK_SECONDS)).run()
