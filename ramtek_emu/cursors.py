@@ -75,7 +75,7 @@ class Cursors:
         self.driven = {0: 1}
         """For each tracking device the cursors that it drives, one bit a cursor."""
         self.changed = 0
-        """How often anything was moved or switched; it only grows."""
+        """How often the shapes were changed; it only grows."""
 
     def __len__(self) -> int:
         return len(self.all)
@@ -90,7 +90,6 @@ class Cursors:
         """Move a cursor and set its state, as the host does."""
         cursor = self.all[number]
         cursor.element, cursor.line, cursor.state = element, line, state & (0xFFFF ^ LINE_BITS)
-        self.changed += 1
 
     def state_of(self, number: int) -> int:
         """The state bits as the host reads them; its ENTER is cleared by it."""
@@ -108,11 +107,15 @@ class Cursors:
         self.all[number].shape[: len(dots)] = dots
         self.changed += 1
 
+    @property
+    def seen(self) -> tuple[tuple[int, int, int], ...]:
+        """Element, line and state of every cursor that is visible."""
+        return tuple((each.element, each.line, each.state) for each in self.all if each.is_visible)
+
     def hide(self) -> None:
         """Make every cursor unseen."""
         for cursor in self.all:
             cursor.state = 0
-        self.changed += 1
 
 
 class Joystick:
@@ -139,9 +142,7 @@ class Joystick:
         """Move its cursors; they stay at the screen's edge, as a joystick's do."""
         place = min(max(int(element), 0), self._limits[0]), min(max(int(line), 0), self._limits[1])
         for cursor in self.driven:
-            if (cursor.element, cursor.line) != place:
-                cursor.element, cursor.line = place
-                self._cursors.changed += 1
+            cursor.element, cursor.line = place
 
     def move_by(self, elements: int, lines: int) -> None:
         """Push it for a while."""
@@ -156,11 +157,9 @@ class Joystick:
     @track.setter
     def track(self, is_on: bool) -> None:
         self._cursors.track = bool(is_on)
-        self._cursors.changed += 1
 
     def press_enter(self) -> None:
         """Press ENTER: each cursor tells of it once, and the interface requests an interrupt."""
         for cursor in self._cursors.all:
             cursor.enter = True
         self._cursors.enter_is_pressed = True
-        self._cursors.changed += 1

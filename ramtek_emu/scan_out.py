@@ -66,6 +66,7 @@ class ScanOut:
             self._lookup_table.written,
             self._partition(),
             self._view(),
+            self._cursors.seen,
             self._cursors.changed,
             any(cursor.is_visible and cursor.blinks for cursor in self._cursors.all) and self._blink(),
             self._beam and self._beam.lines_done,
