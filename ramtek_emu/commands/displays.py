@@ -4,6 +4,7 @@ import difflib
 import os
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeVar
 
@@ -38,23 +39,19 @@ def display_options(function: Function) -> Function:
 
 def configuration_named(name: str | None) -> "Configuration":
     """The configuration of that name, capitals or not; ConfigurationError names those there are."""
-    from ramtek_emu import configuration
+    from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 
-    known = {
-        value.name: value
-        for value in vars(configuration).values()
-        if isinstance(value, configuration.Configuration)
-    }
     if name is None:
-        return configuration.GMR_9300
+        return GMR_9300
     asked = name.upper().replace("-", "_")
-    if asked not in known:
-        near = difflib.get_close_matches(asked, known, n=1)
+    if asked not in CONFIGURATIONS:
+        near = [each for each in CONFIGURATIONS if each.startswith(asked)]
+        near = near or difflib.get_close_matches(asked, CONFIGURATIONS, n=1)
         advice = f"did you mean {near[0]}?" if near else "choose one of them"
         raise ConfigurationError(
-            f"a configuration must be one of {', '.join(sorted(known))}, not {name!r}; {advice}"
+            f"a configuration must be one of {', '.join(sorted(CONFIGURATIONS))}, not {name!r}; {advice}"
         )
-    return known[asked]
+    return CONFIGURATIONS[asked]
 
 
 def refuse_outputs(force: bool, *paths: str | None) -> None:
@@ -115,7 +112,9 @@ def show(display: "Ramtek9300", serve_for: Callable[[float], None]) -> None:
     from ramtek_emu.window import Monitor
 
     name = display.configuration.name.replace("_", " ")
-    Monitor(display, f"RAMTEK {name}", on_tick=lambda: serve_for(TICK_SECONDS)).run()
+    # Ctrl+C closes the window; what is to be written at the end is written.
+    with suppress(KeyboardInterrupt):
+        Monitor(display, f"RAMTEK {name}", on_tick=lambda: serve_for(TICK_SECONDS)).run()
 
 
 def tell_the_end(display: "Ramtek9300", held_words: int, odd_byte: bytes) -> None:

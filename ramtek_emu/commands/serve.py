@@ -3,6 +3,8 @@
 import os
 import signal
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import click
@@ -124,27 +126,35 @@ def serve_port(display: "Ramtek9300", port: int, host: str, idle: float, window:
     from ramtek_emu.server import Server
 
     with Server(display, port, host, idle_seconds=idle) as server:
-        if host not in ("127.0.0.1", "localhost", "::1"):
-            tell(
-                f"warning: whoever reaches {server.address} can draw on this display and read it back; "
-                "leave --host out to keep to this machine"
-            )
-        click.echo(server.address)
-        sys.stdout.flush()
         if window:
+            announce(server)
             show(display, server.serve_for)
-        else:
-            serve_until_told(server, once)
+            return
+        with until_told() as told:
+            announce(server)
+            while not told and not (once and server.served):
+                server.step(STEP_SECONDS)
 
 
-def serve_until_told(server: "Server", once: bool) -> None:
-    """Serve until Ctrl+C or a termination signal, which is how a server is ended: no failure."""
-    asked: list[int] = []
+def announce(server: "Server") -> None:
+    """Print the address that hosts are to be given, with a warning if it is more than this machine's own."""
+    if server.host not in ("127.0.0.1", "localhost", "::1"):
+        tell(
+            f"warning: whoever reaches {server.address} can draw on this display and read it back; "
+            "leave --host out to keep to this machine"
+        )
+    click.echo(server.address)
+    sys.stdout.flush()
+
+
+@contextmanager
+def until_told() -> Iterator[list[int]]:
+    """A list that Ctrl+C or a termination signal puts its number in: how a server is ended, no failure."""
+    told: list[int] = []
     signals = (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.signal(number, lambda given, _: asked.append(given)) for number in signals}
+    before = {number: signal.signal(number, lambda given, _: told.append(given)) for number in signals}
     try:
-        while not asked and not (once and server.served):
-            server.step(STEP_SECONDS)
+        yield told
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

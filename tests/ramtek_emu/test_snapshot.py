@@ -108,7 +108,7 @@ def small_snapshot() -> bytes:
     display = Ramtek9300(SMALL)
     display.send(OUTLINE)
     display.send(CURSORS)
-    display.send(words("1300 0902 0004 0005"))
+    display.send(words("1300 0902 0044 0005 0000 0000 0003 0003"))
     return snapshot_bytes(display)
 
 
