@@ -190,6 +190,28 @@ def test_the_shell_s_pipes_put_any_program_on_the_display(tmp_path: Path) -> Non
     assert (tmp_path / "out.png").exists()
 
 
+def test_two_pipes_put_a_program_that_reads_back_on_the_display(tmp_path: Path) -> None:
+    program = (
+        "import os\n"
+        "def send(*words): os.write(1, b''.join(word.to_bytes(2, 'little') for word in words))\n"
+        "send(0x0902, 0x0044, 7, 3, 3, 3, 3)\n"
+        "send(0x0B03, 0x0040, 3, 3, 3, 3, 2)\n"
+        "word = int.from_bytes(os.read(0, 2), 'little')\n"
+        "send(0x0902, 0x0044, word + 1, 4, 4, 4, 4)\n"
+    )
+    (tmp_path / "host.py").write_text(program)
+    python = sys.executable
+    command = (
+        "mkfifo replies; "
+        f"{python} host.py < replies | {python} -m ramtek_emu serve --stdio --snapshot s.png > replies"
+    )
+    done = subprocess.run(
+        command, shell=True, cwd=tmp_path, env=environment(), capture_output=True, check=False, timeout=20
+    )
+    assert done.returncode == 0, done.stderr
+    assert read_snapshot(tmp_path / "s.png").words[[3, 4], [3, 4]].tolist() == [7, 8]
+
+
 def test_a_server_prints_its_port_serves_one_host_after_the_other_and_ends_when_told(tmp_path: Path) -> None:
     with started("serve", "--port", 0, "-o", tmp_path / "end.png", "--configuration", "jpl-9460") as process:
         assert process.stdout is not None
