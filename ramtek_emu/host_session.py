@@ -5,9 +5,11 @@ memory as they are); an instruction cut anywhere; replies as soon as they exist 
 an odd number of bytes the last is dropped at the end (Hardware: PRG DRIVER.c, V8K round down).
 
 Words are handed to the display in pieces. A piece that may ask for replies is short, so that no more than
-MOST_WAITING words ever wait: what a host sends next is not read before its replies are taken.
+MOST_WAITING words ever wait: what a host sends next is not read before its replies are taken. A piece after
+one that took long is short too, so that whoever serves in between other work, a window, gets back to it.
 """
 
+import time
 from collections.abc import Iterator
 from typing import Final
 
@@ -17,8 +19,12 @@ from numpy.typing import NDArray
 from .display import Ramtek9300
 from .instruction_set import FORMS
 
+LEAST: Final = 4
 PIECE: Final = 1 << 15
-"""Words handed to the display at once."""
+"""Words handed to the display at once, at least and at most."""
+LONG: Final = 0.004
+SHORT: Final = 0.001
+"""Seconds from which a piece was long, and up to which it was short."""
 ASKING_PIECE: Final = 64
 """Words at once where some may be instructions that reply: at most 32, each with at most 32,767 words."""
 REPLY_PIECE: Final = 1 << 15
@@ -42,6 +48,7 @@ class HostSession:
         self.odd_byte = b""
         """The first half of a word whose other half has not come."""
         self._asking = asking()
+        self._size = ASKING_PIECE
         self.leave()
 
     @property
@@ -62,10 +69,18 @@ class HostSession:
         data = self.odd_byte + data
         self.odd_byte = data[len(data) & ~1 :]
         words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
-        size = ASKING_PIECE if self._asking[words >> 8].any() else PIECE
-        for first in range(0, len(words), size):
-            piece = words[first : first + size]
+        most = ASKING_PIECE if self._asking[words >> 8].any() else PIECE
+        place = 0
+        while place < len(words):
+            piece = words[place : place + min(self._size, most)]
+            place += len(piece)
+            begin = time.perf_counter()
             self.display.send(piece)
+            took = time.perf_counter() - begin
+            if took > LONG:
+                self._size = max(LEAST, self._size // 8)
+            elif took < SHORT:
+                self._size = min(PIECE, 2 * self._size)
             self.words += len(piece)
             yield b""
             while waiting := self.display.processor.waiting:

@@ -29,6 +29,9 @@ def display_options(function: Function) -> Function:
         click.option("--force", is_flag=True, help="Overwrite what exists."),
         click.option("--configuration", metavar="NAME", help="The display; GMR_9300 if not given."),
         click.option(
+            "--start", type=click.Path(), metavar="SNAPSHOT", help="Go on with the display of a snapshot."
+        ),
+        click.option(
             "--snapshot", type=click.Path(), metavar="PNG", help="Keep the display: words, table, parameters."
         ),
         click.option("-o", "--output", type=click.Path(), metavar="PNG", help="The picture at the end."),
@@ -52,6 +55,19 @@ def configuration_named(name: str | None) -> "Configuration":
             f"a configuration must be one of {', '.join(sorted(CONFIGURATIONS))}, not {name!r}; {advice}"
         )
     return CONFIGURATIONS[asked]
+
+
+def display_asked_for(configuration: str | None, start: str | None) -> "Ramtek9300":
+    """A display of that configuration just switched on, or the one of a snapshot."""
+    if start is not None:
+        if configuration is not None:
+            raise click.UsageError("a display must be given by --configuration or --start; leave one out")
+        from ramtek_emu.snapshot import read_snapshot
+
+        return read_snapshot(start)
+    from ramtek_emu.display import Ramtek9300
+
+    return Ramtek9300(configuration_named(configuration))
 
 
 def refuse_outputs(force: bool, *paths: str | None) -> None:

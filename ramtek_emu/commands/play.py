@@ -3,7 +3,7 @@
 import click
 
 from ramtek_emu.commands.displays import (
-    configuration_named,
+    display_asked_for,
     display_options,
     open_stream,
     reader_of,
@@ -32,6 +32,7 @@ def play(
     output: str | None,
     snapshot: str | None,
     configuration: str | None,
+    start: str | None,
     force: bool,
     record: str | None,
     window: bool,
@@ -40,16 +41,14 @@ def play(
 
     Without -o or --snapshot it is shown in a window. What it asks to read back is read by nobody.
     """
-    chosen = configuration_named(configuration)
     refuse_outputs(force, output, snapshot, record)
     file = open_stream(stream)
+    display = display_asked_for(configuration, start)
 
-    from ramtek_emu.display import Ramtek9300
     from ramtek_emu.host_session import HostSession
     from ramtek_emu.pipe import PolledPipe, serve_pipe
     from ramtek_emu.writing import write_atomically
 
-    display = Ramtek9300(chosen)
     played = bytearray()
     read = reader_of(file)
 

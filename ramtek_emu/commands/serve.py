@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ramtek_emu.commands.displays import (
-    configuration_named,
+    display_asked_for,
     display_options,
     refuse_outputs,
     show,
@@ -60,6 +60,7 @@ def serve(
     output: str | None,
     snapshot: str | None,
     configuration: str | None,
+    start: str | None,
     force: bool,
 ) -> None:
     """Be a display that a program sends words to, low byte first, and receives words from.
@@ -70,12 +71,8 @@ def serve(
     """
     if stdio == (port is not None):
         raise click.UsageError("a display must be served on one of --port and --stdio; give one of them")
-    chosen = configuration_named(configuration)
     refuse_outputs(force, output, snapshot)
-
-    from ramtek_emu.display import Ramtek9300
-
-    display = Ramtek9300(chosen)
+    display = display_asked_for(configuration, start)
     if stdio:
         serve_stdio(display, window)
     else:

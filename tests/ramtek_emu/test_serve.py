@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from ramtek_emu import GMR_9300, Ramtek9300, TcpPort, instructions, read_snapshot
+from ramtek_emu import GMR_9300, PRINCETON_9300, Ramtek9300, TcpPort, instructions, read_snapshot
 from ramtek_emu.host_session import HostSession
 from ramtek_emu.pipe import serve_pipe
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, RECORDED, words
@@ -299,6 +299,26 @@ def test_a_played_stream_gives_its_picture_its_recording_and_its_snapshot(tmp_pa
     assert run("play", "-", "-o", picture, "--force", data=record.read_bytes()).returncode == 0
     windowless = run("play", path)
     assert windowless.returncode == 69
+
+
+def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
+    first, second = tmp_path / "first.png", tmp_path / "second.png"
+    halves = np.split(OUTLINE, [11])
+    arguments = ("--configuration", "PRINCETON_9300", "--snapshot", first)
+    assert run("play", "-", *arguments, data=stream(halves[0])).returncode == 0
+    served = run("serve", "--stdio", "--start", first, "--snapshot", second, data=stream(halves[1]))
+    assert served.returncode == 0
+    twin = Ramtek9300(PRINCETON_9300)
+    twin.send(OUTLINE)
+    assert (read_snapshot(second).words == twin.words).all()
+    assert run("play", "-", "--start", first, *arguments, "--force").returncode == 2
+    (tmp_path / "none.png").write_bytes(b"no picture")
+    refused = run("play", "-", "--start", tmp_path / "none.png", "-o", tmp_path / "o.png")
+    assert refused.returncode == 65
+    assert refused.stderr == (
+        b"ramtek: a snapshot must begin as a PNG file does, not as something else; "
+        b"take a new one with --snapshot\n"
+    )
 
 
 def test_a_configuration_that_is_not_known_is_told_the_nearest() -> None:
