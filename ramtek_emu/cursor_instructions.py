@@ -36,7 +36,7 @@ def write_cursor(processor: Processor, instruction: Instruction) -> None:
     if is_there(processor, instruction):
         (element,), (line,) = instruction.operands.values()
         place = element & element_bits(processor), line & LINE_BITS
-        processor.cursors.place(instruction.low_byte, *place, line)
+        processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
 
 
 @executes("WCSP")
@@ -46,7 +46,7 @@ def write_cursor_at_pixel(processor: Processor, instruction: Instruction) -> Non
         (element,), (line,) = instruction.operands.values()
         pixel = element & element_bits(processor), line & LINE_BITS
         place = screen_at(processor.parameters, processor.configuration, *pixel)
-        processor.cursors.place(instruction.low_byte, *place, line)
+        processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
 
 
 @executes("WCSG")
@@ -64,7 +64,7 @@ def read_cursor(processor: Processor, instruction: Instruction) -> None:
         return processor.reply(np.zeros(2, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
     state = processor.cursors.state_of(instruction.low_byte)
-    words = cursor.element & element_bits(processor), cursor.line & LINE_BITS | state
+    words = cursor.element & element_bits(processor), cursor.line & LINE_BITS | state & ~LINE_BITS
     processor.reply(np.array(words, np.uint16))
 
 
@@ -76,7 +76,7 @@ def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None
     cursor = processor.cursors[instruction.low_byte]
     element, line = pixel_at(processor.parameters, processor.configuration, cursor.element, cursor.line)
     state = processor.cursors.state_of(instruction.low_byte)
-    processor.reply(np.array((element, line & LINE_BITS | state), np.uint16))
+    processor.reply(np.array((element, line & LINE_BITS | state & ~LINE_BITS), np.uint16))
 
 
 @executes("RCSG")
@@ -86,7 +86,7 @@ def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
         return processor.reply(np.zeros(3, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
     state = processor.cursors.state_of(instruction.low_byte)
-    processor.reply(np.array((cursor.element, cursor.line, state), np.uint16))
+    processor.reply(np.array((cursor.element & 0xFFFF, cursor.line & 0xFFFF, state), np.uint16))
 
 
 @executes("LCF")

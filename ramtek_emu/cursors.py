@@ -89,7 +89,7 @@ class Cursors:
     def place(self, number: int, element: int, line: int, state: int) -> None:
         """Move a cursor and set its state, as the host does."""
         cursor = self.all[number]
-        cursor.element, cursor.line, cursor.state = element, line, state & (0xFFFF ^ LINE_BITS)
+        cursor.element, cursor.line, cursor.state = element, line, state
 
     def state_of(self, number: int) -> int:
         """The state bits as the host reads them; its ENTER is cleared by it."""

@@ -50,19 +50,22 @@ class Ramtek9300:
 
     def send(self, words: Words) -> None:
         """Send 16-bit words as a host does, cut anywhere; WordsError when they are no words at all."""
-        execute = self.processor.execute if self.beam is None else self._execute_in_time
-        for instruction in self.decoder.feed(checked_stream(words), in_rows=True):
-            execute(instruction)
+        stream = checked_stream(words)
+        if self.beam is None:
+            for instruction in self.decoder.feed(stream, in_rows=True):
+                self.processor.execute(instruction)
+        else:
+            for instruction in self.decoder.feed(stream):
+                self._execute_in_time(instruction, self.beam)
 
-    def _execute_in_time(self, instruction: Instruction) -> None:
-        assert self.beam is not None
+    def _execute_in_time(self, instruction: Instruction, beam: Beam) -> None:
         # What the beam has passed keeps the look of before; what it has not will have that of after.
         self.scan_out.follow_beam()
         written = self.frame_buffer.written
         self.processor.execute(instruction)
         self.scan_out.follow_beam()
         words = 1 + sum(map(len, instruction.operands.values())) + len(instruction.data)
-        self.beam.charge(words, self.frame_buffer.written - written)
+        beam.charge(words, self.frame_buffer.written - written)
 
     def reset(self) -> None:
         """Press RESET on the control unit: parameters, screen, cursors, and what a host left unfinished.
