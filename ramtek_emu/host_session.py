@@ -10,14 +10,17 @@ one that took long is short too, so that whoever serves in between other work, a
 """
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .display import Ramtek9300
+from .instruction import NO_WORDS
 from .instruction_set import FORMS
+
+Record = Callable[[bytes], object]
 
 LEAST: Final = 4
 PIECE: Final = 1 << 15
@@ -41,8 +44,11 @@ def asking() -> NDArray[np.bool_]:
 class HostSession:
     """One host at a display; when it leaves, what it left unfinished is forgotten, and memory stays."""
 
-    def __init__(self, display: Ramtek9300) -> None:
+    def __init__(self, display: Ramtek9300, record: Record | None = None) -> None:
+        """Begin; `record` is given the bytes of whole instructions, in order."""
         self.display = display
+        self._record = record
+        self._unrecorded = NO_WORDS
         self.words = 0
         """Words taken from the host; it only grows."""
         self.odd_byte = b""
@@ -82,12 +88,22 @@ class HostSession:
             elif took < SHORT:
                 self._size = min(PIECE, 2 * self._size)
             self.words += len(piece)
+            self._keep(piece)
             yield b""
             while waiting := self.display.processor.waiting:
                 yield self.display.receive(min(waiting, REPLY_PIECE)).astype("<u2", copy=False).tobytes()
 
+    def _keep(self, piece: NDArray[np.uint16]) -> None:
+        """Record the words of the instructions that are whole now."""
+        if self._record is not None:
+            words = np.concatenate((self._unrecorded, piece))
+            whole = len(words) - self.held_words
+            self._record(words[:whole].astype("<u2", copy=False).tobytes())
+            self._unrecorded = words[whole:]
+
     def leave(self) -> None:
         """Forget the unfinished instruction, the odd byte and the replies that nobody took."""
         self.odd_byte = b""
+        self._unrecorded = NO_WORDS
         self.display.decoder.clear()
         self.display.receive(self.display.processor.waiting)

@@ -14,7 +14,6 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from .display import Ramtek9300
 from .host_session import HostSession
 
 READ_BYTES: Final = 1 << 16
@@ -40,8 +39,8 @@ def serve_pipe(session: HostSession, read: Read, write: Write | None) -> None:
 class PolledPipe:
     """The same in slices of time; `ended` once the host has nothing more to send."""
 
-    def __init__(self, display: Ramtek9300, read: Read, write: Write | None = None) -> None:
-        self.session = HostSession(display)
+    def __init__(self, session: HostSession, read: Read, write: Write | None = None) -> None:
+        self.session = session
         self.ended = False
         self._data: queue.Queue[bytes] = queue.Queue(4)
         self._replies: queue.Queue[bytes] = queue.Queue(64)

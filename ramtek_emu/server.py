@@ -22,7 +22,7 @@ from typing import Final
 
 from .display import Ramtek9300
 from .errors import PortError
-from .host_session import HostSession
+from .host_session import HostSession, Record
 
 LOOPBACK: Final = "127.0.0.1"
 IDLE_SECONDS: Final = 600.0
@@ -43,8 +43,11 @@ class Server:
         *,
         idle_seconds: float = IDLE_SECONDS,
         partial_seconds: float = PARTIAL_SECONDS,
+        record: Record | None = None,
     ) -> None:
+        """Begin to listen; `record` is given the bytes of whole instructions, of one host after the other."""
         self.display = display
+        self.record = record
         self.idle_seconds = idle_seconds
         self.partial_seconds = partial_seconds
         self.served = 0
@@ -131,7 +134,8 @@ class Server:
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-        self._client = Client(connection, self.display, self.idle_seconds, self.partial_seconds)
+        session = HostSession(self.display, self.record)
+        self._client = Client(connection, session, self.idle_seconds, self.partial_seconds)
         self._selector.register(connection, selectors.EVENT_READ)
 
     def _show_out(self) -> None:
@@ -146,10 +150,10 @@ class Client:
     """The host that is there: its connection, what it sent and what it is to be sent."""
 
     def __init__(
-        self, connection: socket.socket, display: Ramtek9300, idle_seconds: float, partial_seconds: float
+        self, connection: socket.socket, session: HostSession, idle_seconds: float, partial_seconds: float
     ) -> None:
         self.socket = connection
-        self.session = HostSession(display)
+        self.session = session
         self.idle_seconds, self.partial_seconds = idle_seconds, partial_seconds
         self.gone = False
         self.sent_all = False

@@ -27,29 +27,63 @@ NO_LINKS = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EM
 """What a file system without hard links answers."""
 
 
+class Output:
+    """A file that comes to be piece by piece, beside its place, and is there when it is kept, wholly."""
+
+    def __init__(self, path: str | os.PathLike[str], *, overwrite: bool) -> None:
+        """Begin the file; OutputExistsError or OutputError where it cannot be."""
+        self.overwrite = overwrite
+        refuse_output(path, overwrite)
+        # Through a link, so that the link stays and what it names is replaced.
+        self.path = Path(os.path.realpath(path))
+        self._beside = self.path.with_name(f".{self.path.name[:100]}.{secrets.token_hex(6)}.part")
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+        try:
+            # Closed by `keep` or at the end of the with statement that this is used in.
+            self._file = open(os.open(self._beside, flags, 0o666), "wb")  # noqa: SIM115
+        except OSError as error:
+            raise _refusal(self.path, error) from None
+
+    def write(self, data: bytes) -> None:
+        """Add bytes; WriteError when they cannot be written."""
+        try:
+            self._file.write(data)
+        except OSError as error:
+            raise _refusal(self.path, error) from None
+
+    def keep(self) -> None:
+        """Sync the file and give it its name; WriteError or OutputExistsError when that fails."""
+        try:
+            with self._file:
+                self._file.flush()
+                os.fsync(self._file.fileno())
+            _name(self._beside, self.path, self.overwrite)
+            _sync_folder(self.path.parent)
+        except OutputError:
+            raise
+        except OSError as error:
+            raise _refusal(self.path, error) from None
+
+    def __enter__(self) -> "Output":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Leave nothing behind that was not kept."""
+        with suppress(OSError):
+            self._file.close()
+        with suppress(OSError):
+            os.unlink(self._beside)
+
+
 def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
     """Write the bytes beside the path, sync them, and give them its name.
 
     Raises OutputExistsError where the path exists and may not be overwritten, OutputError where nothing can
     be put, WriteError where writing failed. Nothing but a whole old or new file is left in any case.
     """
-    target = Path(path)
-    refuse_output(target, overwrite)
-    try:
-        # Through a link, so that the link stays and what it names is replaced.
-        target = Path(os.path.realpath(target))
-        beside = target.with_name(f".{target.name[:100]}.{secrets.token_hex(6)}.part")
-        try:
-            _write_synced(beside, data)
-            _name(beside, target, overwrite)
-        finally:
-            with suppress(OSError):
-                os.unlink(beside)
-        _sync_folder(target.parent)
-    except OutputError:
-        raise
-    except OSError as error:
-        raise _refusal(target, error) from None
+    with Output(path, overwrite=overwrite) as output:
+        output.write(data)
+        output.keep()
 
 
 def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
@@ -75,14 +109,6 @@ def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
         raise OutputError(
             f"a file name must be one that the system can hold, not {str(path)!r}; choose another name"
         ) from None
-
-
-def _write_synced(path: Path, data: bytes) -> None:
-    number = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
-    with open(number, "wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(number)
 
 
 def _name(beside: Path, target: Path, overwrite: bool) -> None:

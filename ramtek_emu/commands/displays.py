@@ -3,15 +3,15 @@
 import difflib
 import os
 import sys
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, TypeVar
 
 import click
 
 from ramtek_emu.errors import ConfigurationError, MissingInputError
-from ramtek_emu.writing import refuse_output, write_atomically
+from ramtek_emu.writing import Output, refuse_output, write_atomically
 
 if TYPE_CHECKING:
     from ramtek_emu.configuration import Configuration
@@ -31,6 +31,7 @@ def display_options(function: Function) -> Function:
         click.option(
             "--start", type=click.Path(), metavar="SNAPSHOT", help="Go on with the display of a snapshot."
         ),
+        click.option("--record", type=click.Path(), metavar="OUT", help="Keep the words that are sent."),
         click.option(
             "--snapshot", type=click.Path(), metavar="PNG", help="Keep the display: words, table, parameters."
         ),
@@ -77,6 +78,18 @@ def refuse_outputs(force: bool, *paths: str | None) -> None:
             if path in ("", "-"):
                 raise click.UsageError(f"an output must be the name of a file, not {path!r}; give it one")
             refuse_output(path, force)
+
+
+@contextmanager
+def recording(path: str | None, force: bool) -> Iterator[Callable[[bytes], object] | None]:
+    """What is to be given the words of whole instructions; their file is there once all went well."""
+    if path is None:
+        yield None
+        return
+    with Output(path, overwrite=force) as output:
+        yield output.write
+        output.keep()
+    tell(f"wrote {path}")
 
 
 def write_outputs(display: "Ramtek9300", output: str | None, snapshot: str | None, force: bool) -> None:

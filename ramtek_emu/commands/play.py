@@ -7,9 +7,9 @@ from ramtek_emu.commands.displays import (
     display_options,
     open_stream,
     reader_of,
+    recording,
     refuse_outputs,
     show,
-    tell,
     tell_the_end,
     write_outputs,
 )
@@ -25,7 +25,6 @@ Examples:
 @click.command(epilog=EXAMPLES)
 @click.argument("stream", type=click.Path())
 @display_options
-@click.option("--record", type=click.Path(), metavar="OUT", help="Keep the words that were played.")
 @click.option("--window", is_flag=True, help="Open the window even if a picture is written.")
 def play(
     stream: str,
@@ -47,24 +46,13 @@ def play(
 
     from ramtek_emu.host_session import HostSession
     from ramtek_emu.pipe import PolledPipe, serve_pipe
-    from ramtek_emu.writing import write_atomically
 
-    played = bytearray()
     read = reader_of(file)
-
-    def noted(most: int) -> bytes:
-        data = read(most)
-        if record is not None:
-            played.extend(data)
-        return data
-
-    if window or (output is None and snapshot is None):
-        show(display, PolledPipe(display, noted).serve_for)
-    else:
-        session = HostSession(display)
-        serve_pipe(session, noted, None)
-        tell_the_end(display, session.held_words, session.odd_byte)
-    if record is not None:
-        write_atomically(record, bytes(played[: len(played) & ~1]), overwrite=force)
-        tell(f"wrote {record}")
+    with recording(record, force) as kept:
+        session = HostSession(display, kept)
+        if window or (output is None and snapshot is None):
+            show(display, PolledPipe(session, read).serve_for)
+        else:
+            serve_pipe(session, read, None)
+            tell_the_end(display, session.held_words, session.odd_byte)
     write_outputs(display, output, snapshot, force)

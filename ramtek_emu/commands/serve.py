@@ -12,6 +12,7 @@ import click
 from ramtek_emu.commands.displays import (
     display_asked_for,
     display_options,
+    recording,
     refuse_outputs,
     show,
     tell,
@@ -20,7 +21,7 @@ from ramtek_emu.commands.displays import (
 )
 
 if TYPE_CHECKING:
-    from ramtek_emu.display import Ramtek9300
+    from ramtek_emu.host_session import HostSession
     from ramtek_emu.pipe import Read, Write
     from ramtek_emu.server import Server
 
@@ -59,6 +60,7 @@ def serve(
     once: bool,
     output: str | None,
     snapshot: str | None,
+    record: str | None,
     configuration: str | None,
     start: str | None,
     force: bool,
@@ -71,27 +73,31 @@ def serve(
     """
     if stdio == (port is not None):
         raise click.UsageError("a display must be served on one of --port and --stdio; give one of them")
-    refuse_outputs(force, output, snapshot)
+    refuse_outputs(force, output, snapshot, record)
     display = display_asked_for(configuration, start)
-    if stdio:
-        serve_stdio(display, window)
-    else:
-        serve_port(display, port or 0, host, idle, window, once)
+
+    from ramtek_emu.host_session import HostSession
+    from ramtek_emu.server import Server
+
+    with recording(record, force) as kept:
+        if stdio:
+            serve_stdio(HostSession(display, kept), window)
+        else:
+            with Server(display, port or 0, host, idle_seconds=idle, record=kept) as server:
+                serve_port(server, window, once)
     write_outputs(display, output, snapshot, force)
 
 
-def serve_stdio(display: "Ramtek9300", window: bool) -> None:
+def serve_stdio(session: "HostSession", window: bool) -> None:
     """Serve the program on the other ends of stdin and stdout until it sends no more."""
-    from ramtek_emu.host_session import HostSession
     from ramtek_emu.pipe import PolledPipe, serve_pipe
 
     read, write = standard_streams()
     if window:
-        show(display, PolledPipe(display, read, write).serve_for)
+        show(session.display, PolledPipe(session, read, write).serve_for)
         return
-    session = HostSession(display)
     serve_pipe(session, read, write)
-    tell_the_end(display, session.held_words, session.odd_byte)
+    tell_the_end(session.display, session.held_words, session.odd_byte)
 
 
 def standard_streams() -> "tuple[Read, Write | None]":
@@ -118,19 +124,16 @@ def standard_streams() -> "tuple[Read, Write | None]":
     return read, write
 
 
-def serve_port(display: "Ramtek9300", port: int, host: str, idle: float, window: bool, once: bool) -> None:
+def serve_port(server: "Server", window: bool, once: bool) -> None:
     """Serve hosts over TCP until Ctrl+C, until the window is closed, or until the first one has left."""
-    from ramtek_emu.server import Server
-
-    with Server(display, port, host, idle_seconds=idle) as server:
-        if window:
-            announce(server)
-            show(display, server.serve_for)
-            return
-        with until_told() as told:
-            announce(server)
-            while not told and not (once and server.served):
-                server.step(STEP_SECONDS)
+    if window:
+        announce(server)
+        show(server.display, server.serve_for)
+        return
+    with until_told() as told:
+        announce(server)
+        while not told and not (once and server.served):
+            server.step(STEP_SECONDS)
 
 
 def announce(server: "Server") -> None:

@@ -301,6 +301,24 @@ def test_a_played_stream_gives_its_picture_its_recording_and_its_snapshot(tmp_pa
     assert windowless.returncode == 69
 
 
+def test_what_hosts_sent_is_recorded_in_whole_instructions(tmp_path: Path) -> None:
+    record = tmp_path / "hosts.ramtek"
+    with started("serve", "--port", 0, "--record", record) as process:
+        assert process.stdout is not None
+        address = process.stdout.readline().decode().strip()
+        for part in (OUTLINE, words("0A03 0040 0 0"), COLOR_MAP):
+            with TcpPort(address) as port:
+                port.send(part)
+                port.send(words("0B01 0002"))
+                if part[0] != 0x0A03:
+                    port.receive(1)
+            time.sleep(0.3)
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(10) == 0
+    read = words("0B01 0002")
+    assert record.read_bytes() == stream(np.concatenate((OUTLINE, read, COLOR_MAP, read)))
+
+
 def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
     first, second = tmp_path / "first.png", tmp_path / "second.png"
     halves = np.split(OUTLINE, [11])

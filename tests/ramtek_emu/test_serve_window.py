@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from ramtek_emu import Ramtek9300, TcpPort, instructions
+from ramtek_emu.host_session import HostSession
 from ramtek_emu.pipe import PolledPipe
 from ramtek_emu.server import Server
 from ramtek_emu.window import Monitor
@@ -83,7 +84,7 @@ def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) 
     replies: list[bytes] = []
     left = [b"", stream.astype("<u2").tobytes()]
     display = Ramtek9300()
-    pipe = PolledPipe(display, lambda _: left.pop(), replies.append)
+    pipe = PolledPipe(HostSession(display), lambda _: left.pop(), replies.append)
     monitor = Monitor(display, on_tick=lambda: pipe.serve_for(0.01))
     monitor.open()
     end = time.monotonic() + 5
