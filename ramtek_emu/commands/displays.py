@@ -128,7 +128,17 @@ def open_stream(path: str) -> BinaryIO:
 def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
     """What gives the bytes that are there, at most so many, without waiting for more; nothing at the end."""
     number = file.fileno()
-    return lambda most: os.read(number, most)
+
+    def read(most: int) -> bytes:
+        try:
+            return os.read(number, most)
+        except OSError as cause:
+            reason = (cause.strerror or str(cause)).lower()
+            raise MissingInputError(
+                f"a stream must be readable to its end, and it is not ({reason}); try a copy of it"
+            ) from None
+
+    return read
 
 
 def tell(message: str) -> None:

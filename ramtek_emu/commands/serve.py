@@ -96,7 +96,8 @@ def serve_stdio(session: "HostSession", window: bool) -> None:
     if window:
         show(session.display, PolledPipe(session, read, write).serve_for)
         return
-    serve_pipe(session, read, write)
+    with until_told() as told:
+        serve_pipe(session, told.reading(read), write)
     tell_the_end(session.display, session.held_words, session.odd_byte)
 
 
@@ -132,7 +133,7 @@ def serve_port(server: "Server", window: bool, once: bool) -> None:
         return
     with until_told() as told:
         announce(server)
-        while not told and not (once and server.served):
+        while not told.given and not (once and server.served):
             server.step(STEP_SECONDS)
 
 
@@ -147,12 +148,40 @@ def announce(server: "Server") -> None:
     sys.stdout.flush()
 
 
+class Told:
+    """Whether Ctrl+C or a termination signal came: how a display that serves is ended, no failure."""
+
+    def __init__(self) -> None:
+        self.given = False
+        self._waiting = False
+
+    def signal(self, *_: object) -> None:
+        """Note the signal, and end what waits for input."""
+        self.given = True
+        if self._waiting:
+            raise InterruptedError
+
+    def reading(self, read: "Read") -> "Read":
+        """The same as `read`, which gives nothing more once the signal came, or when reading fails."""
+
+        def read_until_told(most: int) -> bytes:
+            try:
+                self._waiting = True
+                return b"" if self.given else read(most)
+            except OSError:
+                # Also a terminal or a socket whose other side has gone.
+                return b""
+            finally:
+                self._waiting = False
+
+        return read_until_told
+
+
 @contextmanager
-def until_told() -> Iterator[list[int]]:
-    """A list that Ctrl+C or a termination signal puts its number in: how a server is ended, no failure."""
-    told: list[int] = []
-    signals = (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.signal(number, lambda given, _: told.append(given)) for number in signals}
+def until_told() -> Iterator[Told]:
+    """Take note of Ctrl+C and termination signals for a while."""
+    told = Told()
+    before = {number: signal.signal(number, told.signal) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield told
     finally:
