@@ -32,7 +32,8 @@ def serve_pipe(session: HostSession, read: Read, write: Write | None) -> None:
             if reply and write is not None:
                 try:
                     write(reply)
-                except OSError:
+                except ConnectionError:
+                    # The host has gone.
                     write = None
 
 

@@ -157,10 +157,14 @@ def show(display: "Ramtek9300", serve_for: Callable[[float], None]) -> None:
 
 
 def tell_the_end(display: "Ramtek9300", held_words: int, odd_byte: bytes) -> None:
-    """Say what of a stream was not done: words that begin no instruction, an unfinished one, half a word."""
+    """Say what of a stream was not done: what is no instruction or has no effect, and what is not whole."""
     illegal = display.processor.illegal_words
     if illegal:
         tell(f"{illegal} {'word begins' if illegal == 1 else 'words begin'} no instruction: skipped")
+    unknown = display.processor.named_only
+    if unknown:
+        plural = "instruction is" if unknown == 1 else "instructions are"
+        tell(f"{unknown} {plural} known by name only: without effect")
     if held_words:
         tell(f"the stream ends within an instruction: its {held_words} words were dropped")
     if odd_byte:

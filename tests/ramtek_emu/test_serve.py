@@ -165,6 +165,8 @@ def test_only_replies_are_on_stdout_and_the_rest_is_said_on_stderr() -> None:
         "1 word begins no instruction: skipped",
         "the stream ends within an instruction: its 2 words were dropped",
     ]
+    named = run("serve", "--stdio", data=stream(words("1100 1200 0500")))
+    assert named.stderr == b"2 instructions are known by name only: without effect\n"
     nothing = run("serve", "--stdio")
     assert (nothing.returncode, nothing.stdout, nothing.stderr) == (0, b"", b"")
 

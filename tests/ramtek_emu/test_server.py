@@ -179,6 +179,35 @@ def test_a_silent_host_is_shown_out_and_one_that_leaves_an_instruction_unfinishe
         until(lambda: server.served == 1)
 
 
+def test_a_host_that_takes_no_replies_is_shown_out_after_a_while() -> None:
+    with serving(idle_seconds=0.4) as server, connected(server) as host:
+        asked = np.tile(READ_EVERYTHING, 1000).astype("<u2").tobytes()
+        host.sendall(asked)
+        until(lambda: server.served == 1)
+        assert server.display.processor.waiting == 0
+
+
+def test_random_bytes_over_tcp_leave_the_display_that_they_leave_here() -> None:
+    draw = np.random.default_rng(9400)
+    noise = draw.integers(0, 0x10000, 60_000).astype(np.uint16)
+    twin = Ramtek9300()
+    twin.send(noise)
+    twin.decoder.clear()
+    with serving() as server:
+        with connected(server) as host:
+            data = noise.astype("<u2").tobytes() + b"?"
+            reader = threading.Thread(target=lambda: [None for _ in iter(lambda: host.recv(1 << 16), b"")])
+            reader.start()
+            for place in range(0, len(data), 4999):
+                host.sendall(data[place : place + 4999])
+            host.shutdown(socket.SHUT_WR)
+            reader.join(20)
+        until(lambda: server.served == 1)
+        assert (server.display.words == twin.words).all()
+        assert (server.display.entries == twin.entries).all()
+        assert server.display.processor.parameters == twin.processor.parameters
+
+
 def test_a_host_that_ends_its_side_still_gets_its_replies() -> None:
     with serving() as server, connected(server) as host:
         host.sendall(READ_EVERYTHING.astype("<u2").tobytes())
