@@ -6,6 +6,7 @@ length, the fields that it has. So what is read from a file fits, or is refused 
 
 import base64
 import binascii
+import zlib
 from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 from typing import Any, Final
@@ -81,6 +82,23 @@ def restored(pattern: Any, value: Any, place: str) -> Any:
         pairs = enumerate(zip(pattern, value, strict=True))
         return tuple(restored(kind, item, f"{place}[{number}]") for number, (kind, item) in pairs)
     raise TypeError(f"a state must be made of plain values, not {type(pattern).__name__} ({place})")
+
+
+def packed(data: bytes) -> str:
+    """Many bytes as a text."""
+    return base64.b64encode(zlib.compress(data, 6)).decode("ascii")
+
+
+def unpacked(text: Any, size: int, place: str) -> bytes:
+    """So many bytes of such a text; no more than that are ever unpacked."""
+    unpacker = zlib.decompressobj()
+    try:
+        data = unpacker.decompress(base64.b64decode(text, validate=True), size + 1)
+    except (binascii.Error, zlib.error, ValueError, TypeError):
+        data = b""
+    if len(data) != size or not unpacker.eof:
+        raise refusal(place, f"{size} packed bytes", text)
+    return data
 
 
 def listed(pattern: Any, value: Any, place: str, most: int) -> list[Any]:

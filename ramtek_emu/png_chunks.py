@@ -19,7 +19,7 @@ from .errors import SnapshotError
 SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 MOST_FILE: Final = 48 << 20
 MOST_SIDE: Final = 4096
-MOST_TEXT: Final = 1 << 20
+MOST_TEXT: Final = 8 << 20
 """Bytes of all texts together."""
 MOST_CHUNKS: Final = 1 << 16
 

@@ -72,6 +72,16 @@ class ScanOut:
             self._beam and self._beam.lines_done,
         )
 
+    @property
+    def glass(self) -> tuple[int, Pixels]:
+        """With a beam: the lines begun since power-on that are painted, and what the monitor shows."""
+        return self._painted, self._glass
+
+    @glass.setter
+    def glass(self, shown: tuple[int, Pixels]) -> None:
+        self._painted = shown[0]
+        self._glass[...] = shown[1]
+
     def scan_out_into(self, pixels: Pixels) -> None:
         """Write the field as 0x00RRGGBB into a (lines, elements) uint32 array."""
         if self._beam is not None:

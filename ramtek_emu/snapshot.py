@@ -1,9 +1,9 @@
 """Snapshots: a whole display in a 16-bit PNG file, its words as pixels, everything else in text chunks.
 
 What is kept: the configuration, the words, the lookup table and its address counter, the parameters and what
-PUSHE put aside, loaded characters, cursors and switches, the status, the time. What is **not**: an
-instruction of which not all words have come, and replies that nobody has read; both belong to a host that is
-not in the file.
+PUSHE put aside, loaded characters, cursors and switches, the status, the time and what the glass shows. What
+is **not**: an instruction of which not all words have come, and replies that nobody has read; both belong to a
+host that is not in the file.
 
 The pixels are the words themselves, so that any program that reads 16-bit gray pictures reads them; they look
 dark, since ten bits of sixteen are used.
@@ -22,10 +22,10 @@ from .configuration import GMR_9300, Configuration
 from .display import Ramtek9300
 from .environment_instructions import MOST_SAVED
 from .errors import ConfigurationError, MissingInputError, SnapshotError
-from .plain_values import listed, plain, refusal, restored, whole_number
+from .plain_values import listed, packed, plain, refusal, restored, unpacked, whole_number
 from .png_chunks import MOST_FILE, picture_bytes, picture_of
 from .processor import Status
-from .timing import Timing
+from .timing import Beam, Timing
 from .writing import write_atomically
 
 SOFTWARE: Final = "ramtek_emu snapshot 1"
@@ -53,6 +53,10 @@ def snapshot_bytes(display: Ramtek9300) -> bytes:
             "driven": sorted([device, mask] for device, mask in cursors.driven.items()),
         },
     }
+    if display.beam is not None:
+        lines, pixels = display.scan_out.glass
+        colors = pixels.astype("<u4").view(np.uint8).reshape(-1, 4)[:, :3]
+        texts["glass"] = {"lines": lines, "pixels": packed(colors.tobytes())}
     written = {keyword: json.dumps(state, separators=(",", ":")) for keyword, state in texts.items()}
     return picture_bytes(display.words, {"Software": SOFTWARE} | written)
 
@@ -90,6 +94,8 @@ def display_of(data: bytes) -> Ramtek9300:
         ),
     )
     _restore_cursors(display, _state(texts, "cursors", "all", "track", "enter_is_pressed", "driven"))
+    if display.beam is not None:
+        _restore_glass(display, display.beam, _state(texts, "glass", "lines", "pixels"))
     return display
 
 
@@ -177,6 +183,15 @@ def _restore_cursors(display: Ramtek9300, state: dict[str, Any]) -> None:
     cursors.enter_is_pressed = restored(False, state["enter_is_pressed"], "enter_is_pressed")
     cursors.driven = {device: mask for device, mask in listed((0, 0), state["driven"], "driven", 256)}
     cursors.changed += 1
+
+
+def _restore_glass(display: Ramtek9300, beam: Beam, state: dict[str, Any]) -> None:
+    lines = whole_number(state["lines"], (0, beam.lines_done), "lines")
+    _, pixels = display.scan_out.glass
+    colors = np.zeros((pixels.size, 4), np.uint8)
+    data = unpacked(state["pixels"], 3 * pixels.size, "pixels")
+    colors[:, :3] = np.frombuffer(data, np.uint8).reshape(-1, 3)
+    display.scan_out.glass = lines, colors.view("<u4").reshape(pixels.shape)
 
 
 def _state(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:

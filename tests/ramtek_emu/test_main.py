@@ -47,7 +47,8 @@ def test_the_pattern_goes_to_a_picture_file_once(tmp_path: Path) -> None:
     again = ramtek("-o", str(path))
     assert again.returncode == 73
     assert again.stderr == (
-        f"ramtek: an output must be a new file, not {path}, which exists; choose another name or add --force\n"
+        f"ramtek: an output must be a new file, not {path}, which exists; "
+        "choose another name or add --force\n"
     )
     assert ramtek("-o", str(path), "--force").returncode == 0
 
