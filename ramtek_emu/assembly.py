@@ -19,7 +19,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InstructionError, ListingError
+from .errors import InstructionError
 from .instruction import MOST_BYTES, NO_WORDS, Instruction, encode
 from .instruction_set import (
     ADDRESSING_NAMES,
@@ -32,14 +32,10 @@ from .instruction_set import (
     Flags,
     Form,
 )
+from .listing_tokens import hexadecimal_words, numbers_of, refusal, string_of, tokens_of
 
 Words = NDArray[np.uint16]
 
-LEFT: Final = re.compile(r"\s*[0-9A-Fa-f]{4,}:(?: [0-9A-Fa-f]{4})*(?=\s|$)")
-TOKEN: Final = re.compile(r'\s+|;.*|"(?:[^"\\]|\\.)*"|[^\s";]+')
-NUMBER: Final = re.compile(r"-?[0-9]{1,6}|0[xX][0-9A-Fa-f]{1,4}")
-HEXADECIMAL: Final = re.compile(r"(?P<word>[0-9A-Fa-f]{1,4})(?:\*(?P<times>[0-9]{1,5}))?")
-ESCAPE: Final = re.compile(r"\\x([0-9A-Fa-f]{2})|\\(.)")
 FLAG_OF_NAME: Final = {name: flag for flag, name in (FLAG_NAMES | ADDRESSING_NAMES).items()} | {
     "OF1": Flags.OPERANDS_1,
     "OF2": Flags.OPERANDS_2,
@@ -48,9 +44,6 @@ FORM_OF_WORD: Final = {"WV": FORM_OF_NAME["WVL"]} | {form.name.upper(): form for
 OPERAND_OF_WORD: Final = {
     word.upper(): operand for operand in OPERANDS.values() for word in (operand.name, operand.mnemonic)
 }
-MOST_TIMES: Final = 0x8000
-MOST_LINE: Final = 1 << 16
-"""Characters of a line at most."""
 
 
 def assemble(lines: Iterable[str]) -> Iterator[bytes]:
@@ -62,13 +55,13 @@ def assemble(lines: Iterable[str]) -> Iterator[bytes]:
         if not tokens:
             continue
         if ended:
-            raise _refusal(
+            raise refusal(
                 number, f"the byte of line {ended} must be the last of the stream; delete one of them"
             )
         word = tokens[0].lower()
         if word in ("to", "text", "words"):
             if pending is None or not pending.takes_data:
-                raise _refusal(
+                raise refusal(
                     number,
                     f"data must follow an instruction that takes them, not {word!r}; put one before it",
                 )
@@ -82,7 +75,7 @@ def assemble(lines: Iterable[str]) -> Iterator[bytes]:
         elif word == "byte":
             (value,) = hexadecimal_words(tokens[1:2], number).tolist() or (0x100,)
             if value > 0xFF or len(tokens) != 2:
-                raise _refusal(number, f"a byte must be 00 to FF, not {' '.join(tokens[1:])!r}; write one")
+                raise refusal(number, f"a byte must be 00 to FF, not {' '.join(tokens[1:])!r}; write one")
             ended = number
             yield bytes((value,))
         else:
@@ -98,7 +91,7 @@ class Draft:
         self.number = number
         name = tokens[0].upper()
         if name not in FORM_OF_WORD:
-            raise _refusal(
+            raise refusal(
                 number,
                 f"an instruction must be one of the table, not {tokens[0]!r}; write its words after raw",
             )
@@ -112,7 +105,7 @@ class Draft:
         for token in rest:
             if token.isascii() and token.isdigit():
                 if next(rest, "").lower() != "bytes" or int(token[:6]) > MOST_BYTES:
-                    raise _refusal(
+                    raise refusal(
                         number,
                         f"a length must be 0 to {MOST_BYTES} and stand before the word bytes, not {token!r}; "
                         "write it so",
@@ -137,7 +130,7 @@ class Draft:
             words = numbers_of(value, self.number) if value else ()
             allowed = (0,) if self.form.asks else (6, 12) if operand.name == "conic" else (operand.words,)
             if len(words) not in allowed:
-                raise _refusal(
+                raise refusal(
                     self.number,
                     f"{name} must be {' or '.join(map(str, allowed))} numbers, not {value!r}; give all",
                 )
@@ -145,12 +138,12 @@ class Draft:
         elif not self.form.is_normal and name in (self.form.fixed or ()) and name != "length":
             words = numbers_of(value, self.number)
             if len(words) != 1:
-                raise _refusal(self.number, f"{name} must be one number, not {value!r}; give one")
+                raise refusal(self.number, f"{name} must be one number, not {value!r}; give one")
             self.operands[name] = words
         elif not self.form.is_normal and re.fullmatch(r"#[0-9]{1,3}", token) and int(token[1:]) <= 0xFF:
             self.low_byte = int(token[1:])
         else:
-            raise _refusal(
+            raise refusal(
                 self.number,
                 f"what follows {self.form.name} must be a flag, an operand or a length, not {token!r}; "
                 "see `ramtek list`",
@@ -161,7 +154,7 @@ class Draft:
         if kind == "text":
             codes = b"".join(string_of(token, number) for token in tokens)
             if self.bytes % 2:
-                raise _refusal(
+                raise refusal(
                     number, "text must follow an even number of bytes; join it with the line before"
                 )
             self.bytes += len(codes)
@@ -171,7 +164,7 @@ class Draft:
             if kind == "to":
                 points = [numbers_of(token, number) for token in tokens]
                 if any(len(point) != 2 for point in points):
-                    raise _refusal(
+                    raise refusal(
                         number, f"a point must be element,line, not {' '.join(tokens)!r}; write it so"
                     )
                 words = np.array(points, np.uint16).reshape(-1)
@@ -180,7 +173,7 @@ class Draft:
             self.bytes += 2 * len(words)
         self.data.append(words)
         if self.bytes > MOST_BYTES + 1:
-            raise _refusal(
+            raise refusal(
                 number,
                 f"the data must be at most {MOST_BYTES} bytes, not {self.bytes}; write two instructions",
             )
@@ -193,14 +186,14 @@ class Draft:
             length = self.bytes
         expected = 0 if self.form.replies else ((length or 0) + 1) // 2
         if len(data) != expected:
-            raise _refusal(
+            raise refusal(
                 self.number,
                 f"{self.form.name} must have data of {length or 0} bytes, not of {2 * len(data)}; "
                 "leave the length out to have it counted",
             )
         missing = [name for name in self.form.fixed or () if name not in self.operands and name != "length"]
         if missing:
-            raise _refusal(
+            raise refusal(
                 self.number, f"{self.form.name} must have all its operands; add {', '.join(missing)}"
             )
         low_byte = self.low_byte
@@ -213,67 +206,5 @@ class Draft:
         try:
             words = encode(Instruction(self.form, int(low_byte), named, length, data))
         except InstructionError as cause:
-            raise _refusal(self.number, str(cause)) from cause
+            raise refusal(self.number, str(cause)) from cause
         return words.astype("<u2", copy=False).tobytes()
-
-
-def tokens_of(line: str, number: int) -> list[str]:
-    """The words, numbers and strings of a line, without the words at the left and the comment."""
-    if len(line) > MOST_LINE:
-        raise _refusal(number, f"a line must be at most {MOST_LINE} characters, not {len(line)}; break it")
-    left = LEFT.match(line)
-    text = line[left.end() if left else 0 :].strip()
-    tokens, place = [], 0
-    while place < len(text):
-        found = TOKEN.match(text, place)
-        if found is None:
-            raise _refusal(
-                number, f"a string must end with a quotation mark, not as {text[place:][:40]!r}; add it"
-            )
-        place = found.end()
-        if not found[0].isspace() and not found[0].startswith(";"):
-            tokens.append(found[0])
-    return tokens
-
-
-def numbers_of(text: str, number: int) -> tuple[int, ...]:
-    """Numbers between commas, or the two points of a window, as 16-bit words."""
-    words = []
-    for part in text.replace("..", ",").split(","):
-        if not NUMBER.fullmatch(part) or not -0x8000 <= int(part, 0 if "x" in part.lower() else 10) <= 0xFFFF:
-            raise _refusal(
-                number, f"a number must be -32768 to 65535, decimal or after 0x, not {part!r}; write it so"
-            )
-        words.append(int(part, 0 if "x" in part.lower() else 10) & 0xFFFF)
-    return tuple(words)
-
-
-def hexadecimal_words(tokens: list[str], number: int) -> Words:
-    """Words such as 0010 and products such as 0010*640."""
-    values, times = [], []
-    for token in tokens:
-        found = HEXADECIMAL.fullmatch(token)
-        if found is None or int(found["times"] or 1) > MOST_TIMES:
-            raise _refusal(
-                number,
-                f"a word must be 0000 to FFFF, or one with *times to {MOST_TIMES}, not {token!r}; mend it",
-            )
-        values.append(int(found["word"], 16))
-        times.append(int(found["times"] or 1))
-    if sum(times) > MOST_TIMES:
-        raise _refusal(number, f"a line must be at most {MOST_TIMES} words, not {sum(times)}; break it")
-    return np.repeat(np.array(values, np.uint16), times)
-
-
-def string_of(token: str, number: int) -> bytes:
-    r"""The bytes of a string in quotation marks; `\"`, `\\` and `\x1B` stand for what cannot be written."""
-    text = ESCAPE.sub(lambda found: chr(int(found[1], 16)) if found[1] else found[2], token[1:-1])
-    if len(token) < 2 or token[0] != '"' or not all(ord(character) < 256 for character in text):
-        raise _refusal(
-            number, f"text must be in quotation marks, its codes 0 to 255, not {token!r}; write it so"
-        )
-    return text.encode("latin-1")
-
-
-def _refusal(number: int, sentence: str) -> ListingError:
-    return ListingError(f"line {number}: {sentence}")

@@ -2,8 +2,8 @@
 
 What is kept: the configuration, the words, the lookup table and its address counter, the parameters and what
 PUSHE put aside, loaded characters, cursors and switches, the status, the time and what the glass shows. What
-is **not**: an instruction of which not all words have come, and replies that nobody has read; both belong to a
-host that is not in the file.
+is **not**: an instruction of which not all words have come, and replies that nobody has read; both belong to
+a host that is not in the file.
 
 The pixels are the words themselves, so that any program that reads 16-bit gray pictures reads them; they look
 dark, since ten bits of sixteen are used.

@@ -29,13 +29,14 @@ def assemble(listing: str, output: str, force: bool) -> None:
         refuse_output(output, force)
     file = io.TextIOWrapper(open_stream(listing), encoding="latin-1")
 
-    from ramtek_emu import assembly
+    from ramtek_emu.assembly import assemble as assembled
+    from ramtek_emu.listing_tokens import MOST_LINE
 
     def lines() -> Iterator[str]:
-        while line := file.readline(assembly.MOST_LINE + 1):
+        while line := file.readline(MOST_LINE + 1):
             yield line
 
-    data = b"".join(assembly.assemble(lines()))
+    data = b"".join(assembled(lines()))
     if output == "-":
         sys.stdout.buffer.write(data)
         return
