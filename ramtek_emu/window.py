@@ -30,8 +30,7 @@ from .placement import pixel_under
 from .placement import placement as placement
 
 TICK_MILLISECONDS = 15
-BLINK_SECONDS = 0.5
-"""How long a blinking cursor is seen, and is then not seen. Assumed: the time model's half second."""
+BLINK_SECONDS = 0.5  # Seen for so long, then not. Assumed: as in the time model.
 KEY_DELAY, KEY_INTERVAL = 400, 40
 FIELD_MASKS = (0xFF0000, 0x00FF00, 0x0000FF, 0)
 REDRAWN_ON = frozenset(
@@ -58,8 +57,7 @@ def open_screen() -> None:
     if driver in ("offscreen", "dummy") and driver not in asked.split(","):
         pygame.display.quit()
         raise NoScreenError(
-            f"a window must have a screen, and the one that DISPLAY or WAYLAND_DISPLAY names does not "
-            f"answer; {advice}"
+            f"a window must have a screen, and that of DISPLAY or WAYLAND_DISPLAY does not answer; {advice}"
         )
 
 
@@ -84,9 +82,9 @@ class Monitor(Console):
     ) -> None:
         """Prepare a window; nothing is opened yet.
 
-        `on_key` returns whether it took the key: Esc, when nobody took it, leaves full screen, then asks to
-        close. `on_close` returns whether the window may close. `on_message` is given sentences for the
-        user, such as where a screenshot went; without it they stand in the window's caption.
+        `on_key` returns whether it took the key: Esc, when nobody took it, leaves full screen, then closes.
+        `on_close` returns whether the window may close. `on_message` is given sentences for the user, such as
+        where a screenshot went; without it they stand in the caption.
         """
         super().__init__(
             display,
@@ -143,6 +141,9 @@ class Monitor(Console):
             self._open = False
             pygame.display.quit()
 
+    def _to_be_shown(self) -> tuple[object, ...]:
+        return self.display.scan_out.stamp, pygame.display.get_window_size(), self.fit
+
     def show_message(self, message: str) -> None:
         """Show a sentence in the window's title bar."""
         if self._open:
@@ -169,18 +170,14 @@ class Monitor(Console):
         if self._open and self.on_tick is not None:
             self.on_tick()
         self.display.scan_out.blink_is_on = int(time.monotonic() / BLINK_SECONDS) % 2 == 0
-        if self._open and self._shown != (
-            self.display.scan_out.stamp,
-            pygame.display.get_window_size(),
-            self.fit,
-        ):
+        if self._open and self._shown != self._to_be_shown():
             self.refresh()
         return self._open
 
     def refresh(self) -> None:
         """Show the present field."""
         screen = pygame.display.get_surface()
-        self._shown = (self.display.scan_out.stamp, pygame.display.get_window_size(), self.fit)
+        self._shown = self._to_be_shown()
         self.refreshed += 1
         # The display's own cursor takes the place of the desktop's.
         pygame.mouse.set_visible(not any(cursor.is_visible for cursor in self.display.joystick.driven))
