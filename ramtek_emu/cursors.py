@@ -112,6 +112,11 @@ class Cursors:
         """Element, line and state of every cursor that is visible."""
         return tuple((each.element, each.line, each.state) for each in self.all if each.is_visible)
 
+    def forget_enter(self) -> None:
+        """Take back an ENTER that no cursor's reader has been told of."""
+        for cursor in self.all:
+            cursor.enter = False
+
     def hide(self) -> None:
         """Make every cursor unseen."""
         for cursor in self.all:

@@ -31,9 +31,13 @@ for _form in FORMS:
 
 @executes("RSET")
 def reset(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: LIN libdoc (clears interrupts, parameters and screen); BTL (the lookup table stays)."""
+    """Hardware: LIN libdoc (clears interrupts, parameters and screen); BTL (the lookup table stays).
+
+    Assumed: an ENTER that nobody has read is an interrupt too: the next program must not take it for its own.
+    """
     initialize(processor, instruction)
     processor.clear_status()
+    processor.cursors.forget_enter()
     processor.frame_buffer.fill(processor.parameters.whole_window, processor.parameters.background)
 
 

@@ -8,7 +8,12 @@ Assumed: every rate here. The sources give none for any model, only that program
 retrace before they loaded the table (NCAR).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+
+from .errors import ConfigurationError
+
+MOST = 1_000_000_000
+"""The largest rate: a second."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,6 +35,16 @@ class Timing:
     """One word written to the frame buffer."""
     blink_fields: int = 15
     """Fields that a blinking cursor is seen, and is then not seen."""
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value = getattr(self, each.name)
+            least = 1 if each.name in ("line", "blink_fields") else 0
+            if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= MOST:
+                raise ConfigurationError(
+                    f"{each.name} must be a whole number from {least} to {MOST}, not {value!r} (timing); "
+                    "give nanoseconds, lines or fields"
+                )
 
 
 class Beam:
@@ -64,7 +79,7 @@ class Beam:
     @property
     def blink_is_on(self) -> bool:
         """Whether blinking cursors are seen in this field."""
-        return self.field_number // max(1, self.timing.blink_fields) % 2 == 0
+        return self.field_number // self.timing.blink_fields % 2 == 0
 
     def charge(self, words: int, pixels: int) -> None:
         """Let the time of an instruction pass."""

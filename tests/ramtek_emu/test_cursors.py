@@ -50,6 +50,15 @@ def test_track_stands_and_enter_is_told_once() -> None:
     assert display.status == Status.READY
 
 
+def test_reset_forgets_an_enter_that_nobody_read_and_leaves_the_cursors() -> None:
+    display = Ramtek9300()
+    display.send(sent_words([0x1600, 5, 0x406]))
+    display.joystick.press_enter()
+    display.send(instructions.reset())
+    assert display.status == Status.READY
+    assert read(display, 0x1700) == [5, 0x406]
+
+
 def test_the_joystick_stays_on_the_screen_and_moves_what_it_is_connected_to() -> None:
     display = Ramtek9300()
     display.joystick.move_to(10_000, -5)

@@ -1,12 +1,14 @@
 import itertools
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ramtek_emu import GMR_9300, Ramtek9300, Timing, instructions
+from ramtek_emu import GMR_9300, ConfigurationError, Ramtek9300, Timing, instructions
 from ramtek_emu.timing import Beam
 from tests.ramtek_emu.strategies import SMALL, cuts, quick, sent_words, streams
 
@@ -89,6 +91,20 @@ def test_cursors_blink_with_the_fields() -> None:
     assert seen[:15] == [True] * 15 or sum(seen[:15]) == 14
     assert 28 <= sum(seen) <= 32
     assert sum(a != b for a, b in itertools.pairwise(seen)) in (3, 4)
+
+
+@pytest.mark.parametrize(
+    ("rates", "sentence"),
+    [
+        ({"line": 0}, "line must be a whole number from 1 to 1000000000, not 0 (timing)"),
+        ({"pixel": -1}, "pixel must be a whole number from 0 to 1000000000, not -1 (timing)"),
+        ({"word": 0.5}, "word must be a whole number from 0 to 1000000000, not 0.5 (timing)"),
+    ],
+)
+def test_rates_that_no_display_has_are_refused(rates: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ConfigurationError) as refusal:
+        Timing(**rates)
+    assert str(refusal.value) == f"{sentence}; give nanoseconds, lines or fields"
 
 
 @quick
