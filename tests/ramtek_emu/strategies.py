@@ -13,8 +13,8 @@ from ramtek_emu import Configuration
 from ramtek_emu.instruction_set import FORMS, SUBSTANTIATED
 from ramtek_emu.scan_orders import Point, Window
 
-quick = settings(deadline=None, max_examples=80)
-thorough = settings(deadline=None, max_examples=250)
+quick = settings(deadline=None, max_examples=60)
+thorough = settings(deadline=None, max_examples=150)
 
 SMALL = Configuration(name="SMALL", elements=13, lines=9, planes=10)
 
