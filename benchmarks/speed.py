@@ -12,8 +12,7 @@ import json
 import resource
 import statistics
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from itertools import count, cycle
 from pathlib import Path
 from typing import Any
@@ -24,20 +23,11 @@ import autocolor
 from autocolor.projection import projection
 from autocolor.scene import scene_of
 from autocolor.studio import Studio
+from benchmarks.cases import Case, timed
 from ramtek_emu import Ramtek9300, instructions
 
 COUPE = Path(__file__).parents[1] / "scenes" / "coupe"
-CACHES = 48 << 20
 ROUNDS = 25
-
-
-@dataclass(frozen=True)
-class Case:
-    """Something to time; `most` is its target as (what it is compared with, the largest ratio)."""
-
-    name: str
-    run: Callable[[], object]
-    most: tuple[str, float] | None = None
 
 
 def cases() -> Iterator[Case]:
@@ -96,20 +86,6 @@ def cases() -> Iterator[Case]:
     yield Case("four lights moved", all_lights, ("whole frame", 0.36))
     yield Case("projection", lambda: projection(scene.mesh, scene.view, 480, 640))
     yield Case("whole frame", frame)
-
-
-def timed(every: list[Case], rounds: int) -> dict[str, list[float]]:
-    """Seconds of each case in each round, the cases in turns."""
-    caches = np.zeros(CACHES, np.uint8)
-    seconds: dict[str, list[float]] = {case.name: [] for case in every}
-    for number in range(rounds + 2):
-        for case in every:
-            caches += 1
-            begin = time.perf_counter()
-            case.run()
-            if number >= 2:
-                seconds[case.name].append(time.perf_counter() - begin)
-    return seconds
 
 
 def hills(side: int) -> autocolor.Mesh:

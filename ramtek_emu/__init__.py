@@ -2,15 +2,21 @@
 
 What is modelled
     the instruction stream: one continuous row of words, cut anywhere, with its sticky operands
-    the frame buffer: ten planes behind a write mask, windows, eight scan orders
-    the video lookup table: 1024 parallel entries of 24 bits, or of 12
-    the characters: a 7 x 9 cell, dots of our own drawing, reloadable
-    scan-out: words through the table to a field of colors
-    the switches of the unit as status bits: illegal instruction
+    the instructions: instruction_set names their sources; those known by name only are consumed and flagged
+    the frame buffer: planes behind a write mask, a write window, image windows, scan orders, bytes or words
+    drawing: text, rasters, vectors with texture, points, conics, circles, areas, copies
+    the video lookup table: 1024 parallel entries of 24 bits, or of 12; the section that is shown
+    the characters: a 7 x 9 cell, dots of our own drawing, and those that a host loads
+    cursors and the joystick unit: positions, shapes, blinking, TRACK and ENTER, on the glass, not in memory
+    scan-out: words through the table to a field of colors, from an origin on, zoomed; also black and white
+    time, if the configuration has it: a beam, retrace, waiting (timing holds every rate; all are assumed)
+    the status bits of the interface: illegal instruction, cursor interrupt
 
 What is **not** modelled
-    time: an instruction is done when `send` returns; no source gives a rate
-    the monitor's beam: no interlace, no blanking, no phosphor
+    logical functions other than replacement, and write-enable offsets: no source tells what they do
+    keyboard, tablet, display lists, matrices, detection, arcs, packed images: known by name only
+    the alphanumeric overlay of the 9460: the words of its table go nowhere
+    interlace, blanking levels, phosphor
     the UNIBUS registers: a host port of two methods stands for them
     interrupts: their request bits can be read, nothing is interrupted
 
@@ -26,21 +32,33 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from .configuration import GMR_9300 as GMR_9300
+    from .configuration import JPL_9460 as JPL_9460
+    from .configuration import NCAR_9460 as NCAR_9460
     from .configuration import PRINCETON_9300 as PRINCETON_9300
     from .configuration import Configuration as Configuration
     from .configuration import EntryFormat as EntryFormat
+    from .cursors import Joystick as Joystick
     from .display import Ramtek9300 as Ramtek9300
     from .errors import ColorsError as ColorsError
     from .errors import ConfigurationError as ConfigurationError
     from .errors import InstructionError as InstructionError
+    from .errors import ListingError as ListingError
+    from .errors import MissingInputError as MissingInputError
     from .errors import NoScreenError as NoScreenError
+    from .errors import OutputError as OutputError
     from .errors import OutputExistsError as OutputExistsError
+    from .errors import PortError as PortError
     from .errors import RamtekError as RamtekError
     from .errors import ReplyError as ReplyError
+    from .errors import SnapshotError as SnapshotError
     from .errors import WordsError as WordsError
     from .errors import WriteError as WriteError
     from .host_port import HostPort as HostPort
     from .host_port import Recorder as Recorder
+    from .host_port import TcpPort as TcpPort
+    from .snapshot import read_snapshot as read_snapshot
+    from .snapshot import write_snapshot as write_snapshot
+    from .timing import Timing as Timing
 
 _HOME = {
     "ColorsError": "errors",
@@ -50,15 +68,27 @@ _HOME = {
     "GMR_9300": "configuration",
     "HostPort": "host_port",
     "InstructionError": "errors",
+    "JPL_9460": "configuration",
+    "Joystick": "cursors",
+    "ListingError": "errors",
+    "MissingInputError": "errors",
+    "NCAR_9460": "configuration",
     "NoScreenError": "errors",
+    "OutputError": "errors",
     "OutputExistsError": "errors",
     "PRINCETON_9300": "configuration",
+    "PortError": "errors",
     "Ramtek9300": "display",
     "RamtekError": "errors",
     "Recorder": "host_port",
     "ReplyError": "errors",
+    "SnapshotError": "errors",
+    "TcpPort": "host_port",
+    "Timing": "timing",
     "WordsError": "errors",
     "WriteError": "errors",
+    "read_snapshot": "snapshot",
+    "write_snapshot": "snapshot",
 }
 
 __all__ = list(_HOME)

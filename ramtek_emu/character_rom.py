@@ -8,6 +8,7 @@ Assumed: these shapes, drawn for this emulator: 5 x 7 dots in columns 1 to 5 and
 line 8, so that neither cells nor lines touch. Codes without a shape are blank.
 """
 
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -128,8 +129,9 @@ SHEET: Final = """
 """Codes 32 to 127, eight in a row."""
 
 
+@lru_cache
 def characters() -> NDArray[np.bool_]:
-    """The dots of the 256 character codes, (256, 9, 7); codes from 128 on repeat the first 128."""
+    """The dots of the 256 character codes, (256, 9, 7), read-only; codes from 128 on repeat the first 128."""
     rows = SHEET.strip().split("\n\n")
     shapes = np.zeros((256, CELL_LINES, CELL_ELEMENTS), np.bool_)
     code = 32
@@ -138,4 +140,19 @@ def characters() -> NDArray[np.bool_]:
         shapes[code : code + 8, 1:, 1:6] = dots.transpose(1, 0, 2)
         code += 8
     shapes[128:] = shapes[:128]
+    shapes.flags.writeable = False
     return shapes
+
+
+LOADED_ELEMENTS: Final = 8
+LOADED_LINES: Final = 12
+
+
+def loadable(shapes: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Room for characters that a host loads, (256, 12, 8), with the shapes of the ROM until it does.
+
+    Hardware: LIN (twelve rows of a byte each).
+    """
+    loaded = np.zeros((256, LOADED_LINES, LOADED_ELEMENTS), np.bool_)
+    loaded[:, :CELL_LINES, :CELL_ELEMENTS] = shapes
+    return loaded

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from .errors import ConfigurationError
+from .timing import Timing
 
 
 class EntryFormat(Enum):
@@ -33,6 +34,11 @@ class Configuration:
     entry_format: EntryFormat = EntryFormat.PAIR_24
     extended: bool = True
     """Whether the 9400/9460 instructions and the second operand flag word are there."""
+    cursors: int = 2
+    monochrome: bool = False
+    """Whether the monitor is black and white: it sees the low eight bits of an entry."""
+    timing: Timing | None = None
+    """How fast everything is; None: no time passes."""
 
     def __post_init__(self) -> None:
         limits = {
@@ -41,6 +47,7 @@ class Configuration:
             "planes": (self.planes, 1, 16),
             "visible_elements": (self.shown_elements, 1, self.elements),
             "visible_lines": (self.shown_lines, 1, self.lines),
+            "cursors": (self.cursors, 0, 8),
         }
         for name, (value, least, most) in limits.items():
             if not isinstance(value, int) or not least <= value <= most:
@@ -75,7 +82,7 @@ GMR_9300 = Configuration(name="GMR_9300", elements=640, lines=480, planes=10)
 
 Hardware: GM, 640 x 480 words of ten bits, one parallel table of 1024 x 24 bits.
 Assumed: the table takes the word pairs of the 9460, the same family and the same number of entries; no source
-shows a 9300 with a 24-bit table.
+shows a 9300 with a 24-bit table. It has two cursors, as Princeton's.
 Departs: the 9300 had no second operand flag word and no 9460 instructions; this display takes them, so that
 the programs of the whole family run on it. PRINCETON_9300 is the strict one.
 """
@@ -90,6 +97,23 @@ PRINCETON_9300 = Configuration(
 )
 """The RM-9300 of Princeton University.
 
-Hardware: LIN and PRG, 640 x 512 memory, 1024 entries of 12 bits, words of ten bits (cmap 3).
+Hardware: LIN and PRG, 640 x 512 memory, 1024 entries of 12 bits, words of ten bits (cmap 3), cursors 0 and 1.
 Assumed: all 640 elements are shown; the programs kept to 620, probably because the monitor cut the rest.
 """
+
+JPL_9460 = Configuration(name="JPL_9460", elements=640, lines=480, planes=8)
+"""The RM-9460 of the Jet Propulsion Laboratory, in its low resolution.
+
+Hardware: JPL, 640 x 480, bytes for pixels, four sections of 256 entries of 24 bits, two cursors.
+Assumed: eight planes, since its masks are FFh and its images bytes.
+"""
+
+NCAR_9460 = Configuration(name="NCAR_9460", elements=1280, lines=1024, planes=8, cursors=4)
+"""The RM-9460 of the National Center for Atmospheric Research.
+
+Hardware: NCAR and LONG, 1280 x 1024, bytes for pixels, 24-bit entries; LONG, cursors 0 to 3.
+Assumed: eight planes, since its masks are FFh; four sections of 256 entries, as JPL's.
+"""
+
+CONFIGURATIONS = {each.name: each for each in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)}
+"""The named configurations, by name."""

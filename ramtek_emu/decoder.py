@@ -6,22 +6,28 @@ instruction's.
 
 Assumed: a word whose opcode is in no row of the table, or that asks for a second operand flag word on a
 display without one, is skipped alone and flagged as illegal; the next word is read as an instruction. The
-sources know the status bit but not how the hardware finds its way again. Coordinates and lengths up to
-02FFh are no instructions either, so a stream with an unknown instruction soon falls into step.
+sources know the status bit but not how the hardware finds its way again.
+
+Assumed: conic coefficients are twelve words, as the only client sends them; the six of the header's comment
+are taken where twelve make no sense: in a WC with data, when the word that is the data's length after six
+would be the upper half of a coefficient after twelve, and is 4, the length of one point.
 """
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .configuration import GMR_9300, Configuration
 from .instruction import NO_WORDS, Instruction
-from .instruction_set import FORMS, ILLEGAL, Flags, Form, operands_named
+from .instruction_set import FORMS, ILLEGAL, OPERANDS, Flags, Form, operands_named
 
 Words = NDArray[np.uint16]
 MOST_HEAD = 64
 """More words than any instruction has before its data."""
+CONIC = 1 << list(OPERANDS).index("conic")
+"""The bit of the conic coefficients in the first operand flag word."""
 MOST_WORDS = MOST_HEAD + 0x8000
 """More words than any instruction has."""
 
@@ -30,8 +36,9 @@ class Decoder:
     """Takes words as they come and gives whole instructions; what is left waits for the next words."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
-        self._forms = {form.opcode: form for form in FORMS if configuration.extended or not form.extended}
         self._extended = configuration.extended
+        self._forms = forms_of_opcodes(configuration.extended)
+        self._begins = words_that_begin(configuration.extended)
         self._held: Words = np.empty(MOST_WORDS, np.uint16)
         self._count = 0
         self._needed = 1
@@ -45,8 +52,11 @@ class Decoder:
         """Forget the words of an instruction that is not complete."""
         self._count, self._needed = 0, 1
 
-    def feed(self, words: Words) -> Iterator[Instruction]:
-        """The instructions that these words complete, in order; their data are views where possible."""
+    def feed(self, words: Words, in_rows: bool = False) -> Iterator[Instruction]:
+        """The instructions that these words complete, in order; their data are views where possible.
+
+        Illegal words come one by one, or `in_rows` as the data of one illegal instruction.
+        """
         place = 0
         while self._count and place < len(words):
             taken = min(self._needed - self._count, len(words) - place)
@@ -63,6 +73,11 @@ class Decoder:
                 yield self._instruction(head, whole)
         while place < len(words):
             head = words[place : place + MOST_HEAD].tolist()
+            if in_rows and self._form(head[0]) is ILLEGAL:
+                row = self._illegal_row(words, place)
+                yield Instruction(ILLEGAL, 0, {}, None, words[place : place + row])
+                place += row
+                continue
             needed = self._words_needed(head)
             if needed > len(words) - place:
                 # Hold the beginning of an instruction.
@@ -72,8 +87,19 @@ class Decoder:
             place += needed
             yield self._instruction(head, words[place - needed : place])
 
+    def _illegal_row(self, words: Words, place: int) -> int:
+        """How many words from `place` on begin nothing."""
+        count, step = 1, MOST_HEAD
+        while place + count < len(words):
+            begins = self._begins[words[place + count : place + count + step]]
+            if begins.any():
+                return count + int(begins.argmax())
+            count += len(begins)
+            step *= 2
+        return count
+
     def _form(self, word: int) -> Form:
-        form = self._forms.get(word >> 8, ILLEGAL)
+        form = self._forms[word >> 8]
         if not self._extended and form.is_normal and word & Flags.OPERANDS_2:
             return ILLEGAL
         return form
@@ -90,8 +116,14 @@ class Decoder:
         count = FLAG_WORDS[flags & 6]
         if len(head) < count:
             return count
-        if count > 1:
-            count += sum(operand.words for operand in operands_named(*flag_words(head)))
+        if count > 1 and not form.asks:
+            first, second = flag_words(head)
+            count += sum(operand.words for operand in operands_named(first, second))
+            if first & CONIC and flags & Flags.DATA and form.name == "WC":
+                place = short_length_place(head)
+                if place is not None and len(head) <= place:
+                    return place + 1
+                count -= 6 if place is not None and head[place] == 4 else 0
         if flags & Flags.DATA:
             count += 1
             if not form.replies and len(head) >= count:
@@ -116,8 +148,12 @@ class Decoder:
             place = FLAG_WORDS[low_byte & 6]
             if place > 1:
                 for operand in operands_named(*flag_words(head)):
-                    operands[operand.name] = tuple(head[place : place + operand.words])
-                    place += operand.words
+                    size = 0 if form.asks else operand.words
+                    if operand.name == "conic" and form.name == "WC" and low_byte & Flags.DATA:
+                        length_place = short_length_place(head)
+                        size = 6 if length_place is not None and head[length_place] == 4 else 12
+                    operands[operand.name] = tuple(head[place : place + size])
+                    place += size
             if low_byte & Flags.DATA:
                 length = head[place]
                 place += 1
@@ -135,3 +171,31 @@ def flag_words(head: list[int]) -> tuple[int, int]:
     first = head[1] if head[0] & Flags.OPERANDS_1 else 0
     second = head[2 if head[0] & Flags.OPERANDS_1 else 1] if head[0] & Flags.OPERANDS_2 else 0
     return first, second
+
+
+@lru_cache
+def forms_of_opcodes(extended: bool) -> tuple[Form, ...]:
+    """The form of each of the 256 opcodes, with or without those of the 9400 and 9460."""
+    known = {form.opcode: form for form in FORMS if extended or not form.extended}
+    return tuple(known.get(opcode, ILLEGAL) for opcode in range(256))
+
+
+@lru_cache
+def words_that_begin(extended: bool) -> NDArray[np.bool_]:
+    """Whether each of the 65,536 words begins an instruction: rows of illegal ones are found at once."""
+    forms = forms_of_opcodes(extended)
+    begins = np.repeat([form is not ILLEGAL for form in forms], 256)
+    if not extended:
+        words = np.arange(0x10000)
+        begins &= ~(np.repeat([form.is_normal for form in forms], 256) & (words & Flags.OPERANDS_2 != 0))
+    return begins
+
+
+def short_length_place(head: list[int]) -> int | None:
+    """Where the data length is after six coefficients, if twelve make an upper half of that word."""
+    first, second = flag_words(head)
+    place = FLAG_WORDS[head[0] & 6]
+    coefficients = place + sum(operand.words for operand in operands_named(first & (CONIC - 1)))
+    length_place = place + sum(operand.words for operand in operands_named(first, second)) - 6
+    offset = length_place - coefficients
+    return length_place if offset < 12 and offset % 2 == 0 else None

@@ -1,6 +1,6 @@
 """Ramtek9300: the display, its boxes wired together.
 
-host port -> decoder -> processor -> frame buffer, lookup table -> scan-out -> field
+host port -> decoder -> processor -> frame buffer, lookup table, cursors -> scan-out -> field
 """
 
 from os import PathLike
@@ -10,11 +10,16 @@ from numpy.typing import NDArray
 
 from .checks import checked_stream
 from .configuration import GMR_9300, Configuration
+from .cursors import Cursors, Joystick
 from .decoder import Decoder
+from .executors import EXECUTORS as EXECUTORS
 from .frame_buffer import FrameBuffer
+from .instruction import Instruction
+from .instruction_set import FORM_OF_NAME
 from .lookup_table import LookupTable
 from .processor import Processor, Status
 from .scan_out import ScanOut
+from .timing import Beam
 
 Words = NDArray[np.uint16]
 
@@ -26,14 +31,52 @@ class Ramtek9300:
         self.configuration = configuration
         self.frame_buffer = FrameBuffer(configuration)
         self.lookup_table = LookupTable(configuration)
-        self.processor = Processor(configuration, self.frame_buffer, self.lookup_table)
+        self.cursors = Cursors(configuration.cursors)
+        lines, elements = configuration.shown_lines, configuration.shown_elements
+        self.joystick = Joystick(self.cursors, elements, lines)
+        self.beam = None if configuration.timing is None else Beam(configuration.timing, lines)
+        self.processor = Processor(
+            configuration, self.frame_buffer, self.lookup_table, self.cursors, self.beam
+        )
         self.decoder = Decoder(configuration)
-        self.scan_out = ScanOut(configuration, self.frame_buffer, self.lookup_table)
+        self.scan_out = ScanOut(
+            configuration,
+            self.frame_buffer,
+            self.lookup_table,
+            self.cursors,
+            lambda: self.processor.parameters,
+            self.beam,
+        )
 
     def send(self, words: Words) -> None:
         """Send 16-bit words as a host does, cut anywhere; WordsError when they are no words at all."""
-        for instruction in self.decoder.feed(checked_stream(words)):
-            self.processor.execute(instruction)
+        stream = checked_stream(words)
+        if self.beam is None:
+            for instruction in self.decoder.feed(stream, in_rows=True):
+                self.processor.execute(instruction)
+        else:
+            for instruction in self.decoder.feed(stream):
+                self._execute_in_time(instruction, self.beam)
+
+    def _execute_in_time(self, instruction: Instruction, beam: Beam) -> None:
+        # What the beam has passed keeps the look of before; what it has not will have that of after.
+        self.scan_out.follow_beam()
+        written = self.frame_buffer.written
+        self.processor.execute(instruction)
+        self.scan_out.follow_beam()
+        words = 1 + sum(map(len, instruction.operands.values())) + len(instruction.data)
+        beam.charge(words, self.frame_buffer.written - written)
+
+    def reset(self) -> None:
+        """Press RESET on the control unit: parameters, screen, cursors, and what a host left unfinished.
+
+        Hardware: PRG introdoc (the switch), DRIVER.c (the interface's hard reset).
+        Assumed: the lookup table and loaded characters stay, as after the instruction RSET.
+        """
+        self.decoder.clear()
+        self.processor.clear_replies()
+        self.cursors.hide()
+        self.send(np.array([FORM_OF_NAME["RSET"].opcode << 8], np.uint16))
 
     def receive(self, count: int) -> Words:
         """The next `count` words that a reading instruction left, uint16; ReplyError when there are fewer."""

@@ -46,7 +46,37 @@ class NoScreenError(RamtekError, RuntimeError):
     exit_code = 69
 
 
-class OutputExistsError(RamtekError, FileExistsError):
+class MissingInputError(RamtekError, OSError):
+    """A file to be read that is not there, or that cannot be read."""
+
+    exit_code = 66
+
+
+class ListingError(RamtekError, ValueError):
+    """A line of a listing that cannot be assembled."""
+
+    exit_code = 65
+
+
+class SnapshotError(RamtekError, ValueError):
+    """A file that is no snapshot of a display."""
+
+    exit_code = 65
+
+
+class PortError(RamtekError, ConnectionError):
+    """A display that is not reached, or no longer."""
+
+    exit_code = 69
+
+
+class OutputError(RamtekError, OSError):
+    """A place where no output can be made."""
+
+    exit_code = 73
+
+
+class OutputExistsError(OutputError, FileExistsError):
     """A file that would be overwritten."""
 
     exit_code = 73

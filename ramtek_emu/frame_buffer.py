@@ -58,20 +58,34 @@ class FrameBuffer:
         self._store(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable)
 
     def write_run(
-        self, window: Window, order: ScanOrder, start: Point, words: Words, enable: WriteEnable = EVERYTHING
+        self,
+        window: Window,
+        order: ScanOrder,
+        start: Point,
+        words: Words,
+        enable: WriteEnable = EVERYTHING,
+        dots: Dots | None = None,
     ) -> Point:
-        """Write words along the scan of a window from a point on; returns the point after the last one."""
+        """Write words along the scan of a window from a point on; returns the point after the last one.
+
+        Where `dots` are given, only those are written.
+        """
         size = window.width * window.height
         if size == 0:
             return start
         position = starting_position(window, order, start)
+        after = order.point(window, (position + len(words)) % size)
+        if dots is not None and len(words) > size:
+            words, dots = last_around(words, dots, size)
         # Only the last time around the window leaves anything behind.
         skipped = max(0, len(words) - size)
         for block in blocks(window, order, (position + skipped) % size, len(words) - skipped):
             first = skipped + block.first
-            data = words[first : first + block.inner * block.outer].reshape(block.outer, block.inner)
-            self.write_block(block.start, order, data, enable)
-        return order.point(window, (position + len(words)) % size)
+            part = slice(first, first + block.inner * block.outer)
+            data = words[part].reshape(block.outer, block.inner)
+            chosen = None if dots is None else dots[part].reshape(block.outer, block.inner)
+            self.write_block(block.start, order, data, enable, chosen)
+        return after
 
     def read_run(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
         """`count` words along the scan of a window from a point on, and the point after the last one."""
@@ -99,18 +113,29 @@ class FrameBuffer:
         self._store(place, order, block, enable, dots)
 
     def write_points(
-        self, elements: NDArray[np.intp], lines: NDArray[np.intp], word: int, enable: WriteEnable = EVERYTHING
+        self,
+        elements: NDArray[np.int64],
+        lines: NDArray[np.int64],
+        words: int | Words,
+        enable: WriteEnable = EVERYTHING,
     ) -> None:
-        """Write one word to each of the points that lie inside."""
+        """Write a word, or each its own, to the points that lie inside; the last word of one stays."""
         inside = enable.window.intersection(self.window)
+        mask = enable.mask & self._every_plane
+        if inside.is_empty or not mask or not len(elements):
+            return
         seen = (elements >= inside.left) & (elements <= inside.right)
         seen &= (lines >= inside.top) & (lines <= inside.bottom)
-        places = (lines[seen], elements[seen])
-        mask = enable.mask & self._every_plane
-        if mask:
-            kept = self._words[places] & np.uint16(~mask & 0xFFFF)
-            self._words[places] = kept | np.uint16(word & mask)
-            self.written += len(places[0])
+        places = lines * self._words.shape[1] + elements
+        if not seen.all():
+            places = places[seen]
+            words = words if isinstance(words, int) else words[seen]
+        memory = self._words.reshape(-1)
+        masked = np.uint16(words & mask) if isinstance(words, int) else words & np.uint16(mask)
+        if mask != self._every_plane:
+            masked = memory[places] & np.uint16(~mask & 0xFFFF) | masked
+        memory[places] = masked
+        self.written += len(places)
 
     def _store(
         self,
@@ -157,6 +182,18 @@ def part_of(place: Window, clipped: Window, order: ScanOrder) -> tuple[slice, sl
     down = place.bottom - clipped.bottom if order.upward else clipped.top - place.top
     elements, lines = slice(across, across + clipped.width), slice(down, down + clipped.height)
     return (elements, lines) if order.vertical else (lines, elements)
+
+
+def last_around(words: Words, dots: Dots, size: int) -> tuple[Words, Dots]:
+    """What a run of dots that goes around a window of `size` words more than once leaves behind."""
+    around = -(-len(words) // size)
+    rounds = np.zeros((around, size), np.uint16)
+    rounds.reshape(-1)[: len(words)] = words
+    written = np.zeros((around, size), np.bool_)
+    written.reshape(-1)[: len(dots)] = dots
+    last = around - 1 - written[::-1].argmax(axis=0)
+    any_dot: Dots = np.logical_or.reduce(written, axis=0)
+    return rounds[last, np.arange(size)], any_dot
 
 
 def starting_position(window: Window, order: ScanOrder, start: Point) -> int:

@@ -68,7 +68,7 @@ def encode(instruction: Instruction) -> Words:
     """The words of an instruction."""
     form = instruction.form
     if form is ILLEGAL:
-        return np.array(instruction.operands["word"], np.uint16)
+        return np.concatenate((np.array(instruction.operands.get("word", ()), np.uint16), instruction.data))
     head = [form.opcode << 8 | instruction.low_byte]
     if form.is_normal:
         flag_words = [

@@ -6,7 +6,8 @@ length in bytes and the data. A *special* one has a device, cursor or character 
 of operands.
 
 Hardware: LIN, BTL, JPL and NCAR agree on all of this; the counts of words are Linton's `Argno` and `libdoc`.
-Assumed: CONE is 12 words, as its only client sends; a header comment says 6.
+Assumed: CONE is 12 words, as its only client sends; a header comment says 6, which the decoder takes where
+nothing else can be meant.
 Assumed: DCL is one word, as its neighbours are; no client sends it.
 Assumed: the bits of the second flag word that no source names carry no words.
 """
@@ -14,6 +15,8 @@ Assumed: the bits of the second flag word that no source names carry no words.
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
+
+from .opcode_names import NAMED_ONLY
 
 
 class Flags:
@@ -84,6 +87,10 @@ class Form:
     """Whether the data go to the host: then a length is sent, but no data."""
     extended: bool = False
     """Whether only the 9400 and 9460 know it."""
+    named_only: bool = False
+    """Whether no source tells more than its name."""
+    asks: bool = False
+    """Whether the flag words name operands that go to the host: then none of them are sent."""
 
     @property
     def is_normal(self) -> bool:
@@ -94,9 +101,12 @@ class Form:
 ILLEGAL = Form(-1, "???", "no instruction", ())
 """What a word is that no row describes; it is skipped alone."""
 
-FORMS = (
+CHARACTER_ROWS = tuple(f"rows_{2 * pair}_{2 * pair + 1}" for pair in range(6))
+"""The operands of LPF: twelve rows of eight dots, two a word."""
+
+SUBSTANTIATED = (
     Form(0x03, "LAM", "load the lookup table", ("address", "length")),
-    Form(0x04, "RAM", "read the lookup table", ("address", "length"), replies=True),
+    Form(0x04, "RAM", "read the lookup table", ("address", "length"), replies=True, extended=True),
     Form(0x05, "RSET", "restore every parameter and erase the screen", ()),
     Form(0x06, "INIT", "restore every parameter", ()),
     Form(0x07, "NOP", "do nothing", ()),
@@ -105,8 +115,53 @@ FORMS = (
     Form(0x0A, "WI", "write an image"),
     Form(0x0B, "RI", "read an image", replies=True),
     Form(0x0C, "WT", "write text"),
+    Form(0x0D, "WR", "write a raster of one bit a pixel"),
     Form(0x0E, "WVL", "write linked vectors"),
+    Form(0x0F, "WC", "write a conic"),
+    Form(0x13, "PUSHE", "save the environment", (), extended=True),
+    Form(0x14, "POPE", "restore the environment", (), extended=True),
+    Form(0x15, "LPF", "load a character", CHARACTER_ROWS),
+    Form(0x16, "WCSS", "write a cursor, screen coordinates", ("element", "line_and_state")),
+    Form(0x17, "RCSS", "read a cursor, screen coordinates", ()),
+    Form(0x21, "LPFRP", "load a character, reverse packed", CHARACTER_ROWS, extended=True),
+    Form(0x24, "READP", "read parameters", extended=True, asks=True),
+    Form(0x25, "RERR", "read and clear the error status", (), extended=True),
+    Form(0x26, "ZOOM", "repeat elements and lines", ("zoom",), extended=True),
+    Form(0x27, "SELVO", "select the video origin", (), extended=True),
+    Form(0x29, "WAITVR", "wait for the vertical retrace", (), extended=True),
+    Form(0x2A, "WAITL", "wait for a line", ("line",), extended=True),
+    Form(0x2B, "BERS", "erase the whole memory", extended=True),
+    Form(0x2C, "WCSP", "write a cursor, pixel coordinates", ("element", "line_and_state"), extended=True),
+    Form(0x2D, "WCSG", "write a cursor, global coordinates", ("element", "line", "state"), extended=True),
+    Form(0x2E, "RCSP", "read a cursor, pixel coordinates", (), extended=True),
+    Form(0x2F, "RCSG", "read a cursor, global coordinates", (), extended=True),
+    Form(0x30, "LCF", "load a cursor's shape", ("length",), extended=True),
+    Form(0x33, "DDCC", "connect a tracking device to cursors", ("cursors",), extended=True),
+    Form(0x35, "WVU", "write unlinked vectors", extended=True),
+    Form(0x38, "WPT", "write points", extended=True),
+    Form(0x39, "WRP", "write random pixels", extended=True),
+    Form(0x3A, "FILL", "fill an area", extended=True),
+    Form(0x4E, "ATTPF", "attach a font", (), extended=True),
+    Form(0x69, "COPY", "copy an image", extended=True),
+    Form(0x6D, "CIRC", "write circles", extended=True),
 )
+"""What the programs of the time substantiate, and what their names leave little doubt about.
+
+Hardware: LIN, PRG, BTL (those that are not extended), JPL, NCAR (RAM, ZOOM, SELVO, WAITVR, the pixel and
+global cursor forms, LCF, DDCC, ATTPF; FILL, WPT and CIRC in disabled code).
+Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP,
+WVU, WRP and COPY, of which the sources give
+numbers and names; each is described where it is done.
+"""
+FORMS = SUBSTANTIATED + tuple(
+    Form(opcode, name, meaning, extended=True, named_only=True) for opcode, name, meaning in NAMED_ONLY
+)
+"""Every row.
+
+Assumed: an instruction known by its name only has the normal format: its flag words, operands and data are
+consumed as its low byte says, so that the next instruction is found; the operands are taken, for they are
+sticky; nothing else is done, and the illegal-instruction status is set.
+"""
 FLAG_NAMES = {
     Flags.REVERSE_PACKING: "RP",
     Flags.SWAP: "BK",

@@ -172,6 +172,51 @@ def write_vectors(vertices: object, word: int | None = None, start: Sequence[int
     return concatenate(*parts)
 
 
+def write_circles(circles: Sequence[Sequence[int]], word: int | None = None) -> Words:
+    """CIRC: outlines of circles, each an element, a line and a radius, from one center to the last."""
+    numbers = whole_numbers(circles, "circles", WordsError)
+    if numbers.ndim != 2 or numbers.shape[1] != 3 or not 0 < len(numbers) <= MOST_BYTES // 6:
+        raise WordsError(
+            f"circles must be an (n, 3) array of element, line and radius with 1 to {MOST_BYTES // 6} rows, "
+            f"not of shape {numbers.shape}; reshape or divide it"
+        )
+    words = (numbers.astype(np.int64) & 0xFFFF).astype(np.uint16)
+    return encode(normal("CIRC", {"foreground": word}, words.reshape(-1)))
+
+
+def fill(element: int, line: int, word: int | None = None) -> Words:
+    """FILL: the area around a place, up to pixels of the foreground, with the foreground."""
+    operands: dict[str, Numbers | None] = {"foreground": word, "start": (element, line)}
+    return encode(normal("FILL", operands, np.zeros(1, np.uint16)))
+
+
+def zoom(across: int = 1, down: int | None = None) -> Words:
+    """ZOOM: show every pixel as `across` elements and `down` lines, 1 to 16; `down` as `across` if absent."""
+    factors = (across, across if down is None else down)
+    if not all(isinstance(each, int) and 1 <= each <= 16 for each in factors):
+        raise InstructionError(f"zoom factors must be 1 to 16, not {factors}; choose smaller ones")
+    return np.array((FORM_OF_NAME["ZOOM"].opcode << 8, factors[1] - 1 << 8 | factors[0] - 1), np.uint16)
+
+
+def write_cursor(
+    number: int, element: int, line: int, *, visible: bool = True, blinking: bool = False
+) -> Words:
+    """WCSS: place a cursor on the screen, and show or hide it."""
+    place = number, element, line
+    for each, value, most in zip(("cursor", "element", "line"), place, (255, 0x7FF, 0x3FF), strict=True):
+        if not 0 <= value <= most:
+            raise InstructionError(f"a cursor's {each} must be 0 to {most}, not {value}; keep to the screen")
+    state = (0x0400 if visible else 0) | (0x0800 if blinking else 0)
+    return np.array((FORM_OF_NAME["WCSS"].opcode << 8 | number, element, line | state), np.uint16)
+
+
+def read_cursor(number: int) -> Words:
+    """RCSS: ask for a cursor; receive two words, the element, and the line with the state above ten bits."""
+    if not 0 <= number <= 255:
+        raise InstructionError(f"a cursor's number must be 0 to 255, not {number}; choose one there is")
+    return np.array([FORM_OF_NAME["RCSS"].opcode << 8 | number], np.uint16)
+
+
 def concatenate(*parts: Words) -> Words:
     """One stream of several."""
     return np.concatenate(parts) if parts else NO_WORDS

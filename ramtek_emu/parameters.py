@@ -2,11 +2,11 @@
 
 Assumed: at power-on and after RSET and INIT the foreground is all ones (BTL's programs draw before they set
 one), the background 0, the mask all ones, the window the whole memory, the scan order 0, the cell 7 x 9
-(PRG), and everything else 0; no source lists the values.
+(PRG), the zoom 1, the video origin at the top, and everything else 0; no source lists the values.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from .character_rom import CELL_ELEMENTS, CELL_LINES
 from .configuration import Configuration
@@ -15,11 +15,26 @@ from .instruction_set import Flags
 from .scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
 
 ORIGIN = Point(0, 0)
+STANDARD_FONT = 0xFF
+"""Hardware: NCAR."""
 
 
 def signed(word: int) -> int:
     """A word as a two's complement number: programs send coordinates below 0 (Hardware: PRG, chase)."""
     return word - 0x10000 if word & 0x8000 else word
+
+
+def coefficients(words: tuple[int, ...]) -> tuple[int, ...]:
+    """The six numbers of a conic: from six words of 16 bits, or from twelve, high word first.
+
+    Hardware: LIN wc.c sends pairs whose high word is always 0.
+    Assumed: so a pair with a high word of 0 is the 16-bit number of its low word, which may be below 0; any
+    other pair is a number of 32 bits.
+    """
+    if len(words) == 6:
+        return tuple(map(signed, words))
+    pairs = zip(words[::2], words[1::2], strict=True)
+    return tuple(signed(high) << 16 | low if high else signed(low) for high, low in pairs)
 
 
 @dataclass(kw_only=True)
@@ -38,7 +53,8 @@ class Parameters:
     spacing: tuple[int, int] = (0, 0)
     scale: int = 0
     function: int = 0
-    conic: tuple[int, ...] = (0,) * 12
+    conic: tuple[int, ...] = (0,) * 6
+    """Coefficients a to e of 0 = a x^2 + b y^2 + c xy + d x + e y, and the most pixels (0: no limit)."""
     base_line: int = 0
     scroll: int = 0
     start: Point = ORIGIN
@@ -49,7 +65,15 @@ class Parameters:
     texture: tuple[int, int] = (0xFFFF, 0)
     display_class: int = 0
     image_mode: int = 0
+    zoom: tuple[int, int] = (1, 1)
+    """How often each element and each line is repeated."""
+    origin_at_bottom: bool = False
+    """Whether lines are counted from the bottom of the screen."""
+    font: int = 0
+    """The font that text is set in; STANDARD_FONT is the ROM's."""
     whole_window: Window = field(repr=False)
+    whole_word: int = field(repr=False)
+    """A word with every plane set."""
 
     @classmethod
     def at_reset(cls, configuration: Configuration) -> "Parameters":
@@ -62,7 +86,19 @@ class Parameters:
             read_mask=0xFFFF,
             write_window=window,
             whole_window=window,
+            whole_word=configuration.largest_word,
         )
+
+    def copy(self) -> "Parameters":
+        """The same, on their own."""
+        return replace(self)
+
+    def operand(self, name: str) -> tuple[int, ...]:
+        """The words that an operand stands at."""
+        value = getattr(self, name)
+        if name == "conic":
+            value = tuple(half for number in value for half in (number >> 16, number))
+        return tuple(number & 0xFFFF for number in (value if isinstance(value, tuple) else (value,)))
 
     @property
     def order(self) -> ScanOrder:
@@ -96,6 +132,7 @@ class Parameters:
         """Set the operands of a normal instruction.
 
         Hardware: LIN, BTL, LONG: a window moves the operating point to the corner where the scan starts.
+        Assumed: registers are of 16 bits, so that what is counted from a base wraps there.
         Assumed: a start point in the same instruction wins; window and start are counted from the base,
         which is taken before either moves; the corner is that of the scan order after the instruction.
         """
@@ -109,13 +146,22 @@ class Parameters:
                 setattr(self, name, Point(signed(words[0]), signed(words[1])))
             elif name == "write_window":
                 self.write_window = Window(*map(signed, words))
+            elif name == "conic":
+                self.conic = coefficients(words)
             elif len(words) == 1:
                 setattr(self, name, words[0])
             else:
                 setattr(self, name, words)
         if "window" in operands:
-            self.window = Window(*map(signed, operands["window"])).moved(*base)
+            left, top, right, bottom = operands["window"]
+            element, line = base
+            self.window = Window(
+                signed(left + element & 0xFFFF),
+                signed(top + line & 0xFFFF),
+                signed(right + element & 0xFFFF),
+                signed(bottom + line & 0xFFFF),
+            )
             self.start = self.order.corner(self.window)
         if "start" in operands:
             element, line = operands["start"]
-            self.start = Point(base.element + signed(element), base.line + signed(line))
+            self.start = Point(signed(element + base.element & 0xFFFF), signed(line + base.line & 0xFFFF))

@@ -1,10 +1,12 @@
 """Processor: executes instructions; owns the sticky parameters, the status and what is to be read back.
 
-Each instruction is a row of the table and one function here.
+Each instruction is a row of the table and one function in a room of its subject: images, drawing, the lookup
+table, cursors, the environment.
 
 What is modelled: the parameters, the addressing modes, image modes, replies in order, the illegal-instruction
 bit. What is **not**: logical functions other than replacement; they replace (Assumed: FUNC, whose codes no
-source explains).
+source explains); write-enable offsets, which are kept and read back and move nothing (Assumed: WOF; its only
+client, NCAR, sends the corner of the window beside coordinates that contain it already).
 """
 
 from collections import deque
@@ -14,16 +16,16 @@ from enum import IntFlag
 import numpy as np
 from numpy.typing import NDArray
 
-from . import drawing
-from .character_rom import characters
+from .character_rom import characters, loadable
 from .configuration import Configuration
+from .cursors import Cursors
 from .errors import ReplyError
 from .frame_buffer import FrameBuffer
 from .instruction import NO_WORDS, Instruction
 from .instruction_set import Flags
 from .lookup_table import LookupTable
 from .parameters import Parameters
-from .scan_orders import Point
+from .timing import Beam
 
 Words = NDArray[np.uint16]
 MOST_WAITING = 1 << 22
@@ -45,17 +47,52 @@ class Processor:
     """The instruction processor between the decoder and the memories."""
 
     def __init__(
-        self, configuration: Configuration, frame_buffer: FrameBuffer, lookup_table: LookupTable
+        self,
+        configuration: Configuration,
+        frame_buffer: FrameBuffer,
+        lookup_table: LookupTable,
+        cursors: Cursors | None = None,
+        beam: Beam | None = None,
     ) -> None:
         self.configuration = configuration
         self.frame_buffer = frame_buffer
         self.lookup_table = lookup_table
+        self.cursors = Cursors(configuration.cursors) if cursors is None else cursors
+        self.beam = beam
         self.parameters = Parameters.at_reset(configuration)
+        self.saved: list[Parameters] = []
+        """What PUSHE put aside, the newest last."""
         self.characters = characters()
-        self.status = Status.READY
+        """The dots of the ROM, (256, 9, 7)."""
+        self.loaded_characters = loadable(self.characters)
+        """The dots of the characters that a host may load, (256, 12, 8); the ROM's until it does."""
         self.illegal_words = 0
         """Words skipped because no instruction begins with them; it only grows."""
+        self.named_only = 0
+        """Instructions consumed of which only the name is known; it only grows."""
+        self._illegal = False
         self._replies: deque[Words] = deque()
+        self._waiting = 0
+
+    @property
+    def status(self) -> Status:
+        """The bits of the interface's status register."""
+        status = Status.READY
+        if self._illegal:
+            status |= Status.ILLEGAL
+        return status | Status.CURSOR if self.cursors.enter_is_pressed else status
+
+    def flag_illegal(self) -> None:
+        """Set the illegal-instruction bit."""
+        self._illegal = True
+
+    def clear_status(self) -> None:
+        """Clear the requests of the status register."""
+        self._illegal = self.cursors.enter_is_pressed = False
+
+    def clear_replies(self) -> None:
+        """Forget what no host has read."""
+        self._replies.clear()
         self._waiting = 0
 
     @property
@@ -65,9 +102,30 @@ class Processor:
 
     def execute(self, instruction: Instruction) -> None:
         """Take an instruction's operands, then do it; nothing that a host sends raises."""
-        if instruction.form.is_normal:
+        if instruction.form.is_normal and instruction.operands and not instruction.form.asks:
             self.parameters.take(instruction.operands, instruction.low_byte)
         EXECUTORS[instruction.form.name](self, instruction)
+
+    def points(self, instruction: Instruction, numbers_each: int = 2) -> NDArray[np.int64]:
+        """The data as (n, numbers_each) signed numbers; what is left over at the end is no point."""
+        size = 2 * numbers_each
+        words = instruction.data[: (instruction.length or 0) // size * numbers_each]
+        return words.view(np.int16).reshape(-1, numbers_each).astype(np.int64)
+
+    def placed(self, points: NDArray[np.int64], flags: int) -> NDArray[np.int64]:
+        """(n, 2) points as the addressing mode counts them.
+
+        Assumed: with relative addressing each point is counted from the one before, the first from the
+        operating point. Coordinates are registers of 16 bits.
+        """
+        if flags & Flags.ADDRESSING == Flags.RELATIVE:
+            points = np.cumsum(points, axis=0) + self.parameters.start
+        elif flags & Flags.ADDRESSING:
+            points = points + self.parameters.base(flags)
+        else:
+            return points
+        wrapped: NDArray[np.int64] = (points + 0x8000) % 0x10000 - 0x8000
+        return wrapped
 
     def reply(self, words: Words) -> None:
         """Hold words for the host."""
@@ -113,149 +171,3 @@ def executes(name: str) -> Callable[[Executor], Executor]:
         return executor
 
     return enter
-
-
-@executes("???")
-def skip_illegal_word(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: PRG (the status bit). Assumed: the word alone is skipped."""
-    processor.status |= Status.ILLEGAL
-    processor.illegal_words += 1
-
-
-@executes("RSET")
-def reset(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: LIN libdoc (clears interrupts, parameters and screen); BTL (the lookup table stays)."""
-    initialize(processor, instruction)
-    processor.status = Status.READY
-    processor.frame_buffer.fill(processor.parameters.whole_window, processor.parameters.background)
-
-
-@executes("INIT")
-def initialize(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: the parameters alone, since libdoc speaks of erasing for RSET only."""
-    processor.parameters = Parameters.at_reset(processor.configuration)
-
-
-@executes("NOP")
-@executes("SET")
-def do_nothing(processor: Processor, instruction: Instruction) -> None:
-    """Nothing beyond taking the operands."""
-
-
-@executes("ERS")
-def erase(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag)."""
-    parameters = processor.parameters
-    _, background = processor.colors(instruction)
-    processor.frame_buffer.fill(parameters.window, background, parameters.enable)
-
-
-@executes("WI")
-def write_image(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: LIN, PIC (one word a pixel); JPL, NCAR (mode 1, two pixels a word; a run goes on).
-
-    Assumed: of an odd number of bytes in mode 0 the last is no pixel.
-    """
-    parameters = processor.parameters
-    if parameters.image_mode & 1:
-        words = np.frombuffer(instruction.data_bytes(), np.uint8).astype(np.uint16)
-    else:
-        words = instruction.data[: (instruction.length or 0) // 2]
-    parameters.start = processor.frame_buffer.write_run(
-        parameters.window, parameters.order, parameters.start, words, parameters.enable
-    )
-
-
-@executes("RI")
-def read_image(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: LIN (one word a pixel), NCAR (the read mask).
-
-    Assumed: planes that are not there read as 0; the run moves the operating point as writing does; a byte
-    that fills up the last word is 0.
-    """
-    parameters = processor.parameters
-    length = instruction.length or 0
-    count = length if parameters.image_mode & 1 else length // 2
-    words, parameters.start = processor.frame_buffer.read_run(
-        parameters.window, parameters.order, parameters.start, count
-    )
-    words &= np.uint16(parameters.read_mask)
-    if parameters.image_mode & 1:
-        data = words.astype(np.uint8).tobytes() + bytes(length % 2)
-        reverse = instruction.low_byte & Flags.REVERSE_PACKING
-        words = np.frombuffer(data, "<u2" if reverse else ">u2").astype(np.uint16)
-    processor.reply(words)
-
-
-@executes("WT")
-def write_text(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: BTL, LIN, JPL (cells of 7 x 9); LIN (the swap flag).
-
-    Assumed: the additive flag leaves the pixels between the dots as they are, from its name.
-    """
-    parameters = processor.parameters
-    foreground, background = processor.colors(instruction)
-    style = drawing.TextStyle(
-        dimensions=parameters.dimensions,
-        spacing=parameters.spacing,
-        size=(1 + (parameters.scale & 0x0F), 1 + (parameters.scale >> 8 & 0x0F)),
-        foreground=foreground,
-        background=background,
-        transparent=bool(instruction.low_byte & Flags.ADDITIVE),
-    )
-    parameters.start = drawing.write_text(
-        processor.frame_buffer,
-        processor.characters,
-        instruction.data_bytes(),
-        style,
-        window=parameters.window,
-        order=parameters.order,
-        start=parameters.start,
-        enable=parameters.enable,
-    )
-
-
-@executes("WVL")
-def write_linked_vectors(processor: Processor, instruction: Instruction) -> None:
-    """Link vertices to the operating point, which ends at the last.
-
-    Hardware: LIN, BTL, JPL (from the operating point through every vertex, which it ends at); BTL (a
-    vector to the operating point is a point).
-
-    Assumed: with relative addressing each vertex is counted from the one before.
-    """
-    parameters = processor.parameters
-    numbers = instruction.data[: (instruction.length or 0) // 4 * 2].view(np.int16).reshape(-1, 2)
-    if not len(numbers):
-        return
-    vertices = np.vstack(([parameters.start], numbers)).astype(np.int64)
-    if instruction.low_byte & Flags.ADDRESSING == Flags.RELATIVE:
-        vertices = np.cumsum(vertices, axis=0)
-    else:
-        vertices[1:] += parameters.base(instruction.low_byte)
-    # Coordinates are registers of 16 bits.
-    vertices = (vertices + 0x8000) % 0x10000 - 0x8000
-    word, _ = processor.colors(instruction)
-    drawing.write_vectors(processor.frame_buffer, vertices, word, parameters.enable)
-    parameters.start = Point(*vertices[-1].tolist())
-
-
-@executes("LAM")
-def load_lookup_table(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: JPL, NCAR (the device number is a table's, 0 on systems of one channel).
-
-    Assumed: words for a table that is not there go nowhere.
-    """
-    if instruction.low_byte == 0:
-        words = instruction.data[: (instruction.length or 0) // 2]
-        processor.lookup_table.load(instruction.operands["address"][0], words)
-
-
-@executes("RAM")
-def read_lookup_table(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: JPL (the packing of LAM). Assumed: a table that is not there reads as zeros."""
-    count = (instruction.length or 0) // 2
-    if instruction.low_byte == 0:
-        processor.reply(processor.lookup_table.read(instruction.operands["address"][0], count))
-    else:
-        processor.reply(np.zeros(count, np.uint16))

@@ -1,48 +1,97 @@
-"""ScanOut: words through the lookup table, one field at a time.
+"""ScanOut: words through the lookup table, one field at a time, with the cursors on top.
 
-What is modelled: every visible word selects its entry; with fewer planes than the table has address bits,
-the upper bits of the table's address counter pick the part that is shown. What is **not**: interlace,
-blanking and the time of the beam.
+What is modelled: every visible word selects its entry; origin, zoom and video origin pick what is visible;
+with fewer planes than the table has address bits, the upper bits of the table's address counter pick the
+part that is shown; the cursors; a black-and-white monitor; with a beam, each line as the memories were when
+the beam passed it. What is **not**: interlace, the levels of blanking and border.
 
-Hardware: GM (one word selects all three components); LIN, JPL, BTL (parking the address counter).
+Hardware: GM (one word selects all three components); LIN, JPL, BTL (parking the address counter); PRG cmap.c,
+introdoc (a black-and-white monitor sees the low eight bits of an entry).
+Assumed: a cursor is white where the picture is dark and black where it is light, so that it is always seen;
+how the 9300 mixed it into the video is in no source.
 """
+
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .configuration import Configuration
+from .configuration import Configuration, EntryFormat
+from .cursors import SHAPE_CENTER, Cursor, Cursors
 from .frame_buffer import FrameBuffer
 from .lookup_table import LookupTable
+from .parameters import Parameters
+from .timing import Beam
+
+Pixels = NDArray[np.uint32]
+WHITE = np.uint32(0xFFFFFF)
 
 
 class ScanOut:
-    """Makes fields from a frame buffer and a lookup table."""
+    """Makes fields from a frame buffer, a lookup table and cursors."""
 
     def __init__(
-        self, configuration: Configuration, frame_buffer: FrameBuffer, lookup_table: LookupTable
+        self,
+        configuration: Configuration,
+        frame_buffer: FrameBuffer,
+        lookup_table: LookupTable,
+        cursors: Cursors,
+        parameters: Callable[[], Parameters],
+        beam: Beam | None = None,
     ) -> None:
         self.lines = configuration.shown_lines
         self.elements = configuration.shown_elements
+        self.blink_is_on = True
+        """Whether blinking cursors are seen; with a beam it decides instead."""
+        self._configuration = configuration
         self._frame_buffer = frame_buffer
         self._lookup_table = lookup_table
+        self._cursors = cursors
+        self._parameters = parameters
+        self._beam = beam
         self._words = configuration.largest_word + 1
         # np.take is fastest with indices of the machine's own size; they are renewed when words were written.
         self._indices = np.zeros((self.lines, self.elements), np.intp)
-        self._written = 0
+        self._written: tuple[object, ...] = (0, *self._view())
+        self._gray: tuple[int, Pixels] = (-1, lookup_table.packed)
+        # With a beam: what the monitor shows, and how far the beam has come since power-on.
+        self._glass: Pixels = np.zeros((self.lines, self.elements), np.uint32)
+        self._painted = 0
 
     @property
-    def stamp(self) -> tuple[int, ...]:
+    def stamp(self) -> tuple[object, ...]:
         """A value that moves whenever the field may have changed."""
-        return self._frame_buffer.written, self._lookup_table.written, self._partition()
+        return (
+            self._frame_buffer.written,
+            self._lookup_table.written,
+            self._partition(),
+            self._view(),
+            self._cursors.seen,
+            self._cursors.changed,
+            any(cursor.is_visible and cursor.blinks for cursor in self._cursors.all) and self._blink(),
+            self._beam and self._beam.lines_done,
+        )
 
-    def scan_out_into(self, pixels: NDArray[np.uint32]) -> None:
+    @property
+    def glass(self) -> tuple[int, Pixels]:
+        """With a beam: the lines begun since power-on that are painted, and what the monitor shows."""
+        return self._painted, self._glass
+
+    @glass.setter
+    def glass(self, shown: tuple[int, Pixels]) -> None:
+        self._painted = shown[0]
+        self._glass[...] = shown[1]
+
+    def scan_out_into(self, pixels: Pixels) -> None:
         """Write the field as 0x00RRGGBB into a (lines, elements) uint32 array."""
-        if self._written != self._frame_buffer.written:
-            self._written = self._frame_buffer.written
-            np.copyto(self._indices, self._frame_buffer.words[: self.lines, : self.elements])
-        first = self._partition()
-        table = self._lookup_table.packed
-        (table[first:] if first else table).take(self._indices, out=pixels, mode="wrap")
+        if self._beam is not None:
+            self._finish_field(self._beam, pixels)
+        else:
+            self._renew_indices()
+            self._table().take(self._indices, out=pixels, mode="wrap")
+        for cursor in self._cursors.all:
+            if cursor.is_visible and (self._blink() or not cursor.blinks):
+                mark(pixels, cursor)
 
     def field(self) -> NDArray[np.uint8]:
         """The field, (lines, elements, 3) uint8: red, green, blue."""
@@ -50,6 +99,106 @@ class ScanOut:
         self.scan_out_into(pixels)
         return pixels.view(np.uint8).reshape(self.lines, self.elements, 4)[:, :, 2::-1].copy()
 
+    def follow_beam(self) -> None:
+        """Put on the glass what the beam has passed since the last call, as the memories are now."""
+        beam = self._beam
+        if beam is None or beam.lines_done == self._painted:
+            return
+        total = beam.lines_per_field
+        start = max(self._painted, beam.lines_done - total)
+        begun = start // total * total
+        while begun < beam.lines_done:
+            first, last = max(start - begun, 0), min(beam.lines_done - begun, self.lines)
+            if first < last:
+                self._paint(first, last, self._glass)
+            begun += total
+        self._painted = beam.lines_done
+
+    def _finish_field(self, beam: Beam, pixels: Pixels) -> None:
+        # What the beam has not come to yet is as the memories are now: in the retrace the whole next field.
+        self.follow_beam()
+        line = beam.line if beam.line < self.lines else 0
+        pixels[:line] = self._glass[:line]
+        self._paint(line, self.lines, pixels)
+
+    def _paint(self, first: int, last: int, pixels: Pixels) -> None:
+        parameters, (lines, elements) = self._parameters(), self._frame_buffer.words.shape
+        rows, columns = np.arange(first, last), np.arange(self.elements)
+        if parameters.origin_at_bottom:
+            rows = self.lines - 1 - rows
+        rows = (parameters.origin.line + rows // parameters.zoom[1]) % lines
+        columns = (parameters.origin.element + columns // parameters.zoom[0]) % elements
+        self._table().take(
+            self._frame_buffer.words[np.ix_(rows, columns)], out=pixels[first:last], mode="wrap"
+        )
+
+    def _renew_indices(self) -> None:
+        now = (self._frame_buffer.written, *self._view())
+        if self._written == now:
+            return
+        self._written = now
+        parameters = self._parameters()
+        across, down = parameters.zoom
+        target = self._indices[::-1] if parameters.origin_at_bottom else self._indices
+        if (across, down) == (1, 1):
+            copy_around(target, self._frame_buffer.words, *parameters.origin)
+            return
+        rows = np.empty((-(-self.lines // down), self.elements), np.intp)
+        for repeat in range(across):
+            copy_around(rows[:, repeat::across], self._frame_buffer.words, *parameters.origin)
+        for repeat in range(down):
+            part = target[repeat::down]
+            part[...] = rows[: len(part)]
+
+    def _view(self) -> tuple[object, ...]:
+        parameters = self._parameters()
+        return parameters.origin, parameters.zoom, parameters.origin_at_bottom
+
+    def _blink(self) -> bool:
+        return self.blink_is_on if self._beam is None else self._beam.blink_is_on
+
+    def _table(self) -> Pixels:
+        table = self._lookup_table.packed
+        if self._configuration.monochrome:
+            if self._gray[0] != self._lookup_table.written:
+                short = self._configuration.entry_format is EntryFormat.WORD_12
+                low = (table >> 4 & 0xF0 | table & 0x0F) if short else table & 0xFF
+                self._gray = self._lookup_table.written, (low * 0x010101).astype(np.uint32)
+            table = self._gray[1]
+        first = self._partition()
+        return table[first:] if first else table
+
     def _partition(self) -> int:
         part = self._words
         return self._lookup_table.addressed_entry // part * part if part < self._lookup_table.size else 0
+
+
+def copy_around(target: NDArray[np.intp], words: NDArray[np.uint16], element: int, line: int) -> None:
+    """Fill the target with the words from an element and a line on, which wrap at the memory's edges."""
+    lines, elements = words.shape
+    done = 0
+    while done < target.shape[0]:
+        row = (line + done) % lines
+        height = min(lines - row, target.shape[0] - done)
+        across = 0
+        while across < target.shape[1]:
+            column = (element + across) % elements
+            width = min(elements - column, target.shape[1] - across)
+            target[done : done + height, across : across + width] = words[
+                row : row + height, column : column + width
+            ]
+            across += width
+        done += height
+
+
+def mark(pixels: Pixels, cursor: Cursor) -> None:
+    """Draw a cursor on a field, around its position, clipped at the field's edges."""
+    size = cursor.shape.shape[0]
+    top, left = cursor.line - SHAPE_CENTER, cursor.element - SHAPE_CENTER
+    up, across = max(0, -top), max(0, -left)
+    part = pixels[max(0, top) : max(0, top + size), max(0, left) : max(0, left + size)]
+    shape = cursor.shape[up : up + part.shape[0], across : across + part.shape[1]]
+    if part.size:
+        # The green bit of 128 tells light from dark well enough, and is quick.
+        light = (part >> 15 & 1).astype(np.bool_)
+        part[shape] = np.where(light[shape], np.uint32(0), WHITE)

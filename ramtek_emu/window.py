@@ -1,18 +1,17 @@
 """Monitor: shows the field of a display in a window. The only place that knows pygame.
 
 What is modelled: a field at the largest whole multiple that fits, centered, every pixel one k x k block;
-the mouse as the cursor's joystick, its button as ENTER. What is **not**: the phosphor, the beam, the
-joystick's feel.
+the mouse as the joystick of the display's cursors. What is **not**: the phosphor, the beam.
 
-The window shows, it never draws: everything to be seen is words in the frame buffer. Keys, drops and ticks
-are handed to whoever drives the display as plain values.
+The window shows, it never draws: everything to be seen is words in the frame buffer and cursors on top. Keys,
+drops and ticks are handed to whoever drives the display as plain values.
 """
 
 import os
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -22,69 +21,21 @@ os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
 os.environ["SDL_WINDOWS_DPI_AWARENESS"] = os.environ.get("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
 import pygame
 
+from .console import Console
+from .console import Key as Key
+from .console import Pointer as Pointer
 from .display import Ramtek9300
-from .errors import NoScreenError, OutputExistsError, RamtekError
-from .png import save_png
+from .errors import NoScreenError
+from .placement import pixel_under
+from .placement import placement as placement
 
 TICK_MILLISECONDS = 15
+BLINK_SECONDS = 0.5  # Seen for so long, then not. Assumed: as in the time model.
 KEY_DELAY, KEY_INTERVAL = 400, 40
-MODIFIERS = frozenset(
-    f"{side} {key}" for side in ("left", "right") for key in ("shift", "ctrl", "alt", "meta")
-)
 FIELD_MASKS = (0xFF0000, 0x00FF00, 0x0000FF, 0)
 REDRAWN_ON = frozenset(
     (pygame.WINDOWEXPOSED, pygame.WINDOWSIZECHANGED, pygame.WINDOWRESTORED, pygame.WINDOWSHOWN)
 )
-
-
-class Key(NamedTuple):
-    """A key that went down: its name ("a", "f1", "return", "escape", ...), what it types, what was held."""
-
-    name: str
-    text: str = ""
-    control: bool = False
-    shift: bool = False
-    alt: bool = False
-    repeated: bool = False
-    """Whether it was down already: what a key does while it is held can be one step."""
-
-
-class Pointer(NamedTuple):
-    """The mouse over the field, in elements and lines of the display; `enter` while its button is down."""
-
-    element: int
-    line: int
-    enter: bool
-    action: str
-    """"move", "press", "release", "wheel up" or "wheel down"."""
-    button: int = 0
-    """0 none, 1 left, 2 middle, 3 right."""
-
-
-class Placement(NamedTuple):
-    """Where the field lies in the window: left, top, width and height in pixels."""
-
-    left: int
-    top: int
-    width: int
-    height: int
-
-
-def placement(field: tuple[int, int], window: tuple[int, int], fit: bool = False) -> Placement:
-    """Where a (width, height) field lies in a (width, height) window: whole multiples unless `fit`.
-
-    A window smaller than the field shows the middle of it.
-
-    >>> placement((640, 480), (1400, 1000))
-    Placement(left=60, top=20, width=1280, height=960)
-    """
-    ratio = min(window[0] / field[0], window[1] / field[1])
-    if fit:
-        width, height = (max(1, int(size * ratio + 0.5)) for size in field)
-    else:
-        multiple = max(1, int(ratio))
-        width, height = field[0] * multiple, field[1] * multiple
-    return Placement((window[0] - width) // 2, (window[1] - height) // 2, width, height)
 
 
 def open_screen() -> None:
@@ -106,12 +57,11 @@ def open_screen() -> None:
     if driver in ("offscreen", "dummy") and driver not in asked.split(","):
         pygame.display.quit()
         raise NoScreenError(
-            f"a window must have a screen, and the one that DISPLAY or WAYLAND_DISPLAY names does not "
-            f"answer; {advice}"
+            f"a window must have a screen, and that of DISPLAY or WAYLAND_DISPLAY does not answer; {advice}"
         )
 
 
-class Monitor:
+class Monitor(Console):
     """A window on a display. `run` holds it open; `step` does one round, for programs that work meanwhile."""
 
     def __init__(
@@ -132,21 +82,23 @@ class Monitor:
     ) -> None:
         """Prepare a window; nothing is opened yet.
 
-        `on_key` returns whether it took the key: Esc, when nobody took it, leaves full screen, then asks to
-        close. `on_close` returns whether the window may close. `on_message` is given sentences for the
-        user, such as where a screenshot went; without it they stand in the window's caption.
+        `on_key` returns whether it took the key: Esc, when nobody took it, leaves full screen, then closes.
+        `on_close` returns whether the window may close. `on_message` is given sentences for the user, such as
+        where a screenshot went; without it they stand in the caption.
         """
-        self.display = display
+        super().__init__(
+            display,
+            screenshots=screenshots,
+            screenshot_name=screenshot_name,
+            on_key=on_key,
+            on_pointer=on_pointer,
+            on_close=on_close,
+            on_message=on_message,
+        )
         self.fit = fit
         self.full_screen = full_screen
-        self.screenshots = Path(screenshots)
-        self.screenshot_name = screenshot_name
-        self.on_key = on_key
-        self.on_pointer = on_pointer
         self.on_drop = on_drop
         self.on_tick = on_tick
-        self.on_close = on_close
-        self.on_message = on_message
         self.refreshed = 0
         """How often the field was shown; it only grows."""
         self._caption = caption
@@ -154,7 +106,6 @@ class Monitor:
         self._window_size = self._size
         self._open = False
         self._shown: tuple[object, ...] | None = None
-        self._enter = False
         self._down: set[int] = set()
 
     @property
@@ -191,6 +142,14 @@ class Monitor:
             self._open = False
             pygame.display.quit()
 
+    def _to_be_shown(self) -> tuple[object, ...]:
+        return self.display.scan_out.stamp, pygame.display.get_window_size(), self.fit
+
+    def show_message(self, message: str) -> None:
+        """Show a sentence in the window's title bar."""
+        if self._open:
+            pygame.display.set_caption(f"{self._caption} - {message}")
+
     def run(self) -> None:
         """Open the window and hold it open until it is closed."""
         self.open()
@@ -211,19 +170,18 @@ class Monitor:
             event = pygame.event.poll() if self._open else event
         if self._open and self.on_tick is not None:
             self.on_tick()
-        if self._open and self._shown != (
-            self.display.scan_out.stamp,
-            pygame.display.get_window_size(),
-            self.fit,
-        ):
+        self.display.scan_out.blink_is_on = int(time.monotonic() / BLINK_SECONDS) % 2 == 0
+        if self._open and self._shown != self._to_be_shown():
             self.refresh()
         return self._open
 
     def refresh(self) -> None:
         """Show the present field."""
         screen = pygame.display.get_surface()
-        self._shown = (self.display.scan_out.stamp, pygame.display.get_window_size(), self.fit)
+        self._shown = self._to_be_shown()
         self.refreshed += 1
+        # The display's own cursor takes the place of the desktop's.
+        pygame.mouse.set_visible(not any(cursor.is_visible for cursor in self.display.joystick.driven))
         place = placement(self._size, screen.get_size(), self.fit)
         if screen.get_size() == self._size and screen.get_masks() == FIELD_MASKS:
             self._scan_out(screen)
@@ -236,32 +194,6 @@ class Monitor:
                 enlarge = pygame.transform.smoothscale if self.fit else pygame.transform.scale
                 screen.blit(enlarge(self._field, place[2:]), place[:2])
         pygame.display.flip()
-
-    def screenshot(self) -> Path:
-        """Save the field under the next free number, never over a file; WriteError when it cannot be."""
-        number = 1
-        while True:
-            path = self.screenshots / f"{self.screenshot_name}-{number:04d}.png"
-            number += 1
-            if path.exists():
-                continue
-            try:
-                save_png(self.display.field(), path, overwrite=False)
-            except OutputExistsError:
-                continue
-            return path.resolve()
-
-    def tell(self, message: str) -> None:
-        """Give a sentence to the user."""
-        if self.on_message is not None:
-            self.on_message(message)
-        elif self._open:
-            pygame.display.set_caption(f"{self._caption} - {message}")
-
-    def ask_to_close(self) -> None:
-        """Close the window if whoever drives it agrees."""
-        if self.on_close is None or self.on_close():
-            self.close()
 
     def toggle_full_screen(self) -> None:
         """Fill the screen, or go back to a window of the size before."""
@@ -294,7 +226,7 @@ class Monitor:
         elif event.type == pygame.QUIT:
             self.ask_to_close()
         elif event.type == pygame.KEYDOWN:
-            self._handle_key(
+            self.handle_key(
                 Key(
                     pygame.key.name(event.key),
                     event.unicode,
@@ -314,36 +246,10 @@ class Monitor:
             self._handle_pointer(event.pos, "move")
         elif event.type in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) and event.button <= 3:
             pressed = event.type == pygame.MOUSEBUTTONDOWN
-            self._enter = pressed if event.button == 1 else self._enter
             self._handle_pointer(event.pos, "press" if pressed else "release", event.button)
         elif event.type == pygame.MOUSEWHEEL and event.y:
             self._handle_pointer(pygame.mouse.get_pos(), "wheel up" if event.y > 0 else "wheel down")
 
-    def _handle_key(self, key: Key) -> None:
-        if key.name in MODIFIERS:
-            return
-        if key.name == "f11" or (key.name == "return" and key.alt):
-            self.toggle_full_screen()
-        elif key.name == "f12":
-            try:
-                self.tell(f"saved {self.screenshot()}")
-            except RamtekError as refusal:
-                self.tell(str(refusal))
-        elif key.name == "q" and key.control:
-            self.ask_to_close()
-        elif self.on_key is not None and self.on_key(key):
-            return
-        elif key.name == "escape":
-            if self.full_screen:
-                self.toggle_full_screen()
-            else:
-                self.ask_to_close()
-
     def _handle_pointer(self, place: tuple[int, int], action: str, button: int = 0) -> None:
-        if self.on_pointer is None:
-            return
-        left, top, width, height = placement(self._size, pygame.display.get_window_size(), self.fit)
-        # Outside the field the cursor stays at its edge, as a joystick's does.
-        element = int(np.clip((place[0] - left) * self._size[0] // width, 0, self._size[0] - 1))
-        line = int(np.clip((place[1] - top) * self._size[1] // height, 0, self._size[1] - 1))
-        self.on_pointer(Pointer(element, line, self._enter, action, button))
+        pixel = pixel_under(place, self._size, pygame.display.get_window_size(), self.fit)
+        self.handle_pointer(*pixel, action, button)

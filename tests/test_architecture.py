@@ -24,17 +24,21 @@ PUBLIC_NAMES = {
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
-        "InstructionError", "NoScreenError", "OutputExistsError", "PRINCETON_9300", "Ramtek9300",
-        "RamtekError", "Recorder", "ReplyError", "WordsError", "WriteError",
+        "InstructionError", "JPL_9460", "Joystick", "ListingError", "MissingInputError", "NCAR_9460",
+        "NoScreenError", "OutputError", "OutputExistsError", "PRINCETON_9300", "PortError", "Ramtek9300",
+        "RamtekError", "Recorder", "ReplyError", "SnapshotError", "TcpPort", "Timing", "WordsError",
+        "WriteError", "read_snapshot", "write_snapshot",
     ],
 }  # fmt: skip
 
-KNOWING_THE_DISPLAY = ("autocolor.studio", "autocolor.picture", "autocolor.__main__")
+KNOWING_THE_DISPLAY = (
+    "autocolor.studio", "autocolor.picture", "autocolor.__main__", "autocolor.files.writing",
+)  # fmt: skip
 ROOMS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
 DOORS_OF_THE_DISPLAY = {
-    "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration", "ramtek_emu.errors",
-    "ramtek_emu.host_port", "ramtek_emu.instructions", "ramtek_emu.png", "ramtek_emu.server",
-    "ramtek_emu.window",
+    "ramtek_emu", "ramtek_emu.command_group", "ramtek_emu.command_line", "ramtek_emu.configuration",
+    "ramtek_emu.errors", "ramtek_emu.host_port", "ramtek_emu.instructions", "ramtek_emu.png",
+    "ramtek_emu.window", "ramtek_emu.writing",
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "pydantic", "PIL", "pygame"}
 

@@ -94,6 +94,55 @@ def line_places(start: Place, end: Place) -> list[Place]:
     return places
 
 
+def write_pixel(raster: Raster, place: Place, word: int, mask: int, clip: tuple[int, int, int, int]) -> None:
+    element, line = place
+    if 0 <= line < len(raster) and 0 <= element < len(raster[0]) and inside(place, clip):
+        raster[line][element] = (raster[line][element] & ~mask) | (word & mask)
+
+
+def write_text(
+    raster: Raster,
+    shapes: list[list[list[bool]]],
+    codes: bytes,
+    window: tuple[int, int, int, int],
+    code: int,
+    start: Place,
+    style: tuple[tuple[int, int], tuple[int, int], tuple[int, int]],
+    words: tuple[int, int | None],
+    mask: int,
+    clip: tuple[int, int, int, int],
+) -> tuple[Place, int]:
+    """The place of the next cell, and how often the text began again at the window's first corner."""
+    (dots_along, dots_across), (space_along, space_across), (along, across) = style
+    left, top, right, bottom = window
+    step, run = STEPS[code]
+    first = corner(window, code)
+    room_along, room_across = right - left + 1, bottom - top + 1
+    if step[0] == 0:
+        room_along, room_across = room_across, room_along
+    inner = outer = rounds = 0
+    if inside(start, window):
+        away = (abs(start[0] - first[0]), abs(start[1] - first[1]))
+        inner, outer = away if step[0] else (away[1], away[0])
+
+    def place(i: int, j: int) -> Place:
+        return (first[0] + i * step[0] + j * run[0], first[1] + i * step[1] + j * run[1])
+
+    for character in codes:
+        if inner and inner + dots_along * along > room_along:
+            inner, outer = 0, outer + (dots_across + space_across) * across
+        if outer and outer + dots_across * across > room_across:
+            outer = 0
+        rounds += inner == 0 and outer == 0
+        for j in range(dots_across * across):
+            for i in range(dots_along * along):
+                word = words[0] if shapes[character][j // across][i // along] else words[1]
+                if word is not None:
+                    write_pixel(raster, place(inner + i, outer + j), word, mask, clip)
+        inner += (dots_along + space_along) * along
+    return place(inner, outer), rounds
+
+
 OPERAND_WORDS = (
     (1, 1, 1, 2, 2, 2, 4, 1, 2, 2, 1, 1, 12, 1, 1, 2),
     (1, 4, 2, 2, 1, 1),
@@ -123,10 +172,26 @@ def split(stream: list[int]) -> list[list[int]]:
                         take((value + 1) // 2)
             elif form is not None:
                 flag_words = [take(1) if first & flag else 0 for flag in (2, 4)]
-                for flag_word, counts in zip(flag_words, OPERAND_WORDS, strict=True):
-                    for bit, count in enumerate(counts):
-                        if flag_word & 1 << bit:
-                            take(count)
+                following = sum(
+                    count
+                    for flag_word, counts in zip(flag_words, OPERAND_WORDS, strict=True)
+                    for bit, count in enumerate(counts)
+                    if flag_word & 1 << bit
+                )
+                before = sum(
+                    count for bit, count in enumerate(OPERAND_WORDS[0][:12]) if flag_words[0] & 1 << bit
+                )
+                if form.asks:
+                    following = 0
+                elif form.name == "WC" and first & 1 and flag_words[0] & 1 << 12:
+                    # Six coefficients are those after which a length of 4 follows that is half a coefficient.
+                    half = following - 6 - before
+                    if half < 12 and half % 2 == 0 and take(following - 6 + 1) == 4:
+                        take(2)
+                        parts.append(part)
+                        continue
+                    following -= following - 6 + 1 if half < 12 and half % 2 == 0 else 0
+                take(following)
                 if first & 1:
                     length = take(1)
                     if not form.replies:

@@ -1,6 +1,7 @@
 """Words, windows, entries and streams for the display's tests."""
 
 import itertools
+from collections.abc import Iterable
 
 import numpy as np
 from hypothesis import settings
@@ -9,11 +10,11 @@ from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
 from ramtek_emu import Configuration
-from ramtek_emu.instruction_set import FORMS
+from ramtek_emu.instruction_set import FORMS, SUBSTANTIATED
 from ramtek_emu.scan_orders import Point, Window
 
-quick = settings(deadline=None, max_examples=80)
-thorough = settings(deadline=None, max_examples=250)
+quick = settings(deadline=None, max_examples=60)
+thorough = settings(deadline=None, max_examples=150)
 
 SMALL = Configuration(name="SMALL", elements=13, lines=9, planes=10)
 
@@ -33,7 +34,9 @@ def windows(draw: st.DrawFn) -> Window:
 
 def streams(most: int = 60) -> st.SearchStrategy[list[int]]:
     """Words at random, many of which begin an instruction."""
-    opcodes = st.sampled_from([form.opcode for form in FORMS])
+    opcodes = st.sampled_from([form.opcode for form in SUBSTANTIATED]) | st.sampled_from(
+        [form.opcode for form in FORMS]
+    )
     begins = st.builds(lambda opcode, low: opcode << 8 | low, opcodes, st.integers(0, 255))
     small = st.integers(0, 12)
     return st.lists(begins | small | words, max_size=most)
@@ -48,3 +51,8 @@ def cuts(stream: list[int], places: list[int]) -> list[NDArray[np.uint16]]:
     """The stream in pieces, cut at these places."""
     edges = sorted({0, len(stream), *(place % (len(stream) + 1) for place in places)})
     return [np.array(stream[a:b], np.uint16) for a, b in itertools.pairwise(edges)]
+
+
+def sent_words(numbers: Iterable[int]) -> NDArray[np.uint16]:
+    """Numbers as 16-bit words, those below 0 in two's complement."""
+    return np.array([number & 0xFFFF for number in numbers], np.uint16)

@@ -1,8 +1,10 @@
+import itertools
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import PRINCETON_9300
+from ramtek_emu import GMR_9300, PRINCETON_9300
 from ramtek_emu.decoder import MOST_WORDS, Decoder
 from ramtek_emu.instruction import encode
 from ramtek_emu.instruction_set import ILLEGAL
@@ -53,6 +55,48 @@ def test_a_word_that_begins_nothing_is_skipped_alone() -> None:
     stream = np.array([0xFF00, 0x0000, 0x0700], np.uint16)
     forms = [instruction.form.name for instruction in Decoder().feed(stream)]
     assert forms == ["???", "???", "NOP"]
+
+
+@thorough
+@given(
+    st.integers(0, 0xFFFF), st.integers(0, 255), st.lists(st.sampled_from([0, 1, 4, 8, 0xFFFF]), max_size=60)
+)
+def test_conics_of_six_and_twelve_words_are_told_apart(flag_word: int, low_byte: int, row: list[int]) -> None:
+    stream = [0x0F03 | low_byte, flag_word | 0x1000, *row]
+    found, decoder = decoded([np.array(stream, np.uint16)])
+    twin = reference.split(stream)
+    assert [len(part) for part in found] == [len(part) for part in twin]
+    assert decoder.held_words == len(stream) - sum(map(len, twin))
+    assert decoded([np.array([word], np.uint16) for word in stream])[0] == found
+
+
+def test_six_coefficients_are_taken_where_twelve_make_no_sense() -> None:
+    six = [0x0F03, 0x9000, 1, 1, 0, 10, 0, 0, 100, 100, 4, 90, 110]
+    twelve = [0x0F03, 0x9000, 0, 1, 0, 1, 0, 0, 0, 10, 0, 0, 0, 0, 100, 100, 4, 90, 110]
+    instructions = list(Decoder().feed(np.array([*six, *twelve], np.uint16)))
+    assert [instruction.data.tolist() for instruction in instructions] == [[90, 110], [90, 110]]
+    assert [instruction.operands["start"] for instruction in instructions] == [(100, 100)] * 2
+
+
+@quick
+@given(streams(300), st.booleans())
+def test_rows_of_illegal_words_are_the_illegal_words_one_by_one(stream: list[int], extended: bool) -> None:
+    configuration = GMR_9300 if extended else PRINCETON_9300
+    single, rows = Decoder(configuration), Decoder(configuration)
+    words = np.array(stream, np.uint16)
+    one_by_one = [encode(instruction).tolist() for instruction in single.feed(words)]
+    in_rows = [encode(instruction).tolist() for instruction in rows.feed(words, in_rows=True)]
+    assert list(itertools.chain(*in_rows)) == list(itertools.chain(*one_by_one))
+    assert rows.held_words == single.held_words
+
+
+def test_an_instruction_known_by_name_only_is_consumed_whole() -> None:
+    # WPB with a foreground and data, a keyboard instruction, a display list's.
+    stream = np.array([0x1003, 0x0002, 7, 3, 1, 2, 0x1800, 0x4100, 0x0700], np.uint16)
+    forms = [instruction.form.name for instruction in Decoder().feed(stream)]
+    assert forms == ["WPB", "WKB", "CDL", "NOP"]
+    strict = [instruction.form.name for instruction in Decoder(PRINCETON_9300).feed(stream)]
+    assert strict == ["???"] * 8 + ["NOP"]
 
 
 def test_a_9300_knows_no_second_operand_flag_word() -> None:

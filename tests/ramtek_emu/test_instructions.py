@@ -77,3 +77,26 @@ def test_long_rows_of_vertices_are_sent_in_several_instructions(count: int) -> N
     stream = instructions.write_vectors(np.arange(2 * count).reshape(-1, 2) % 600, 1)
     found = list(Decoder().feed(stream))
     assert sum(len(instruction.data) // 2 for instruction in found) == max(1, count - 1)
+
+
+def test_circles_areas_zoom_and_cursors_are_encoded_in_the_words_of_the_time() -> None:
+    assert hexadecimal(instructions.write_circles([(100, 50, 20)], 7)) == "6D03 0002 0007 0006 0064 0032 0014"
+    assert hexadecimal(instructions.fill(100, 50)) == "3A03 8000 0064 0032 0002 0000"
+    assert hexadecimal(instructions.zoom(2)) == "2600 0101"
+    assert hexadecimal(instructions.zoom(16, 1)) == "2600 000F"
+    assert hexadecimal(instructions.write_cursor(0, 100, 100, blinking=True)) == "1600 0064 0C64"
+    assert hexadecimal(instructions.write_cursor(1, 100, 64)) == "1601 0064 0440"
+    assert hexadecimal(instructions.read_cursor(1)) == "1701"
+
+
+def test_zoom_cursors_and_circles_that_do_not_fit_are_refused_by_name() -> None:
+    with pytest.raises(InstructionError) as refusal:
+        instructions.zoom(17)
+    assert str(refusal.value) == "zoom factors must be 1 to 16, not (17, 17); choose smaller ones"
+    with pytest.raises(InstructionError) as refusal:
+        instructions.write_cursor(0, 0, 1024)
+    assert str(refusal.value) == "a cursor's line must be 0 to 1023, not 1024; keep to the screen"
+    with pytest.raises(InstructionError, match=r"a cursor's number must be 0 to 255, not -1"):
+        instructions.read_cursor(-1)
+    with pytest.raises(WordsError, match=r"circles must be an \(n, 3\) array"):
+        instructions.write_circles([[1, 2]])

@@ -46,8 +46,9 @@ def test_the_pattern_goes_to_a_picture_file_once(tmp_path: Path) -> None:
     assert path.stat().st_size > 1000
     again = ramtek("-o", str(path))
     assert again.returncode == 73
-    assert (
-        again.stderr == f"ramtek: the file must be a new one, not {path}, which exists; choose another name\n"
+    assert again.stderr == (
+        f"ramtek: an output must be a new file, not {path}, which exists; "
+        "choose another name or add --force\n"
     )
     assert ramtek("-o", str(path), "--force").returncode == 0
 

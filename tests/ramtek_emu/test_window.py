@@ -194,7 +194,7 @@ def test_a_screenshot_that_cannot_be_saved_is_a_message(monitor: Monitor, tmp_pa
     monitor.screenshots = tmp_path / "none"
     press(monitor, pygame.K_F12)
     assert monitor.is_open
-    assert "No such file or directory" in messages[0]
+    assert "there is no folder" in messages[0]
 
 
 def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
@@ -215,6 +215,35 @@ def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
         Pointer(1, 1, True, "move"),
         Pointer(639, 479, False, "release", 1),
     ]
+
+
+def test_the_mouse_is_the_joystick_of_the_cursors(monitor: Monitor) -> None:
+    display = monitor.display
+    display.send(np.array([0x1600, 5, 0x400 | 6], np.uint16))
+    pygame.display.set_mode((640, 480), pygame.RESIZABLE)
+    settle(monitor)
+    for kind, button in ((pygame.MOUSEBUTTONDOWN, 1), (pygame.MOUSEBUTTONUP, 1), (pygame.MOUSEBUTTONDOWN, 3)):
+        pygame.event.post(pygame.event.Event(kind, pos=(300, 200), button=button))
+    monitor.step()
+    display.send(np.array([0x1700, 0x1700], np.uint16))
+    assert display.receive(4).tolist() == [300, 0x3400 | 200, 300, 0x1400 | 200]
+    assert (shown() == display.field()).all()
+    pygame.event.post(pygame.event.Event(pygame.MOUSEBUTTONUP, pos=(301, 200), button=3))
+    monitor.step()
+    display.send(np.array([0x1700], np.uint16))
+    assert display.receive(2).tolist() == [301, 0x400 | 200]
+
+
+def test_a_blinking_cursor_comes_and_goes(monitor: Monitor, monkeypatch: pytest.MonkeyPatch) -> None:
+    monitor.display.send(np.array([0x1600, 50, 0xC00 | 60], np.uint16))
+    pygame.display.set_mode((640, 480), pygame.RESIZABLE)
+    settle(monitor)
+    seen = []
+    for seconds in (10.1, 10.6):
+        monkeypatch.setattr("time.monotonic", lambda now=seconds: now)
+        monitor.step()
+        seen.append(shown().copy())
+    assert (seen[0] != seen[1]).any()
 
 
 def test_dropped_files_are_handed_over_as_paths(monitor: Monitor) -> None:

@@ -11,14 +11,14 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from autocolor.commands import COMMANDS, autocolor
+from autocolor.commands import AutocolorGroup, autocolor
 from tests.autocolor.commands.conftest import Run
 
 SLOW = ("numpy", "pygame", "pydantic", "PIL")
 POSIX = pytest.mark.skipif(os.name != "posix", reason="needs what POSIX says about pipes and signals")
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", AutocolorGroup.table)
 def test_the_help_of_each_command_has_an_example(command: str) -> None:
     shown = CliRunner().invoke(autocolor, [command, "--help"], terminal_width=100)
     assert shown.exit_code == 0
@@ -32,12 +32,12 @@ def test_the_help_names_every_command(run: Run) -> None:
         ran = run(flag)
         assert ran.code == 0
         assert ran.err == ""
-        for command, does in COMMANDS.items():
+        for command, does in AutocolorGroup.table.items():
             assert command in ran.out
             assert does in ran.out
 
 
-@pytest.mark.parametrize("command", ["", *COMMANDS])
+@pytest.mark.parametrize("command", ["", *AutocolorGroup.table])
 def test_help_comes_without_loading_anything_slow(process: Run, command: str) -> None:
     program = (
         "import sys, autocolor.__main__ as m\n"

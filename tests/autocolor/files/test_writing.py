@@ -22,7 +22,9 @@ def test_an_existing_file_is_refused_without_overwrite(tmp_path: Path) -> None:
     path.write_bytes(b"old")
     with pytest.raises(OutputError) as caught:
         write_atomically(path, b"new", overwrite=False)
-    assert str(caught.value) == f"{path} exists; choose another name or add --force"
+    assert str(caught.value) == (
+        f"an output must be a new file, not {path}, which exists; choose another name or add --force"
+    )
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["a.npz"]
 
@@ -53,14 +55,14 @@ def test_overwriting_through_a_link_keeps_the_link(tmp_path: Path) -> None:
 
 
 def test_a_missing_folder_is_no_place(tmp_path: Path) -> None:
-    with pytest.raises(OutputError, match="it cannot be made there"):
+    with pytest.raises(OutputError, match="there is no folder"):
         write_atomically(tmp_path / "none" / "a.npz", b"new", overwrite=True)
 
 
 def test_a_folder_is_no_output(tmp_path: Path) -> None:
     with pytest.raises(OutputError) as caught:
         write_atomically(tmp_path, b"new", overwrite=True)
-    assert str(caught.value) == f"{tmp_path}: an output must be a file, not a folder; add a file name"
+    assert str(caught.value) == f"an output must be a file, not the folder {tmp_path}; add a file name"
 
 
 def test_a_name_with_a_nul_byte_or_of_endless_length_is_no_place(tmp_path: Path) -> None:

@@ -326,7 +326,7 @@ def test_what_cannot_be_saved_is_told_and_stays_unsaved(viewer: Viewer, tmp_path
     viewer.folder = tmp_path / "none"
     press_c(viewer)
     control(viewer, "s")
-    assert "no such file or directory" in viewer.message
+    assert "there is no folder" in viewer.message
     assert viewer.studio.is_changed
     assert viewer.saved is None
 

@@ -1,50 +1,12 @@
-import itertools
-
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from ramtek_emu import InstructionError, Ramtek9300, instructions
-from ramtek_emu.scan_orders import SCAN_ORDERS
+from ramtek_emu.scan_orders import SCAN_ORDERS, Point, Window
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import SMALL, quick, scan_codes, thorough
-
-far = st.integers(-40, 60)
-
-
-@thorough
-@given(st.lists(st.tuples(far, far), min_size=2, max_size=6))
-def test_vectors_are_the_nearest_pixels_with_both_ends(vertices: list[tuple[int, int]]) -> None:
-    display = Ramtek9300(SMALL)
-    display.send(instructions.write_vectors(vertices, 9))
-    twin = np.zeros((9, 13), int)
-    for start, end in itertools.pairwise(vertices):
-        for element, line in reference.line_places(start, end):
-            if 0 <= element < 13 and 0 <= line < 9:
-                twin[line, element] = 9
-    assert (display.words == twin).all()
-    assert display.processor.parameters.start == vertices[-1]
-
-
-def test_a_vector_to_the_operating_point_is_a_point() -> None:
-    display = Ramtek9300(SMALL)
-    display.send(instructions.write_vectors([(4, 5)], 3))
-    assert np.argwhere(display.words).tolist() == [[5, 4]]
-
-
-def test_relative_vertices_count_from_the_one_before() -> None:
-    display = Ramtek9300(SMALL)
-    display.send(np.array([0x0EC3, 0x8002, 1, 2, 2, 8, 3, 0, 0xFFFF, 2], np.uint16))
-    assert np.argwhere(display.words).tolist() == [[2, 2], [2, 3], [2, 4], [2, 5], [3, 4], [4, 4]]
-    assert display.processor.parameters.start == (4, 4)
-
-
-def test_many_vectors_across_the_whole_range_take_little_time_and_memory() -> None:
-    display = Ramtek9300()
-    ends = np.tile([[-0x8000, -0x8000], [0x7FFF, 0x7FFF]], (4000, 1))
-    display.send(instructions.write_vectors(ends, 5))
-    assert (np.diagonal(display.words) == 5).all()
+from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, sent_words, thorough, windows
 
 
 @quick
@@ -123,3 +85,88 @@ def test_text_of_a_size_that_the_display_does_not_have_is_refused() -> None:
     with pytest.raises(InstructionError) as refusal:
         instructions.write_text("A", 0, 0, size=17)
     assert str(refusal.value) == "the size of text must be 1 to 16, not 17; write it smaller"
+
+
+small = st.integers(1, 4)
+
+
+@thorough
+@given(
+    st.binary(min_size=1, max_size=9),
+    windows(),
+    scan_codes,
+    points,
+    st.tuples(small, small),
+    st.tuples(st.integers(0, 3), st.integers(0, 3)),
+    st.tuples(st.integers(1, 2), st.integers(1, 2)),
+    st.tuples(st.booleans(), st.booleans(), st.booleans()),
+    masks,
+    windows(),
+)
+def test_text_in_every_scan_order_is_that_of_the_twin(
+    codes: bytes,
+    window: Window,
+    code: int,
+    start: Point,
+    dimensions: tuple[int, int],
+    spacing: tuple[int, int],
+    size: tuple[int, int],
+    flags: tuple[bool, bool, bool],
+    mask: int,
+    clip: Window,
+) -> None:
+    swapped, additive, reversed_bytes = flags
+    display = Ramtek9300(SMALL)
+    display.send(instructions.erase(word=85))
+    display.send(
+        instructions.set_parameters(
+            mask=mask,
+            foreground=514,
+            background=257,
+            window=window,
+            scan_order=code,
+            dimensions=dimensions,
+            spacing=spacing,
+            scale=(size[1] - 1) << 8 | (size[0] - 1),
+            start=start,
+            write_window=clip,
+        )
+    )
+    packed = np.frombuffer(codes + bytes(len(codes) % 2), "<u2" if reversed_bytes else ">u2")
+    low = 0x01 | (0x10 if swapped else 0) | (0x20 if additive else 0) | (0x08 if reversed_bytes else 0)
+    display.send(sent_words([0x0C00 | low, len(codes), *packed.tolist()]))
+
+    twin = [[85] * 13 for _ in range(9)]
+    words = (257, 514) if swapped else (514, 257)
+    after, rounds = reference.write_text(
+        twin,
+        display.processor.characters.tolist(),
+        codes,
+        window,
+        code,
+        start,
+        (dimensions, spacing, size),
+        (words[0], None if additive else words[1]),
+        mask & 1023,
+        clip,
+    )
+    assume(rounds < 2 or not additive)
+    assert display.words.tolist() == twin
+    assert display.processor.parameters.start == after
+
+
+def test_a_loaded_character_takes_the_place_of_its_code() -> None:
+    display = Ramtek9300()
+    rows = [0x80, 0x40, 0x20, 0x10, 0x08, 0x04, 0x02, 0x01, 0xFF, 0x00, 0xAA, 0x55]
+    display.send(sent_words([0x1541] + [rows[row] << 8 | rows[row + 1] for row in range(0, 12, 2)]))
+    # Cells of 8 x 12, at (20, 30).
+    display.send(sent_words([0x0C03, 0x0142, 5, 20, 30, 99, 99, 8, 12, 1, 0x4100]))
+    dots = np.unpackbits(np.array(rows, np.uint8)[:, np.newaxis], axis=1)
+    assert (display.words[30:42, 20:28] == 5 * dots).all()
+    # The standard font is the ROM's; the loaded one comes back, and survives RSET.
+    display.send(sent_words([0x4EFF, 0x0C03, 0x0140, 20, 30, 99, 99, 7, 9, 1, 0x4100]))
+    assert (display.words[30:39, 20:27] == 5 * display.processor.characters[0x41]).all()
+    display.send(sent_words([0x0500, 0x0C03, 0x0142, 5, 20, 30, 99, 99, 8, 12, 1, 0x4100]))
+    assert (display.words[30:42, 20:28] == 5 * dots).all()
+    display.send(sent_words([0x2142] + [rows[row + 1] << 8 | rows[row] for row in range(0, 12, 2)]))
+    assert (display.processor.loaded_characters[0x42] == dots).all()

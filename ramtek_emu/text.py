@@ -1,6 +1,7 @@
-"""Drawing: what the instructions do to words, apart from how they are sent.
+"""Text: characters in cells, with size, spacing and scan order.
 
-What is modelled: text in cells with size, spacing and scan order; vectors with both ends.
+What is modelled: whole cells, dots and what lies between them; the turns of the scan orders; going on in the
+next line at the window's edge. What is **not**: the size factors of more than 16.
 """
 
 from dataclasses import dataclass
@@ -83,8 +84,9 @@ def write_text(
     Hardware: BTL, LIN, JPL (whole cells, advance 7, line 9); NCAR (the scan order turns the letters); LIN
     (the dots between are background).
     Assumed: a cell that would pass the window's edge starts the next line of text at the edge where the scan
-    starts; below the last line text goes on at the window's first corner; a cell larger than the window is
-    written whole, since clipping is the write window's.
+    starts; below the last line text goes on at the window's first corner, and of text that goes around
+    the window many times only the last times are written; a cell larger than the window is written
+    whole, since clipping is the write window's.
     """
     along, across = style.cell
     step, line_step = style.step
@@ -102,7 +104,10 @@ def write_text(
             inner, outer = 0, outer + line_step
         if outer and outer + across > height:
             outer = 0
-        count = min(1 + max(0, width - inner - along) // step, len(numbers), 1 + MOST_ALONG // step)
+        if not inner and not outer:
+            around = cells(width, along, step) * cells(height, across, line_step)
+            numbers = numbers[max(0, len(numbers) // around - 1) * around :]
+        count = min(cells(width - inner, along, step), len(numbers), 1 + MOST_ALONG // step)
         first = offset(order, corner, inner, outer)
         if (
             not order.block_window(first, (count - 1) * step + along, across)
@@ -110,12 +115,17 @@ def write_text(
             .is_empty
         ):
             dots = style.dots(shapes[numbers[:count]])
-            cells = beside(np.ones((count, across, along), np.bool_), step) if step != along else None
-            written = dots if style.transparent else cells
+            whole = beside(np.ones((count, across, along), np.bool_), step) if step != along else None
+            written = dots if style.transparent else whole
             frame_buffer.write_block(first, order, words[dots.view(np.uint8)], enable, written)
         inner += count * step
         numbers = numbers[count:]
     return offset(order, corner, inner, outer)
+
+
+def cells(room: int, size: int, step: int) -> int:
+    """How many cells of a size fit, each a step from the last; one at least, for one is written whole."""
+    return 1 + max(0, room - size) // step
 
 
 def offset(order: ScanOrder, corner: Point, inner: int, outer: int) -> Point:
@@ -125,39 +135,3 @@ def offset(order: ScanOrder, corner: Point, inner: int, outer: int) -> Point:
         corner.element + (-across if order.leftward else across),
         corner.line + (-down if order.upward else down),
     )
-
-
-def write_vectors(
-    frame_buffer: FrameBuffer, vertices: NDArray[np.int64], word: int, enable: WriteEnable
-) -> None:
-    """Draw the lines that link (n, 2) vertices, both ends of each.
-
-    Assumed: of two points equally near to the line, the one farther from where it starts (Bresenham's
-    choice is free there); no source says.
-    """
-    inside = frame_buffer.window.intersection(enable.window)
-    for first in range(0, len(vertices) - 1, 64):
-        part = vertices[first : first + 65]
-        start, step = part[:-1], np.diff(part, axis=0)
-        length = np.abs(step).max(axis=1)
-        steep = np.abs(step[:, 1]) > np.abs(step[:, 0])
-        rows = np.arange(len(start))
-        major = steep.astype(np.intp)
-        # Keep to the part of each line that the memory holds along its longer side.
-        low = np.where(steep, inside.top, inside.left)
-        high = np.where(steep, inside.bottom, inside.right)
-        begin, sign = start[rows, major], np.sign(step[rows, major])
-        near, far = (low - begin) * sign, (high - begin) * sign
-        from_step = np.maximum(np.minimum(near, far), 0)
-        to_step = np.minimum(np.maximum(near, far), length)
-        still = sign == 0
-        from_step[still], to_step[still] = 0, 0
-        counts = np.maximum(to_step - from_step + 1, 0)
-        which = np.repeat(rows, counts)
-        number = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts - from_step, counts)
-        run = np.maximum(length, 1)[which]
-        delta = step[which]
-        points = start[which] + np.sign(delta) * (
-            (2 * number[:, None] * np.abs(delta) + run[:, None]) // (2 * run[:, None])
-        )
-        frame_buffer.write_points(points[:, 0], points[:, 1], word, enable)

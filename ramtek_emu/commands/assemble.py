@@ -1,0 +1,44 @@
+"""`ramtek assemble`: a listing back into its stream."""
+
+import io
+import sys
+from collections.abc import Iterator
+
+import click
+
+from ramtek_emu.commands.displays import open_stream, tell
+from ramtek_emu.writing import refuse_output, write_atomically
+
+EXAMPLES = """\b
+Examples:
+  ramtek assemble drawing.txt -o drawing.ramtek
+  ramtek list drawing.ramtek | ramtek assemble - -o same.ramtek
+  echo 'WVL FORE=255 STRT=10,10  ; a line' | ramtek assemble - -o - | ramtek play -
+"""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("listing", type=click.Path())
+@click.option(
+    "-o", "--output", type=click.Path(), metavar="STREAM", required=True, help="The stream; - is stdout."
+)
+@click.option("--force", is_flag=True, help="Overwrite what exists.")
+def assemble(listing: str, output: str, force: bool) -> None:
+    """Assemble LISTING, what `ramtek list` printed or a program in the same manner; - is stdin."""
+    if output != "-":
+        refuse_output(output, force)
+    file = io.TextIOWrapper(open_stream(listing), encoding="latin-1")
+
+    from ramtek_emu.assembly import assemble as assembled
+    from ramtek_emu.listing_tokens import MOST_LINE
+
+    def lines() -> Iterator[str]:
+        while line := file.readline(MOST_LINE + 1):
+            yield line
+
+    data = b"".join(assembled(lines()))
+    if output == "-":
+        sys.stdout.buffer.write(data)
+        return
+    write_atomically(output, data, overwrite=force)
+    tell(f"wrote {output}")

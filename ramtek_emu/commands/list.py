@@ -1,0 +1,47 @@
+"""`ramtek list`: a stream as instructions with named operands."""
+
+import json
+from collections.abc import Iterator
+
+import click
+
+from ramtek_emu.commands.displays import configuration_named, open_stream
+
+EXAMPLES = """\b
+Examples:
+  ramtek list drawing.ramtek
+  ramtek list drawing.ramtek --json | jq '.[].name'
+  ramtek list drawing.ramtek > drawing.txt; ramtek assemble drawing.txt -o again.ramtek
+"""
+
+PIECE = 1 << 18
+
+
+@click.command(name="list", epilog=EXAMPLES)
+@click.argument("stream", type=click.Path())
+@click.option("--configuration", metavar="NAME", help="The display that it is for; GMR_9300 if not given.")
+@click.option("--json", "as_json", is_flag=True, help="One object for each instruction.")
+def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
+    """List STREAM, a file of 16-bit words with the low byte first, as instructions; - is stdin.
+
+    `ramtek assemble` makes the same stream of it again, word for word.
+    """
+    chosen = configuration_named(configuration)
+    file = open_stream(stream)
+
+    def pieces() -> Iterator[bytes]:
+        while data := file.read(PIECE):
+            yield data
+
+    from ramtek_emu.listing import items
+
+    found = items(pieces(), chosen)
+    if not as_json:
+        for item in found:
+            click.echo("\n".join(item.lines()))
+        return
+    separator = "["
+    for item in found:
+        click.echo(f"{separator}{json.dumps(item.plain())}", nl=False)
+        separator = ",\n "
+    click.echo("[]" if separator == "[" else "]")

@@ -1,0 +1,58 @@
+"""`ramtek play`: a stream of instructions from a file, in a window or into a picture."""
+
+import click
+
+from ramtek_emu.commands.displays import (
+    display_asked_for,
+    display_options,
+    open_stream,
+    reader_of,
+    recording,
+    refuse_outputs,
+    show,
+    tell_the_end,
+    write_outputs,
+)
+
+EXAMPLES = """\b
+Examples:
+  ramtek play drawing.ramtek
+  ramtek play drawing.ramtek -o drawing.png --configuration princeton_9300
+  old_program | ramtek play - -o drawing.png --record drawing.ramtek
+"""
+
+
+@click.command(epilog=EXAMPLES)
+@click.argument("stream", type=click.Path())
+@display_options
+@click.option("--window", is_flag=True, help="Open the window even if a picture is written.")
+def play(
+    stream: str,
+    output: str | None,
+    snapshot: str | None,
+    configuration: str | None,
+    start: str | None,
+    force: bool,
+    record: str | None,
+    window: bool,
+) -> None:
+    """Run STREAM, a file of 16-bit words with the low byte first; - is stdin.
+
+    Without -o or --snapshot it is shown in a window. What it asks to read back is read by nobody.
+    """
+    refuse_outputs(force, output, snapshot, record)
+    file = open_stream(stream)
+    display = display_asked_for(configuration, start)
+
+    from ramtek_emu.host_session import HostSession
+    from ramtek_emu.pipe import PolledPipe, serve_pipe
+
+    read = reader_of(file)
+    with recording(record, force) as kept:
+        session = HostSession(display, kept)
+        if window or (output is None and snapshot is None):
+            show(display, PolledPipe(session, read).serve_for)
+        else:
+            serve_pipe(session, read, None)
+            tell_the_end(display, session.held_words, session.odd_byte)
+    write_outputs(display, output, snapshot, force)

@@ -1,0 +1,189 @@
+"""`ramtek serve`: a display for programs, over TCP or on a pipe."""
+
+import os
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import click
+
+from ramtek_emu.commands.displays import (
+    display_asked_for,
+    display_options,
+    recording,
+    refuse_outputs,
+    show,
+    tell,
+    tell_the_end,
+    write_outputs,
+)
+
+if TYPE_CHECKING:
+    from ramtek_emu.host_session import HostSession
+    from ramtek_emu.pipe import Read, Write
+    from ramtek_emu.server import Server
+
+EXAMPLES = """\b
+Examples:
+  ramtek serve --port 9300                          a display at tcp://127.0.0.1:9300
+  ramtek serve --port 0 --window                    any free port, which is printed, and a window
+  old_program | ramtek serve --stdio -o out.png     a program that only draws
+  socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
+"""
+
+STEP_SECONDS = 0.25
+
+
+@click.command(epilog=EXAMPLES)
+@click.option("--port", type=click.IntRange(0, 65535), help="Listen here; 0 is any free port.")
+@click.option("--stdio", is_flag=True, help="Words on stdin, what is read back on stdout.")
+@click.option("--host", default="127.0.0.1", show_default=True, help="The address to listen at.")
+@click.option("--window", is_flag=True, help="Show what is drawn, as it is drawn.")
+@click.option(
+    "--idle",
+    type=click.FloatRange(min=0.1),
+    default=600.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Show a silent host out after this long.",
+)
+@click.option("--once", is_flag=True, help="End when the first host has left.")
+@display_options
+def serve(
+    port: int | None,
+    stdio: bool,
+    host: str,
+    window: bool,
+    idle: float,
+    once: bool,
+    output: str | None,
+    snapshot: str | None,
+    record: str | None,
+    configuration: str | None,
+    start: str | None,
+    force: bool,
+) -> None:
+    """Be a display that a program sends words to, low byte first, and receives words from.
+
+    Over TCP it serves one host after the other until Ctrl+C; a second one at the same time is refused. With
+    --stdio it ends at the end of its input. Nobody is asked for a password: keep to the loopback address
+    unless everyone who reaches the port may draw.
+    """
+    if stdio == (port is not None):
+        raise click.UsageError("a display must be served on one of --port and --stdio; give one of them")
+    refuse_outputs(force, output, snapshot, record)
+    display = display_asked_for(configuration, start)
+
+    from ramtek_emu.host_session import HostSession
+    from ramtek_emu.server import Server
+
+    with recording(record, force) as kept:
+        if stdio:
+            serve_stdio(HostSession(display, kept), window)
+        else:
+            with Server(display, port or 0, host, idle_seconds=idle, record=kept) as server:
+                serve_port(server, window, once)
+    write_outputs(display, output, snapshot, force)
+
+
+def serve_stdio(session: "HostSession", window: bool) -> None:
+    """Serve the program on the other ends of stdin and stdout until it sends no more."""
+    from ramtek_emu.pipe import PolledPipe, serve_pipe
+
+    read, write = standard_streams()
+    if window:
+        show(session.display, PolledPipe(session, read, write).serve_for)
+        return
+    with until_told() as told:
+        serve_pipe(session, told.reading(read), write)
+    tell_the_end(session.display, session.held_words, session.odd_byte)
+
+
+def standard_streams() -> "tuple[Read, Write | None]":
+    """What reads stdin and what writes all of its bytes to stdout; nothing else gets there from here on."""
+    if sys.stdin is None:
+        return lambda _: b"", None
+    number = sys.stdin.fileno()
+
+    def read(most: int) -> bytes:
+        return os.read(number, most)
+
+    try:
+        kept = os.dup(sys.stdout.fileno())
+        # Whatever prints from here on must not come between the words.
+        os.dup2(sys.stderr.fileno() if sys.stderr is not None else kept, sys.stdout.fileno())
+    except OSError:
+        return read, None
+
+    def write(data: bytes) -> None:
+        view = memoryview(data)
+        while view:
+            view = view[os.write(kept, view) :]
+
+    return read, write
+
+
+def serve_port(server: "Server", window: bool, once: bool) -> None:
+    """Serve hosts over TCP until Ctrl+C, until the window is closed, or until the first one has left."""
+    if window:
+        announce(server)
+        show(server.display, server.serve_for)
+        return
+    with until_told() as told:
+        announce(server)
+        while not told.given and not (once and server.served):
+            server.step(STEP_SECONDS)
+
+
+def announce(server: "Server") -> None:
+    """Print the address that hosts are to be given, with a warning if it is more than this machine's own."""
+    if server.host not in ("127.0.0.1", "localhost", "::1"):
+        tell(
+            f"warning: whoever reaches {server.address} can draw on this display and read it back; "
+            "leave --host out to keep to this machine"
+        )
+    click.echo(server.address)
+    sys.stdout.flush()
+
+
+class Told:
+    """Whether Ctrl+C or a termination signal came: how a display that serves is ended, no failure."""
+
+    def __init__(self) -> None:
+        self.given = False
+        self._waiting = False
+
+    def signal(self, *_: object) -> None:
+        """Note the signal, and end what waits for input."""
+        self.given = True
+        if self._waiting:
+            raise InterruptedError
+
+    def reading(self, read: "Read") -> "Read":
+        """The same as `read`, which gives nothing more once the signal came, or when reading fails."""
+
+        def read_until_told(most: int) -> bytes:
+            try:
+                self._waiting = True
+                return b"" if self.given else read(most)
+            except OSError:
+                # Also a terminal or a socket whose other side has gone.
+                return b""
+            finally:
+                self._waiting = False
+
+        return read_until_told
+
+
+@contextmanager
+def until_told() -> Iterator[Told]:
+    """Take note of Ctrl+C and termination signals for a while."""
+    told = Told()
+    before = {number: signal.signal(number, told.signal) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield told
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

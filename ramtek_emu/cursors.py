@@ -1,0 +1,170 @@
+"""Cursors and the joystick unit: marks on the glass that a host places and reads, and a user moves.
+
+What is modelled: positions, visible and blinking marks, their shapes, TRACK and ENTER, the connection of
+joysticks to cursors. What is **not**: the joystick's speed and spring, how a mark was mixed into the video.
+
+A position is an element and a line of the screen, whatever part of the memory is shown there: a program that
+moves the display origin with the cursor would lose it otherwise (Hardware: PRG, orig.c).
+
+Hardware: LIN (words of the screen forms, TRACK and ENTER); NCAR (the pixel forms); JPL (the global forms, the
+shape of 32 x 32 around (15, 15), which device drives which cursor).
+Assumed: reading a cursor clears its ENTER, so that one press is one ENTER; every cursor tells of the
+switches, since the unit has one set; positions beyond the screen are kept, and the mark is clipped; RSET
+and INIT leave the cursors as they are, like the lookup table; the joystick drives cursor 0 until the host
+says otherwise.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Dots = NDArray[np.bool_]
+
+VISIBLE, BLINK, TRACK, ENTER = 1 << 10, 1 << 11, 1 << 12, 1 << 13
+"""Bits of the word that holds the line and the state (Hardware: LIN)."""
+LINE_BITS = 0x3FF
+SHAPE_SIZE = 32
+SHAPE_CENTER = 15
+
+
+def cross() -> Dots:
+    """The shape of a cursor that no host has loaded, (32, 32).
+
+    Assumed: an upright cross of 15 x 15 pixels, open in the middle so that what it points at is seen; the
+    9300's is in no source.
+    """
+    shape = np.zeros((SHAPE_SIZE, SHAPE_SIZE), np.bool_)
+    arm = [*range(SHAPE_CENTER - 7, SHAPE_CENTER - 1), *range(SHAPE_CENTER + 2, SHAPE_CENTER + 8)]
+    shape[arm, SHAPE_CENTER] = shape[SHAPE_CENTER, arm] = True
+    return shape
+
+
+@dataclass
+class Cursor:
+    """One mark: where it is on the screen, and how it is seen."""
+
+    element: int = 0
+    line: int = 0
+    state: int = 0
+    """VISIBLE, BLINK and whatever else the host wrote above the line's bits."""
+    enter: bool = False
+    """Whether ENTER was pressed since the host last read this cursor."""
+    shape: Dots = field(default_factory=cross, repr=False)
+
+    @property
+    def is_visible(self) -> bool:
+        """Whether the mark is drawn."""
+        return bool(self.state & VISIBLE)
+
+    @property
+    def blinks(self) -> bool:
+        """Whether the mark comes and goes."""
+        return bool(self.state & BLINK)
+
+
+class Cursors:
+    """All cursors of a display and the switches of its joystick unit."""
+
+    def __init__(self, count: int) -> None:
+        self.all = tuple(Cursor() for _ in range(count))
+        self.track = False
+        """The TRACK switch."""
+        self.enter_is_pressed = False
+        """Whether ENTER was pressed since the interface's status was last cleared."""
+        self.driven = {0: 1}
+        """For each tracking device the cursors that it drives, one bit a cursor."""
+        self.changed = 0
+        """How often the shapes were changed; it only grows."""
+
+    def __len__(self) -> int:
+        return len(self.all)
+
+    def __getitem__(self, number: int) -> Cursor:
+        return self.all[number]
+
+    def __contains__(self, number: int) -> bool:
+        return 0 <= number < len(self.all)
+
+    def place(self, number: int, element: int, line: int, state: int) -> None:
+        """Move a cursor and set its state, as the host does."""
+        cursor = self.all[number]
+        cursor.element, cursor.line, cursor.state = element, line, state
+
+    def state_of(self, number: int) -> int:
+        """The state bits as the host reads them; its ENTER is cleared by it."""
+        cursor = self.all[number]
+        state = (
+            cursor.state & ~(TRACK | ENTER) | (TRACK if self.track else 0) | (ENTER if cursor.enter else 0)
+        )
+        cursor.enter = False
+        return state
+
+    def shape(self, number: int, rows: NDArray[np.uint8]) -> None:
+        """Give a cursor another shape: up to 32 rows of four bytes, the leftmost dot highest."""
+        dots = np.unpackbits(rows, axis=1).astype(np.bool_)
+        self.all[number].shape = self.all[number].shape.copy()
+        self.all[number].shape[: len(dots)] = dots
+        self.changed += 1
+
+    @property
+    def seen(self) -> tuple[tuple[int, int, int], ...]:
+        """Element, line and state of every cursor that is visible."""
+        return tuple((each.element, each.line, each.state) for each in self.all if each.is_visible)
+
+    def forget_enter(self) -> None:
+        """Take back an ENTER that no cursor's reader has been told of."""
+        for cursor in self.all:
+            cursor.enter = False
+
+    def hide(self) -> None:
+        """Make every cursor unseen."""
+        for cursor in self.all:
+            cursor.state = 0
+
+
+class Joystick:
+    """A tracking device in the hands of a user: `display.joystick` from Python, the mouse in a window."""
+
+    def __init__(self, cursors: Cursors, elements: int, lines: int, device: int = 0) -> None:
+        self._cursors = cursors
+        self._limits = elements - 1, lines - 1
+        self._device = device
+
+    @property
+    def driven(self) -> tuple[Cursor, ...]:
+        """The cursors that this device moves."""
+        mask = self._cursors.driven.get(self._device, 0)
+        return tuple(cursor for number, cursor in enumerate(self._cursors.all) if mask >> number & 1)
+
+    @property
+    def position(self) -> tuple[int, int]:
+        """The element and the line of the first cursor that it moves; (0, 0) if it moves none."""
+        driven = self.driven
+        return (driven[0].element, driven[0].line) if driven else (0, 0)
+
+    def move_to(self, element: int, line: int) -> None:
+        """Move its cursors; they stay at the screen's edge, as a joystick's do."""
+        place = min(max(int(element), 0), self._limits[0]), min(max(int(line), 0), self._limits[1])
+        for cursor in self.driven:
+            cursor.element, cursor.line = place
+
+    def move_by(self, elements: int, lines: int) -> None:
+        """Push it for a while."""
+        element, line = self.position
+        self.move_to(element + elements, line + lines)
+
+    @property
+    def track(self) -> bool:
+        """The TRACK switch: programs draw while it is on."""
+        return self._cursors.track
+
+    @track.setter
+    def track(self, is_on: bool) -> None:
+        self._cursors.track = bool(is_on)
+
+    def press_enter(self) -> None:
+        """Press ENTER: each cursor tells of it once, and the interface requests an interrupt."""
+        for cursor in self._cursors.all:
+            cursor.enter = True
+        self._cursors.enter_is_pressed = True

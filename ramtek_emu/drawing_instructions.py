@@ -1,0 +1,149 @@
+"""The instructions that draw: vectors, points, conics, circles and text.
+
+Assumed: the additive flag leaves what lies between dots as it is, in characters, rasters and textures, from
+its name; without it the background word is written there.
+"""
+
+import numpy as np
+
+from . import curves, text, vectors
+from .instruction import Instruction
+from .instruction_set import Flags
+from .parameters import STANDARD_FONT
+from .processor import Processor, executes
+from .scan_orders import Point
+
+
+def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
+    """What lines are written with now."""
+    foreground, background = processor.colors(instruction)
+    transparent = bool(instruction.low_byte & Flags.ADDITIVE)
+    return vectors.Ink(foreground, background, processor.parameters.texture, transparent)
+
+
+@executes("WVL")
+def write_linked_vectors(processor: Processor, instruction: Instruction) -> None:
+    """Link vertices to the operating point, which ends at the last.
+
+    Hardware: LIN, BTL, JPL (from the operating point through every vertex, which it ends at); BTL (a
+    vector to the operating point is a point); NCAR (texture, write window).
+    """
+    parameters = processor.parameters
+    vertices = processor.placed(processor.points(instruction), instruction.low_byte)
+    if len(vertices):
+        linked = np.concatenate(([parameters.start], vertices))
+        vectors.write_linked(processor.frame_buffer, linked, ink(processor, instruction), parameters.enable)
+        parameters.start = Point(*vertices[-1].tolist())
+
+
+@executes("WVU")
+def write_unlinked_vectors(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: four numbers a vector, its start and its end; the operating point ends at the last end."""
+    parameters = processor.parameters
+    points = processor.points(instruction, 4).reshape(-1, 2)
+    if len(points):
+        points = processor.placed(points, instruction.low_byte)
+        lines = points[0::2], points[1::2]
+        vectors.write_lines(processor.frame_buffer, *lines, ink(processor, instruction), parameters.enable)
+        parameters.start = Point(*points[-1].tolist())
+
+
+@executes("WPT")
+def write_points(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (disabled code: two numbers a point). Assumed: the operating point ends at the last."""
+    parameters = processor.parameters
+    points = processor.placed(processor.points(instruction), instruction.low_byte)
+    if len(points):
+        word, _ = processor.colors(instruction)
+        processor.frame_buffer.write_points(points[:, 0], points[:, 1], word, parameters.enable)
+        parameters.start = Point(*points[-1].tolist())
+
+
+@executes("CIRC")
+def write_circles(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (center and radius in elements; the operating point becomes the center).
+
+    Assumed: three numbers for each of several circles; radii are not below 0, their sixteen bits count up;
+    with relative addressing each center is counted from the one before.
+    """
+    parameters = processor.parameters
+    circles = processor.points(instruction, 3)
+    if not len(circles):
+        return
+    word, _ = processor.colors(instruction)
+    centers = processor.placed(circles[:, :2], instruction.low_byte).tolist()
+    for center, radius in zip(centers, (circles[:, 2] & 0xFFFF).tolist(), strict=True):
+        curves.write_circle(processor.frame_buffer, Point(*center), radius, word, parameters.enable)
+    parameters.start = Point(*centers[-1])
+
+
+@executes("WC")
+def write_conic(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: LIN (from the operating point to the data point, or for a number of pixels).
+
+    Assumed: the operating point ends at the last pixel; of several data points the first counts; without one
+    and without a number of pixels a closed curve is drawn once.
+    """
+    parameters = processor.parameters
+    points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)
+    stop = Point(*points[0].tolist()) if len(points) else None
+    elements, lines = curves.conic_pixels(parameters.conic, parameters.start, stop)
+    word, _ = processor.colors(instruction)
+    processor.frame_buffer.write_points(elements, lines, word, parameters.enable)
+    parameters.start = Point(int(elements[-1]), int(lines[-1]))
+
+
+@executes("WT")
+def write_text(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: BTL, LIN, JPL (cells of 7 x 9); LIN (the swap flag); JPL (size factors)."""
+    parameters = processor.parameters
+    foreground, background = processor.colors(instruction)
+    style = text.TextStyle(
+        dimensions=parameters.dimensions,
+        spacing=parameters.spacing,
+        size=(1 + (parameters.scale & 0x0F), 1 + (parameters.scale >> 8 & 0x0F)),
+        foreground=foreground,
+        background=background,
+        transparent=bool(instruction.low_byte & Flags.ADDITIVE),
+    )
+    is_standard = parameters.font == STANDARD_FONT
+    parameters.start = text.write_text(
+        processor.frame_buffer,
+        processor.characters if is_standard else processor.loaded_characters,
+        instruction.data_bytes(),
+        style,
+        window=parameters.window,
+        order=parameters.order,
+        start=parameters.start,
+        enable=parameters.enable,
+    )
+
+
+@executes("LPF")
+def load_character(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: LIN (twelve rows, a byte each, the first in the high byte).
+
+    Assumed: the highest bit is the leftmost dot, as in rasters; the character of that code is replaced, and
+    stays so until power-on, for RSET leaves the lookup table too.
+    """
+    load_rows(processor, instruction, ">u2")
+
+
+@executes("LPFRP")
+def load_reversed_character(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: LPF with the low byte first, from its name."""
+    load_rows(processor, instruction, "<u2")
+
+
+def load_rows(processor: Processor, instruction: Instruction, packing: str) -> None:
+    """Give the character of a code its rows."""
+    words = [word for (word,) in instruction.operands.values()]
+    rows = np.array(words, packing).view(np.uint8)
+    shape = np.unpackbits(rows[:, np.newaxis], axis=1).astype(np.bool_)
+    processor.loaded_characters[instruction.low_byte] = shape
+
+
+@executes("ATTPF")
+def attach_font(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (FFh: the standard font). Assumed: any other: the characters that may be loaded."""
+    processor.parameters.font = instruction.low_byte

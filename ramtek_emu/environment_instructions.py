@@ -1,0 +1,121 @@
+"""The instructions of the environment: reset, parameters, status, what is shown, waiting; and none."""
+
+import numpy as np
+
+from .instruction import Instruction
+from .instruction_set import FORMS, OPERANDS
+from .parameters import Parameters
+from .processor import Processor, Status, executes
+
+MOST_SAVED = 16
+"""Environments that PUSHE puts aside at most. Assumed: one more sets the illegal-instruction status."""
+
+
+@executes("???")
+def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: PRG (the status bit). Assumed: each word alone is skipped."""
+    processor.flag_illegal()
+    processor.illegal_words += max(1, len(instruction.data))
+
+
+def consume(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: an instruction known by name only is consumed whole and sets the illegal status."""
+    processor.flag_illegal()
+    processor.named_only += 1
+
+
+for _form in FORMS:
+    if _form.named_only:
+        executes(_form.name)(consume)
+
+
+@executes("RSET")
+def reset(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: LIN libdoc (clears interrupts, parameters and screen); BTL (the lookup table stays).
+
+    Assumed: an ENTER that nobody has read is an interrupt too: the next program must not take it for its own.
+    """
+    initialize(processor, instruction)
+    processor.clear_status()
+    processor.cursors.forget_enter()
+    processor.frame_buffer.fill(processor.parameters.whole_window, processor.parameters.background)
+
+
+@executes("INIT")
+def initialize(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: the parameters alone, since libdoc speaks of erasing for RSET only."""
+    processor.parameters = Parameters.at_reset(processor.configuration)
+    processor.saved.clear()
+
+
+@executes("NOP")
+@executes("SET")
+def do_nothing(processor: Processor, instruction: Instruction) -> None:
+    """Nothing beyond taking the operands."""
+
+
+@executes("PUSHE")
+def save_environment(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: every parameter is put aside, the zoom and the font among them."""
+    if len(processor.saved) < MOST_SAVED:
+        processor.saved.append(processor.parameters.copy())
+    else:
+        processor.flag_illegal()
+
+
+@executes("POPE")
+def restore_environment(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: the parameters last put aside; none left sets the illegal-instruction status."""
+    if processor.saved:
+        processor.parameters = processor.saved.pop()
+    else:
+        processor.flag_illegal()
+
+
+@executes("READP")
+def read_parameters(processor: Processor, instruction: Instruction) -> None:
+    """Give the operands that the flag words name, in the order in which they would be sent.
+
+    Assumed: all of it; without flag words every operand comes, those of the second word last.
+    """
+    names = instruction.operands or OPERANDS
+    words = [word for name in names for word in processor.parameters.operand(name)]
+    processor.reply(np.array(words, np.uint16))
+
+
+@executes("RERR")
+def read_error_status(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: one word, the request bits of the status register, which reading clears."""
+    processor.reply(np.array([processor.status & ~Status.READY], np.uint16))
+    processor.clear_status()
+
+
+@executes("ZOOM")
+def zoom(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: JPL, NCAR (line factor less one in the high byte, element factor less one in the low byte).
+
+    Assumed: four bits count of each.
+    """
+    word = instruction.operands["zoom"][0]
+    processor.parameters.zoom = 1 + (word & 0x0F), 1 + (word >> 8 & 0x0F)
+
+
+@executes("SELVO")
+def select_video_origin(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (1: at the bottom). Assumed: the lowest bit counts."""
+    processor.parameters.origin_at_bottom = bool(instruction.low_byte & 1)
+
+
+@executes("WAITVR")
+def wait_for_retrace(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (before a table is loaded). Assumed: its number is a channel's; all retrace at once."""
+    if processor.beam is not None:
+        processor.beam.wait_for_line(processor.beam.lines)
+
+
+@executes("WAITL")
+def wait_for_line(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: a word with the line of the screen, from the top; a line that is not there: no wait."""
+    line = instruction.operands["line"][0]
+    if processor.beam is not None and line < processor.beam.lines:
+        processor.beam.wait_for_line(line)

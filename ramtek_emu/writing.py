@@ -1,0 +1,156 @@
+"""Writing that leaves the old file or the new one, whole, whatever happens in between.
+
+The bytes go into a file beside, which is synced and then renamed. Both packages of this distribution write
+their files through here.
+"""
+
+import errno
+import os
+import secrets
+from contextlib import suppress
+from pathlib import Path
+
+from .errors import OutputError, OutputExistsError, WriteError
+
+NO_PLACE = (
+    errno.ENOENT,
+    errno.ENOTDIR,
+    errno.EACCES,
+    errno.EPERM,
+    errno.EROFS,
+    errno.ENAMETOOLONG,
+    errno.EISDIR,
+)
+"""What says that there is no place for an output, rather than that writing failed midway."""
+
+NO_LINKS = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EMLINK)
+"""What a file system without hard links answers."""
+
+
+class Output:
+    """A file that comes to be piece by piece, beside its place, and is there when it is kept, wholly."""
+
+    def __init__(self, path: str | os.PathLike[str], *, overwrite: bool) -> None:
+        """Begin the file; OutputExistsError or OutputError where it cannot be."""
+        self.overwrite = overwrite
+        refuse_output(path, overwrite)
+        # Through a link, so that the link stays and what it names is replaced.
+        self.path = Path(os.path.realpath(path))
+        self._beside = self.path.with_name(f".{self.path.name[:100]}.{secrets.token_hex(6)}.part")
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+        try:
+            # Closed by `keep` or at the end of the with statement that this is used in.
+            self._file = open(os.open(self._beside, flags, 0o666), "wb")  # noqa: SIM115
+        except OSError as error:
+            raise _refusal(self.path, error) from None
+
+    def write(self, data: bytes) -> None:
+        """Add bytes; WriteError when they cannot be written."""
+        try:
+            self._file.write(data)
+        except OSError as error:
+            raise _refusal(self.path, error) from None
+
+    def keep(self) -> None:
+        """Sync the file and give it its name; WriteError or OutputExistsError when that fails."""
+        try:
+            with self._file:
+                self._file.flush()
+                os.fsync(self._file.fileno())
+            _name(self._beside, self.path, self.overwrite)
+            _sync_folder(self.path.parent)
+        except OutputError:
+            raise
+        except OSError as error:
+            raise _refusal(self.path, error) from None
+
+    def __enter__(self) -> "Output":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Leave nothing behind that was not kept."""
+        with suppress(OSError):
+            self._file.close()
+        with suppress(OSError):
+            os.unlink(self._beside)
+
+
+def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
+    """Write the bytes beside the path, sync them, and give them its name.
+
+    Raises OutputExistsError where the path exists and may not be overwritten, OutputError where nothing can
+    be put, WriteError where writing failed. Nothing but a whole old or new file is left in any case.
+    """
+    with Output(path, overwrite=overwrite) as output:
+        output.write(data)
+        output.keep()
+
+
+def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
+    """Refuse a place where no output can be put, before anything is computed for it."""
+    target = Path(path)
+    try:
+        if target.is_dir():
+            raise OutputError(f"an output must be a file, not the folder {target}; add a file name")
+        if target.exists() and not target.is_file():
+            raise OutputError(f"an output must be a file, not the device {target}; choose another name")
+        if not overwrite and os.path.lexists(target):
+            raise _exists(target)
+        if not Path(os.path.realpath(target)).parent.is_dir():
+            raise OutputError(
+                f"an output must have a folder to be in, and there is no folder {target.parent}; make it, "
+                "or choose another place"
+            )
+    except OutputError:
+        raise
+    except OSError as error:
+        raise _refusal(target, error) from None
+    except ValueError:
+        raise OutputError(
+            f"a file name must be one that the system can hold, not {str(path)!r}; choose another name"
+        ) from None
+
+
+def _name(beside: Path, target: Path, overwrite: bool) -> None:
+    """Give the finished file its name; a link refuses one that came to exist meanwhile."""
+    if overwrite:
+        with suppress(OSError):
+            os.chmod(beside, os.stat(target).st_mode & 0o777)
+        os.replace(beside, target)
+        return
+    try:
+        os.link(beside, target)
+    except FileExistsError:
+        raise _exists(target) from None
+    except OSError as error:
+        if error.errno not in NO_LINKS:
+            raise
+        os.rename(beside, target)
+
+
+def _exists(path: Path) -> OutputExistsError:
+    return OutputExistsError(
+        f"an output must be a new file, not {path}, which exists; choose another name or add --force"
+    )
+
+
+def _refusal(path: Path, error: OSError) -> OutputError | WriteError:
+    reason = (error.strerror or str(error)).lower()
+    if error.errno in NO_PLACE:
+        return OutputError(
+            f"an output must have a place, and at {path} it cannot be made ({reason}); choose another place"
+        )
+    return WriteError(
+        f"an output must be written whole, and {path} could not be ({reason}); "
+        "make room or choose another place"
+    )
+
+
+def _sync_folder(folder: Path) -> None:
+    # Not every system opens folders; the file itself is synced already.
+    with suppress(OSError):
+        number = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(number)
+        finally:
+            os.close(number)
