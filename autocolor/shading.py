@@ -21,6 +21,9 @@ CLOSE = 0.02
 FARTHEST = 1e15
 """In units; the rays of a light that is farther are parallel, and float32 can hold the square of this."""
 
+FEW = 0.3
+"""Below this fraction of lit pixels it takes less time to pick them than to compute them all."""
+
 DIFFUSE, SPECULAR = 0, 1
 
 Singles = npt.NDArray[np.float32]
@@ -77,10 +80,11 @@ def _shade(out: Singles, rows: Singles, position: Floats, ready: Controls, expon
     within = inside(ready, cos_light, flap_rows)
     if within is not None:
         lit &= within
-    places = np.flatnonzero(lit)
-    if not len(places):
+    lit_count = np.count_nonzero(lit)
+    if not lit_count:
         return
-    chosen: slice | npt.NDArray[np.intp] = places if len(places) < 0.75 * len(lit) else slice(None)
+    few = lit_count < FEW * len(lit)
+    chosen = np.flatnonzero(lit) if few else slice(None)
 
     # Reflect it to the eye, and take of both terms what the controls leave.
     cos_eye = light @ rows[MIRROR.start : MIRROR_POINT + 1]
@@ -88,15 +92,15 @@ def _shade(out: Singles, rows: Singles, position: Floats, ready: Controls, expon
     diffuse = phong_diffuse(cos_incidence[chosen])
     specular = phong_specular(cos_eye[chosen], exponent)
     if cos_light is not None and ready.concentration > 0:
-        multiplier = concentrated(np.maximum(cos_light[chosen], np.float32(1e-30)), ready.concentration)
+        multiplier = concentrated(cos_light[chosen], ready.concentration)
         diffuse = diffuse * multiplier
         specular *= multiplier
-    if isinstance(chosen, slice):
-        np.multiply(diffuse, lit, out=out[DIFFUSE])
-        np.multiply(specular, lit, out=out[SPECULAR])
-    else:
+    if few:
         out[DIFFUSE, chosen] = diffuse
         out[SPECULAR, chosen] = specular
+    else:
+        np.multiply(diffuse, lit, out=out[DIFFUSE])
+        np.multiply(specular, lit, out=out[SPECULAR])
 
 
 def _squared_distance(rows: Singles, position: Floats) -> Singles:

@@ -15,11 +15,15 @@ WARMING = 2
 
 @dataclass(frozen=True)
 class Case:
-    """Something to time; `most` is its target as (what it is compared with, the largest ratio)."""
+    """Something to time; `most` is its target as (what it is compared with, the largest ratio).
+
+    `before` is run first and not timed.
+    """
 
     name: str
     run: Callable[[], object]
     most: tuple[str, float] | None = None
+    before: Callable[[], object] | None = None
 
 
 def timed(every: Sequence[Case], rounds: int) -> dict[str, list[float]]:
@@ -28,7 +32,10 @@ def timed(every: Sequence[Case], rounds: int) -> dict[str, list[float]]:
     seconds: dict[str, list[float]] = {case.name: [] for case in every}
     for number in range(rounds + WARMING):
         for case in every:
-            caches += 1
+            if case.before is not None:
+                case.before()
+            # Read, for lines that were written would have to be put back while the case runs.
+            caches.sum()
             begin = time.perf_counter()
             case.run()
             if number >= WARMING:
