@@ -1,6 +1,6 @@
 """An emulator of the RAMTEK RM-9300 raster display, driven by the 16-bit words that its programs sent.
 
-What is modelled
+What is modeled
     the instruction stream: one continuous row of words, cut anywhere, with its sticky operands
     the instructions: instruction_set names their sources; those known by name only are consumed and flagged
     the frame buffer: planes behind a write mask, a write window, image windows, scan orders, bytes or words
@@ -12,7 +12,7 @@ What is modelled
     time, if the configuration has it: a beam, retrace, waiting (timing holds every rate; all are assumed)
     the status bits of the interface: illegal instruction, cursor interrupt
 
-What is **not** modelled
+What is **not** modeled
     logical functions other than replacement, and write-enable offsets: no source tells what they do
     keyboard, tablet, display lists, matrices, detection, arcs, packed images: known by name only
     the alphanumeric overlay of the 9460: the words of its table go nowhere

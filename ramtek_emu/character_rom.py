@@ -1,6 +1,6 @@
 """The characters: 7 x 9 dots a cell.
 
-What is modelled: the size of the cell and its codes. What is **not**: the shapes of RAMTEK's own
+What is modeled: the size of the cell and its codes. What is **not**: the shapes of RAMTEK's own
 characters, which are in no source.
 
 Hardware: BTL, LIN, JPL (7 x 9, the cell's top-left corner at the operating point).

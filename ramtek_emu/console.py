@@ -1,6 +1,6 @@
 """Console: what a user does at a window, as plain values for whoever drives the display.
 
-What is modelled: the joystick unit. The mouse moves the cursors that its device drives, the left button is
+What is modeled: the joystick unit. The mouse moves the cursors that its device drives, the left button is
 ENTER, the right one TRACK while it is down. What is **not**: the joystick's feel.
 
 Nothing here knows how the window is made.

@@ -1,6 +1,6 @@
 """Cursors and the joystick unit: marks on the glass that a host places and reads, and a user moves.
 
-What is modelled: positions, visible and blinking marks, their shapes, TRACK and ENTER, the connection of
+What is modeled: positions, visible and blinking marks, their shapes, TRACK and ENTER, the connection of
 joysticks to cursors. What is **not**: the joystick's speed and spring, how a mark was mixed into the video.
 
 A position is an element and a line of the screen, whatever part of the memory is shown there: a program that

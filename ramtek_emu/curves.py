@@ -1,6 +1,6 @@
 """Curves: circles and conics as the pixels that lie nearest to them.
 
-What is modelled: outlines, one pixel wide. What is **not**: arcs (known by name only), pixels that are not
+What is modeled: outlines, one pixel wide. What is **not**: arcs (known by name only), pixels that are not
 square (Assumed: a radius in elements is one in lines).
 """
 

@@ -1,6 +1,6 @@
 """FrameBuffer: the words of the picture, behind a write mask and a write window.
 
-What is modelled: planes, the mask, the clipping of whatever lies outside the memory, the eight scan orders,
+What is modeled: planes, the mask, the clipping of whatever lies outside the memory, the eight scan orders,
 a count of the words ever written. What is **not**: the time that a write takes, memory outside the raster.
 
 Words from the wire lose the bits beyond the planes; words from Python are refused when they have some.

@@ -1,6 +1,6 @@
 """HostSession: bytes of a host into a display, bytes of its replies back; the same for a socket and a pipe.
 
-What is modelled: words low byte first both ways (Hardware: PRG, JPL, V8K: the words of a PDP-11's or a VAX's
+What is modeled: words low byte first both ways (Hardware: PRG, JPL, V8K: the words of a PDP-11's or a VAX's
 memory as they are); an instruction cut anywhere; replies as soon as they exist and in order; whole words: of
 an odd number of bytes the last is dropped at the end (Hardware: PRG DRIVER.c, V8K round down).
 

@@ -8,7 +8,7 @@ of operands.
 Hardware: LIN, BTL, JPL and NCAR agree on all of this; the counts of words are Linton's `Argno` and `libdoc`.
 Assumed: CONE is 12 words, as its only client sends; a header comment says 6, which the decoder takes where
 nothing else can be meant.
-Assumed: DCL is one word, as its neighbours are; no client sends it.
+Assumed: DCL is one word, as its neighbors are; no client sends it.
 Assumed: the bits of the second flag word that no source names carry no words.
 """
 

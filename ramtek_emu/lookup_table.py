@@ -1,6 +1,6 @@
 """LookupTable: the parallel video lookup table, entries that a word addresses.
 
-What is modelled: the two card formats, the address counter that goes on from load to load and wraps, reading
+What is modeled: the two card formats, the address counter that goes on from load to load and wraps, reading
 back. What is **not**: the digital-to-analog converters, a change in the middle of a field.
 
 Hardware: JPL, NCAR (24 bits: entry n at word address 2n, green << 8 | blue, then red); LIN, BTL (12 bits:

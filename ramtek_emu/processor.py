@@ -3,7 +3,7 @@
 Each instruction is a row of the table and one function in a room of its subject: images, drawing, the lookup
 table, cursors, the environment.
 
-What is modelled: the parameters, the addressing modes, image modes, replies in order, the illegal-instruction
+What is modeled: the parameters, the addressing modes, image modes, replies in order, the illegal-instruction
 bit. What is **not**: logical functions other than replacement; they replace (Assumed: FUNC, whose codes no
 source explains); write-enable offsets, which are kept and read back and move nothing (Assumed: WOF; its only
 client, NCAR, sends the corner of the window beside coordinates that contain it already).

@@ -1,6 +1,6 @@
 """ScanOut: words through the lookup table, one field at a time, with the cursors on top.
 
-What is modelled: every visible word selects its entry; origin, zoom and video origin pick what is visible;
+What is modeled: every visible word selects its entry; origin, zoom and video origin pick what is visible;
 with fewer planes than the table has address bits, the upper bits of the table's address counter pick the
 part that is shown; the cursors; a black-and-white monitor; with a beam, each line as the memories were when
 the beam passed it. What is **not**: interlace, the levels of blanking and border.

@@ -1,6 +1,6 @@
 """Server: a display behind a TCP port, for one host at a time.
 
-What is modelled: the host interface as a row of words low byte first, both ways. What is **not**: the UNIBUS
+What is modeled: the host interface as a row of words low byte first, both ways. What is **not**: the UNIBUS
 registers and their interrupts; who asks over this port gets words, nothing else.
 
 Nothing here ever waits longer than it is told to, so that a window can be drawn in between: `step` takes what

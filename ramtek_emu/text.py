@@ -1,6 +1,6 @@
 """Text: characters in cells, with size, spacing and scan order.
 
-What is modelled: whole cells, dots and what lies between them; the turns of the scan orders; going on in the
+What is modeled: whole cells, dots and what lies between them; the turns of the scan orders; going on in the
 next line at the window's edge. What is **not**: the size factors of more than 16.
 """
 

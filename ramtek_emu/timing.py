@@ -1,6 +1,6 @@
 """Timing and the beam: how long instructions take, and where the monitor's beam is meanwhile.
 
-What is modelled: a clock that only instructions move on, and a beam that runs line by line from the top of a
+What is modeled: a clock that only instructions move on, and a beam that runs line by line from the top of a
 field to its bottom and is then blanked for a while. So the same stream always gives the same field. What is
 **not**: interlace, the time of day, the host's own pauses.
 

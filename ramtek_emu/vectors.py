@@ -1,6 +1,6 @@
 """Vectors: straight lines of words, one or thousands at once, with their texture.
 
-What is modelled: the nearest pixels, both ends of each line; texture patterns; clipping at the memory and the
+What is modeled: the nearest pixels, both ends of each line; texture patterns; clipping at the memory and the
 write window. What is **not**: the order in time in which the pixels of one line are written.
 
 Assumed: of two pixels equally near to the line, the one farther from where it starts (Bresenham's choice is

@@ -1,6 +1,6 @@
 """Monitor: shows the field of a display in a window. The only place that knows pygame.
 
-What is modelled: a field at the largest whole multiple that fits, centered, every pixel one k x k block;
+What is modeled: a field at the largest whole multiple that fits, centered, every pixel one k x k block;
 the mouse as the joystick of the display's cursors. What is **not**: the phosphor, the beam.
 
 The window shows, it never draws: everything to be seen is words in the frame buffer and cursors on top. Keys,

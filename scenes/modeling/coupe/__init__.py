@@ -1,1 +1,1 @@
-"""The coupe: the modelling scripts of the built-in scene."""
+"""The coupe: the modeling scripts of the built-in scene."""

@@ -1,6 +1,6 @@
 """The outer skin below the glass: one B-spline surface round the car, and the height of the hood and deck.
 
-x runs from nose to tail, y to the right, z up, in meters; the right half is modelled and mirrored. The
+x runs from nose to tail, y to the right, z up, in meters; the right half is modeled and mirrored. The
 surface `wall(s, v)` has s round the plan outline (0 at the nose, S_END at the tail) and v from the sill (0)
 over the side crease (4) and the shoulder (8) to the ledge (9), where hood, glass and deck begin.
 """
