@@ -36,11 +36,11 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     """
     level = np.arange(levels)
     begin = blend_level(paint, levels)
-    weight = np.clip(level - begin, 0, None) / max(levels - 1 - begin, 1) * (paint.light_percentage / 100)
+    weight = np.maximum(level - begin, 0) / max(levels - 1 - begin, 1) * (paint.light_percentage / 100)
     share = floor + (1 - floor) * level / max(levels - 1, 1)
     ramps = np.stack([(1 - weight) * share, weight * share], axis=1)
     colors = ramps @ np.array([paint.object_color, paint.light_color], np.float64)
     # Mixing in floats may miss a whole color by the last bit, just below a half.
-    entries: npt.NDArray[np.uint8] = np.clip(halves_up(colors + 1e-9), 0, 255).astype(np.uint8)
+    entries: npt.NDArray[np.uint8] = halves_up(colors + 1e-9).astype(np.uint8)
     entries.flags.writeable = False
     return entries

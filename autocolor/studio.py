@@ -88,12 +88,10 @@ def configuration_of(display: HostPort) -> Configuration:
 
 def _send(before: Shown | None, now: Shown, display: HostPort) -> None:
     """Send the entries and the words that differ."""
-    if before is None:
-        changed = np.arange(WORDS)
-    else:
-        changed = np.flatnonzero((before.entries != now.entries).any(axis=1))
+    components = WORDS * 3
+    changed = np.flatnonzero(before.entries != now.entries) if before is not None else np.arange(components)
     if len(changed):
-        first, last = int(changed[0]), int(changed[-1])
+        first, last = int(changed[0]) // 3, int(changed[-1]) // 3
         short = configuration_of(display).entry_format is EntryFormat.WORD_12
         load = instructions.load_short_entries if short else instructions.load_entries
         display.send(load(first, now.entries[first : last + 1]))

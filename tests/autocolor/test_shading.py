@@ -50,7 +50,7 @@ def assert_as_the_paper(scene: Scene) -> None:
     picture = render(scene, LINES, ELEMENTS)
     expected = expected_on_wall(scene, LINES, ELEMENTS)
     largest = max((lit.intensity for lit in expected.values()), default=0.0)
-    # Where less than a hundredth of the light is seen, float32 rounds what is seen in proportion to the whole.
+    # Where less than a hundredth of the light is seen, float32 rounds in proportion to the whole.
     reflectance = scene.surfaces[0].reflectance
     peak = sum(light.intensity for light in scene.lights) * (reflectance.diffuse + reflectance.specular)
     largest = max(largest, peak / 100)
