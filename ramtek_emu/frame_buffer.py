@@ -73,13 +73,18 @@ class FrameBuffer:
         size = window.width * window.height
         if size == 0:
             return start
-        position = starting_position(window, order, start)
-        after = order.point(window, (position + len(words)) % size)
-        if dots is not None and len(words) > size:
+        before = order.words_before(window, start)
+        if 0 < before < len(words):
+            head, tail = (None, None) if dots is None else (dots[:before], dots[before:])
+            entered = self.write_run(window, order, start, words[:before], enable, head)
+            return self.write_run(window, order, entered, words[before:], enable, tail)
+        after = order.after(window, start, len(words))
+        if dots is not None and len(words) > size and not before:
             words, dots = last_around(words, dots, size)
         # Only the last time around the window leaves anything behind.
-        skipped = max(0, len(words) - size)
-        for block in blocks(window, order, (position + skipped) % size, len(words) - skipped):
+        skipped = 0 if before else max(0, len(words) - size)
+        start = order.after(window, start, skipped)
+        for block in blocks(window, order, start, len(words) - skipped):
             first = skipped + block.first
             part = slice(first, first + block.inner * block.outer)
             data = words[part].reshape(block.outer, block.inner)
@@ -90,15 +95,19 @@ class FrameBuffer:
     def read_run(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
         """`count` words along the scan of a window from a point on, and the point after the last one."""
         size = window.width * window.height
-        # Once around the window; what comes after is the same again.
-        words = np.zeros(min(count, size), np.uint16)
         if size == 0:
             return np.zeros(count, np.uint16), start
-        position = starting_position(window, order, start)
-        for block in blocks(window, order, position, len(words)):
+        before = order.words_before(window, start)
+        if 0 < before < count:
+            head, entered = self.read_run(window, order, start, before)
+            tail, after = self.read_run(window, order, entered, count - before)
+            return np.concatenate((head, tail)), after
+        # Once around the window; what comes after is the same again.
+        words = np.zeros(count if before else min(count, size), np.uint16)
+        for block in blocks(window, order, start, len(words)):
             out = words[block.first : block.first + block.inner * block.outer]
             self._load(block, order, out.reshape(block.outer, block.inner))
-        return np.resize(words, count), order.point(window, (position + count) % size)
+        return np.resize(words, count), order.after(window, start, count)
 
     def write_block(
         self,
@@ -194,11 +203,3 @@ def last_around(words: Words, dots: Dots, size: int) -> tuple[Words, Dots]:
     last = around - 1 - written[::-1].argmax(axis=0)
     any_dot: Dots = np.logical_or.reduce(written, axis=0)
     return rounds[last, np.arange(size)], any_dot
-
-
-def starting_position(window: Window, order: ScanOrder, start: Point) -> int:
-    """The position of a point in the scan of a window.
-
-    Assumed: a point outside the window starts at the window's first corner; the sources never do it.
-    """
-    return order.position(window, start) if window.holds(start) else 0

@@ -1,11 +1,14 @@
 """Windows, points and the eight scan orders: where the next word of an image goes.
 
 A window is inclusive at both ends and may lie partly or wholly outside the memory. Within it words run along
-one direction (inner) and, at the window's edge, go on one step in the other direction (outer). A position
-counts words from the corner where the scan starts.
+one direction (inner) and, at the window's edge, go on one step in the other direction (outer). Steps
+count words and runs from the corner where the scan starts.
 
 Hardware: PRG, LONG, ASF (the eight codes); LIN, JPL (the run wraps at the window's edge to the next line).
-Assumed: a run that reaches the end of its window goes on at the corner where the scan starts, as counters do.
+Assumed: a run that reaches the end of its window goes on at the corner where the scan starts, as counters
+do. A run that starts before its window goes on into it, for counters compare with the far edges only (JPL
+reads pairs of pixels from even elements on, also where its window begins at an odd one); a start beyond the
+far edges is at them: in the next run, or in the first one.
 Assumed: a window whose right is left of its left, or whose bottom is above its top, holds no word.
 """
 
@@ -93,20 +96,49 @@ class ScanOrder(NamedTuple):
             window.right if self.leftward else window.left, window.bottom if self.upward else window.top
         )
 
-    def position(self, window: Window, point: Point) -> int:
-        """The count of words from the corner to a point inside the window."""
+    def steps(self, window: Window, point: Point) -> tuple[int, int]:
+        """Words along the scan and runs from the corner to a point, below 0 where it lies before it."""
         across = window.right - point.element if self.leftward else point.element - window.left
         down = window.bottom - point.line if self.upward else point.line - window.top
-        return across * window.height + down if self.vertical else down * window.width + across
+        return (down, across) if self.vertical else (across, down)
 
-    def point(self, window: Window, position: int) -> Point:
-        """The point at a position: the inverse of `position`."""
-        outer, inner = divmod(position, self.inner_and_outer(window)[0])
+    def stepped(self, corner: Point, inner: int, outer: int) -> Point:
+        """The point that lies some words along the scan and some runs further: the inverse of `steps`."""
         across, down = (outer, inner) if self.vertical else (inner, outer)
         return Point(
-            window.right - across if self.leftward else window.left + across,
-            window.bottom - down if self.upward else window.top + down,
+            corner.element + (-across if self.leftward else across),
+            corner.line + (-down if self.upward else down),
         )
+
+    def entry(self, window: Window, start: Point) -> tuple[int, int]:
+        """The `steps` at which a run from a start begins."""
+        inner, outer = self.steps(window, start)
+        along, runs = self.inner_and_outer(window)
+        if inner >= along:
+            inner, outer = 0, outer + 1
+        return inner, 0 if outer >= runs else outer
+
+    def words_before(self, window: Window, start: Point) -> int:
+        """How many words of a run from a start come before it is inside its window for good."""
+        inner, outer = self.entry(window, start)
+        if inner >= 0 and outer >= 0:
+            return 0
+        along = self.inner_and_outer(window)[0]
+        return along * max(1, -outer) - inner
+
+    def after(self, window: Window, start: Point, count: int) -> Point:
+        """The point after `count` words of a run from a start."""
+        if not count:
+            return start
+        inner, outer = self.entry(window, start)
+        along, runs = self.inner_and_outer(window)
+        first = along - inner
+        if count < first:
+            inner += count
+        else:
+            more, inner = divmod(count - first, along)
+            outer += 1 + more
+        return self.stepped(self.corner(window), inner, outer % runs if outer >= 0 else outer)
 
     def block_window(self, start: Point, inner: int, outer: int) -> Window:
         """The window that a block of inner x outer words covers when its first word is at `start`."""
@@ -137,20 +169,21 @@ class Block(NamedTuple):
     first: int
 
 
-def blocks(window: Window, order: ScanOrder, start: int, count: int) -> Iterator[Block]:
-    """The rectangles that `count` words fill from position `start` on: at most three for each time around."""
+def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterator[Block]:
+    """The rectangles that `count` words fill from `start` on: at most three for each time around."""
     along, runs = order.inner_and_outer(window)
-    position, done = start, 0
+    corner = order.corner(window)
+    inner, outer = order.entry(window, start)
+    done = 0
     while done < count:
-        inner = position % along
         left = count - done
+        point = order.stepped(corner, inner, outer)
         if inner or left < along:
-            size = min(along - inner, left)
-            block = Block(order.point(window, position), size, 1, done)
+            block = Block(point, min(along - inner, left), 1, done)
         else:
-            outer = min(left // along, runs - position // along)
-            size = along * outer
-            block = Block(order.point(window, position), along, outer, done)
+            block = Block(point, along, min(left // along, runs - outer), done)
         yield block
-        done += size
-        position = (position + size) % (along * runs)
+        done += block.inner * block.outer
+        inner, outer = 0, outer + block.outer
+        if outer == runs:
+            outer = 0

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .frame_buffer import FrameBuffer, WriteEnable, starting_position
+from .frame_buffer import FrameBuffer, WriteEnable
 from .scan_orders import Point, ScanOrder, Window
 
 Dots = NDArray[np.bool_]
@@ -82,7 +82,7 @@ def write_text(
     """Write characters from `start` on, along the scan of the window; the place of the next cell is returned.
 
     Hardware: BTL, LIN, JPL (whole cells, advance 7, line 9); NCAR (the scan order turns the letters); LIN
-    (the dots between are background).
+    (the dots between are background); JPL (its window begins at 1, 1 and its text anywhere, also before it).
     Assumed: a cell that would pass the window's edge starts the next line of text at the edge where the scan
     starts; below the last line text goes on at the window's first corner, and of text that goes around
     the window many times only the last times are written; a cell larger than the window is written
@@ -93,22 +93,22 @@ def write_text(
     width, height = order.inner_and_outer(window)
     if width and height:
         corner = order.corner(window)
-        outer, inner = divmod(starting_position(window, order, start), width)
+        inner, outer = order.steps(window, start)
     else:
         corner, outer, inner = start, 0, 0
         width = height = 0x10000
     words = np.array((style.background, style.foreground), np.uint16)
     numbers = np.frombuffer(codes, np.uint8)
     while len(numbers):
-        if inner and inner + along > width:
+        if inner > 0 and inner + along > width:
             inner, outer = 0, outer + line_step
-        if outer and outer + across > height:
+        if outer > 0 and outer + across > height:
             outer = 0
         if not inner and not outer:
             around = cells(width, along, step) * cells(height, across, line_step)
             numbers = numbers[max(0, len(numbers) // around - 1) * around :]
         count = min(cells(width - inner, along, step), len(numbers), 1 + MOST_ALONG // step)
-        first = offset(order, corner, inner, outer)
+        first = order.stepped(corner, inner, outer)
         if (
             not order.block_window(first, (count - 1) * step + along, across)
             .intersection(frame_buffer.window)
@@ -120,18 +120,9 @@ def write_text(
             frame_buffer.write_block(first, order, words[dots.view(np.uint8)], enable, written)
         inner += count * step
         numbers = numbers[count:]
-    return offset(order, corner, inner, outer)
+    return order.stepped(corner, inner, outer)
 
 
 def cells(room: int, size: int, step: int) -> int:
     """How many cells of a size fit, each a step from the last; one at least, for one is written whole."""
     return 1 + max(0, room - size) // step
-
-
-def offset(order: ScanOrder, corner: Point, inner: int, outer: int) -> Point:
-    """The point that lies some words along a scan and some runs further."""
-    across, down = (outer, inner) if order.vertical else (inner, outer)
-    return Point(
-        corner.element + (-across if order.leftward else across),
-        corner.line + (-down if order.upward else down),
-    )

@@ -33,19 +33,33 @@ def walk(window: tuple[int, int, int, int], code: int, start: Place, count: int)
     """The places of `count` words from `start` on, and the one after them."""
     step, run = STEPS[code]
     first = corner(window, code)
-    place = start if inside(start, window) else first
-    places = [place]
-    for _ in range(count):
-        following = (place[0] + step[0], place[1] + step[1])
-        if not inside(following, window):
-            # Back to the edge where runs start, one run further.
-            back = (first[0], place[1]) if step[0] else (place[0], first[1])
-            following = (back[0] + run[0], back[1] + run[1])
-            if not inside(following, window):
-                following = first
-        place = following
-        places.append(place)
-    return places
+    room_along, room_across = rooms(window, code)
+    inner, outer = away(start, window, code)
+    places = []
+    for _ in range(count + 1):
+        # Counters compare with the far edges only.
+        if inner >= room_along:
+            inner, outer = 0, outer + 1
+        if outer >= room_across:
+            outer = 0
+        places.append(
+            (first[0] + inner * step[0] + outer * run[0], first[1] + inner * step[1] + outer * run[1])
+        )
+        inner += 1
+    return places if count else [start]
+
+
+def rooms(window: tuple[int, int, int, int], code: int) -> tuple[int, int]:
+    """How many words a run takes, and how many runs there are."""
+    width, height = window[2] - window[0] + 1, window[3] - window[1] + 1
+    return (width, height) if STEPS[code][0][0] else (height, width)
+
+
+def away(place: Place, window: tuple[int, int, int, int], code: int) -> tuple[int, int]:
+    """Steps along and across from the first corner, below 0 before it."""
+    first, (step, run) = corner(window, code), STEPS[code]
+    across, down = place[0] - first[0], place[1] - first[1]
+    return across * step[0] + down * step[1], across * run[0] + down * run[1]
 
 
 def write_run(
@@ -114,24 +128,19 @@ def write_text(
 ) -> tuple[Place, int]:
     """The place of the next cell, and how often the text began again at the window's first corner."""
     (dots_along, dots_across), (space_along, space_across), (along, across) = style
-    left, top, right, bottom = window
     step, run = STEPS[code]
     first = corner(window, code)
-    room_along, room_across = right - left + 1, bottom - top + 1
-    if step[0] == 0:
-        room_along, room_across = room_across, room_along
-    inner = outer = rounds = 0
-    if inside(start, window):
-        away = (abs(start[0] - first[0]), abs(start[1] - first[1]))
-        inner, outer = away if step[0] else (away[1], away[0])
+    room_along, room_across = rooms(window, code)
+    inner, outer = away(start, window, code)
+    rounds = 0
 
     def place(i: int, j: int) -> Place:
         return (first[0] + i * step[0] + j * run[0], first[1] + i * step[1] + j * run[1])
 
     for character in codes:
-        if inner and inner + dots_along * along > room_along:
+        if inner > 0 and inner + dots_along * along > room_along:
             inner, outer = 0, outer + (dots_across + space_across) * across
-        if outer and outer + dots_across * across > room_across:
+        if outer > 0 and outer + dots_across * across > room_across:
             outer = 0
         rounds += inner == 0 and outer == 0
         for j in range(dots_across * across):

@@ -239,6 +239,32 @@ def test_the_image_driver_writes_and_reads_lines_of_bytes() -> None:
     assert display.receive(50).tolist() == bytes_of(picture[5])
 
 
+def test_the_image_driver_sets_text_at_the_edge_before_its_window() -> None:
+    display = Ramtek9300(JPL_9460)
+    # Its window counts from 1 (1, 1 to 640, 480), its operating point from 0: here 0, 190 and -21, 300.
+    for element, line in ((0, 190), (-21, 300)):
+        display.send(sent_words([0x0C0B, 0x8443, 255, 7, 1, 1, 640, 480, 0, element, line, 6]))
+        display.send(sent_words(pairs(b"VICAR ", low_first=True)))
+    cells = np.concatenate([display.processor.characters[ord(letter)] for letter in "VICAR "], axis=1)
+    assert (display.words[190:199, :42] == 7 * cells).all()
+    assert (display.words[300:309, :21] == 7 * cells[:, 21:]).all()
+    assert np.count_nonzero(display.words) == cells.sum() + cells[:, 21:].sum()
+
+
+def test_the_image_driver_changes_a_pixel_at_the_edge_of_an_odd_window() -> None:
+    display = Ramtek9300(JPL_9460)
+    picture = np.arange(480 * 640).reshape(480, 640) % 251
+    display.send(instructions.write_image(picture))
+    # Pixels go in pairs from even elements on; the window begins at element 101, the pixel is 101, 60.
+    head = [0x80C1, 0x0020, 0x00FF, 101, 20, 300, 99, 0, 100, 60, 1, 2]
+    display.send(sent_words([0x0B0F, *head]))
+    (pair,) = display.receive(1).tolist()
+    assert pair == picture[60, 101] << 8 | picture[60, 100]
+    display.send(sent_words([0x0A0F, *head, 255 << 8 | pair & 0xFF]))
+    picture[60, 101] = 255
+    assert (display.words == picture).all()
+
+
 def test_an_area_of_more_bytes_than_one_instruction_takes_goes_on() -> None:
     display = Ramtek9300(JPL_9460)
     picture = np.random.default_rng(12).integers(0, 256, (400, 300), np.uint8)

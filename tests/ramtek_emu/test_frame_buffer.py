@@ -73,7 +73,8 @@ def test_a_fill_is_a_run_of_one_word_over_the_window(
 def test_a_window_without_words_takes_none_and_leaves_the_point(window: Window) -> None:
     buffer = FrameBuffer(SMALL)
     buffer.fill(window, 7)
-    after = buffer.write_run(window, SCAN_ORDERS[0], Point(5, 3), np.array([1, 2, 3], np.uint16))
+    corner = Point(window.left, window.top)
+    after = buffer.write_run(window, SCAN_ORDERS[0], corner, np.array([1, 2, 3], np.uint16))
     assert not buffer.words.any()
     if not (window.width and window.height):
         assert after == Point(5, 3)
