@@ -106,7 +106,9 @@ CHARACTER_ROWS = tuple(f"rows_{2 * pair}_{2 * pair + 1}" for pair in range(6))
 
 SUBSTANTIATED = (
     Form(0x03, "LAM", "load the lookup table", ("address", "length")),
-    Form(0x04, "RAM", "read the lookup table", ("address", "length"), replies=True, extended=True),
+    # Assumed: on the 9300 too, though only clients of the 9460 were seen to send it: one that reads the table
+    # of a 9300 would wait for an answer for ever.
+    Form(0x04, "RAM", "read the lookup table", ("address", "length"), replies=True),
     Form(0x05, "RSET", "restore every parameter and erase the screen", ()),
     Form(0x06, "INIT", "restore every parameter", ()),
     Form(0x07, "NOP", "do nothing", ()),

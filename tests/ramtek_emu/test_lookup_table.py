@@ -96,3 +96,10 @@ def test_colors_that_do_not_fit_are_refused_by_name(first: int, colors: object, 
             door(first, colors)
         assert str(refusal.value) == sentence
     assert table.written == 0
+
+
+def test_the_12_bit_table_is_read_back_as_it_was_loaded() -> None:
+    display = Ramtek9300(PRINCETON_9300)
+    display.send(np.array([0x0300, 5, 6, 0x0F00, 0x00F0, 0x0ABC], np.uint16))
+    display.send(np.array([0x0400, 5, 6], np.uint16))
+    assert display.receive(3).tolist() == [0x0F00, 0x00F0, 0x0ABC]
