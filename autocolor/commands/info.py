@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -37,6 +38,7 @@ def info(context: click.Context, scene: str, as_json: bool, up: str, strict: boo
 
 def facts_of(report: SceneReport) -> dict[str, Any]:
     """The facts of a scene as values that JSON can hold."""
+    from autocolor.files.quad_shapes import quad_shapes
     from autocolor.rendering import render
     from autocolor.studio import shown
 
@@ -51,6 +53,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "polygons": len(mesh.node_numbers),
         "triangles": mesh.triangle_count,
         "edges": mesh.edge_count,
+        "quads": dataclasses.asdict(quad_shapes(mesh)),
         "bounds": [low.tolist(), high.tolist()],
         "parts": {part.name: part.surface for part in scene.parts},
         "surfaces": {
@@ -78,6 +81,8 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
     lines = [
         f"{facts['name']}: nodes {facts['nodes']:,}, polygons {facts['polygons']:,}"
         f" (three-sided {facts['triangles']:,}), edges {facts['edges']:,}",
+        "quads kept as they are: "
+        + ", ".join(f"{shape} {facts['quads'][shape]:,}" for shape in ("warped", "concave", "crossed")),
         f"size {size}, pixels {facts['pixels']:,},"
         f" intensities {facts['intensities'].minimum:.4g} to {facts['intensities'].maximum:.4g}",
         f"parts: {', '.join(f'{part} ({surface})' for part, surface in facts['parts'].items())}",

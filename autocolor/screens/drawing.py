@@ -28,9 +28,3 @@ def text(
 ) -> None:
     """Write a line of text with its first character's corner at (left, top)."""
     display.send(instructions.write_text(line, left, top, word, background, size))
-
-
-def frame(display: HostPort, left: int, top: int, right: int, bottom: int, word: int = WHITE) -> None:
-    """Draw the outline of a box whose corners are elements and lines of it."""
-    corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)]
-    display.send(instructions.write_vectors(corners, word))

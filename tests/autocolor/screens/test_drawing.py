@@ -4,7 +4,7 @@ import numpy as np
 
 from autocolor.level_ranges import SCREENS
 from autocolor.screens import drawing
-from autocolor.screens.drawing import HEIGHT, NIGHT, WHITE, WIDTH, clear, frame, text
+from autocolor.screens.drawing import NIGHT, WHITE, clear, text
 from ramtek_emu import Ramtek9300
 
 
@@ -13,15 +13,6 @@ def test_a_cleared_screen_has_one_word_everywhere() -> None:
     text(display, "old", 600, 470, WHITE)
     clear(display)
     assert (display.words == NIGHT).all()
-
-
-def test_a_frame_is_an_outline() -> None:
-    display = Ramtek9300()
-    frame(display, 10, 20, 30, 25)
-    expected = np.zeros((HEIGHT, WIDTH), np.uint16)
-    expected[20:26, 10:31] = WHITE
-    expected[21:25, 11:30] = 0
-    assert np.array_equal(display.words, expected)
 
 
 def test_text_stays_in_its_cells() -> None:
