@@ -18,6 +18,9 @@ PIXELS_AT_ONCE = 1 << 15
 CLOSE = 0.02
 """Below this squared distance, as a fraction of the squares it is the difference of, subtract the points."""
 
+LEAST_DISTANCE = 1e-37
+"""Squared, in units; what is nearer is taken to be as far, so that its inverse is finite."""
+
 FARTHEST = 1e15
 """In units; the rays of a light that is farther are parallel, and float32 can hold the square of this."""
 
@@ -42,7 +45,7 @@ def light_planes(
     `exponents` has N for each surface number that is seen. Both planes are 0 where the light has no effect.
     `kept` are planes of the same light to take over but for the surfaces with the `changed` numbers.
     """
-    planes = np.zeros((2, len(seen.pixels)), np.float32) if kept is None else kept.copy()
+    planes = np.empty((2, len(seen.pixels)), np.float32) if kept is None else kept.copy()
     ready = controls(light, seen)
     position = seen.camera_point(light.position)
     position *= min(FARTHEST / max(float(np.abs(position).max()), 1.0), 1.0)
@@ -57,14 +60,17 @@ def light_planes(
 
 
 def _shade(out: Singles, rows: Singles, position: Floats, ready: Controls, exponent: float) -> None:
-    """Write the two planes of some pixels of one surface; they must hold zeros."""
+    """Write the two planes of some pixels of one surface."""
     flap_rows = rows
     distance = _squared_distance(rows, position)
     nearest = float(distance.min())
     if nearest < CLOSE * max(float(position @ position), float(rows[POINT_SQUARED].max())):
         rows, position = _around_light(rows, position), np.zeros(3)
         distance = rows[POINT_SQUARED].copy()
-    inverse = np.sqrt(np.maximum(distance, np.float32(1e-37), out=distance), out=distance)
+        nearest = float(distance.min())
+    if nearest < LEAST_DISTANCE:
+        np.maximum(distance, np.float32(LEAST_DISTANCE), out=distance)
+    inverse = np.sqrt(distance, out=distance)
     np.reciprocal(inverse, out=inverse)
 
     # Find what faces the light and is within its controls.
@@ -82,6 +88,7 @@ def _shade(out: Singles, rows: Singles, position: Floats, ready: Controls, expon
         lit &= within
     lit_count = np.count_nonzero(lit)
     if not lit_count:
+        out[:] = 0
         return
     few = lit_count < FEW * len(lit)
     chosen = np.flatnonzero(lit) if few else slice(None)
@@ -96,6 +103,7 @@ def _shade(out: Singles, rows: Singles, position: Floats, ready: Controls, expon
         diffuse = diffuse * multiplier
         specular *= multiplier
     if few:
+        out[:] = 0
         out[DIFFUSE, chosen] = diffuse
         out[SPECULAR, chosen] = specular
     else:
