@@ -20,6 +20,8 @@ from autocolor.projection import Projection, lens
 from autocolor.view import View
 
 PIXELS_AT_ONCE = 1 << 14
+RAY_ACROSS = 6
+"""The row of what is linear along a span where the ray begins: across, down and 1."""
 
 Singles = npt.NDArray[np.float32]
 Floats = npt.NDArray[np.float64]
@@ -142,18 +144,17 @@ def seen_of_winners(
     step[:3, turned] *= -1
 
     rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
-    center = middle.astype(np.float32)[:, None]
     along = (pixels - winners.first_pixel[span]).astype(np.float32)
     for first in range(0, len(pixels), PIXELS_AT_ONCE):
         part = slice(first, first + PIXELS_AT_ONCE)
         nearness, some = inverse_depth[part], span[part]
         out = rows[:, part]
         # Interpolate along the span.
-        between = np.take(step, some, axis=1)
-        between *= along[part]
-        between += np.take(start, some, axis=1)
+        between = np.take(start, some, axis=1)
+        between[:6] += np.take(step, some, axis=1) * along[part]
+        between[RAY_ACROSS] += along[part] * np.float32(1 / rays.focal_length)
         # Place the point.
-        np.divide(between[3:], nearness, out=out[POINT])
+        np.divide(between[3:6], nearness, out=out[POINT])
         out[ONE] = 1
         np.einsum("ij,ij->j", out[POINT], out[POINT], out=out[POINT_SQUARED])
         # Make the normal a unit vector.
@@ -162,8 +163,7 @@ def seen_of_winners(
         length = np.sqrt(np.einsum("ij,ij->j", normal, normal))
         normal /= np.maximum(length, np.float32(1e-30), out=length)
         # Mirror the ray to the eye: M = 2 (N.V) N - V, where V = -ray / |ray|.
-        view_ray = between[3:]
-        view_ray += center * nearness
+        view_ray = between[RAY_ACROSS:]
         view_ray *= rays.inverse_length[pixels[part]]
         facing = np.einsum("ij,ij->j", normal, view_ray)
         np.multiply(normal, -2 * facing, out=out[MIRROR])
@@ -201,9 +201,10 @@ def _along_spans(
 ) -> tuple[Singles, Singles]:
     """What is linear along each span: its value at the first pixel, and what each further pixel adds.
 
-    Both are (6, spans) float32: the normal times the inverse depth, and the point around the middle times
-    the inverse depth, which is the ray less the middle times it. That difference is taken here in float64, so
-    that a point is as exact from afar as from near.
+    The values are (9, spans) float32: the normal times the inverse depth; the point around the middle times
+    the inverse depth, which is the ray less the middle times it; and the ray, whose step is the same for all.
+    The steps are (6, spans). The difference is taken here in float64, so that a point is as exact from afar
+    as from near.
     """
     line, first = np.divmod(winners.first_pixel, projected.elements)
     left, left_depth, left_normal = _at_cuts(projected, winners.left_edge, line)
@@ -213,7 +214,8 @@ def _along_spans(
     # Bring the normals to about the size of 1, so that float32 holds them however far the object is.
     size = np.abs(left_normal).max(axis=0) + np.abs(right_normal).max(axis=0)
     size[size == 0] = 1
-    start, step = np.empty((2, 6, len(line)), np.float32)
+    start = np.empty((RAY_ACROSS + 3, len(line)), np.float32)
+    step = np.empty((RAY_ACROSS, len(line)), np.float32)
     normal_step = (right_normal - left_normal) / width
     start[:3] = (left_normal + normal_step * begin) / size
     step[:3] = normal_step / size
@@ -228,6 +230,7 @@ def _along_spans(
     ray_step = (1 / focal_length, 0.0, 0.0)
     for axis in range(3):
         start[3 + axis] = ray[axis] - middle[axis] * depth
+        start[RAY_ACROSS + axis] = ray[axis]
         step[3 + axis] = ray_step[axis] - middle[axis] * depth_step
     return start, step
 
