@@ -82,10 +82,9 @@ def inside(ready: Controls, cos_light: Singles | None, rows: Singles) -> npt.NDA
     lit: npt.NDArray[np.bool_] | None = None
     if cos_light is not None and ready.least_cosine is not None:
         lit = cos_light > 0 if ready.least_cosine == 0 else cos_light >= ready.least_cosine
-    if len(ready.flaps):
-        for side in ready.flaps:
-            within = side @ rows[POINT.start : ONE + 1] >= 0
-            lit = within if lit is None else lit & within
+    for side in ready.flaps:
+        within = side @ rows[POINT.start : ONE + 1] >= 0
+        lit = within if lit is None else lit & within
     return lit
 
 

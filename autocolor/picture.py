@@ -61,8 +61,8 @@ class Picture:
     """The picture as the lighting model leaves it: it knows intensities and surfaces, and no color.
 
     The visible pixels are held surface by surface: `pixels` are their flat places, `relative` the
-    intensities in proportion to `scale`, both (n,); `slices` says which are whose. `planes` has the two
-    planes of each light that was computed, (2, n).
+    intensities in proportion to `scale`, both (n,); `slices` says which are whose. `light_planes` has the
+    two planes of each light that was computed, (2, n).
     """
 
     lines: int
@@ -151,7 +151,7 @@ def composed(
 ) -> Picture:
     """The picture: the sum of the planes, each with D or S and its light's intensity, plus the ambient.
 
-    `planes` has the two planes of each light that is on. Raises InputError where the sum would leave the
+    `planes` has the two planes of each light that shines. Raises InputError where the sum would leave the
     range of float32: such an intensity is refused by name, never clipped into a level.
     """
     shining = [light for light in lights if light.name in planes and light.on and light.intensity > 0]

@@ -82,8 +82,9 @@ def rendering(
     else:
         before = None
         one_sided = frozenset(row + 1 for row, surface in enumerate(scene.surfaces) if not surface.two_sided)
-        visible = ALGORITHMS[algorithm]
-        seen = visible(scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided)
+        seen = ALGORITHMS[algorithm](
+            scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided
+        )
     planes = _planes(scene, seen, before)
     picture = composed(seen, planes, scene.surfaces, scene.lights, scene.ambient)
     return Rendering(scene, seen, picture)

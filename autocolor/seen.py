@@ -43,6 +43,16 @@ class SurfaceSlice:
     stop: int
 
 
+def surface_slices(surface_numbers: npt.NDArray[np.uint8]) -> tuple[SurfaceSlice, ...]:
+    """The slices of pixels that are sorted by their surface numbers, none of which is 0."""
+    counts = np.bincount(surface_numbers, minlength=1)
+    stops = np.cumsum(counts)
+    return tuple(
+        SurfaceSlice(number, int(stops[number] - counts[number]), int(stops[number]))
+        for number in np.flatnonzero(counts).tolist()
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class Seen:
     """The visible pixels, sorted by surface and within one by place.
@@ -134,11 +144,12 @@ def seen_of_winners(
     pixels, span = winners.pixels[order], winners.span[order]
     inverse_depth = winners.inverse_depth[order]
 
-    # Turn to the eye the normals of polygons that are seen from behind.
+    # Make ready what is linear along the spans that are seen.
     low, high = mesh.bounds
     middle = view.axes @ ((low + high) / 2 - np.array(view.eye)) / projected.unit
     rays = lens(projected.lines, projected.elements, view.field_of_view)
     start, step = _along_spans(winners, projected, rays.focal_length, middle)
+    # Turn to the eye the normals of polygons that are seen from behind.
     turned = projected.from_behind[column] & ~np.isin(surface, list(one_sided))
     start[:3, turned] *= -1
     step[:3, turned] *= -1
@@ -174,19 +185,13 @@ def seen_of_winners(
         np.negative(out[NORMAL_POINT], out=out[NORMAL_POINT])
         np.negative(out[MIRROR_POINT], out=out[MIRROR_POINT])
 
-    counts = np.bincount(surface_at_pixel, minlength=1)
-    stops = np.cumsum(counts)
-    slices = tuple(
-        SurfaceSlice(number, int(stops[number] - counts[number]), int(stops[number]))
-        for number in np.flatnonzero(counts).tolist()
-    )
     for table in (rows, pixels):
         table.flags.writeable = False
     return Seen(
         projected.lines,
         projected.elements,
         pixels,
-        slices,
+        surface_slices(surface_at_pixel),
         polygon[span],
         inverse_depth,
         rows,

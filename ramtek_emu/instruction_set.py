@@ -170,7 +170,6 @@ FLAG_NAMES = {
     Flags.ADDITIVE: "AD",
 }
 ADDRESSING_NAMES = {Flags.INDEX_1: "IX01", Flags.INDEX_2: "IX10", Flags.RELATIVE: "IX11"}
-FORM_OF_OPCODE = {form.opcode: form for form in FORMS}
 FORM_OF_NAME = {form.name: form for form in FORMS}
 
 

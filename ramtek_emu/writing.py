@@ -137,8 +137,9 @@ def _exists(path: Path) -> OutputExistsError:
 def _refusal(path: Path, error: OSError) -> OutputError | WriteError:
     reason = (error.strerror or str(error)).lower()
     if error.errno in NO_PLACE:
+        other = "name" if error.errno == errno.ENAMETOOLONG else "place"
         return OutputError(
-            f"an output must have a place, and at {path} it cannot be made ({reason}); choose another place"
+            f"an output must have a place, and at {path} it cannot be made ({reason}); choose another {other}"
         )
     return WriteError(
         f"an output must be written whole, and {path} could not be ({reason}); "

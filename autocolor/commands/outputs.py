@@ -34,29 +34,18 @@ def _refuse(path: str, force: bool) -> None:
         raise UsageError("an output must have a name, not an empty one; give it one")
     if path == "-":
         raise UsageError("an output must be a file, not stdout; give it a name")
-    target = Path(path)
-    try:
-        if target.is_dir():
-            raise OutputError(f"an output must be a file, not the folder {path}; add a file name")
-        if target.exists() and not target.is_file():
-            raise OutputError(f"an output must be a file, not the device {path}; choose another name")
-        if not force and os.path.lexists(target):
-            raise OutputError(
-                f"an output must be a new file, not {path}, which exists; choose another name or add --force"
-            )
-        folder = target.parent
-        if not folder.is_dir():
-            raise OutputError(
-                f"an output must have a folder to be in, not {folder}, which is none; make it or choose"
-                " another"
-            )
-        if not os.access(folder, os.W_OK):
-            raise OutputError(
-                f"an output must have a folder that can be written, not {folder}; choose another place"
-            )
-    except (OSError, ValueError) as error:
-        reason = (getattr(error, "strerror", None) or str(error)).lower()
-        raise OutputError(f"an output cannot be made at {path!r} ({reason}); choose another name") from None
+    from autocolor.files.writing import refuse_output
+
+    folder = Path(path).parent
+    if not os.path.isdir(folder):
+        raise OutputError(
+            f"an output must have a folder to be in, not {folder}, which is none; make it or choose another"
+        )
+    if not os.access(folder, os.W_OK):
+        raise OutputError(
+            f"an output must have a folder that can be written, not {folder}; choose another place"
+        )
+    refuse_output(path, overwrite=force)
 
 
 def write_png(path: str, display: Ramtek9300, force: bool) -> None:

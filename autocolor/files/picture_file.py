@@ -29,7 +29,7 @@ from autocolor.files.scene_values import scene_of_values, values_of_scene
 from autocolor.files.writing import write_atomically
 from autocolor.picture import Picture
 from autocolor.scene import Scene
-from autocolor.seen import SurfaceSlice
+from autocolor.seen import surface_slices
 
 FORMAT = "autocolor picture 1"
 LARGEST_PICTURE_FILE = 4 << 30
@@ -204,21 +204,14 @@ def _picture(
             f"intensities must stay below {LARGEST_SINGLE:.3g}, not reach {scale:g} times their own"
         )
     flat = numbers.ravel()
-    counts = np.bincount(flat, minlength=1)
-    counts[0] = 0
     in_use = set(scene.mesh.parts_in_use)
     owned = {number for part, number in enumerate(scene.surface_number_of_part) if part in in_use}
-    strange = set(np.flatnonzero(counts).tolist()) - owned
-    if strange:
-        raise InputError(f"a surface number must be that of a surface with polygons, not {min(strange)}")
     pixels = np.flatnonzero(flat)
     pixels = pixels[np.argsort(flat[pixels], kind="stable")]
-    stops = np.cumsum(counts).tolist()
-    slices = tuple(
-        SurfaceSlice(number, stops[number - 1], stops[number])
-        for number in range(1, len(stops))
-        if stops[number] > stops[number - 1]
-    )
+    slices = surface_slices(flat[pixels])
+    strange = {each.surface_number for each in slices} - owned
+    if strange:
+        raise InputError(f"a surface number must be that of a surface with polygons, not {min(strange)}")
     lines, elements = relative.shape
     intensities = relative.ravel()[pixels].astype(np.float32)
     return Picture(lines, elements, tuple(names), pixels, slices, intensities, float(scale))

@@ -6,6 +6,8 @@ The display writes its files in the same way; here its refusals become those of 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import ramtek_emu
 from autocolor.errors import OutputError, WriteError
@@ -18,8 +20,20 @@ def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bo
     Raises OutputError where the path exists and may not be overwritten, or where nothing can be put;
     WriteError where writing failed. Nothing but a whole old or new file is left in either case.
     """
-    try:
+    with _refusals_of_this_package():
         writing.write_atomically(path, data, overwrite=overwrite)
+
+
+def refuse_output(path: str | os.PathLike[str], *, overwrite: bool) -> None:
+    """Raise OutputError where no output can be put, before anything is computed for it."""
+    with _refusals_of_this_package():
+        writing.refuse_output(path, overwrite)
+
+
+@contextmanager
+def _refusals_of_this_package() -> Iterator[None]:
+    try:
+        yield
     except ramtek_emu.OutputError as refusal:
         raise OutputError(str(refusal)) from None
     except ramtek_emu.WriteError as refusal:
