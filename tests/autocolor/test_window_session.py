@@ -77,10 +77,13 @@ class Session:
         return self.tool("getwindowname", self.window()).strip()
 
     def shown(self) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
-        """The pixels of the window, (height, width, 3)."""
+        """The pixels of the window, (height, width, 3); none when the window found was one that is gone by now.
+
+        While a window opens, short-lived ones of the library below it come and go.
+        """
         geometry = self.tool("getwindowgeometry", "--shell", self.window())
         values = dict(line.split("=") for line in geometry.split() if "=" in line)
-        left, top, width, height = (int(values[key]) for key in ("X", "Y", "WIDTH", "HEIGHT"))
+        left, top, width, height = (int(values.get(key, 0)) for key in ("X", "Y", "WIDTH", "HEIGHT"))
         return self.screen.pixels()[top : top + height, left : left + width]
 
     def shows_the_field(self) -> bool:
