@@ -66,19 +66,24 @@ def scaling(measured: dict[str, Any], path: Path) -> bool:
 def time_lines(points: list[dict[str, Any]]) -> list[Line]:
     """The milliseconds of each edit, and of opening."""
     lines = []
-    for name, color in zip(points[0]["edits"], (BLUE, ORANGE, GREEN, VIOLET), strict=True):
-        edits = [point["edits"][name] for point in points]
+    for name, color in zip(points[0]["edits ms"], (BLUE, ORANGE, GREEN, VIOLET), strict=True):
+        edits = [point["edits ms"][name] for point in points]
         lines.append(
-            Line(name, color, [edit["milliseconds"] for edit in edits], [edit["quartiles"] for edit in edits])
+            Line(
+                name,
+                color,
+                [edit["median"] for edit in edits],
+                [(edit["low"], edit["high"]) for edit in edits],
+            )
         )
-    return [*lines, Line("opening", GRAY, [point["milliseconds to open"] for point in points])]
+    return [*lines, Line("opening", GRAY, [point["open ms"] for point in points])]
 
 
 def memory_lines(points: list[dict[str, Any]]) -> list[Line]:
     """The MiB of opening and of editing."""
     return [
-        Line("editing", BLUE, [point["MiB to edit"] for point in points]),
-        Line("opening", GRAY, [point["MiB to open"] for point in points]),
+        Line("editing", BLUE, [point["edit MiB"] for point in points]),
+        Line("opening", GRAY, [point["open MiB"] for point in points]),
     ]
 
 

@@ -7,7 +7,6 @@ memory it needs is measured once, in a process of its own: `python -m benchmarks
 from __future__ import annotations
 
 import json
-import statistics
 import subprocess
 import sys
 import time
@@ -15,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import autocolor
-from benchmarks.cases import timed
+from benchmarks.cases import spread, timed
 from benchmarks.memory import forget_peak, peak
 from benchmarks.points import EDITS, QUANTITIES, Quantity, Session, session
 
@@ -49,7 +48,7 @@ def measured_points(quantity: Quantity, rounds: int, quick: bool) -> list[dict[s
             "size": size,
             "label": quantity.label(size),
             **facts(each),
-            "edits": {edit: summary(seconds[f"{size}: {edit}"]) for edit in EDITS},
+            "edits ms": {edit: spread(seconds[f"{size}: {edit}"]).times(1e3)._asdict() for edit in EDITS},
             **alone[size],
         }
         for size, each in sessions.items()
@@ -67,12 +66,6 @@ def facts(each: Session) -> dict[str, int]:
     }
 
 
-def summary(seconds: list[float]) -> dict[str, Any]:
-    """Median and quartiles in milliseconds."""
-    low, _, high = statistics.quantiles(seconds, n=4) if len(seconds) > 1 else seconds * 3
-    return {"milliseconds": statistics.median(seconds) * 1e3, "quartiles": [low * 1e3, high * 1e3]}
-
-
 def measured_alone(quantity: Quantity, size: int) -> dict[str, float]:
     """What `alone` measures, in a fresh process."""
     command = [sys.executable, "-m", "benchmarks.scaling", quantity.name, str(size)]
@@ -84,7 +77,7 @@ def measured_alone(quantity: Quantity, size: int) -> dict[str, float]:
 def alone(quantity: Quantity, size: int) -> dict[str, float]:
     """Milliseconds to open a point up to its words, and MiB over what the imports hold.
 
-    "MiB to open" is the peak until the first picture is shown, "MiB to edit" the peak of the edits after it.
+    "open MiB" is the peak until the first picture is shown, "edit MiB" the peak of the edits after it.
     """
     # Open a small scene first, for some modules are imported on the way.
     Session(autocolor.read_scene(SMALL), 12)
@@ -96,9 +89,9 @@ def alone(quantity: Quantity, size: int) -> dict[str, float]:
     for case in (*each.cases(), *each.cases()):
         case.run()
     return {
-        "milliseconds to open": milliseconds,
-        "MiB to open": opened,
-        "MiB to edit": peak() - imported,
+        "open ms": milliseconds,
+        "open MiB": opened,
+        "edit MiB": peak() - imported,
     }
 
 
@@ -110,18 +103,18 @@ def text(measured: dict[str, Any]) -> str:
         rows = [f"{quantity.name:12}{heading}{'open ms':>10}{'MiB':>7}{'edit MiB':>10}"]
         for point in measured["points"]:
             if point["quantity"] == quantity.name:
-                edits = "".join(_cell(point["edits"][edit]) for edit in EDITS)
+                edits = "".join(_cell(point["edits ms"][edit]) for edit in EDITS)
                 rows.append(
-                    f"{point['label']:12}{edits}{point['milliseconds to open']:10.0f}"
-                    f"{point['MiB to open']:7.0f}{point['MiB to edit']:10.0f}"
+                    f"{point['label']:12}{edits}{point['open ms']:10.0f}"
+                    f"{point['open MiB']:7.0f}{point['edit MiB']:10.0f}"
                 )
         tables.append("\n".join(rows))
     return "\n\n".join(tables)
 
 
 def _cell(edit: dict[str, Any]) -> str:
-    low, high = edit["quartiles"]
-    return f"{edit['milliseconds']:9.2f} {f'{low:.2f}-{high:.2f}':>12}"
+    quartiles = f"{edit['low']:.2f}-{edit['high']:.2f}"
+    return f"{edit['median']:9.2f} {quartiles:>12}"
 
 
 if __name__ == "__main__":
