@@ -1,4 +1,4 @@
-"""A mesh of as many polygons as are wanted, none of which is like its neighbor."""
+"""A mesh of as many polygons as are wanted."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import autocolor
 
 
 def hills(side: int) -> autocolor.Mesh:
-    """A square of side x side quads, waved so that all of it is seen."""
+    """A square of side x side quads, waved; from the side some of it hides behind the rest."""
     across, along = np.meshgrid(np.linspace(-1, 1, side + 1), np.linspace(-1, 1, side + 1))
     height = 0.1 * np.sin(7 * across) * np.cos(5 * along)
     row = np.arange((side + 1) ** 2).reshape(side + 1, side + 1)

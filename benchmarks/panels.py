@@ -11,11 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from benchmarks.cases import Spread
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 INK, QUIET, GRID = "#222222", "#757575", "#e3e3e3"
+BLUE, ORANGE, GREEN, VIOLET, RED = "#0b5394", "#c55a11", "#2e7d32", "#7b2d8b", "#c0392b"
 DOTS_PER_INCH = 150
 NAME_SIZE = 9.0
 NAME_HEIGHT = 11.5
@@ -45,12 +48,23 @@ def figure(width: float, height: float, title: str, below: str) -> Figure:
     return made
 
 
-def line_panel(axes: Axes, across: Sequence[float], lines: Sequence[Line], low: float, high: float) -> None:
-    """Draw lines over a logarithmic plane from low to high, each with its name at its end."""
+def line_panel(
+    axes: Axes,
+    across: Sequence[float],
+    lines: Sequence[Line],
+    low: float,
+    high: float,
+    name: Callable[[float], str],
+) -> None:
+    """Draw lines over a logarithmic plane from low to high, each with its name at its end.
+
+    `name` names the powers of ten on the upright axis.
+    """
     bare(axes)
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_ylim(low, high)
+    axes.set_yticks(decades(low, high), [name(tick) for tick in decades(low, high)])
     axes.grid(axis="y", color=GRID, linewidth=0.8)
     for line in lines:
         if line.quartiles:
@@ -61,7 +75,7 @@ def line_panel(axes: Axes, across: Sequence[float], lines: Sequence[Line], low: 
     height = axes.bbox.height / axes.figure.dpi * 72
     points_a_decade = height / math.log10(high / low)
     ends = [math.log10(line.values[-1] / low) * points_a_decade for line in lines]
-    for line, end, place in zip(lines, ends, spread(ends, NAME_HEIGHT), strict=True):
+    for line, end, place in zip(lines, ends, moved_apart(ends, NAME_HEIGHT), strict=True):
         axes.annotate(
             line.name,
             (across[-1], line.values[-1]),
@@ -80,10 +94,86 @@ def proportion(axes: Axes, across: Sequence[float], last: float) -> None:
     axes.plot(across, values, color=QUIET, linewidth=0.9, linestyle=(0, (1, 2.5)))
 
 
-def decades(axes: Axes, low: float, high: float, name: Callable[[float], str]) -> None:
-    """Name the powers of ten from low to high on the upright axis."""
-    ticks = [10.0**power for power in range(math.ceil(math.log10(low)), math.floor(math.log10(high)) + 1)]
-    axes.set_yticks(ticks, [name(tick) for tick in ticks])
+def ratio_panel(axes: Axes, names: Sequence[str], ratios: Sequence[Spread]) -> None:
+    """Draw each ratio as a bar from 1 on a logarithmic axis, to the left where it is at most 1."""
+    _row_panel(axes, names, len(names))
+    for row, ratio in enumerate(ratios):
+        met = ratio.median <= 1
+        color = GREEN if met else RED
+        axes.plot([1, ratio.median], [row, row], color=color, linewidth=9, alpha=0.35, solid_capstyle="butt")
+        _whisker(axes, row, ratio, color)
+        _note(axes, row, ratio.low if met else ratio.high, f"{ratio.median:.2f}", color, to_left=met)
+    axes.axvline(1, color=INK, linewidth=1.2)
+    low = min([0.4, *(ratio.low for ratio in ratios)]) / 1.5
+    high = max([1.6, *(ratio.high for ratio in ratios)]) * 1.5
+    axes.set_xlim(low, high)
+    ticks = [lead * 10.0**power for power in range(-3, 4) for lead in (1, 2, 5)]
+    axes.set_xticks(ticks, ["target" if tick == 1 else f"{tick:g}" for tick in ticks])
+    axes.minorticks_off()
+    axes.set_xlim(low, high)
+
+
+def time_panel(axes: Axes, names: Sequence[str], times: Sequence[Spread], own: int, rows: int) -> None:
+    """Draw milliseconds as points on a logarithmic axis with room for some rows; the row `own` stands out."""
+    _row_panel(axes, names, rows)
+    for row, spent in enumerate(times):
+        color = BLUE if row == own else QUIET
+        _whisker(axes, row, spent, color)
+        _note(axes, row, spent.high, time_name(spent.median), color, to_left=False)
+    low = 10.0 ** math.floor(math.log10(min(spent.low for spent in times)))
+    high = max(spent.high for spent in times) * 2.5
+    ticks = decades(low, high)
+    axes.set_xticks(ticks, [time_name(tick) for tick in ticks])
+    axes.minorticks_off()
+    axes.set_xlim(low, high)
+
+
+def _row_panel(axes: Axes, names: Sequence[str], rows: int) -> None:
+    """Prepare a logarithmic axis with room for some rows, the named ones on top."""
+    bare(axes)
+    axes.set_xscale("log")
+    axes.set_ylim(rows - 0.4, -0.6)
+    axes.set_yticks(range(len(names)), names)
+    axes.grid(axis="x", color=GRID, linewidth=0.8)
+
+
+def _whisker(axes: Axes, row: int, spread: Spread, color: str) -> None:
+    """Draw a median and the line between its quartiles."""
+    axes.plot([spread.low, spread.high], [row, row], color=color, linewidth=1.5)
+    axes.plot([spread.median], [row], color=color, marker="o", markersize=4.5)
+
+
+def _note(axes: Axes, row: int, place: float, note: str, color: str, to_left: bool) -> None:
+    """Write beside a place of a row."""
+    axes.annotate(
+        note,
+        (place, row),
+        (-7 if to_left else 7, 0),
+        textcoords="offset points",
+        ha="right" if to_left else "left",
+        va="center",
+        fontsize=NAME_SIZE,
+        color=color,
+    )
+
+
+def decades(low: float, high: float) -> list[float]:
+    """The powers of ten from low to high."""
+    return [10.0**power for power in range(math.ceil(math.log10(low)), math.floor(math.log10(high)) + 1)]
+
+
+def time_name(milliseconds: float) -> str:
+    """A time in few letters.
+
+    >>> time_name(1), time_name(34.567), time_name(1234.5)
+    ('1 ms', '34.6 ms', '1.23 s')
+    """
+    return f"{milliseconds / 1000:.3g} s" if milliseconds >= 1000 else f"{milliseconds:.3g} ms"
+
+
+def memory_name(mebibytes: float) -> str:
+    """A size of memory in few letters."""
+    return f"{mebibytes:,.0f} MiB"
 
 
 def stations(axes: Axes, places: Sequence[float], names: Sequence[str]) -> None:
@@ -109,10 +199,10 @@ def bare(axes: Axes) -> None:
     axes.set_axisbelow(True)
 
 
-def spread(places: Sequence[float], apart: float) -> list[float]:
+def moved_apart(places: Sequence[float], apart: float) -> list[float]:
     """The places moved as little as need be to stand at least so far apart, in their order.
 
-    >>> spread([10, 0, 1], 4)
+    >>> moved_apart([10, 0, 1], 4)
     [10, -1.5, 2.5]
     """
     groups: list[tuple[float, list[int]]] = []

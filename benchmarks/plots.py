@@ -9,15 +9,33 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from benchmarks.panels import Line, decades, figure, line_panel, proportion, save, stations
+from benchmarks.cases import Spread
+from benchmarks.panels import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    QUIET,
+    VIOLET,
+    Line,
+    figure,
+    line_panel,
+    memory_name,
+    proportion,
+    ratio_panel,
+    save,
+    stations,
+    time_name,
+    time_panel,
+)
 
-BLUE, ORANGE, GREEN, VIOLET, GRAY, RED = "#0b5394", "#c55a11", "#2e7d32", "#7b2d8b", "#757575", "#c0392b"
 PANELS = (
     ("polygons", "polygons", "Polygons: hills over {seen:.0%} of 640 x 480, 4 lights"),
     ("lights", "lights", "Lights: the coupe over {seen:.0%} of 640 x 480"),
     ("lines", "pixels", "Picture: the coupe over {seen:.0%} of it, 4 lights"),
 )
 """The quantity, the number that it is drawn over, and a heading."""
+ROW_HEIGHT = 0.36
+"""Of a bar, in inches."""
 ROOM = 1.6
 """The space above and below all lines, as a factor."""
 
@@ -52,8 +70,7 @@ def scaling(measured: dict[str, Any], path: Path) -> bool:
         for column, (name, over, heading) in enumerate(PANELS):
             axes = made.add_subplot(grid[row, column])
             across = [point[over] for point in points[name]]
-            line_panel(axes, across, lines[name], low, high)
-            decades(axes, low, high, tick_name)
+            line_panel(axes, across, lines[name], low, high, tick_name)
             stations(axes, across, [point["label"] for point in points[name]])
             if row == 0:
                 proportion(axes, across, lines[name][0].values[-1])
@@ -76,22 +93,51 @@ def time_lines(points: list[dict[str, Any]]) -> list[Line]:
                 [(edit["low"], edit["high"]) for edit in edits],
             )
         )
-    return [*lines, Line("opening", GRAY, [point["open ms"] for point in points])]
+    return [*lines, Line("opening", QUIET, [point["open ms"] for point in points])]
 
 
 def memory_lines(points: list[dict[str, Any]]) -> list[Line]:
     """The MiB of opening and of editing."""
     return [
         Line("editing", BLUE, [point["edit MiB"] for point in points]),
-        Line("opening", GRAY, [point["open MiB"] for point in points]),
+        Line("opening", QUIET, [point["open MiB"] for point in points]),
     ]
 
 
-def time_name(milliseconds: float) -> str:
-    """A time in few letters."""
-    return f"{milliseconds / 1000:g} s" if milliseconds >= 1000 else f"{milliseconds:g} ms"
+def targets(measured: dict[str, Any], path: Path) -> bool:
+    """Write how far each target is met or missed, and what a whole frame takes here and with the peers.
 
-
-def memory_name(mebibytes: float) -> str:
-    """A size of memory in few letters."""
-    return f"{mebibytes:,g} MiB"
+    `measured["rows"]` have a name under "target" and the ratio to the target under "over target";
+    `measured["frames ms"]` has milliseconds by name, this renderer's first. Both are spreads as they are in
+    JSON, with "low", "median" and "high".
+    """
+    if not is_possible():
+        return False
+    names = [row["target"] for row in measured["rows"]]
+    ratios = [Spread(**row["over target"]) for row in measured["rows"]]
+    frames = {name: Spread(**spent) for name, spent in measured["frames ms"].items()}
+    rows = max(len(ratios), len(frames))
+    height = 1.9 + ROW_HEIGHT * rows
+    made = figure(
+        15,
+        height,
+        f"{sum(ratio.median <= 1 for ratio in ratios)} of {len(ratios)} targets are met",
+        "Medians of one run, in turns, with cold caches; the lines go from quartile to quartile.",
+    )
+    grid = made.add_gridspec(
+        1,
+        2,
+        width_ratios=(1.5, 1),
+        left=0.26,
+        right=0.97,
+        bottom=0.45 / height,
+        top=1 - 1.35 / height,
+        wspace=0.42,
+    )
+    left, right = made.add_subplot(grid[0]), made.add_subplot(grid[1])
+    ratio_panel(left, names, ratios)
+    left.set_title("Measured, over its target", loc="left", fontsize=11, pad=12)
+    time_panel(right, list(frames), list(frames.values()), own=0, rows=rows)
+    right.set_title("A whole frame", loc="left", fontsize=11, pad=12)
+    save(made, path)
+    return True

@@ -1,8 +1,8 @@
 """The points of the scaling curves: scenes of many sizes, each on a display, and the edits timed on them.
 
-The polygons are hills of which all is seen, with the lights that are created for them; the lights and the
-pictures are those of the coupe. A display has the size of the picture, which for the largest ones is more
-than any RAMTEK had.
+The polygons are hills under the view and the lights that are created for them; the lights and the pictures
+are those of the coupe. A display has the size of the picture, which for the largest ones is more than any
+RAMTEK had.
 """
 
 from __future__ import annotations
