@@ -99,7 +99,7 @@ def text(measured: dict[str, Any]) -> str:
     """One table a quantity: medians in milliseconds with their quartiles, and MiB."""
     tables = []
     for quantity in QUANTITIES.values():
-        heading = "".join(f"{edit:>22}" for edit in EDITS)
+        heading = "".join(f"{f'{edit}, ms':>22}" for edit in EDITS)
         rows = [f"{quantity.name:12}{heading}{'open ms':>10}{'MiB':>7}{'edit MiB':>10}"]
         for point in measured["points"]:
             if point["quantity"] == quantity.name:
