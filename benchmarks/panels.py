@@ -6,7 +6,7 @@ Drawn without pyplot, so that no window and no state of the process is involved.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -35,6 +35,15 @@ class Line:
     color: str
     values: Sequence[float]
     quartiles: Sequence[tuple[float, float]] = ()
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A ratio with its name; where there is none, a note instead."""
+
+    name: str
+    ratio: Spread | None
+    note: str = ""
 
 
 def figure(width: float, height: float, title: str, below: str) -> Figure:
@@ -94,36 +103,44 @@ def proportion(axes: Axes, across: Sequence[float], last: float) -> None:
     axes.plot(across, values, color=QUIET, linewidth=0.9, linestyle=(0, (1, 2.5)))
 
 
-def ratio_panel(axes: Axes, names: Sequence[str], ratios: Sequence[Spread]) -> None:
-    """Draw each ratio as a bar from 1 on a logarithmic axis, to the left where it is at most 1."""
-    _row_panel(axes, names, len(names))
-    for row, ratio in enumerate(ratios):
-        met = ratio.median <= 1
-        color = GREEN if met else RED
-        axes.plot([1, ratio.median], [row, row], color=color, linewidth=9, alpha=0.35, solid_capstyle="butt")
-        _whisker(axes, row, ratio, color)
-        _note(axes, row, ratio.low if met else ratio.high, f"{ratio.median:.2f}", color, to_left=met)
-    axes.axvline(1, color=INK, linewidth=1.2)
+def ratio_panel(axes: Axes, bars: Sequence[Bar]) -> None:
+    """Draw ratios as bars from 1 on a logarithmic axis, to the left where they are at most 1."""
+    _row_panel(axes, [bar.name for bar in bars], len(bars))
+    ratios = [bar.ratio for bar in bars if bar.ratio is not None]
     low = min([0.4, *(ratio.low for ratio in ratios)]) / 1.5
     high = max([1.6, *(ratio.high for ratio in ratios)]) * 1.5
-    axes.set_xlim(low, high)
+    for row, bar in enumerate(bars):
+        if bar.ratio is None:
+            _note(axes, row, 1, bar.note, QUIET)
+            continue
+        met = bar.ratio.median <= 1
+        color = GREEN if met else RED
+        axes.plot(
+            [1, bar.ratio.median], [row, row], color=color, linewidth=9, alpha=0.35, solid_capstyle="butt"
+        )
+        _whisker(axes, row, bar.ratio, color)
+        place = min(bar.ratio.low, 1) if met else max(bar.ratio.high, 1)
+        _note(axes, row, place, f"{bar.ratio.median:.2f}", color, to_left=met)
+    axes.axvline(1, color=INK, linewidth=1.2)
     ticks = [lead * 10.0**power for power in range(-3, 4) for lead in (1, 2, 5)]
-    axes.set_xticks(ticks, ["target" if tick == 1 else f"{tick:g}" for tick in ticks])
-    axes.minorticks_off()
-    axes.set_xlim(low, high)
+    _level_axis(axes, low, high, {tick: "1, the bound" if tick == 1 else f"{tick:g}" for tick in ticks})
 
 
-def time_panel(axes: Axes, names: Sequence[str], times: Sequence[Spread], own: int, rows: int) -> None:
-    """Draw milliseconds as points on a logarithmic axis with room for some rows; the row `own` stands out."""
-    _row_panel(axes, names, rows)
-    for row, spent in enumerate(times):
-        color = BLUE if row == own else QUIET
+def time_panel(axes: Axes, times: Mapping[str, Spread], own: str, rows: int) -> None:
+    """Draw milliseconds by name as points on a logarithmic axis with room for some rows; `own` stands out."""
+    _row_panel(axes, list(times), rows)
+    for row, (name, spent) in enumerate(times.items()):
+        color = BLUE if name == own else QUIET
         _whisker(axes, row, spent, color)
-        _note(axes, row, spent.high, time_name(spent.median), color, to_left=False)
-    low = 10.0 ** math.floor(math.log10(min(spent.low for spent in times)))
-    high = max(spent.high for spent in times) * 2.5
-    ticks = decades(low, high)
-    axes.set_xticks(ticks, [time_name(tick) for tick in ticks])
+        _note(axes, row, spent.high, time_name(spent.median), color)
+    low = 10.0 ** math.floor(math.log10(min(spent.low for spent in times.values())))
+    high = max(spent.high for spent in times.values()) * 2.5
+    _level_axis(axes, low, high, {tick: time_name(tick) for tick in decades(low, high)})
+
+
+def _level_axis(axes: Axes, low: float, high: float, names: Mapping[float, str]) -> None:
+    """Let the level axis go from low to high, with names at some places."""
+    axes.set_xticks(list(names), list(names.values()))
     axes.minorticks_off()
     axes.set_xlim(low, high)
 
@@ -143,7 +160,7 @@ def _whisker(axes: Axes, row: int, spread: Spread, color: str) -> None:
     axes.plot([spread.median], [row], color=color, marker="o", markersize=4.5)
 
 
-def _note(axes: Axes, row: int, place: float, note: str, color: str, to_left: bool) -> None:
+def _note(axes: Axes, row: int, place: float, note: str, color: str, to_left: bool = False) -> None:
     """Write beside a place of a row."""
     axes.annotate(
         note,

@@ -16,6 +16,7 @@ from benchmarks.panels import (
     ORANGE,
     QUIET,
     VIOLET,
+    Bar,
     Line,
     figure,
     line_panel,
@@ -27,6 +28,7 @@ from benchmarks.panels import (
     time_name,
     time_panel,
 )
+from benchmarks.points import FRAME
 
 PANELS = (
     ("polygons", "polygons", "Polygons: hills over {seen:.0%} of 640 x 480, 4 lights"),
@@ -34,6 +36,7 @@ PANELS = (
     ("lines", "pixels", "Picture: the coupe over {seen:.0%} of it, 4 lights"),
 )
 """The quantity, the number that it is drawn over, and a heading."""
+OWN = "autocolor"
 ROW_HEIGHT = 0.36
 """Of a bar, in inches."""
 ROOM = 1.6
@@ -105,39 +108,52 @@ def memory_lines(points: list[dict[str, Any]]) -> list[Line]:
 
 
 def targets(measured: dict[str, Any], path: Path) -> bool:
-    """Write how far each target is met or missed, and what a whole frame takes here and with the peers.
-
-    `measured["rows"]` have a name under "target" and the ratio to the target under "over target";
-    `measured["frames ms"]` has milliseconds by name, this renderer's first. Both are spreads as they are in
-    JSON, with "low", "median" and "high".
-    """
+    """Write how far each target is met or missed, and what a whole frame takes here and with the peers."""
     if not is_possible():
         return False
-    names = [row["target"] for row in measured["rows"]]
-    ratios = [Spread(**row["over target"]) for row in measured["rows"]]
-    frames = {name: Spread(**spent) for name, spent in measured["frames ms"].items()}
-    rows = max(len(ratios), len(frames))
-    height = 1.9 + ROW_HEIGHT * rows
+    rows = [bar_of(target) for target in measured["targets"]]
+    frames = {
+        OWN if name == FRAME else name.removesuffix(f": {FRAME}"): Spread(**spent)
+        for name, spent in measured["cases ms"].items()
+        if name.endswith(FRAME)
+    }
+    verdicts = [target["verdict"] for target in measured["targets"] if target["measured"] is not None]
+    height = 1.9 + ROW_HEIGHT * max(len(rows), len(frames))
     made = figure(
         15,
         height,
-        f"{sum(ratio.median <= 1 for ratio in ratios)} of {len(ratios)} targets are met",
+        f"{verdicts.count('met')} of {len(verdicts)} targets are met",
         "Medians of one run, in turns, with cold caches; the lines go from quartile to quartile.",
     )
-    grid = made.add_gridspec(
+    left, right = made.add_gridspec(
         1,
         2,
         width_ratios=(1.5, 1),
-        left=0.26,
+        left=0.29,
         right=0.97,
         bottom=0.45 / height,
         top=1 - 1.35 / height,
-        wspace=0.42,
+        wspace=0.25,
     )
-    left, right = made.add_subplot(grid[0]), made.add_subplot(grid[1])
-    ratio_panel(left, names, ratios)
-    left.set_title("Measured, over its target", loc="left", fontsize=11, pad=12)
-    time_panel(right, list(frames), list(frames.values()), own=0, rows=rows)
-    right.set_title("A whole frame", loc="left", fontsize=11, pad=12)
+    bars, points = made.add_subplot(left), made.add_subplot(right)
+    ratio_panel(bars, rows)
+    bars.set_title("How much of its bound each takes", loc="left", fontsize=11, pad=12)
+    time_panel(points, frames, OWN, len(rows))
+    points.set_title("A whole frame", loc="left", fontsize=11, pad=12)
     save(made, path)
     return True
+
+
+def bar_of(target: dict[str, Any]) -> Bar:
+    """A target as a bar: what is measured over the bound, or the bound over what must reach it."""
+    sign = "\u2265" if target["at least"] else "\u2264"
+    name = f"{target['target']} {sign} {target['bound']:g} {target['unit']}"
+    figure, bound = target["measured"], target["bound"]
+    if figure is None:
+        return Bar(name, None, target["verdict"])
+    if not bound:
+        return Bar(name, None, f"{figure['median']:g} {target['unit']}, {target['verdict']}")
+    low, median, high = (figure[part] / bound for part in ("low", "median", "high"))
+    return Bar(
+        name, Spread(1 / high, 1 / median, 1 / low) if target["at least"] else Spread(low, median, high)
+    )

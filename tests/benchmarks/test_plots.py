@@ -30,11 +30,23 @@ POINTS = [
     for size in quantity.sizes
 ]
 SCALING = {"rounds": 1, "points": POINTS}
+
+
+def target(
+    name: str, measured: dict[str, float] | None, bound: float, verdict: str, **more: Any
+) -> dict[str, Any]:
+    row = {"target": name, "unit": "ms", "measured": measured, "bound": bound, "verdict": verdict}
+    return {**row, "at least": False, **more}
+
+
+AT_MOST = target("one that is met", SPREAD, 5, "met")
+AT_LEAST = target("one that is missed", SPREAD, 8, "MISSED", **{"at least": True})
+NOTHING = target("one that allows nothing", {"low": 0.0, "median": 0.0, "high": 0.0}, 0, "met")
+SKIPPED = target("one that is skipped", None, 1, "skipped")
 TARGETS = {
-    "rows": [{"target": "met", "over target": {"low": 0.5, "median": 0.6, "high": 0.7}},
-             {"target": "missed", "over target": SPREAD}],
-    "frames ms": {"this": SPREAD, "a peer": SPREAD},
-}  # fmt: skip
+    "targets": [AT_MOST, AT_LEAST, NOTHING, SKIPPED],
+    "cases ms": {"whole frame": SPREAD, "a copy": SPREAD, "a peer: whole frame": SPREAD},
+}
 
 
 @pytest.mark.parametrize(("plot", "measured"), [(plots.scaling, SCALING), (plots.targets, TARGETS)])
@@ -62,3 +74,14 @@ def test_names_that_were_moved_apart_keep_their_order(places: list[float], apart
 
 def test_names_that_are_apart_stay_where_they_are() -> None:
     assert moved_apart([30, 0, 15], 10) == [30, 0, 15]
+
+
+def test_a_bar_is_longer_to_the_right_the_more_a_bound_is_missed() -> None:
+    assert plots.bar_of(AT_MOST).ratio == (0.2, 0.4, 0.8)
+    assert plots.bar_of(AT_LEAST).ratio == (2, 4, 8)
+    assert plots.bar_of(AT_LEAST).name == "one that is missed \u2265 8 ms"
+
+
+def test_a_target_without_a_ratio_has_a_note_instead() -> None:
+    assert (plots.bar_of(NOTHING).ratio, plots.bar_of(NOTHING).note) == (None, "0 ms, met")
+    assert (plots.bar_of(SKIPPED).ratio, plots.bar_of(SKIPPED).note) == (None, "skipped")
