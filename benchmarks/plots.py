@@ -125,7 +125,7 @@ def targets(measured: dict[str, Any], path: Path) -> bool:
         f"{verdicts.count('met')} of {len(verdicts)} targets are met",
         "Medians of one run, in turns, with cold caches; the lines go from quartile to quartile.",
     )
-    left, right = made.add_gridspec(
+    grid = made.add_gridspec(
         1,
         2,
         width_ratios=(1.5, 1),
@@ -135,7 +135,7 @@ def targets(measured: dict[str, Any], path: Path) -> bool:
         top=1 - 1.35 / height,
         wspace=0.25,
     )
-    bars, points = made.add_subplot(left), made.add_subplot(right)
+    bars, points = made.add_subplot(grid[0]), made.add_subplot(grid[1])
     ratio_panel(bars, rows)
     bars.set_title("How much of its bound each takes", loc="left", fontsize=11, pad=12)
     time_panel(points, frames, OWN, len(rows))
