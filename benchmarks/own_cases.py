@@ -1,0 +1,59 @@
+"""The cases on this renderer and its display: the edits of the comparison, and what else targets name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import count, cycle
+
+import numpy as np
+
+from autocolor import Scene
+from benchmarks.cases import Case
+from benchmarks.comparison import ELEMENTS, LINES
+from benchmarks.points import ALL_LIGHTS, FRAME, ONE_LIGHT, RECOLOR, STEP, Session
+from ramtek_emu import instructions
+
+COPY, SCAN_OUT = "copy of one field", "scan-out"
+ENTRIES, STREAM = "entries of a surface, sent", "words of a picture, sent"
+INTENSITY, MAPPING = "a light's intensity", "mapping curve"
+
+
+def own_cases(scene: Scene) -> Iterator[Case]:
+    """The cases on a scene.
+
+    Those of edits end with the words in the frame buffer, and those of a frame, of all lights and of a
+    recoloring with the field that is scanned out after it.
+    """
+    session = Session(scene, LINES)
+    copy = np.zeros((LINES, ELEMENTS), np.uint32)
+    lamp, steps, curves = scene.lights[0].name, count(1 + STEP, STEP), cycle(["gamma", "linear"])
+    levels = session.studio.level_ranges[scene.surfaces[0].name]
+    body = slice(levels.first, levels.first + levels.levels)
+
+    def entries() -> None:
+        session.display.send(instructions.load_entries(body.start, session.studio.entries[body]))
+
+    def words() -> None:
+        session.display.send(instructions.write_image(session.studio.words))
+
+    def frame() -> None:
+        session.frame()
+        session.scan_out()
+
+    def all_lights() -> None:
+        session.all_lights()
+        session.scan_out()
+
+    yield Case(COPY, lambda: np.copyto(copy, session.field))
+    # What a scan-out owes to words that were written before it is not its own.
+    yield Case(SCAN_OUT, session.scan_out, session.scan_out)
+    yield Case(ENTRIES, entries)
+    yield Case(STREAM, words)
+    yield Case(RECOLOR, session.recolor, session.scan_out)
+    yield Case(MAPPING, lambda: session.studio.edit(session.studio.scene.replace(mapping=next(curves))))
+    yield Case(
+        INTENSITY, lambda: session.studio.light(lamp, intensity=next(steps) * scene.lights[0].intensity)
+    )
+    yield Case(ONE_LIGHT, session.one_light)
+    yield Case(ALL_LIGHTS, all_lights)
+    yield Case(FRAME, frame)

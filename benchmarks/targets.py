@@ -1,0 +1,172 @@
+"""The targets of this renderer beside what is measured: `python -m benchmarks targets`.
+
+Everything is timed in turns in one process, this renderer and its peers alike; a ratio is the median of those
+of the rounds, between their quartiles. A peer is measured against when its pictures agree with ours; where it
+is not there, or they do not, its rows say so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from benchmarks.cases import Spread, ratios, spread, timed
+from benchmarks.comparison import comparison_scene
+from benchmarks.contestants import case_of, contestants
+from benchmarks.once import differing_pixels, first_picture, many_polygons, memory
+from benchmarks.own_cases import COPY, SCAN_OUT, STREAM, own_cases
+from benchmarks.points import ALL_LIGHTS, FRAME, ONE_LIGHT, RECOLOR
+
+ROUNDS, ROUNDS_OF_SLOW, ROUNDS_OF_MANY = 25, 5, 7
+MET, MISSED, SKIPPED, NOT_COMPARABLE = "met", "MISSED", "skipped", "not comparable"
+NOTES = (
+    "Edits of a frame, of all lights and of a color end with the field scanned out, those of one light with\n"
+    "the words in the frame buffer, those of peers with glFinish; a peer is compared in the same edit.\n"
+    "Memory is the peak of making and rendering a scene, its mesh included, over that of the imports."
+)
+
+Seconds = Mapping[str, list[float]]
+
+
+@dataclass(frozen=True)
+class Target:
+    """A bound, and how what it bounds is found from the seconds of all cases.
+
+    A row that `needs` a peer is skipped without it, one that `takes_long` in a quick run.
+    """
+
+    name: str
+    unit: str
+    bound: float
+    measured: Callable[[Seconds], Spread]
+    at_least: bool = False
+    needs: str | None = None
+    takes_long: bool = False
+
+    def is_met(self, figure: Spread) -> bool:
+        """Whether the median keeps to the bound."""
+        return figure.median >= self.bound if self.at_least else figure.median <= self.bound
+
+
+def between(case: str, other: str) -> Callable[[Seconds], Spread]:
+    """How many times as long a case takes as another."""
+    return lambda seconds: ratios(seconds[case], seconds[other])
+
+
+TARGETS = (
+    Target("scan-out", "copies of a field", 1.5, between(SCAN_OUT, COPY)),
+    Target("recolor a surface, scan-out", "copies of a field", 2.5, between(RECOLOR, COPY)),
+    Target(
+        "recolor a surface, scan-out", "times faster than VTK", 60,
+        between(case_of("VTK", RECOLOR), RECOLOR), at_least=True, needs="VTK",
+    ),
+    Target(
+        "one light of four moved", "of VTK's time", 1 / 8,
+        between(ONE_LIGHT, case_of("VTK", ONE_LIGHT)), needs="VTK",
+    ),
+    Target(
+        "four lights moved", "of VTK's time", 0.36,
+        between(ALL_LIGHTS, case_of("VTK", ALL_LIGHTS)), needs="VTK",
+    ),
+    Target(
+        "four lights moved", "of OpenGL's time", 1,
+        between(ALL_LIGHTS, case_of("OpenGL", ALL_LIGHTS)), needs="OpenGL",
+    ),
+    Target("whole frame, eye moved", "of VTK's time", 1, between(FRAME, case_of("VTK", FRAME)), needs="VTK"),
+    Target(
+        "a million polygons", "frames of 8,136", 7, lambda _: many_polygons(ROUNDS_OF_MANY), takes_long=True
+    ),
+    Target("first picture of a process", "s", 0.5, lambda _: first_picture()),
+    Target("memory, the coupe", "MB", 40, lambda _: memory("coupe")),
+    Target("memory, a million polygons", "MB", 400, lambda _: memory("hills"), takes_long=True),
+    Target(
+        "batch and Watkins differ", "pixels", 0, lambda _: spread([differing_pixels()[0]]), takes_long=True
+    ),
+    Target(
+        "a picture through the instructions", "ms", 1, lambda seconds: spread(seconds[STREAM]).times(1e3)
+    ),
+)  # fmt: skip
+"""In the order of what they are about: the display, edits against peers, size, start, and being right."""
+
+
+def measure(rounds: int = ROUNDS, quick: bool = False) -> dict[str, Any]:
+    """The rows of the targets, the milliseconds of all cases, and how the peers' pictures agree."""
+    scene = comparison_scene()
+    peers, missing = contestants(scene)
+    slow = [case for peer in peers if peer.peer.is_slow for case in peer.cases() if not quick]
+    fast = [case for peer in peers if not peer.peer.is_slow for case in peer.cases()]
+    seconds = timed([*own_cases(scene), *fast], rounds) | timed(slow, min(rounds, ROUNDS_OF_SLOW))
+    verdicts = {name: (SKIPPED, reason) for name, reason in missing.items()} | {
+        peer.name: (NOT_COMPARABLE, peer.disagreement) for peer in peers if not peer.agrees
+    }
+    return {
+        "rounds": rounds,
+        "peers": {
+            peer.name: {
+                "description": peer.peer.description,
+                "agrees": peer.agrees,
+                "pictures": {edit: each.values() for edit, each in peer.agreements.items()},
+            }
+            for peer in peers
+        },
+        "absent": missing,
+        "cases ms": {name: spread(row).times(1e3)._asdict() for name, row in seconds.items()},
+        "targets": [row(target, seconds, verdicts, quick) for target in TARGETS],
+    }
+
+
+def row(
+    target: Target, seconds: Seconds, verdicts: Mapping[str, tuple[str, str]], quick: bool
+) -> dict[str, Any]:
+    """A target with what is measured for it, or with why nothing is."""
+    figure, verdict, reason = None, SKIPPED, ""
+    if target.needs is not None and target.needs in verdicts:
+        verdict, reason = verdicts[target.needs]
+    elif quick and target.takes_long:
+        reason = "it takes long, and the run is a quick one"
+    else:
+        figure = target.measured(seconds)
+        verdict = MET if target.is_met(figure) else MISSED
+    return {
+        "target": target.name,
+        "unit": target.unit,
+        "measured": None if figure is None else figure._asdict(),
+        "bound": target.bound,
+        "at least": target.at_least,
+        "verdict": verdict,
+        "reason": reason,
+    }
+
+
+def text(measured: dict[str, Any]) -> str:
+    """The peers and how they agree, the targets, and all cases."""
+    rows = [
+        f"{'a peer beside ours, of 255':36}{'only one covers':>17}{'astray':>8}{'median':>8}{'99th':>8}",
+        *(line for name, peer in measured["peers"].items() for line in peer_lines(name, peer)),
+        *(f"{name}: {SKIPPED}: {reason}" for name, reason in measured["absent"].items()),
+    ]
+    rows += ["", f"{'target':36}{'measured':>10}{'quartiles':>17}{'bound':>11}  {'':24}"]
+    for target in measured["targets"]:
+        bound = f"{'>=' if target['at least'] else '<='} {target['bound']:g}"
+        figure = target["measured"]
+        quartiles = "" if figure is None else f"{figure['low']:.3g} - {figure['high']:.3g}"
+        median = "" if figure is None else f"{figure['median']:.3g}"
+        verdict = ": ".join(filter(None, (target["verdict"], target["reason"])))
+        rows.append(
+            f"{target['target']:36}{median:>10}{quartiles:>17}{bound:>11}  {target['unit']:24}{verdict}"
+        )
+    rows += ["", f"{'case':36}{'ms':>10}{'quartiles':>19}"]
+    for name, case in measured["cases ms"].items():
+        quartiles = f"{case['low']:.3f} - {case['high']:.3f}"
+        rows.append(f"{name:36}{case['median']:10.3f}{quartiles:>19}")
+    return "\n".join([*rows, "", NOTES])
+
+
+def peer_lines(name: str, peer: dict[str, Any]) -> list[str]:
+    """What a peer is, and how far its pictures agree."""
+    lines = [f"{name}: {peer['description']}"]
+    for edit, each in peer["pictures"].items():
+        numbers = f"{each['uncovered']:17,}{each['astray']:8,}{each['median']:8.2f}{each['percentile']:8.2f}"
+        lines.append(f"    {edit:32}{numbers}  {'agrees' if each['agrees'] else 'DISAGREES'}")
+    return lines
