@@ -71,21 +71,29 @@ def functions() -> dict[Step, Callable[..., Any]]:
 
 @dataclass
 class Watch:
-    """The lines of the current frame, and the step of each line."""
+    """The lines of the current frame, the step of each line, and the steps that are being done."""
 
     frame: Frame = field(default_factory=dict)
     step_of_line: dict[str, Step] = field(default_factory=dict)
+    doing: list[str] = field(default_factory=lambda: [FRAME])
 
     def around(self, step: Step, function: Callable[..., Any]) -> Callable[..., Any]:
         """The function, whose time is noted."""
 
         @wraps(function)
         def timed_step(*arguments: Any, **named: Any) -> Any:
+            if self.doing[-1] != step.parent:
+                raise SystemExit(
+                    f"benchmarks/steps.py: {step.parent} must call {step.function}, and {self.doing[-1]} does;"
+                    " correct its parent in STEPS, or leave out a step of several parents"
+                )
+            self.doing.append(step.function)
             begin = time.perf_counter()
             try:
                 return function(*arguments, **named)
             finally:
                 seconds = time.perf_counter() - begin
+                self.doing.pop()
                 about = arguments[0] if arguments else None
                 line = f"{step.function}, {about.name}" if isinstance(about, Light) else step.function
                 self.step_of_line[line] = step
