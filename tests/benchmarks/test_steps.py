@@ -59,8 +59,8 @@ def test_a_step_below_the_wrong_one_is_named(monkeypatch: pytest.MonkeyPatch, se
     with steps.wrapped(watch), pytest.raises(SystemExit) as left:
         watch.timed_frame(session.frame)
     assert str(left.value) == (
-        "benchmarks/steps.py: whole frame must call composed, and rendering does; correct its parent in STEPS,"
-        " or leave out a step of several parents"
+        "benchmarks/steps.py: whole frame must call composed, and rendering does; correct its parent in"
+        " STEPS, or leave out a step of several parents"
     )
 
 
