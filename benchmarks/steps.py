@@ -84,8 +84,8 @@ class Watch:
         def timed_step(*arguments: Any, **named: Any) -> Any:
             if self.doing[-1] != step.parent:
                 raise SystemExit(
-                    f"benchmarks/steps.py: {step.parent} must call {step.function}, and"
-                    f" {self.doing[-1]} does; correct its parent in STEPS, or leave out a step of several parents"
+                    f"benchmarks/steps.py: {step.parent} must call {step.function}, and {self.doing[-1]}"
+                    " does; correct its parent in STEPS, or leave out a step of several parents"
                 )
             self.doing.append(step.function)
             begin = time.perf_counter()
