@@ -7,6 +7,9 @@ import numpy.typing as npt
 
 Singles = npt.NDArray[np.float32]
 
+MOST_MULTIPLIED = 64
+"""The largest exponent whose few products are exact to 1e-5."""
+
 LARGEST = float(np.finfo(np.float32).max)
 
 
@@ -14,16 +17,30 @@ def power_of(cosines: Singles, exponent: float) -> Singles:
     """The cosines to a power, in [0, 1]; a negative cosine counts as 0, and anything to the power 0 is 1.
 
     Measured: the exponential of a logarithm takes half the time of a power, and a fifth of the time that it
-    takes to find the cosines which are not negligible and to raise those alone.
+    takes to find the cosines which are not negligible and to raise those alone; a few products take half of
+    that again; a clip takes a quarter of the time of a minimum and a maximum.
     """
     if exponent == 0:
         return np.ones_like(cosines)
     # Rounding may leave a cosine above 1, which a large exponent would make a light of its own.
-    powers: Singles = np.minimum(cosines, np.float32(1))
-    np.maximum(powers, np.float32(0), out=powers)
-    if exponent == 1:
-        return powers
+    powers: Singles = np.clip(cosines, np.float32(0), np.float32(1))
+    if exponent <= MOST_MULTIPLIED and exponent == int(exponent):
+        return _multiplied(powers, int(exponent))
     with np.errstate(divide="ignore", over="ignore", under="ignore"):
         np.log(powers, out=powers)
         powers *= np.float32(min(exponent, LARGEST))
         return np.exp(powers, out=powers)
+
+
+def _multiplied(squares: Singles, exponent: int) -> Singles:
+    """The numbers to a whole power from 1 on: the product of those of their squares that make it up."""
+    powers: Singles | None = None
+    with np.errstate(under="ignore"):
+        while True:
+            if exponent & 1:
+                powers = squares if powers is None else np.multiply(powers, squares, out=powers)
+            exponent >>= 1
+            if not exponent:
+                assert powers is not None
+                return powers
+            squares = squares * squares

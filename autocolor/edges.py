@@ -1,21 +1,29 @@
 """Edges of polygons, cut by the lines of the raster.
 
-An edge is known by its number in the flat corners of a projection: edge c * polygons + p runs from corner c
-of polygon p to the next. It is always followed from its top to its bottom, whichever way the polygon runs,
-so that polygons which share an edge are cut at the very same places and leave no crack.
+An edge is known by two numbers in the flat corners of a projection, its top and its bottom: number
+c * polygons + p is corner c of polygon p. It is always followed from its top to its bottom, whichever way the
+polygon runs, so that polygons which share an edge are cut at the very same places and leave no crack.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.projection import Projection
+from autocolor.projection import Projection, least_of_four
 
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
+Side = Literal[1, -1]
+
+DOWN_SIDE: Side = 1
+"""The edges along which a polygon, followed as it runs, goes down the raster."""
+
+UP_SIDE: Side = -1
+"""The edges along which it comes back up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,25 +45,49 @@ class Edges:
     inverse_depth_step: Floats
 
 
-def edges(projected: Projection, numbers: Numbers) -> Edges:
-    """The numbered edges; each must cross a line."""
+def edges(projected: Projection, top: Numbers, bottom: Numbers) -> Edges:
+    """The edges between corners; each must cross a line."""
     corners = projected.corners.ravel()
-    following = (numbers + projected.corners.shape[1]) % len(corners)
-    downward = projected.first_line[corners[numbers]] < projected.first_line[corners[following]]
-    top, bottom = np.where(downward, numbers, following), np.where(downward, following, numbers)
     a, b = corners[top], corners[bottom]
     first_line = projected.first_line[a]
-    height = projected.down[b] - projected.down[a]
-    below_top = first_line + 0.5 - projected.down[a]
-    across_step = (projected.across[b] - projected.across[a]) / height
-    inverse_depth_step = (projected.inverse_depth[b] - projected.inverse_depth[a]) / height
+    down, across, inverse_depth = projected.down[a], projected.across[a], projected.inverse_depth[a]
+    height = projected.down[b] - down
+    below_top = first_line + 0.5 - down
+    across_step = (projected.across[b] - across) / height
+    inverse_depth_step = (projected.inverse_depth[b] - inverse_depth) / height
     return Edges(
         top,
         bottom,
         first_line,
         projected.first_line[b] - first_line,
-        projected.across[a] + below_top * across_step,
+        across + below_top * across_step,
         across_step,
-        projected.inverse_depth[a] + below_top * inverse_depth_step,
+        inverse_depth + below_top * inverse_depth_step,
         inverse_depth_step,
     )
+
+
+def edges_of_side(projected: Projection, side: Side, first: int, beyond: int) -> Edges:
+    """The edges of one side of the polygons from `first` to before `beyond`.
+
+    They are in the order of the polygons, and those of one polygon from its top to its bottom, so that their
+    lines follow each other without a gap. Edges that cross no line are left out.
+    """
+    lines = projected.first_line[projected.corners[:, first:beyond]]
+    polygons, across = lines.shape[1], projected.corners.shape[1]
+    highest = least_of_four((lines << 2) + np.arange(4)[:, None]) & 3
+    # Walk round each polygon from its highest corner, as it runs for one side and backward for the other.
+    corner = (highest[:, None] + side * np.arange(4)) & 3
+    column = np.arange(polygons)[:, None]
+    line = np.take(lines, corner * polygons + column)
+    next_line = np.take(lines, ((corner + side) & 3) * polygons + column)
+    falls = np.flatnonzero(line < next_line)
+    corner, column = corner.ravel()[falls], (falls >> 2) + first
+    return edges(projected, corner * across + column, ((corner + side) & 3) * across + column)
+
+
+def other_end(projected: Projection, top: Numbers, side: Side) -> Numbers:
+    """The bottom of each edge of a side whose top is given."""
+    corner, column = np.divmod(top, projected.corners.shape[1])
+    bottom: Numbers = ((corner + side) & 3) * projected.corners.shape[1] + column
+    return bottom

@@ -42,14 +42,17 @@ def words_of(
     words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
     for surface in picture.slices:
         name = picture.surfaces[surface.surface_number - 1]
-        part = slice(surface.start, surface.stop)
         of_whole = scaling == "object"
         extent = picture.relative_ranges[0 if of_whole else surface.surface_number]
-        everything = picture.relative if of_whole else picture.relative[part]
+        everything = picture.relative if of_whole else picture.relative[surface.start : surface.stop]
         if not (np.isfinite(extent.minimum) and np.isfinite(extent.maximum)):
             raise InputError(f"surface {name!r}: an intensity must be finite, not {extent.maximum:g}")
-        shown = fractions(picture.relative[part], extent, mapping, everything)
-        words[picture.pixels[part]] = levels_of(shown, ranges[name].levels) + np.uint16(ranges[name].first)
+        fraction = fraction_of(extent, mapping, everything)
+        first, levels = ranges[name]
+        for some in surface.parts():
+            level = levels_of(fraction(picture.relative[some]), levels)
+            level += np.uint16(first)
+            words[picture.pixels[some]] = level
     words.flags.writeable = False
     return words.reshape(picture.lines, picture.elements)
 
@@ -59,18 +62,24 @@ def levels_of(shown: Singles, levels: int) -> npt.NDArray[np.uint16]:
     return halves_up(shown * np.float32(levels - 1)).astype(np.uint16)
 
 
-def fractions(
-    intensities: Singles, extent: IntensityRange, mapping: str | Curve, everything: Singles
-) -> Singles:
-    """How far along its range each intensity is shown, 0 to 1; `everything` is what "equalize" counts."""
+def fraction_of(
+    extent: IntensityRange, mapping: str | Curve, everything: Singles
+) -> Callable[[Singles], Singles]:
+    """How far along its range an intensity is shown, 0 to 1; `everything` is what "equalize" counts."""
     if extent.maximum == extent.minimum:
-        return np.ones_like(intensities)
+        return np.ones_like
     if mapping == "equalize":
-        return equalized(intensities, everything)
-    # Divide, for the maximum must come to exactly 1.
-    shown = intensities - np.float32(extent.minimum)
-    shown /= np.float32(extent.maximum) - np.float32(extent.minimum)
-    return curve_of(mapping)(shown)
+        return equalized(everything)
+    curve = curve_of(mapping)
+    minimum, width = np.float32(extent.minimum), np.float32(extent.maximum) - np.float32(extent.minimum)
+
+    def fraction(intensities: Singles) -> Singles:
+        shown = intensities - minimum
+        # Divide, for the maximum must come to exactly 1.
+        shown /= width
+        return curve(shown)
+
+    return fraction
 
 
 def curve_of(mapping: str | Curve) -> Callable[[Singles], Singles]:
@@ -81,13 +90,12 @@ def curve_of(mapping: str | Curve) -> Callable[[Singles], Singles]:
     return lambda shown: np.interp(shown, across, up).astype(np.float32)
 
 
-def equalized(intensities: Singles, everything: Singles) -> Singles:
+def equalized(everything: Singles) -> Callable[[Singles], Singles]:
     """The share of all intensities above the least that each reaches, so that all levels are as frequent."""
     values, counts = np.unique(everything, return_counts=True)
     below = np.cumsum(counts) - counts[0]
-    place = np.searchsorted(values, intensities)
-    fraction: Singles = (below[place] / max(below[-1], 1)).astype(np.float32)
-    return fraction
+    shares: Singles = (below / max(below[-1], 1)).astype(np.float32)
+    return lambda intensities: shares[np.searchsorted(values, intensities)]
 
 
 def _linear(shown: Singles) -> Singles:

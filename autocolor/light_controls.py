@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from autocolor.cosines import power_of
 from autocolor.lights import Light
-from autocolor.seen import ONE, POINT, Seen
+from autocolor.seen import POINT, Seen
 
 Singles = npt.NDArray[np.float32]
 Floats = npt.NDArray[np.float64]
@@ -77,15 +77,23 @@ def _flap_sides(light: Light, seen: Seen) -> Singles:
     return np.array(rows, np.float32).reshape(-1, 4)
 
 
-def inside(ready: Controls, cos_light: Singles | None, rows: Singles) -> npt.NDArray[np.bool_] | None:
-    """Whether each point is in the cone, before the light and within the flaps; None where all are."""
-    lit: npt.NDArray[np.bool_] | None = None
-    if cos_light is not None and ready.least_cosine is not None:
-        lit = cos_light > 0 if ready.least_cosine == 0 else cos_light >= ready.least_cosine
-    for side in ready.flaps:
-        within = side @ rows[POINT.start : ONE + 1] >= 0
-        lit = within if lit is None else lit & within
-    return lit
+def inside_flaps(ready: Controls, rows: Singles) -> npt.NDArray[np.bool_] | None:
+    """Whether each point is within the flaps; None where there are none."""
+    within: npt.NDArray[np.bool_] | None = None
+    for *normal, limit in ready.flaps:
+        side = np.array(normal) @ rows[POINT] >= -limit
+        within = side if within is None else np.logical_and(within, side, out=within)
+    return within
+
+
+def inside_cone(ready: Controls, cos_light: Singles) -> npt.NDArray[np.bool_] | np.bool_:
+    """Whether each point is in the cone and before the light."""
+    if ready.least_cosine is None:
+        return np.True_
+    inside: npt.NDArray[np.bool_] = (
+        cos_light > 0 if ready.least_cosine == 0 else cos_light >= np.float32(ready.least_cosine)
+    )
+    return inside
 
 
 def concentrated(cos_light: Singles, concentration: float) -> Singles:

@@ -22,10 +22,8 @@ import numpy.typing as npt
 from autocolor.errors import InputError
 from autocolor.lights import Light
 from autocolor.seen import Seen, SurfaceSlice
-from autocolor.shading import DIFFUSE, SPECULAR
+from autocolor.shading import DIFFUSE, SPECULAR, LightPlanes
 from autocolor.tables import Surface
-
-PIXELS_AT_ONCE = 1 << 15
 
 Singles = npt.NDArray[np.float32]
 
@@ -62,7 +60,7 @@ class Picture:
 
     The visible pixels are held surface by surface: `pixels` are their flat places, `relative` the
     intensities in proportion to `scale`, both (n,); `slices` says which are whose. `light_planes` has the
-    two planes of each light that was computed, (2, n).
+    planes of each light that was computed.
     """
 
     lines: int
@@ -72,7 +70,7 @@ class Picture:
     slices: tuple[SurfaceSlice, ...]
     relative: Singles
     scale: float
-    light_planes: Mapping[str, Singles] = field(default_factory=dict, repr=False)
+    light_planes: Mapping[str, LightPlanes] = field(default_factory=dict, repr=False)
 
     @cached_property
     def intensity(self) -> Singles:
@@ -115,7 +113,7 @@ class Picture:
     def planes(self) -> Mapping[str, LightPlane]:
         """The two planes of each light, by its name, spread over the raster."""
         return {
-            name: LightPlane(self._raster(planes[DIFFUSE]), self._raster(planes[SPECULAR]))
+            name: LightPlane(self._raster(planes.values[DIFFUSE]), self._raster(planes.values[SPECULAR]))
             for name, planes in self.light_planes.items()
         }
 
@@ -144,7 +142,7 @@ class Picture:
 
 def composed(
     seen: Seen,
-    planes: Mapping[str, Singles],
+    planes: Mapping[str, LightPlanes],
     surfaces: Sequence[Surface],
     lights: Sequence[Light],
     ambient: float,
@@ -168,14 +166,17 @@ def composed(
 
     relative = np.empty(len(seen.pixels), np.float32)
     for surface in seen.slices:
-        pairs = np.array(weights[surface.surface_number]).reshape(-1, 2) / scale
-        singles = pairs.astype(np.float32)
-        for first in range(surface.start, surface.stop, PIXELS_AT_ONCE):
-            part = slice(first, min(first + PIXELS_AT_ONCE, surface.stop))
+        pairs = (np.array(weights[surface.surface_number]).reshape(-1, 2) / scale).astype(np.float32)
+        reaching = [
+            (planes[light.name].values, pair)
+            for light, pair in zip(shining, pairs, strict=True)
+            if surface.surface_number in planes[light.name].reached
+        ]
+        for part in surface.parts():
             out = relative[part]
             out[:] = np.float32(ambient / scale)
-            for light, pair in zip(shining, singles, strict=True):
-                out += pair @ planes[light.name][:, part]
+            for values, pair in reaching:
+                out += pair @ values[:, part]
     relative.flags.writeable = False
     return Picture(
         seen.lines,

@@ -21,10 +21,10 @@ import numpy as np
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.lights import Light
-from autocolor.picture import Picture, Singles, composed
+from autocolor.picture import Picture, composed
 from autocolor.scene import Scene
 from autocolor.seen import Seen
-from autocolor.shading import light_planes
+from autocolor.shading import LightPlanes, light_planes
 from autocolor.visible_surfaces import visible_surfaces
 from autocolor.watkins import watkins
 
@@ -90,13 +90,13 @@ def rendering(
     return Rendering(scene, seen, picture)
 
 
-def _planes(scene: Scene, seen: Seen, before: Rendering | None) -> dict[str, Singles]:
+def _planes(scene: Scene, seen: Seen, before: Rendering | None) -> dict[str, LightPlanes]:
     """The planes of the lights that shine, and of those that did before and only rest."""
     exponents = {
         surface.surface_number: scene.surfaces[surface.surface_number - 1].reflectance.exponent
         for surface in seen.slices
     }
-    planes: dict[str, Singles] = {}
+    planes: dict[str, LightPlanes] = {}
     old = {} if before is None else before.picture.light_planes
     old_lights = {} if before is None else {light.name: light for light in before.scene.lights}
     changed = frozenset(

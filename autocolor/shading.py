@@ -6,15 +6,16 @@ Paper: "The Lighting Model" and "Light Controls". The sum over the lights with t
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.light_controls import Controls, concentrated, controls, inside
+from autocolor.light_controls import Controls, concentrated, controls, inside_cone, inside_flaps
 from autocolor.lights import Light
 from autocolor.reflection import phong_diffuse, phong_specular
-from autocolor.seen import MIRROR, MIRROR_POINT, NORMAL, NORMAL_POINT, ONE, POINT, POINT_SQUARED, Seen
+from autocolor.seen import MIRROR, MIRROR_POINT, NORMAL, NORMAL_POINT, POINT, POINT_SQUARED, Seen
 
-PIXELS_AT_ONCE = 1 << 15
 CLOSE = 0.02
 """Below this squared distance, as a fraction of the squares it is the difference of, subtract the points."""
 
@@ -33,38 +34,61 @@ Singles = npt.NDArray[np.float32]
 Floats = npt.NDArray[np.float64]
 
 
+@dataclass(frozen=True, eq=False)
+class LightPlanes:
+    """The diffuse and the specular plane of a light.
+
+    `values` is (2, n) float32, read-only, in the order of `Seen.pixels`, 0 where the light has no effect;
+    `reached` are the numbers of the surfaces where it has any.
+    """
+
+    values: Singles
+    reached: frozenset[int]
+
+
 def light_planes(
     light: Light,
     seen: Seen,
     exponents: dict[int, float],
-    kept: Singles | None = None,
+    kept: LightPlanes | None = None,
     changed: frozenset[int] = frozenset(),
-) -> Singles:
-    """The diffuse and the specular plane of a light, (2, n) float32 in the order of `seen.pixels`.
+) -> LightPlanes:
+    """The planes of a light.
 
-    `exponents` has N for each surface number that is seen. Both planes are 0 where the light has no effect.
-    `kept` are planes of the same light to take over but for the surfaces with the `changed` numbers.
+    `exponents` has N for each surface number that is seen. `kept` are planes of the same light to take over
+    but for the surfaces with the `changed` numbers.
     """
-    planes = np.empty((2, len(seen.pixels)), np.float32) if kept is None else kept.copy()
+    values = np.empty((2, len(seen.pixels)), np.float32) if kept is None else kept.values.copy()
+    reached = set() if kept is None else set(kept.reached - changed)
     ready = controls(light, seen)
     position = seen.camera_point(light.position)
     position *= min(FARTHEST / max(float(np.abs(position).max()), 1.0), 1.0)
+    close = CLOSE * max(float(position @ position), seen.reach**2)
     for surface in seen.slices:
-        if kept is not None and surface.surface_number not in changed:
+        number = surface.surface_number
+        if kept is not None and number not in changed:
             continue
-        for first in range(surface.start, surface.stop, PIXELS_AT_ONCE):
-            part = slice(first, min(first + PIXELS_AT_ONCE, surface.stop))
-            _shade(planes[:, part], seen.rows[:, part], position, ready, exponents[surface.surface_number])
-    planes.flags.writeable = False
-    return planes
+        for part in surface.parts():
+            if _shade(values[:, part], seen.rows[:, part], position, close, ready, exponents[number]):
+                reached.add(number)
+    values.flags.writeable = False
+    return LightPlanes(values, frozenset(reached))
 
 
-def _shade(out: Singles, rows: Singles, position: Floats, ready: Controls, exponent: float) -> None:
-    """Write the two planes of some pixels of one surface."""
-    flap_rows = rows
+def _shade(
+    out: Singles, rows: Singles, position: Floats, close: float, ready: Controls, exponent: float
+) -> bool:
+    """Write the two planes of some pixels of one surface; whether the light has any effect there.
+
+    Below the squared distance `close` the points are subtracted from the light.
+    """
+    lit = inside_flaps(ready, rows)
+    if lit is not None and not lit.any():
+        out[:] = 0
+        return False
     distance = _squared_distance(rows, position)
     nearest = float(distance.min())
-    if nearest < CLOSE * max(float(position @ position), float(rows[POINT_SQUARED].max())):
+    if nearest < close:
         rows, position = _around_light(rows, position), np.zeros(3)
         distance = rows[POINT_SQUARED].copy()
         nearest = float(distance.min())
@@ -74,22 +98,21 @@ def _shade(out: Singles, rows: Singles, position: Floats, ready: Controls, expon
     np.reciprocal(inverse, out=inverse)
 
     # Find what faces the light and is within its controls.
-    light = np.append(position, 1).astype(np.float32)
+    light = np.array([*position, -1], np.float32)
     cos_incidence = light @ rows[NORMAL.start : NORMAL_POINT + 1]
     cos_incidence *= inverse
-    lit = cos_incidence > 0
+    facing = cos_incidence > 0
+    lit = facing if lit is None else np.logical_and(lit, facing, out=lit)
     cos_light = None
-    if ready.toward is not None and ready.least_cosine is not None:
-        axis = np.append(ready.toward, -ready.toward @ position).astype(np.float32)
-        cos_light = axis @ rows[POINT.start : ONE + 1]
+    if ready.toward is not None:
+        cos_light = ready.toward.astype(np.float32) @ rows[POINT]
+        cos_light -= np.float32(ready.toward @ position)
         cos_light *= inverse
-    within = inside(ready, cos_light, flap_rows)
-    if within is not None:
-        lit &= within
+        lit &= inside_cone(ready, cos_light)
     lit_count = np.count_nonzero(lit)
     if not lit_count:
         out[:] = 0
-        return
+        return False
     few = lit_count < FEW * len(lit)
     chosen = np.flatnonzero(lit) if few else slice(None)
 
@@ -98,23 +121,26 @@ def _shade(out: Singles, rows: Singles, position: Floats, ready: Controls, expon
     cos_eye *= inverse
     diffuse = phong_diffuse(cos_incidence[chosen])
     specular = phong_specular(cos_eye[chosen], exponent)
+    multiplier: Singles | np.float32 = np.float32(1)
     if cos_light is not None and ready.concentration > 0:
         multiplier = concentrated(cos_light[chosen], ready.concentration)
-        diffuse = diffuse * multiplier
-        specular *= multiplier
     if few:
         out[:] = 0
-        out[DIFFUSE, chosen] = diffuse
-        out[SPECULAR, chosen] = specular
-    else:
-        np.multiply(diffuse, lit, out=out[DIFFUSE])
-        np.multiply(specular, lit, out=out[SPECULAR])
+        out[DIFFUSE, chosen] = diffuse * multiplier
+        out[SPECULAR, chosen] = specular * multiplier
+        return True
+    if lit_count < len(lit):
+        multiplier = multiplier * lit
+    np.multiply(diffuse, multiplier, out=out[DIFFUSE])
+    np.multiply(specular, multiplier, out=out[SPECULAR])
+    return True
 
 
 def _squared_distance(rows: Singles, position: Floats) -> Singles:
     """|P - p|^2 as one product: P.P - 2 p.P + p.p."""
-    factors = np.array([*(-2 * position), position @ position, 1], np.float32)
+    factors = np.array([*(-2 * position), 1], np.float32)
     squared: Singles = factors @ rows[POINT.start : POINT_SQUARED + 1]
+    squared += np.float32(position @ position)
     return squared
 
 
@@ -122,8 +148,6 @@ def _around_light(rows: Singles, position: Floats) -> Singles:
     """The rows with their points around the light, for a light so near that differences would cancel."""
     moved = rows.copy()
     moved[POINT] -= position.astype(np.float32)[:, None]
-    np.einsum("ij,ij->j", moved[POINT], moved[POINT], out=moved[POINT_SQUARED])
-    for vector, product in ((NORMAL, NORMAL_POINT), (MIRROR, MIRROR_POINT)):
+    for vector, product in ((POINT, POINT_SQUARED), (NORMAL, NORMAL_POINT), (MIRROR, MIRROR_POINT)):
         np.einsum("ij,ij->j", moved[vector], moved[POINT], out=moved[product])
-        np.negative(moved[product], out=moved[product])
     return moved

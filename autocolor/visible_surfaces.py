@@ -5,7 +5,9 @@ lines before the next: edges are cut by the lines, the two cuts of a polygon on 
 front-most span is kept at every pixel. The two see the same polygon at every pixel, and tests hold that.
 
 Measured and rejected: sorting the fragments (argsort and reduceat 7 times, lexsort 37 times the time of
-`np.maximum.at`), a loop over the lines (12 times), points in object space (twice the whole frame).
+`np.maximum.at`), a loop over the lines (12 times), points in object space (twice the whole frame), depths as
+floats (twice the passes over the fragments), scattering the cuts to their rows (twice the time of walking
+round the polygons in the order of the rows).
 """
 
 from __future__ import annotations
@@ -15,10 +17,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.edges import edges
+from autocolor.depth import DepthScale, depth_scale
+from autocolor.edges import DOWN_SIDE, UP_SIDE, Edges, edges_of_side
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, projection
-from autocolor.seen import Seen, Winners, seen_of_winners
+from autocolor.seen import Seen
+from autocolor.segments import seen_of_spans
 from autocolor.view import View
 
 POLYGONS_AT_ONCE = 4096
@@ -42,147 +46,114 @@ def visible_surfaces(
     whose normals do not turn to the eye on polygons seen from behind.
     """
     projected = projection(mesh, view, lines, elements)
+    scale = depth_scale(projected)
     front = np.zeros(lines * elements, np.int64)
-    chunks: list[Spans] = []
-    span_count = 0
+    # Number the spans from 1, for 0 is where nothing is seen.
+    down_tops, up_tops, beyond = [np.zeros(1, np.int32)], [np.zeros(1, np.int32)], 1
     for first in range(0, projected.corners.shape[1], POLYGONS_AT_ONCE):
-        spans = spans_of_polygons(projected, first, first + POLYGONS_AT_ONCE)
-        keep_front_most(front, spans, span_count)
-        chunks.append(spans)
-        span_count += len(spans.count)
-    winners = winning_spans(front, chunks, span_count)
-    return seen_of_winners(winners, projected, mesh, view, surface_numbers, one_sided)
+        spans = spans_of_polygons(projected, scale, first, first + POLYGONS_AT_ONCE)
+        keep_front_most(front, spans, beyond)
+        down_tops.append(spans.down_top)
+        up_tops.append(spans.up_top)
+        beyond += len(spans.count)
+    span_at_pixel = front & (scale.span_limit - 1)
+    return seen_of_spans(
+        span_at_pixel,
+        np.concatenate(down_tops),
+        np.concatenate(up_tops),
+        projected,
+        mesh,
+        view,
+        surface_numbers,
+        one_sided,
+    )
 
 
 @dataclass(frozen=True, eq=False)
 class Spans:
     """What lies between two edges of a polygon on a line; every array is (spans,).
 
-    The span's pixels are `first_pixel`, flat and line by line, and those after it, `count` in all. The
-    inverse depth is `start` + k `step` at pixel k of the span. `left_edge` and `right_edge` bound it.
+    The span's pixels are `first_pixel`, flat and line by line, and those after it, `count` in all. The depth
+    key is `start` + k `step` at pixel k of the span, int64. `down_top` and `up_top` are the tops of the edges
+    that bound it, on the side where the polygon runs down the raster and on the other.
     """
 
     first_pixel: Numbers
     count: Numbers
-    start: npt.NDArray[np.float32]
-    step: npt.NDArray[np.float32]
-    left_edge: npt.NDArray[np.int32]
-    right_edge: npt.NDArray[np.int32]
+    start: npt.NDArray[np.int64]
+    step: npt.NDArray[np.int64]
+    down_top: npt.NDArray[np.int32]
+    up_top: npt.NDArray[np.int32]
 
 
-def spans_of_polygons(projected: Projection, first: int, beyond: int) -> Spans:
+def spans_of_polygons(projected: Projection, scale: DepthScale, first: int, beyond: int) -> Spans:
     """The spans of the polygons from `first` to before `beyond`, by polygon and line.
 
     Those that hold no pixel's center are left out.
     """
-    first_lines = projected.first_line[projected.corners[:, first:beyond]]
-    top_line, bottom_line = first_lines.min(axis=0), first_lines.max(axis=0)
-    height = bottom_line - top_line
-    # The cuts of (polygon, line) stand in row base[polygon] + line.
-    base = np.cumsum(height) - height - top_line
-
-    # Cut the edges: those that go down the raster are one side of a polygon, those that go up the other.
-    following = np.roll(first_lines, -1, axis=0)
-    down_side = _cuts(projected, first, first_lines < following, base, int(height.sum()))
-    up_side = _cuts(projected, first, first_lines > following, base, int(height.sum()))
-
-    # Pair the cuts to spans from left to right.
-    line = np.arange(int(height.sum())) - np.repeat(base, height)
-    swapped = down_side[0] > up_side[0]
-    left, left_depth, left_edge = (
-        np.where(swapped, up, down) for down, up in zip(down_side, up_side, strict=True)
-    )
-    right, right_depth, right_edge = (
-        np.where(swapped, down, up) for down, up in zip(down_side, up_side, strict=True)
-    )
+    # Cut the edges; the rows of both sides are the same polygons and lines.
+    line, down_across, down_depth, down_top = _cuts(edges_of_side(projected, DOWN_SIDE, first, beyond))
+    _, up_across, up_depth, up_top = _cuts(edges_of_side(projected, UP_SIDE, first, beyond))
 
     # Keep the spans that hold a pixel's center: left <= center < right.
-    begin = np.clip(np.ceil(left - 0.5), 0, projected.elements).astype(np.intp)
-    end = np.clip(np.ceil(right - 0.5), 0, projected.elements).astype(np.intp)
+    begin = _first_center(np.minimum(down_across, up_across), projected.elements)
+    end = _first_center(np.maximum(down_across, up_across), projected.elements)
     kept = np.flatnonzero(end > begin)
-    left, right, left_depth, begin = left[kept], right[kept], left_depth[kept], begin[kept]
-    step = (right_depth[kept] - left_depth) / (right - left)
-    start = left_depth + (begin + 0.5 - left) * step
+    begin, down_across, down_depth = begin[kept], down_across[kept], down_depth[kept]
+
+    # Step the depth from the first of them on.
+    step = (up_depth[kept] - down_depth) / (up_across[kept] - down_across)
+    start = down_depth + (begin + 0.5 - down_across) * step
     return Spans(
         line[kept] * projected.elements + begin,
         end[kept] - begin,
-        start.astype(np.float32),
-        step.astype(np.float32),
-        left_edge[kept].astype(np.int32),
-        right_edge[kept].astype(np.int32),
+        scale.keys(start),
+        scale.keys(step),
+        down_top[kept],
+        up_top[kept],
     )
 
 
-def _cuts(
-    projected: Projection, first: int, chosen: npt.NDArray[np.bool_], base: Numbers, rows: int
-) -> tuple[Floats, Floats, Numbers]:
-    """Where the lines cut the chosen edges of polygons from `first` on, by row.
+def _cuts(cut: Edges) -> tuple[Numbers, Floats, Floats, npt.NDArray[np.int32]]:
+    """Where the lines cut the edges of one side: the line, the place across, the inverse depth, the top."""
+    start = np.repeat(np.cumsum(cut.count) - cut.count, cut.count)
+    step = np.arange(len(start)) - start
+    line = np.repeat(cut.first_line, cut.count) + step
+    across = np.repeat(cut.across, cut.count) + step * np.repeat(cut.across_step, cut.count)
+    inverse_depth = np.repeat(cut.inverse_depth, cut.count)
+    inverse_depth += step * np.repeat(cut.inverse_depth_step, cut.count)
+    return line, across, inverse_depth, np.repeat(cut.top.astype(np.int32), cut.count)
 
-    They are the place across, the inverse depth and the number of the edge.
-    """
-    corner, column = np.nonzero(chosen)
-    edge = corner * projected.corners.shape[1] + first + column
-    cut = edges(projected, edge)
-    across, inverse_depth, edge_numbers = np.empty(rows), np.empty(rows), np.empty(rows, np.intp)
 
-    # Step every edge from its first line to its last.
-    before = np.repeat(np.cumsum(cut.count) - cut.count, cut.count)
-    step = np.arange(len(before)) - before
-    row = np.repeat(np.arange(len(edge)), cut.count)
-    place = (base[column] + cut.first_line)[row] + step
-    across[place] = cut.across[row] + step * cut.across_step[row]
-    inverse_depth[place] = cut.inverse_depth[row] + step * cut.inverse_depth_step[row]
-    edge_numbers[place] = edge[row]
-    return across, inverse_depth, edge_numbers
+def _first_center(across: Floats, elements: int) -> Numbers:
+    """The first element whose center is at or right of a place, 0 to `elements`."""
+    return np.clip(np.ceil(across - 0.5), 0, elements).astype(np.intp)
 
 
 def keep_front_most(front: npt.NDArray[np.int64], spans: Spans, first_number: int) -> None:
-    """Keep in `front`, (lines * elements,), the largest key of each pixel; 0 where there is none.
+    """Keep in `front`, (lines * elements,), the largest depth key of each pixel with the span's number.
 
-    A key is the inverse depth over the number of the span. The bits of positive floats are ordered as the
-    floats are, so the largest key is the nearest span, and the last of those that are equally near.
+    So the nearest span is kept, and the last of those that are equally near.
     """
     beyond = np.cumsum(spans.count)
+    begin = beyond - spans.count
+    keys = spans.start + np.arange(first_number, first_number + len(begin))
+    # What a running sum must add from the last fragment of a span to the first of the next.
+    key_jump, pixel_jump = keys.copy(), spans.first_pixel.copy()
+    key_jump[1:] -= keys[:-1] + (spans.count[:-1] - 1) * spans.step[:-1]
+    pixel_jump[1:] -= spans.first_pixel[:-1] + spans.count[:-1] - 1
     cut = 0
     while cut < len(beyond):
         # Take the spans of about as many fragments as the caches hold.
-        taken = slice(
-            cut,
-            max(cut + 1, int(np.searchsorted(beyond, (beyond[cut - 1] if cut else 0) + FRAGMENTS_AT_ONCE))),
-        )
+        base = int(begin[cut])
+        taken = slice(cut, max(cut + 1, int(np.searchsorted(beyond, base + FRAGMENTS_AT_ONCE))))
         cut = taken.stop
-        count = spans.count[taken]
-        fragments = int(count.sum())
-        along = np.arange(fragments) - np.repeat(np.cumsum(count) - count, count)
-        nearness = np.repeat(spans.start[taken], count)
-        nearness += along.astype(np.float32) * np.repeat(spans.step[taken], count)
-        keys = nearness.view(np.int32).astype(np.int64)
-        keys <<= 32
-        keys |= np.repeat(np.arange(taken.start, taken.stop) + first_number, count)
-        along += np.repeat(spans.first_pixel[taken], count)
-        np.maximum.at(front, along, keys)
-
-
-def winning_spans(front: npt.NDArray[np.int64], chunks: list[Spans], span_count: int) -> Winners:
-    """The spans that are seen anywhere, and which of them is seen at each pixel."""
-    pixels = np.flatnonzero(front)
-    keys = front[pixels]
-    span = keys & 0xFFFFFFFF
-    won = np.zeros(span_count, np.bool_)
-    won[span] = True
-    spans = np.flatnonzero(won)
-    number = np.empty(span_count, np.intp)
-    number[spans] = np.arange(len(spans))
-
-    def column(name: str) -> npt.NDArray[np.intp]:
-        whole = np.concatenate([getattr(chunk, name) for chunk in chunks] or [np.empty(0, np.intp)])
-        return whole[spans].astype(np.intp)
-
-    return Winners(
-        pixels,
-        (keys >> 32).astype(np.int32).view(np.float32),
-        number[span],
-        column("first_pixel"),
-        column("left_edge"),
-        column("right_edge"),
-    )
+        heads = begin[taken] - base
+        # Step along all of them in one running sum, which in whole numbers is exact.
+        key = np.repeat(spans.step[taken], spans.count[taken])
+        key[heads] = key_jump[taken]
+        key[0] = keys[taken.start]
+        pixel = np.ones(len(key), np.intp)
+        pixel[heads] = pixel_jump[taken]
+        pixel[0] = spans.first_pixel[taken.start]
+        np.maximum.at(front, np.cumsum(pixel, out=pixel), np.cumsum(key, out=key))

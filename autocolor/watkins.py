@@ -13,22 +13,22 @@ from itertools import pairwise
 
 import numpy as np
 
+from autocolor.depth import DepthScale, depth_scale
 from autocolor.edges import edges
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, projection
-from autocolor.seen import Seen, Winners, seen_of_winners
+from autocolor.seen import Seen
+from autocolor.segments import seen_of_spans
 from autocolor.view import View
-
-CLEARLY = 1e-5
-"""How much nearer a segment must be, as a fraction, for rounding not to matter between two samples."""
 
 
 @dataclass
 class Edge:
     """An edge while it is active: where it is cut by its first line, and what each line adds."""
 
-    number: int
+    top: int
     polygon: int
+    falls: bool
     first_line: int
     beyond_line: int
     across: float
@@ -36,32 +36,31 @@ class Edge:
     inverse_depth: float
     inverse_depth_step: float
 
-    def cut(self, line: int) -> tuple[float, float, int]:
-        """The place across and the inverse depth on a line, and the edge's number."""
+    def cut(self, line: int) -> tuple[float, float]:
+        """The place across and the inverse depth on a line."""
         down = line - self.first_line
-        return (
-            self.across + down * self.across_step,
-            self.inverse_depth + down * self.inverse_depth_step,
-            self.number,
-        )
+        return self.across + down * self.across_step, self.inverse_depth + down * self.inverse_depth_step
 
 
 @dataclass
 class Segment:
-    """What a line sees of one polygon: its samples from `first` to before `beyond`."""
+    """What a line sees of one polygon: its samples from `first` to before `beyond`.
+
+    The depth key is `start` at the first sample and `step` more at each further one. `down_top` and `up_top`
+    are the tops of its two edges.
+    """
 
     polygon: int
     first: int
     beyond: int
-    start: np.float32
-    step: np.float32
-    left_edge: int
-    right_edge: int
+    start: int
+    step: int
+    down_top: int
+    up_top: int
 
-    def inverse_depth(self, element: int) -> np.float32:
-        """The inverse depth at a sample."""
-        nearness: np.float32 = self.start + np.float32(element - self.first) * self.step
-        return nearness
+    def key(self, element: int) -> tuple[int, int]:
+        """The depth key at a sample, the nearer the larger; of equal ones the later polygon counts."""
+        return self.start + (element - self.first) * self.step, self.polygon
 
 
 def watkins(
@@ -74,47 +73,51 @@ def watkins(
 ) -> Seen:
     """What is seen at each pixel; the arguments are those of `visible_surfaces`."""
     projected = projection(mesh, view, lines, elements)
+    scale = depth_scale(projected)
     bucket = y_buckets(projected)
     active: list[Edge] = []
-    pixels: list[int] = []
-    depths: list[np.float32] = []
-    seen_segment: list[int] = []
-    segments_seen: list[tuple[int, Segment]] = []
+    segment_at_pixel = np.zeros(lines * elements, np.int64)
+    down_tops, up_tops = [0], [0]
 
     for line in range(lines):
         # Enter the edges that begin on this line, and drop those that ended above it.
         active = [edge for edge in active if edge.beyond_line > line] + bucket.get(line, [])
         # Find the visible segments from left to right.
-        for segment, first, beyond in visible_segments(segments_of_line(active, line, elements)):
-            segments_seen.append((line * elements + segment.first, segment))
-            for element in range(first, beyond):
-                pixels.append(line * elements + element)
-                depths.append(segment.inverse_depth(element))
-                seen_segment.append(len(segments_seen) - 1)
+        numbers: dict[int, int] = {}
+        for segment, first, beyond in visible_segments(segments_of_line(active, scale, line, elements)):
+            if segment.polygon not in numbers:
+                numbers[segment.polygon] = len(down_tops)
+                down_tops.append(segment.down_top)
+                up_tops.append(segment.up_top)
+            segment_at_pixel[line * elements + first : line * elements + beyond] = numbers[segment.polygon]
 
-    winners = Winners(
-        np.array(pixels, np.intp),
-        np.array(depths, np.float32),
-        np.array(seen_segment, np.intp),
-        np.array([first_pixel for first_pixel, _ in segments_seen], np.intp),
-        np.array([segment.left_edge for _, segment in segments_seen], np.intp),
-        np.array([segment.right_edge for _, segment in segments_seen], np.intp),
+    return seen_of_spans(
+        segment_at_pixel,
+        np.array(down_tops, np.int32),
+        np.array(up_tops, np.int32),
+        projected,
+        mesh,
+        view,
+        surface_numbers,
+        one_sided,
     )
-    return seen_of_winners(winners, projected, mesh, view, surface_numbers, one_sided)
 
 
 def y_buckets(projected: Projection) -> dict[int, list[Edge]]:
     """The edges that cross a line, by the first line that they cross."""
     first_lines = projected.first_line[projected.corners]
-    numbers = np.flatnonzero(first_lines != np.roll(first_lines, -1, axis=0))
     polygons = projected.corners.shape[1]
-    cut = edges(projected, numbers)
+    starts = np.flatnonzero(first_lines != np.roll(first_lines, -1, axis=0))
+    ends = (starts + polygons) % max(projected.corners.size, 1)
+    falls = first_lines.ravel()[starts] < first_lines.ravel()[ends]
+    cut = edges(projected, np.where(falls, starts, ends), np.where(falls, ends, starts))
     buckets: dict[int, list[Edge]] = {}
-    for row, number in enumerate(numbers.tolist()):
+    for row in range(len(starts)):
         first_line = int(cut.first_line[row])
         edge = Edge(
-            number,
-            number % polygons,
+            int(cut.top[row]),
+            int(cut.top[row]) % polygons,
+            bool(falls[row]),
             first_line,
             first_line + int(cut.count[row]),
             float(cut.across[row]),
@@ -126,22 +129,24 @@ def y_buckets(projected: Projection) -> dict[int, list[Edge]]:
     return buckets
 
 
-def segments_of_line(active: list[Edge], line: int, elements: int) -> list[Segment]:
+def segments_of_line(active: list[Edge], scale: DepthScale, line: int, elements: int) -> list[Segment]:
     """The segments of a line that hold a sample, in the order of their left ends."""
-    cuts: dict[int, list[tuple[float, float, int]]] = {}
+    pairs: dict[int, list[Edge]] = {}
     for edge in active:
-        cuts.setdefault(edge.polygon, []).append(edge.cut(line))
+        pairs.setdefault(edge.polygon, []).append(edge)
     segments = []
-    for polygon, (one, other) in cuts.items():
-        # Pair the two cuts of the polygon, the left one first.
-        left, right = (one, other) if one[0] <= other[0] else (other, one)
-        first = min(max(math.ceil(left[0] - 0.5), 0), elements)
-        beyond = min(max(math.ceil(right[0] - 0.5), 0), elements)
+    for polygon, pair in pairs.items():
+        # Pair the cuts of the polygon: the edge that it runs down, and the one that it runs up.
+        down, up = sorted(pair, key=lambda edge: not edge.falls)
+        (down_across, down_depth), (up_across, up_depth) = down.cut(line), up.cut(line)
+        first, beyond = (
+            min(max(math.ceil(across - 0.5), 0), elements) for across in sorted((down_across, up_across))
+        )
         if beyond > first:
-            step = (right[1] - left[1]) / (right[0] - left[0])
-            start = left[1] + (first + 0.5 - left[0]) * step
+            step = (up_depth - down_depth) / (up_across - down_across)
+            start = down_depth + (first + 0.5 - down_across) * step
             segments.append(
-                Segment(polygon, first, beyond, np.float32(start), np.float32(step), left[2], right[2])
+                Segment(polygon, first, beyond, scale.key(start), scale.key(step), down.top, up.top)
             )
     return sorted(segments, key=lambda segment: segment.first)
 
@@ -165,22 +170,11 @@ def visible_segments(segments: list[Segment]) -> Iterator[tuple[Segment, int, in
 
 
 def nearest_in_span(segments: list[Segment], first: int, beyond: int) -> Iterator[tuple[Segment, int, int]]:
-    """The nearest of the segments at the samples of a span; the span is cut in two until one is clear."""
-    if len(segments) == 1:
-        yield segments[0], first, beyond
-        return
-    at_first = max(segments, key=lambda segment: (segment.inverse_depth(first), segment.polygon))
-    if beyond - first == 1:
-        yield at_first, first, beyond
-        return
-    # One that is clearly nearest at both ends is nearest all the way, for depths change evenly.
-    others = [segment for segment in segments if segment is not at_first]
-    if all(
-        at_first.inverse_depth(end) > segment.inverse_depth(end) * (1 + CLEARLY)
-        for segment in others
-        for end in (first, beyond - 1)
-    ):
-        yield at_first, first, beyond
+    """The nearest of the segments at the samples of a span; the span is cut in two until it is one."""
+    nearest = max(segments, key=lambda segment: segment.key(first))
+    # Depths change evenly: what is nearest at both ends is nearest all the way.
+    if all(nearest.key(beyond - 1) >= segment.key(beyond - 1) for segment in segments):
+        yield nearest, first, beyond
         return
     middle = (first + beyond) // 2
     yield from nearest_in_span(segments, first, middle)

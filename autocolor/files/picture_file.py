@@ -208,7 +208,7 @@ def _picture(
     owned = {number for part, number in enumerate(scene.surface_number_of_part) if part in in_use}
     pixels = np.flatnonzero(flat)
     pixels = pixels[np.argsort(flat[pixels], kind="stable")]
-    slices = surface_slices(flat[pixels])
+    slices = surface_slices(np.bincount(flat[pixels], minlength=1))
     strange = {each.surface_number for each in slices} - owned
     if strange:
         raise InputError(f"a surface number must be that of a surface with polygons, not {min(strange)}")

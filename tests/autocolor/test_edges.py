@@ -5,19 +5,47 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View
-from autocolor.edges import edges
-from autocolor.projection import projection
+from autocolor.edges import DOWN_SIDE, UP_SIDE, Edges, Side, edges_of_side, other_end
+from autocolor.projection import Projection, projection
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
+
+
+SIDES: tuple[Side, ...] = (DOWN_SIDE, UP_SIDE)
+
+
+def all_edges(projected: Projection, side: Side) -> Edges:
+    return edges_of_side(projected, side, 0, projected.corners.shape[1])
+
+
+@given(meshes(), views() | outside_views(), rasters)
+def test_the_edges_of_both_sides_cut_the_same_lines_of_the_same_polygons(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    projected = projection(mesh, view, *raster)
+    polygons = projected.corners.shape[1]
+    expected = [
+        (polygon, line)
+        for polygon, lines in enumerate(projected.first_line[projected.corners].T.tolist())
+        for line in range(min(lines), max(lines))
+    ]
+    for side in SIDES:
+        cut = all_edges(projected, side)
+        assert expected == [
+            (top % polygons, line)
+            for top, first, count in zip(cut.top, cut.first_line, cut.count, strict=True)
+            for line in range(first, first + count)
+        ]
+        assert other_end(projected, cut.top, side).tolist() == cut.bottom.tolist()
+        assert len(expected) <= projected.crossings
 
 
 @given(meshes(), views() | outside_views(), rasters)
 def test_an_edge_is_cut_where_the_lines_cross_it(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
     projected = projection(mesh, view, *raster)
-    first_lines = projected.first_line[projected.corners]
-    numbers = np.flatnonzero(first_lines != np.roll(first_lines, -1, axis=0))
-    cut = edges(projected, numbers)
     corners = projected.corners.ravel()
-    for row in range(len(numbers)):
+    for cut, row in [
+        (cut, row) for side in SIDES for cut in [all_edges(projected, side)] for row in range(len(cut.top))
+    ]:
         a, b = corners[cut.top[row]], corners[cut.bottom[row]]
         assert projected.down[a] <= projected.down[b]
         assert cut.count[row] > 0
@@ -45,8 +73,14 @@ def test_an_edge_is_cut_alike_whichever_way_its_polygon_runs(
     cuts = []
     for each in (mesh, backward):
         projected = projection(each, view, *raster)
-        first_lines = projected.first_line[projected.corners]
-        cut = edges(projected, np.flatnonzero(first_lines != np.roll(first_lines, -1, axis=0)))
-        table = np.stack([cut.first_line, cut.count, cut.across, cut.across_step, cut.inverse_depth], axis=1)
-        cuts.append({tuple(row) for row in table.tolist()})
+        cuts.append(
+            {
+                row
+                for side in SIDES
+                for cut in [all_edges(projected, side)]
+                for row in zip(
+                    *(cut.first_line, cut.count, cut.across, cut.across_step, cut.inverse_depth), strict=True
+                )
+            }
+        )
     assert cuts[0] == cuts[1]

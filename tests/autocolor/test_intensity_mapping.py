@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, LevelRange, Picture, Scene, render
-from autocolor.intensity_mapping import curve_of, equalized, fractions, levels_of, words_of
+from autocolor.intensity_mapping import curve_of, equalized, fraction_of, levels_of, words_of
 from autocolor.level_ranges import level_ranges
 from autocolor.picture import IntensityRange
 from autocolor.seen import SurfaceSlice
@@ -56,7 +56,7 @@ def shown_by(mapping: Any, fraction: float) -> float:
 def test_every_level_is_the_one_of_the_slow_twin(steps: list[int], mapping: Any, levels: int) -> None:
     intensities = np.array(steps, np.float32) * np.float32(1.7)
     least, most = float(intensities.min()), float(intensities.max())
-    shown = fractions(intensities, IntensityRange(least, most), mapping, intensities)
+    shown = fraction_of(IntensityRange(least, most), mapping, intensities)(intensities)
     for intensity, level in zip(intensities.tolist(), levels_of(shown, levels).tolist(), strict=True):
         if least == most:
             assert level == levels - 1
@@ -100,7 +100,7 @@ def test_gamma_and_logarithm_lift_the_dark() -> None:
 @given(st.lists(st.integers(0, 100), min_size=2, max_size=60, unique=True))
 def test_equalize_shows_every_level_equally_often(steps: list[int]) -> None:
     intensities = np.array(steps, np.float32) ** 3
-    shown = equalized(intensities, intensities)
+    shown = equalized(intensities)(intensities)
     assert sorted(shown.tolist()) == pytest.approx(np.linspace(0, 1, len(steps)).tolist())
     assert np.argsort(shown).tolist() == np.argsort(intensities).tolist()
 
@@ -108,7 +108,7 @@ def test_equalize_shows_every_level_equally_often(steps: list[int]) -> None:
 @given(st.lists(st.integers(0, 8), min_size=2, max_size=60).filter(lambda steps: min(steps) < max(steps)))
 def test_equalize_never_falls_and_spans_the_range(steps: list[int]) -> None:
     intensities = np.array(sorted(steps), np.float32)
-    shown = equalized(intensities, intensities)
+    shown = equalized(intensities)(intensities)
     assert (np.diff(shown) >= 0).all()
     assert (shown[0], shown[-1]) == (0, 1)
 

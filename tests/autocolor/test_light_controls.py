@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, View
-from autocolor.light_controls import concentrated, controls, inside
+from autocolor.light_controls import concentrated, controls, inside_cone, inside_flaps
 from autocolor.seen import Seen
 from autocolor.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import wall
@@ -42,7 +42,7 @@ def test_the_multiplier_never_leaves_0_to_1(cosines: list[float], concentration:
 def test_a_point_source_without_flaps_needs_no_test() -> None:
     ready = controls(Light("light", (0, -1, 0)), seen_wall())
     assert ready.toward is None
-    assert inside(ready, None, seen_wall().rows) is None
+    assert inside_flaps(ready, seen_wall().rows) is None
 
 
 @given(lights())
@@ -79,16 +79,14 @@ def test_a_point_is_in_the_cone_up_to_its_rim_and_before_a_concentrated_light(
         "light", (0, -1, 0), direction=(0, 1, 0), cone_angle=cone_angle, concentration=concentration
     )
     seen = seen_wall()
-    at = inside(controls(light, seen), np.array([cosine], np.float32), seen.rows[:, :1])
-    assert at is not None
-    assert at.tolist() == [lit]
+    assert inside_cone(controls(light, seen), np.array([cosine], np.float32)).tolist() == [lit]
 
 
 @given(numbers(-1, 1), numbers(0, 1), st.sampled_from("xz"))
 def test_a_point_is_within_a_flap_up_to_both_its_ends(least: float, extent: float, axis: str) -> None:
     seen = seen_wall()
     flap = Flap(least, least + extent)
-    at = inside(controls(Light("light", (0, -1, 0), flaps=Flaps(**{axis: flap})), seen), None, seen.rows)
+    at = inside_flaps(controls(Light("light", (0, -1, 0), flaps=Flaps(**{axis: flap})), seen), seen.rows)
     coordinate = seen.points[:, "xyz".index(axis)]
     clear = np.minimum(np.abs(coordinate - flap.minimum), np.abs(coordinate - flap.maximum)) > 1e-5
     expected = (flap.minimum <= coordinate) & (coordinate <= flap.maximum)

@@ -20,11 +20,7 @@ def test_the_rays_of_the_lens_go_through_the_centers_of_the_pixels(
     rays = lens(*raster, 50.0)
     for pixel in range(raster[0] * raster[1]):
         expected = view.axes @ np.array(ray(view, *raster, *divmod(pixel, raster[1])))
-        line, element = divmod(pixel, raster[1])
-        across = (element + 0.5 - raster[1] / 2) / rays.focal_length
-        down = (line + 0.5 - raster[0] / 2) / rays.focal_length
-        assert (across, down, 1.0) == pytest.approx(expected, abs=1e-5)
-        assert rays.inverse_length[pixel] == pytest.approx(1 / np.linalg.norm(expected), rel=1e-6)
+        assert rays.unit_rays[:, pixel] == pytest.approx(expected / np.linalg.norm(expected), abs=1e-6)
 
 
 def test_pixels_are_square_and_the_field_of_view_is_the_vertical_one() -> None:

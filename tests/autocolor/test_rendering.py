@@ -94,7 +94,7 @@ def test_an_exponent_computes_its_own_surface_again_and_no_other() -> None:
         of_cube[surface.start : surface.stop] = surface.surface_number == 2
     changed = np.zeros_like(of_cube)
     for name, planes in after.picture.light_planes.items():
-        changed |= (planes != before.picture.light_planes[name]).any(axis=0)
+        changed |= (planes.values != before.picture.light_planes[name].values).any(axis=0)
     assert changed.any()
     assert not (changed & ~of_cube).any()
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.seen import MIRROR, NORMAL, NORMAL_POINT, POINT, POINT_SQUARED
+from autocolor.seen import MIRROR, MIRROR_POINT, NORMAL, NORMAL_POINT, POINT, POINT_SQUARED
 from autocolor.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.reference import ray
@@ -65,17 +65,15 @@ def test_every_pixel_whose_center_is_inside_is_seen_and_no_other() -> None:
 def test_no_row_is_ever_other_than_a_finite_number(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
     seen = visible_surfaces(mesh, view, (1, 2), *raster)
     assert np.isfinite(seen.rows).all()
-    assert np.isfinite(seen.inverse_depth).all()
-    assert (seen.inverse_depth > 0).all()
     assert (np.diff(seen.pixels[: seen.slices[0].stop]) > 0).all() if seen.slices else True
 
 
 @given(meshes(), views(), rasters)
 def test_points_lie_on_their_rays_and_rows_agree(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
     seen = visible_surfaces(mesh, view, (1, 2), *raster)
-    for row, (pixel, point) in enumerate(zip(seen.pixels.tolist(), seen.points, strict=True)):
+    for pixel, point in zip(seen.pixels.tolist(), seen.points, strict=True):
         direction = np.array(ray(view, *raster, *divmod(pixel, raster[1])))
-        depth = seen.unit / float(seen.inverse_depth[row])
+        depth = float((point - np.array(view.eye)) @ view.axes[2])
         assert point == pytest.approx(np.array(view.eye) + depth * direction, abs=4e-6 * max(depth, 4))
     rows = seen.rows.astype(np.float64)
     normal_lengths = np.linalg.norm(rows[NORMAL], axis=0)
@@ -83,7 +81,8 @@ def test_points_lie_on_their_rays_and_rows_agree(mesh: Mesh, view: View, raster:
     assert np.linalg.norm(rows[MIRROR], axis=0) == pytest.approx(np.ones(len(seen.pixels)), abs=1e-5)
     size = 1 + np.abs(rows[POINT]).max(initial=0.0)
     assert (rows[POINT] ** 2).sum(axis=0) == pytest.approx(rows[POINT_SQUARED], rel=1e-5, abs=1e-12)
-    assert -(rows[NORMAL] * rows[POINT]).sum(axis=0) == pytest.approx(rows[NORMAL_POINT], abs=1e-5 * size)
+    for vector, product in ((NORMAL, NORMAL_POINT), (MIRROR, MIRROR_POINT)):
+        assert (rows[vector] * rows[POINT]).sum(axis=0) == pytest.approx(rows[product], abs=1e-5 * size)
 
 
 @pytest.mark.parametrize("columns", [1, 5])

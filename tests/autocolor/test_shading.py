@@ -210,8 +210,8 @@ def test_half_of_a_directed_light_is_left_at_the_angle_of_its_concentration(
 ) -> None:
     light = Light("light", (0.0, -0.5, 0.0), direction=(0.0, 1.0, 0.0))
     seen = visible_surfaces(wall(), View((0, -4, 0), target=(0, 0, 0), field_of_view=25), (1,), 401, 401)
-    whole = light_planes(light, seen, {1: 20.0})[0]
-    directed = light_planes(light.replace(concentration=concentration), seen, {1: 20.0})[0]
+    whole = light_planes(light, seen, {1: 20.0}).values[0]
+    directed = light_planes(light.replace(concentration=concentration), seen, {1: 20.0}).values[0]
     angles = np.degrees(np.arctan2(np.hypot(seen.points[:, 0], seen.points[:, 2]), 0.5))
     order = np.argsort(angles)
     falling = (directed / whole)[order]
@@ -331,6 +331,6 @@ def test_planes_that_are_kept_change_only_on_the_surfaces_that_changed() -> None
     old = light_planes(light, seen, {1: 20.0})
     same = light_planes(light, seen, {1: 5.0}, kept=old)
     renewed = light_planes(light, seen, {1: 5.0}, kept=old, changed=frozenset({1}))
-    assert same.tobytes() == old.tobytes()
-    assert renewed.tobytes() == light_planes(light, seen, {1: 5.0}).tobytes()
-    assert not renewed.flags.writeable
+    assert same.values.tobytes() == old.values.tobytes()
+    assert renewed.values.tobytes() == light_planes(light, seen, {1: 5.0}).values.tobytes()
+    assert not renewed.values.flags.writeable

@@ -19,7 +19,7 @@ def assert_as_rays_see(mesh: Mesh, view: View, lines: int, elements: int) -> Non
     polygon = np.full(lines * elements, -1)
     polygon[seen.pixels] = seen.polygon_numbers
     depth = np.full(lines * elements, np.inf)
-    depth[seen.pixels] = seen.unit / seen.inverse_depth.astype(np.float64)
+    depth[seen.pixels] = (seen.points - np.array(view.eye)) @ view.axes[2]
     for pixel in range(lines * elements):
         hit = first_hit(mesh, view.eye, ray(view, lines, elements, *divmod(pixel, elements)))
         if hit.clear > 1e-3 and hit.depth > 1e-3:

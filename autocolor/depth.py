@@ -1,0 +1,49 @@
+"""Depth as a whole number: what the hidden-surface algorithms compare.
+
+The inverse depth is linear along a line of the raster, so in whole numbers it is stepped without any
+rounding: which of two spans is nearer is the same wherever the count begins, and the batch and the literal
+algorithm agree at every pixel. Below the depth a key has room for the number of the span.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from autocolor.projection import Projection
+
+KEY_BITS = 62
+"""Of the 63 of a positive number; one is room for what rounding adds to the nearest."""
+
+
+@dataclass(frozen=True)
+class DepthScale:
+    """Keys are whole multiples of `span_limit`, `factor` of them the inverse depth 1.
+
+    The numbers of all spans are below `span_limit`, a power of two.
+    """
+
+    span_limit: int
+    factor: float
+
+    def key(self, inverse_depth: float) -> int:
+        """The key of an inverse depth, or of a difference of two."""
+        return round(inverse_depth * self.factor) * self.span_limit
+
+    def keys(self, inverse_depth: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+        """The keys of inverse depths, or of differences of them; a number of a span can be added.
+
+        A difference beyond the largest key stands for one that is stepped over no pixel.
+        """
+        whole = np.rint(inverse_depth * self.factor)
+        most = 2.0**KEY_BITS / self.span_limit
+        return np.clip(whole, -most, most, out=whole).astype(np.int64) * self.span_limit
+
+
+def depth_scale(projected: Projection) -> DepthScale:
+    """The finest scale that holds the nearest node and the numbers of all spans."""
+    span_limit = 1 << (projected.crossings + 1).bit_length()
+    largest = float(projected.inverse_depth.max(initial=1e-300))
+    return DepthScale(span_limit, 2.0 ** (KEY_BITS - span_limit.bit_length() + 1) / largest)
