@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from autocolor import Scene
@@ -14,8 +14,10 @@ from benchmarks.peers.peer import AbsentError, Peer
 from benchmarks.points import STEP
 
 FIRST = "first picture"
-FAR = 0.5
+FAR = 1.0
 """How far eye and lights are moved for pictures to compare."""
+WAKING = 3
+"""Pictures of a peer that are not timed before the one that is."""
 
 
 @dataclass
@@ -47,10 +49,16 @@ class Contestant:
         return next(f"{edit}: {each}" for edit, each in self.agreements.items() if not each.holds)
 
     def cases(self) -> Iterator[Case]:
-        """Its edits as cases; the edited scene is made before."""
+        """Its edits as cases; the edited scene is made before.
+
+        So are some pictures, for its threads to be awake: while others have their turns they fall asleep so
+        deeply that the next picture takes up to a third longer.
+        """
         for edit, show in self.peer.edits.items():
 
-            def make(edit: str = edit) -> None:
+            def make(edit: str = edit, show: Callable[[Scene], object] = show) -> None:
+                for _ in range(0 if self.peer.is_slow else WAKING):
+                    show(self.scene)
                 self.scene = EDITS[edit](self.scene, STEP)
 
             yield Case(case_of(self.name, edit), lambda show=show: show(self.scene), make)  # type: ignore[misc]

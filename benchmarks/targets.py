@@ -80,9 +80,7 @@ TARGETS = (
     Target("first picture of a process", "s", 0.5, lambda _: first_picture()),
     Target("memory, the coupe", "MB", 40, lambda _: memory("coupe")),
     Target("memory, a million polygons", "MB", 400, lambda _: memory("hills"), takes_long=True),
-    Target(
-        "batch and Watkins differ", "pixels", 0, lambda _: spread([differing_pixels()[0]]), takes_long=True
-    ),
+    Target("batch and Watkins differ", "pixels", 0, lambda _: spread([differing_pixels()])),
     Target(
         "a picture through the instructions", "ms", 1, lambda seconds: spread(seconds[STREAM]).times(1e3)
     ),
@@ -141,32 +139,49 @@ def row(
 
 def text(measured: dict[str, Any]) -> str:
     """The peers and how they agree, the targets, and all cases."""
-    rows = [
-        f"{'a peer beside ours, of 255':36}{'only one covers':>17}{'astray':>8}{'median':>8}{'99th':>8}",
-        *(line for name, peer in measured["peers"].items() for line in peer_lines(name, peer)),
-        *(f"{name}: {SKIPPED}: {reason}" for name, reason in measured["absent"].items()),
-    ]
-    rows += ["", f"{'target':36}{'measured':>10}{'quartiles':>17}{'bound':>11}  {'':24}"]
+    return "\n\n".join(
+        "\n".join(lines)
+        for lines in (peer_lines(measured), target_lines(measured), case_lines(measured), [NOTES])
+    )
+
+
+def peer_lines(measured: dict[str, Any]) -> list[str]:
+    """What each peer is, and how far its pictures agree; why the others are not there."""
+    lines = [f"{'a peer beside ours, of 255':40}{'only one covers':>16}{'astray':>8}{'median':>8}{'99th':>8}"]
+    for name, peer in measured["peers"].items():
+        lines.append(f"{name}: {peer['description']}")
+        for edit, each in peer["pictures"].items():
+            numbers = (
+                f"{each['uncovered']:16,}{each['astray']:8,}{each['median']:8.2f}{each['percentile']:8.2f}"
+            )
+            lines.append(f"    {edit:36}{numbers}  {'agrees' if each['agrees'] else 'DISAGREES'}")
+    return lines + [f"{name}: {SKIPPED}: {reason}" for name, reason in measured["absent"].items()]
+
+
+def target_lines(measured: dict[str, Any]) -> list[str]:
+    """Each target with what is measured for it, its bound and the verdict."""
+    lines = [f"{'target':36}{'measured':>10}{'quartiles':>16}{'bound':>11}"]
     for target in measured["targets"]:
+        spent = "" if target["measured"] is None else columns(Spread(**target["measured"]))
         bound = f"{'>=' if target['at least'] else '<='} {target['bound']:g}"
-        figure = target["measured"]
-        quartiles = "" if figure is None else f"{figure['low']:.3g} - {figure['high']:.3g}"
-        median = "" if figure is None else f"{figure['median']:.3g}"
         verdict = ": ".join(filter(None, (target["verdict"], target["reason"])))
-        rows.append(
-            f"{target['target']:36}{median:>10}{quartiles:>17}{bound:>11}  {target['unit']:24}{verdict}"
-        )
-    rows += ["", f"{'case':36}{'ms':>10}{'quartiles':>19}"]
-    for name, case in measured["cases ms"].items():
-        quartiles = f"{case['low']:.3f} - {case['high']:.3f}"
-        rows.append(f"{name:36}{case['median']:10.3f}{quartiles:>19}")
-    return "\n".join([*rows, "", NOTES])
-
-
-def peer_lines(name: str, peer: dict[str, Any]) -> list[str]:
-    """What a peer is, and how far its pictures agree."""
-    lines = [f"{name}: {peer['description']}"]
-    for edit, each in peer["pictures"].items():
-        numbers = f"{each['uncovered']:17,}{each['astray']:8,}{each['median']:8.2f}{each['percentile']:8.2f}"
-        lines.append(f"    {edit:32}{numbers}  {'agrees' if each['agrees'] else 'DISAGREES'}")
+        lines.append(f"{target['target']:36}{spent:26}{bound:>11}  {target['unit']:24}{verdict}")
     return lines
+
+
+def case_lines(measured: dict[str, Any]) -> list[str]:
+    """Each case, those of peers as ratios to ours of the same edit too."""
+    lines = [f"{'case':36}{'ms':>10}{'quartiles':>16}{'times ours':>11}"]
+    cases, peers = measured["cases ms"], measured["peers"]
+    for name, case in cases.items():
+        peer, _, edit = name.partition(": ")
+        ours = f"{case['median'] / cases[edit]['median']:.3g}" if peer in peers else ""
+        note = "" if peer not in peers or peers[peer]["agrees"] else NOT_COMPARABLE
+        lines.append(f"{name:36}{columns(Spread(**case))}{ours:>11}  {note}".rstrip())
+    return lines
+
+
+def columns(figure: Spread) -> str:
+    """A median and its quartiles, in 26 letters."""
+    low, median, high = (f"{part:,.0f}" if part >= 1000 else f"{part:.3g}" for part in figure)
+    return f"{median:>10}{f'{low} - {high}':>16}"

@@ -30,7 +30,7 @@ Floats = npt.NDArray[np.float64]
 class MatplotlibPeer:
     """A figure of the size of the picture with one collection of polygons in it."""
 
-    is_slow = False
+    is_slow = True
 
     def __init__(self, scene: Scene) -> None:
         self.description = (

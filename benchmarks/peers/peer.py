@@ -22,7 +22,7 @@ class Peer(Protocol):
 
     `description` says what it is and how it renders. `edits` has for each edit that is timed what shows the
     edited scene; it returns when the pixels are rendered, and may count on nothing else being changed. A peer
-    that begins again for any edit has only the frame, and one that `is_slow` has fewer rounds.
+    that begins again for any edit has only the frame. One that `is_slow` has fewer rounds, after the others.
     """
 
     description: str
