@@ -19,8 +19,8 @@ from benchmarks import plots
 from benchmarks.machine import heading, machine
 
 RESULTS = Path(__file__).parent / "results"
-ROOMS = {"targets": "the targets, against peers", "scaling": "what grows with the scene", "start": "starts",
-         "steps": "the steps of a frame"}  # fmt: skip
+ROOMS = ("targets", "scaling", "start", "steps")
+"""Modules with `measure` and `text`."""
 PROGRAMS = {"display": "benchmarks.display", "ports": "benchmarks.host_ports"}
 """Measurements that are programs of their own."""
 
@@ -29,7 +29,7 @@ def main() -> None:
     """Run what is asked for."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("room", nargs="?", choices=[*ROOMS, *PROGRAMS], help="one of them (all)")
-    parser.add_argument("--rounds", type=int, help="how often each case is taken (by each room's own choice)")
+    parser.add_argument("--rounds", type=positive, help="how often each case is taken (each room's own)")
     parser.add_argument("--into", type=Path, default=RESULTS, help="the folder of the results")
     parser.add_argument("--quick", action="store_true", help="leave out what takes long")
     options = parser.parse_args()
@@ -41,6 +41,14 @@ def main() -> None:
         else:
             missed |= run_room(room, options)
     sys.exit(1 if missed else 0)
+
+
+def positive(text: str) -> int:
+    """A whole number of at least 1."""
+    number = int(text) if text.isdecimal() else 0
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"it must be a whole number of at least 1, not {text!r}")
+    return number
 
 
 def run_room(room: str, options: argparse.Namespace) -> bool:

@@ -113,7 +113,7 @@ def targets(measured: dict[str, Any], path: Path) -> bool:
         return False
     rows = [bar_of(target) for target in measured["targets"]]
     frames = {
-        OWN if name == FRAME else name.removesuffix(f": {FRAME}"): Spread(**spent)
+        frame_name(name.removesuffix(FRAME).removesuffix(": "), measured["peers"]): Spread(**spent)
         for name, spent in measured["cases ms"].items()
         if name.endswith(FRAME)
     }
@@ -142,6 +142,13 @@ def targets(measured: dict[str, Any], path: Path) -> bool:
     points.set_title("A whole frame", loc="left", fontsize=11, pad=12)
     save(made, path)
     return True
+
+
+def frame_name(peer: str, peers: dict[str, Any]) -> str:
+    """Whose frame it is, and whether it is a picture of another kind than ours."""
+    if not peer:
+        return OWN
+    return peer if peers[peer]["agrees"] else f"{peer}\n(not comparable)"
 
 
 def bar_of(target: dict[str, Any]) -> Bar:

@@ -45,6 +45,7 @@ NOTHING = target("one that allows nothing", {"low": 0.0, "median": 0.0, "high": 
 SKIPPED = target("one that is skipped", None, 1, "skipped")
 TARGETS = {
     "targets": [AT_MOST, AT_LEAST, NOTHING, SKIPPED],
+    "peers": {"a peer": {"agrees": True}},
     "cases ms": {"whole frame": SPREAD, "a copy": SPREAD, "a peer: whole frame": SPREAD},
 }
 
@@ -80,6 +81,12 @@ def test_a_bar_is_longer_to_the_right_the_more_a_bound_is_missed() -> None:
     assert plots.bar_of(AT_MOST).ratio == (0.2, 0.4, 0.8)
     assert plots.bar_of(AT_LEAST).ratio == (2, 4, 8)
     assert plots.bar_of(AT_LEAST).name == "one that is missed \u2265 8 ms"
+
+
+def test_a_frame_of_another_picture_is_named_so() -> None:
+    peers = {"one": {"agrees": True}, "other": {"agrees": False}}
+    names = [plots.frame_name(peer, peers) for peer in ("", "one", "other")]
+    assert names == [plots.OWN, "one", "other\n(not comparable)"]
 
 
 def test_a_target_without_a_ratio_has_a_note_instead() -> None:
