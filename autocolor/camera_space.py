@@ -9,6 +9,7 @@ import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -27,22 +28,24 @@ LEAST_UNIT = 2.0**-800
 """Assumed: far below the size of any object, and still a divisor for the farthest light."""
 
 Floats = npt.NDArray[np.float64]
+Singles = npt.NDArray[np.float32]
 Numbers = npt.NDArray[np.intp]
+Real = TypeVar("Real", np.float32, np.float64)
 
 
 @dataclass(frozen=True, eq=False)
 class CameraPolygons:
     """Nodes and polygons in camera space, measured in `unit`, a power of two near the size of the view.
 
-    `places` is (3, nodes), `normals` (3, normals) float64. `corners` and `corner_normals` are (4, polygons)
-    intp, one column a polygon, numbers of nodes and of normals. `polygon_numbers` are the rows of the mesh's
-    polygon table. No corner is nearer than `near`.
+    `places` is (3, nodes) float64, `normals` (3, normals) float32. `corners` and `corner_normals` are (4,
+    polygons) intp, one column a polygon, numbers of nodes and of normals. `polygon_numbers` are the rows of
+    the mesh's polygon table. No corner is nearer than `near`.
     """
 
     unit: float
     near: float
     places: Floats
-    normals: Floats
+    normals: Singles
     corners: Numbers
     corner_normals: Numbers
     polygon_numbers: Numbers
@@ -66,15 +69,15 @@ def camera_space(mesh: Mesh, view: View) -> CameraPolygons:
     return cut_at_near_plane(polygons) if reaches_through else polygons
 
 
-def rotated(axes: Floats, rows: Floats, origin: Vector = (0.0, 0.0, 0.0)) -> Floats:
+def rotated(axes: Floats, rows: npt.NDArray[Real], origin: Vector = (0.0, 0.0, 0.0)) -> npt.NDArray[Real]:
     """Points (3, n) around an origin, in other axes.
 
     Measured: a matrix product of so few rows takes as long alone, and up to thirty times as long when another
     process has the second processor, for its threads wait for each other.
     """
-    turned = np.empty(rows.shape)
-    moved = [row - start for row, start in zip(rows, origin, strict=True)]
-    for axis, out in zip(axes, turned, strict=True):
+    turned = np.empty_like(rows)
+    moved = [row - start for row, start in zip(rows, origin, strict=True)] if any(origin) else rows
+    for axis, out in zip(axes.astype(rows.dtype), turned, strict=True):
         np.multiply(moved[0], axis[0], out=out)
         out += moved[1] * axis[1]
         out += moved[2] * axis[2]
@@ -90,8 +93,9 @@ def cut_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
     places, normals, near = polygons.places, polygons.normals, polygons.near
     corners, corner_normals = polygons.corners, polygons.corner_normals
     before = (places[2] < near)[corners]
-    whole = np.flatnonzero(~before.any(axis=0))
-    through = np.flatnonzero(before.any(axis=0) & ~before.all(axis=0))
+    cut_off = before[0] & before[1] & before[2] & before[3]
+    touched = before[0] | before[1] | before[2] | before[3]
+    whole, through = np.flatnonzero(~touched), np.flatnonzero(touched & ~cut_off)
     node_of_edge: dict[tuple[int, int], int] = {}
     new_places: list[Floats] = []
     new_normals: list[Floats] = []
@@ -133,15 +137,19 @@ def cut_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
     columns = np.concatenate([whole, np.array([column for _, _, column in new_rows], np.intp)])
     cut_corners = np.array([nodes for nodes, _, _ in new_rows], np.intp).reshape(-1, 4).T
     cut_normals = np.array([rows for _, rows, _ in new_rows], np.intp).reshape(-1, 4).T
-    corners = np.concatenate([corners[:, whole], cut_corners], axis=1)
-    corner_normals = np.concatenate([corner_normals[:, whole], cut_normals], axis=1)
     # Keep the order of the polygon table, which settles ties.
     order = np.argsort(columns, kind="stable")
     return dataclasses.replace(
         polygons,
         places=places,
         normals=normals,
-        corners=corners[:, order],
-        corner_normals=corner_normals[:, order],
+        corners=_joined(corners, whole, cut_corners, order),
+        corner_normals=_joined(corner_normals, whole, cut_normals, order),
         polygon_numbers=polygons.polygon_numbers[columns[order]],
     )
+
+
+def _joined(table: Numbers, whole: Numbers, cut: Numbers, order: Numbers) -> Numbers:
+    """The columns of the whole polygons and those of the cut ones, in an order."""
+    joined = np.concatenate([np.take(table, whole, axis=1), cut], axis=1)
+    return np.take(joined, order, axis=1)

@@ -44,6 +44,6 @@ class DepthScale:
 
 def depth_scale(projected: Projection) -> DepthScale:
     """The finest scale that holds the nearest node and the numbers of all spans."""
-    span_limit = 1 << (projected.crossings + 1).bit_length()
+    span_limit = 1 << (int(projected.first_crossing[-1]) + 1).bit_length()
     largest = float(projected.inverse_depth.max(initial=1e-300))
     return DepthScale(span_limit, 2.0 ** (KEY_BITS - span_limit.bit_length() + 1) / largest)

@@ -67,22 +67,22 @@ def edges(projected: Projection, top: Numbers, bottom: Numbers) -> Edges:
     )
 
 
-def edges_of_side(projected: Projection, side: Side, first: int, beyond: int) -> Edges:
-    """The edges of one side of the polygons from `first` to before `beyond`.
+def edges_of_side(projected: Projection, side: Side, columns: Numbers) -> Edges:
+    """The edges of one side of the polygons in some columns of the projection.
 
     They are in the order of the polygons, and those of one polygon from its top to its bottom, so that their
     lines follow each other without a gap. Edges that cross no line are left out.
     """
-    lines = projected.first_line[projected.corners[:, first:beyond]]
-    polygons, across = lines.shape[1], projected.corners.shape[1]
+    lines = projected.first_line[np.take(projected.corners, columns, axis=1)]
+    count, across = len(columns), projected.corners.shape[1]
     highest = least_of_four((lines << 2) + np.arange(4)[:, None]) & 3
     # Walk round each polygon from its highest corner, as it runs for one side and backward for the other.
     corner = (highest[:, None] + side * np.arange(4)) & 3
-    column = np.arange(polygons)[:, None]
-    line = np.take(lines, corner * polygons + column)
-    next_line = np.take(lines, ((corner + side) & 3) * polygons + column)
+    place = np.arange(count)[:, None]
+    line = np.take(lines, corner * count + place)
+    next_line = np.take(lines, ((corner + side) & 3) * count + place)
     falls = np.flatnonzero(line < next_line)
-    corner, column = corner.ravel()[falls], (falls >> 2) + first
+    corner, column = corner.ravel()[falls], columns[falls >> 2]
     return edges(projected, corner * across + column, ((corner + side) & 3) * across + column)
 
 

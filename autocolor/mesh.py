@@ -90,9 +90,9 @@ class Mesh:
         return np.ascontiguousarray(self.coordinates.T)
 
     @cached_property
-    def normal_rows(self) -> npt.NDArray[np.float64]:
+    def normal_rows(self) -> npt.NDArray[np.float32]:
         """The normals with one row an axis, (3, normals)."""
-        return np.ascontiguousarray(self.normals.vectors.T)
+        return np.ascontiguousarray(self.normals.vectors.T, np.float32)
 
     @cached_property
     def normal_columns(self) -> npt.NDArray[np.intp]:

@@ -8,12 +8,15 @@ direction matters, so the inverse depth never has to be divided out again.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
 from autocolor.edges import DOWN_SIDE, UP_SIDE, Side, other_end
 from autocolor.mesh import Mesh
-from autocolor.projection import Projection, lens
+from autocolor.projection import Projection, focal_length
+from autocolor.runs import runs
 from autocolor.seen import (
     MIRROR,
     MIRROR_POINT,
@@ -30,7 +33,7 @@ from autocolor.view import View
 PIXELS_AT_ONCE = 1 << 14
 
 # Rows of what is stepped along a segment: the point, the normal, the inverse depth.
-POINTS, NORMALS, DEPTH = slice(0, 3), slice(3, 6), 6
+POINTS, NORMALS, DEPTH, RAY = slice(0, 3), slice(3, 6), 6, slice(7, 10)
 # Rows of where an edge is cut: the place across, the inverse depth, the normal times the inverse depth.
 ACROSS, CUT_DEPTH, CUT_NORMAL = 0, 1, slice(2, 5)
 
@@ -39,10 +42,25 @@ Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
 
 
+class Segments(NamedTuple):
+    """Pixels beside each other that see the same span: the first, and the tops of the span's two edges."""
+
+    first_pixel: Numbers
+    down_top: Numbers
+    up_top: Numbers
+
+
+class Cut(NamedTuple):
+    """Where edges are cut, in pixels; with the inverse depth there, and the normal, (3, edges) float32."""
+
+    across: Floats
+    inverse_depth: Floats
+    normal: Singles
+
+
 def seen_of_spans(
     span_at_pixel: npt.NDArray[np.int64],
-    down_tops: npt.NDArray[np.int32],
-    up_tops: npt.NDArray[np.int32],
+    tops: npt.NDArray[np.int32],
     projected: Projection,
     mesh: Mesh,
     view: View,
@@ -52,7 +70,7 @@ def seen_of_spans(
     """What is seen, computed for the visible pixels only.
 
     `span_at_pixel` has the number of the span that is seen at each pixel, (lines * elements,), 0 for none.
-    `down_tops` and `up_tops` have, by those numbers, the tops of the two edges that bound each span.
+    `tops` has, by those numbers, the tops of the two edges that bound each span: (2, numbers).
     """
     # Find the segments: pixels beside each other that see the same span.
     head = np.ones(len(span_at_pixel), np.bool_)
@@ -63,40 +81,42 @@ def seen_of_spans(
     first_pixel, count = first_pixel[filled], count[filled]
 
     # Sort them by surface, so that each surface's D, S and N are numbers and not arrays.
-    column = down_tops[span_at_pixel[first_pixel]] % max(projected.corners.shape[1], 1)
+    down_top, up_top = np.take(tops, span_at_pixel[first_pixel], axis=1).astype(np.intp)
+    column = down_top % max(projected.corners.shape[1], 1)
     surface = np.array(surface_numbers, np.uint8)[mesh.part_numbers[projected.polygon_numbers[column]]]
     order = np.argsort(surface, kind="stable")
     first_pixel, count, column, surface = first_pixel[order], count[order], column[order], surface[order]
-    span, polygon = span_at_pixel[first_pixel], projected.polygon_numbers[column]
-    begin = np.cumsum(count) - count
 
     # Make ready what is linear along them.
     low, high = mesh.bounds
     middle = view.axes @ ((low + high) / 2 - np.array(view.eye)) / projected.unit
-    start, step = _along_segments(first_pixel, down_tops[span], up_tops[span], projected, view, middle)
+    segments = Segments(first_pixel, down_top[order], up_top[order])
+    start, step = _along_segments(segments, projected, view, middle)
     # Turn to the eye the normals of polygons that are seen from behind.
-    turned = projected.from_behind[column] & ~np.isin(surface, list(one_sided))
+    turned = np.flatnonzero(projected.from_behind[column] & ~np.isin(surface, list(one_sided)))
     start[NORMALS, turned] *= -1
     step[NORMALS, turned] *= -1
 
     # Step along them.
-    pixels = np.repeat(first_pixel - begin, count)
-    pixels += np.arange(len(pixels))
+    pixels = runs(first_pixel, count)
     rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
-    unit_rays = lens(projected.lines, projected.elements, view.field_of_view).unit_rays
+    ray_step = np.float32(1 / focal_length(projected.lines, view.field_of_view))
+    beyond = np.cumsum(count)
     counting = np.arange(PIXELS_AT_ONCE + projected.elements, dtype=np.float32)
     cut = 0
-    while cut < len(begin):
-        taken = slice(cut, int(np.searchsorted(begin, begin[cut] + PIXELS_AT_ONCE)))
-        cut = taken.stop
-        some, base = count[taken], begin[taken.start]
-        part = slice(int(base), int(begin[cut - 1] + count[cut - 1]))
+    while cut < len(beyond):
+        base = int(beyond[cut] - count[cut])
+        part = slice(cut, max(cut + 1, int(np.searchsorted(beyond, base + PIXELS_AT_ONCE))))
+        cut = part.stop
+        some = count[part]
+        begin = (beyond[part] - some - base).astype(np.float32)
+        along = counting[: int(beyond[cut - 1]) - base] - np.repeat(begin, some)
         _fill(
-            rows[:, part],
-            np.repeat(start[:, taken], some, axis=1),
-            np.repeat(step[:, taken], some, axis=1),
-            counting[: part.stop - part.start] - np.repeat((begin[taken] - base).astype(np.float32), some),
-            np.take(unit_rays, pixels[part], axis=1),
+            rows[:, base : base + len(along)],
+            np.repeat(start[:, part], some, axis=1),
+            np.repeat(step[:, part], some, axis=1),
+            along,
+            ray_step,
         )
 
     for table in (rows, pixels):
@@ -106,7 +126,7 @@ def seen_of_spans(
         projected.elements,
         pixels,
         surface_slices(np.bincount(surface, count, 1).astype(np.int64)),
-        polygon,
+        projected.polygon_numbers[column],
         count,
         rows,
         view,
@@ -115,8 +135,8 @@ def seen_of_spans(
     )
 
 
-def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray: Singles) -> None:
-    """Fill the rows of some pixels from what is linear along their segments, and the rays through them."""
+def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step: np.float32) -> None:
+    """Fill the rows of some pixels from what is linear along their segments."""
     # Place the point: it goes along the segment as `along` over the inverse depth does.
     inverse_depth = step[DEPTH] * along
     inverse_depth += start[DEPTH]
@@ -128,8 +148,14 @@ def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray: Sin
     normal = rows[NORMAL]
     np.add(start[NORMALS], step[NORMALS], out=normal)
     length = np.sqrt(_products(normal, normal))
-    np.maximum(length, np.float32(1e-30), out=length)
+    # A polygon without area has a normal of 0, and keeps it.
+    length += np.float32(1e-30)
     normal *= np.reciprocal(length, out=length)
+    # Make the ray a unit vector.
+    ray = start[RAY]
+    ray[0] += np.multiply(along, ray_step, out=along)
+    np.sqrt(_products(ray, ray), out=length)
+    ray *= np.reciprocal(length, out=length)
     # Mirror the ray to the eye: M = 2 (N.V) N - V, where V is the ray the other way round.
     facing = _products(normal, ray)
     facing *= np.float32(-2)
@@ -147,62 +173,58 @@ def _products(one: Singles, other: Singles, out: Singles | None = None) -> Singl
 
 
 def _along_segments(
-    first_pixel: Numbers,
-    down_top: npt.NDArray[np.int32],
-    up_top: npt.NDArray[np.int32],
-    projected: Projection,
-    view: View,
-    middle: Floats,
+    segments: Segments, projected: Projection, view: View, middle: Floats
 ) -> tuple[Singles, Singles]:
     """What is stepped along each segment: its value at the first pixel, and what each further pixel adds.
 
-    Both are (7, segments) float32: the point around the middle, which is stepped in proportion to the
-    inverse depth; the normal times the inverse depth, to a scale; and the inverse depth itself. The
-    differences are taken here in float64, so that a point is as exact from afar as from near.
+    The values are (10, segments) float32: the point around the middle, which is stepped in proportion to the
+    depth; the normal times the inverse depth, to a scale; the inverse depth; and the ray, whose step is
+    the same for all. The steps are (7, segments). The differences are taken here in float64, so that a point
+    is as exact from afar as from near.
     """
-    line, element = np.divmod(first_pixel, projected.elements)
-    down = _at_cuts(projected, down_top.astype(np.intp), DOWN_SIDE, line)
-    up = _at_cuts(projected, up_top.astype(np.intp), UP_SIDE, line)
-    # Both depth and normal are linear from the one cut to the other.
-    slope = (up - down) / (up[ACROSS] - down[ACROSS])
-    value = down + slope * (element + 0.5 - down[ACROSS])
-    start, step = np.empty((7, len(line)), np.float32), np.empty((7, len(line)), np.float32)
-    depth, depth_step = value[CUT_DEPTH], slope[CUT_DEPTH]
-    start[DEPTH], step[DEPTH] = depth, depth_step
-    # Bring the normals to about the size of 1, so that float32 holds them however far the object is.
-    size = np.abs(down[CUT_NORMAL]).sum(axis=0) + np.abs(up[CUT_NORMAL]).sum(axis=0)
-    size[size == 0] = 1
-    start[NORMALS], step[NORMALS] = value[CUT_NORMAL] / size, slope[CUT_NORMAL] / size
+    line, element = np.divmod(segments.first_pixel, projected.elements)
+    down = _cut(projected, segments.down_top, DOWN_SIDE, line)
+    up = _cut(projected, segments.up_top, UP_SIDE, line)
+    # The inverse depth is linear from the one cut to the other.
+    width, offset = up.across - down.across, element + 0.5 - down.across
+    depth_step = (up.inverse_depth - down.inverse_depth) / width
+    inverse_depth = down.inverse_depth + depth_step * offset
+    start, step = np.empty((10, len(line)), np.float32), np.empty((7, len(line)), np.float32)
+    start[DEPTH], step[DEPTH] = inverse_depth, depth_step
+    # So is the normal times the inverse depth, here to a scale of about 1, which float32 holds from afar too.
+    both = down.inverse_depth + up.inverse_depth
+    for cut in (down, up):
+        cut.normal[...] *= (cut.inverse_depth / both).astype(np.float32)
+    np.divide(up.normal - down.normal, width.astype(np.float32), out=step[NORMALS])
+    np.add(down.normal, step[NORMALS] * offset.astype(np.float32), out=start[NORMALS])
 
     # The point is the ray over the inverse depth; one pixel further the ray is `ray_step` more.
-    focal_length = lens(projected.lines, projected.elements, view.field_of_view).focal_length
-    ray = (
-        (element + 0.5 - projected.elements / 2) / focal_length,
-        (line + 0.5 - projected.lines / 2) / focal_length,
-        1.0,
-    )
-    for axis, ray_step in enumerate((1 / focal_length, 0.0, 0.0)):
-        place = ray[axis] / depth
+    focal = focal_length(projected.lines, view.field_of_view)
+    ray = ((element + 0.5 - projected.elements / 2) / focal, (line + 0.5 - projected.lines / 2) / focal, 1.0)
+    depth = 1 / inverse_depth
+    for axis, ray_step in enumerate((1 / focal, 0.0, 0.0)):
+        place = ray[axis] * depth
         start[axis] = place - middle[axis]
         step[axis] = ray_step - place * depth_step
+        start[RAY.start + axis] = ray[axis]
     return start, step
 
 
-def _at_cuts(projected: Projection, top: Numbers, side: Side, line: Numbers) -> Floats:
-    """Where each edge is cut by its line: (5, segments).
-
-    They are the place across, the inverse depth, and the normal times the inverse depth.
-    """
+def _cut(projected: Projection, top: Numbers, side: Side, line: Numbers) -> Cut:
+    """Where each edge is cut by its line."""
     bottom = other_end(projected, top, side)
     corners, normals = projected.corners.ravel(), projected.corner_normals.ravel()
     a, b = corners[top], corners[bottom]
-    way = (line + 0.5 - projected.down[a]) / (projected.down[b] - projected.down[a])
-    depth_a, depth_b = projected.inverse_depth[a], projected.inverse_depth[b]
-    cut = np.empty((5, len(line)))
-    across = projected.across[a]
-    cut[ACROSS] = across + way * (projected.across[b] - across)
-    cut[CUT_DEPTH] = depth_a + way * (depth_b - depth_a)
+    across, inverse_depth, height = projected.across[a], projected.inverse_depth[a], projected.down[a]
+    way = (line + 0.5 - height) / (projected.down[b] - height)
+    bottom_depth = projected.inverse_depth[b]
+    # Interpolate the normal right in perspective: weighted by the inverse depths.
+    weight = way * bottom_depth / (way * bottom_depth + (1 - way) * inverse_depth)
     # Measured: `take` along the second axis has a quarter of the time of an index there.
-    cut[CUT_NORMAL] = (1 - way) * depth_a * np.take(projected.normals, normals[top], axis=1)
-    cut[CUT_NORMAL] += way * depth_b * np.take(projected.normals, normals[bottom], axis=1)
-    return cut
+    normal = np.take(projected.normals, normals[top], axis=1)
+    normal += weight.astype(np.float32) * (np.take(projected.normals, normals[bottom], axis=1) - normal)
+    return Cut(
+        across + way * (projected.across[b] - across),
+        inverse_depth + way * (bottom_depth - inverse_depth),
+        normal,
+    )

@@ -77,7 +77,7 @@ def watkins(
     bucket = y_buckets(projected)
     active: list[Edge] = []
     segment_at_pixel = np.zeros(lines * elements, np.int64)
-    down_tops, up_tops = [0], [0]
+    tops = [(0, 0)]
 
     for line in range(lines):
         # Enter the edges that begin on this line, and drop those that ended above it.
@@ -86,15 +86,13 @@ def watkins(
         numbers: dict[int, int] = {}
         for segment, first, beyond in visible_segments(segments_of_line(active, scale, line, elements)):
             if segment.polygon not in numbers:
-                numbers[segment.polygon] = len(down_tops)
-                down_tops.append(segment.down_top)
-                up_tops.append(segment.up_top)
+                numbers[segment.polygon] = len(tops)
+                tops.append((segment.down_top, segment.up_top))
             segment_at_pixel[line * elements + first : line * elements + beyond] = numbers[segment.polygon]
 
     return seen_of_spans(
         segment_at_pixel,
-        np.array(down_tops, np.int32),
-        np.array(up_tops, np.int32),
+        np.array(tops, np.int32).T,
         projected,
         mesh,
         view,

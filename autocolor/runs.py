@@ -1,0 +1,31 @@
+"""Runs of whole numbers, one after another: the lines of an edge, the pixels of a span, its depths."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Numbers = npt.NDArray[np.int64]
+
+
+def runs(first: Numbers, count: Numbers, step: Numbers | None = None) -> Numbers:
+    """Run after run: `first`, `first` + `step` and so on, `count` numbers of each.
+
+    All are (runs,) int64, every count at least 1; the step is 1 where none is given. It is one running sum,
+    which in whole numbers is exact, even where it leaves 64 bits on the way.
+
+    >>> runs(np.array([5, 1]), np.array([3, 2])).tolist()
+    [5, 6, 7, 1, 2]
+    """
+    heads = np.cumsum(count) - count
+    total = int(heads[-1] + count[-1]) if len(count) else 0
+    # From the last number of a run to the first of the next the sum must make a jump.
+    jump = first.copy()
+    if step is None:
+        numbers = np.ones(total, np.int64)
+        jump[1:] -= first[:-1] + count[:-1] - 1
+    else:
+        numbers = np.repeat(step, count)
+        jump[1:] -= first[:-1] + (count[:-1] - 1) * step[:-1]
+    numbers[heads] = jump
+    return np.cumsum(numbers, out=numbers)

@@ -1,0 +1,23 @@
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.runs import runs
+
+whole = st.integers(-(2**63), 2**63 - 1)
+
+
+@given(st.lists(st.tuples(whole, st.integers(1, 9), whole)))
+def test_runs_follow_each_other_even_where_the_sum_leaves_64_bits(rows: list[tuple[int, int, int]]) -> None:
+    first, count, step = np.array(rows, np.int64).reshape(-1, 3).T
+    expected = [start + k * by for start, many, by in rows for k in range(many)]
+    wrapped = [(number + 2**63) % 2**64 - 2**63 for number in expected]
+    assert runs(first, count, step).tolist() == wrapped
+
+
+@given(st.lists(st.tuples(st.integers(-1000, 1000), st.integers(1, 9))))
+def test_without_a_step_each_number_is_one_more(rows: list[tuple[int, int]]) -> None:
+    first, count = np.array(rows, np.int64).reshape(-1, 2).T
+    assert runs(first, count).tolist() == [start + k for start, many in rows for k in range(many)]
