@@ -8,6 +8,7 @@ polygon runs, so that polygons which share an edge are cut at the very same plac
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -67,23 +68,31 @@ def edges(projected: Projection, top: Numbers, bottom: Numbers) -> Edges:
     )
 
 
-def edges_of_side(projected: Projection, side: Side, columns: Numbers) -> Edges:
-    """The edges of one side of the polygons in some columns of the projection.
+def edges_of_sides(projected: Projection, columns: Numbers) -> tuple[Edges, Edges]:
+    """The edges of the down side and of the up side of the polygons in some columns of the projection.
 
     They are in the order of the polygons, and those of one polygon from its top to its bottom, so that their
     lines follow each other without a gap. Edges that cross no line are left out.
     """
     lines = projected.first_line[np.take(projected.corners, columns, axis=1)]
     count, across = len(columns), projected.corners.shape[1]
+    # Walk round each polygon from its highest corner, as it runs.
     highest = least_of_four((lines << 2) + np.arange(4)[:, None]) & 3
-    # Walk round each polygon from its highest corner, as it runs for one side and backward for the other.
-    corner = (highest[:, None] + side * np.arange(4)) & 3
-    place = np.arange(count)[:, None]
-    line = np.take(lines, corner * count + place)
-    next_line = np.take(lines, ((corner + side) & 3) * count + place)
-    falls = np.flatnonzero(line < next_line)
-    corner, column = corner.ravel()[falls], columns[falls >> 2]
-    return edges(projected, corner * across + column, ((corner + side) & 3) * across + column)
+    walk = (highest[:, None] + np.arange(4)) & 3
+    walk *= count
+    walk += np.arange(count)[:, None]
+    line = np.take(lines, walk)
+
+    def side(way: Side, corners: list[int]) -> Edges:
+        falls = np.zeros((count, 4), np.bool_)
+        for step, (upper, lower) in enumerate(pairwise(corners)):
+            np.less(line[:, upper], line[:, lower], out=falls[:, step])
+        found = np.flatnonzero(falls)
+        polygon = found >> 2
+        top, column = (highest[polygon] + way * (found & 3)) & 3, columns[polygon]
+        return edges(projected, top * across + column, ((top + way) & 3) * across + column)
+
+    return side(DOWN_SIDE, [0, 1, 2, 3]), side(UP_SIDE, [0, 3, 2, 1])
 
 
 def other_end(projected: Projection, top: Numbers, side: Side) -> Numbers:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from autocolor.view import View
 
-PIXELS_AT_ONCE = 1 << 15
+PIXELS_AT_ONCE = 1 << 17
 """As many as the caches hold of the arrays that one step needs."""
 
 Singles = npt.NDArray[np.float32]

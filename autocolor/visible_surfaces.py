@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.depth import DepthScale, depth_scale
-from autocolor.edges import DOWN_SIDE, UP_SIDE, Edges, edges_of_side
+from autocolor.edges import Edges, edges_of_sides
 from autocolor.hidden import not_hidden
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, projection
@@ -111,7 +111,7 @@ def spans_of_polygons(projected: Projection, scale: DepthScale, columns: Numbers
     Those that hold no pixel's center are left out.
     """
     # Cut the edges; the rows of both sides are the same polygons and lines.
-    down_edges, up_edges = (edges_of_side(projected, side, columns) for side in (DOWN_SIDE, UP_SIDE))
+    down_edges, up_edges = edges_of_sides(projected, columns)
     down_across, down_depth, down_top = _cuts(down_edges)
     up_across, up_depth, up_top = _cuts(up_edges)
     line = runs(down_edges.first_line, down_edges.count)

@@ -37,7 +37,7 @@ STEPS = (
     Step("autocolor.camera_space", "camera_space", "projection"),
     Step("autocolor.visible_surfaces", "keep_front_most", "visible_surfaces"),
     Step("autocolor.visible_surfaces", "spans_of_polygons", "keep_front_most"),
-    Step("autocolor.visible_surfaces", "edges_of_side", "spans_of_polygons"),
+    Step("autocolor.visible_surfaces", "edges_of_sides", "spans_of_polygons"),
     Step("autocolor.visible_surfaces", "not_hidden", "visible_surfaces"),
     Step("autocolor.segments", "seen_of_spans", "visible_surfaces"),
     Step("autocolor.segments", "_along_segments", "seen_of_spans"),

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View
-from autocolor.edges import DOWN_SIDE, UP_SIDE, Edges, Side, edges_of_side, other_end
+from autocolor.edges import DOWN_SIDE, UP_SIDE, Edges, Side, edges_of_sides, other_end
 from autocolor.projection import Projection, projection
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
 
@@ -14,7 +14,7 @@ SIDES: tuple[Side, ...] = (DOWN_SIDE, UP_SIDE)
 
 
 def all_edges(projected: Projection, side: Side) -> Edges:
-    return edges_of_side(projected, side, np.arange(projected.corners.shape[1]))
+    return edges_of_sides(projected, np.arange(projected.corners.shape[1]))[SIDES.index(side)]
 
 
 @given(meshes(), views() | outside_views(), rasters)
