@@ -11,7 +11,7 @@ import difflib
 import math
 import re
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from autocolor.errors import InputError
 
 Vector = tuple[float, float, float]
 Color = tuple[int, int, int]
+Row = TypeVar("Row")
 
 LARGEST_COORDINATE = 1e30
 """Assumed: far beyond any object, and its square is still far from the end of the float64 range."""
@@ -57,20 +58,30 @@ def known_fields(
     return dict(changes)
 
 
+def with_checked(row: Row, **values: object) -> Row:
+    """A copy of a frozen row with some fields changed to values that were checked; nothing is checked again.
+
+    What the row computed of itself and keeps goes along: no such thing may depend on these fields.
+    """
+    copy = object.__new__(type(row))
+    vars(copy).update(vars(row), **values)
+    return copy
+
+
 def finite(
     problems: list[str], what: str, value: object, *, at_least: float = -math.inf, at_most: float = math.inf
 ) -> float:
     """The value as a float, when it is a finite number within the bounds."""
-    rule = "must be a finite number"
-    if at_least > -math.inf and at_most < math.inf:
-        rule = f"must be a number from {at_least:g} to {at_most:g}"
-    elif at_least > -math.inf:
-        rule = f"must be a finite number of at least {at_least:g}"
     try:
         number = float(value) if not isinstance(value, (bool, str, bytes)) else math.nan  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not (math.isfinite(number) and at_least <= number <= at_most):
+        rule = "must be a finite number"
+        if at_least > -math.inf and at_most < math.inf:
+            rule = f"must be a number from {at_least:g} to {at_most:g}"
+        elif at_least > -math.inf:
+            rule = f"must be a finite number of at least {at_least:g}"
         problems.append(f"{what} {rule}, not {value!r}")
         return max(0.0, at_least)
     return number

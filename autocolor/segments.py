@@ -98,26 +98,18 @@ def seen_of_spans(
     step[NORMALS, turned] *= -1
 
     # Step along them.
-    pixels = runs(first_pixel, count)
+    pixels, along = runs(first_pixel, count), runs(np.zeros_like(count), count).astype(np.float32)
     rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
     ray_step = np.float32(1 / focal_length(projected.lines, view.field_of_view))
     beyond = np.cumsum(count)
-    counting = np.arange(PIXELS_AT_ONCE + projected.elements, dtype=np.float32)
     cut = 0
     while cut < len(beyond):
         base = int(beyond[cut] - count[cut])
         part = slice(cut, max(cut + 1, int(np.searchsorted(beyond, base + PIXELS_AT_ONCE))))
         cut = part.stop
-        some = count[part]
-        begin = (beyond[part] - some - base).astype(np.float32)
-        along = counting[: int(beyond[cut - 1]) - base] - np.repeat(begin, some)
-        _fill(
-            rows[:, base : base + len(along)],
-            np.repeat(start[:, part], some, axis=1),
-            np.repeat(step[:, part], some, axis=1),
-            along,
-            ray_step,
-        )
+        some = slice(base, int(beyond[cut - 1]))
+        start_here, step_here = (np.repeat(table[:, part], count[part], axis=1) for table in (start, step))
+        _fill(rows[:, some], start_here, step_here, along[some], ray_step)
 
     for table in (rows, pixels):
         table.flags.writeable = False
@@ -153,7 +145,7 @@ def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step
     normal *= np.reciprocal(length, out=length)
     # Make the ray a unit vector.
     ray = start[RAY]
-    ray[0] += np.multiply(along, ray_step, out=along)
+    ray[0] += along * ray_step
     np.sqrt(_products(ray, ray), out=length)
     ray *= np.reciprocal(length, out=length)
     # Mirror the ray to the eye: M = 2 (N.V) N - V, where V is the ray the other way round.

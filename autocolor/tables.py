@@ -50,11 +50,11 @@ class Reflectance:
     exponent: float = 20.0
 
     def __post_init__(self) -> None:
-        problems: list[str] = []
-        for name in ("diffuse", "specular", "exponent"):
-            object.__setattr__(self, name, finite(problems, name, getattr(self, name), at_least=0.0))
-        if problems:
-            raise InputError(problems)
+        vars(self).update(_checked(REFLECTANCE_CHECKS, vars(self)))
+
+    def replace(self, **changes: Any) -> Reflectance:
+        """The properties with some of them changed."""
+        return with_checked(self, **_checked(REFLECTANCE_CHECKS, known_fields(Reflectance, changes, "reflectance")))
 
 
 @dataclass(frozen=True)

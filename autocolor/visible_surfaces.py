@@ -74,7 +74,8 @@ def keep_front_most(
     """
     for first in range(0, len(columns), POLYGONS_AT_ONCE):
         spans = spans_of_polygons(projected, scale, columns[first : first + POLYGONS_AT_ONCE])
-        tops[:, spans.number] = spans.tops
+        tops[0][spans.number] = spans.down_top
+        tops[1][spans.number] = spans.up_top
         keys = spans.start + spans.number
         beyond = np.cumsum(spans.count)
         cut = 0
@@ -93,8 +94,8 @@ class Spans:
 
     A span's `number` is that of its crossing of polygon and line, counted from 1. Its pixels are
     `first_pixel`, flat and line by line, and those after it, `count` in all. The depth key is `start` + k
-    `step` at pixel k of the span, int64. `tops`, (2, spans), are the tops of the edges that bound it, on the
-    side where the polygon runs down the raster and on the other.
+    `step` at pixel k of the span, int64. `down_top` and `up_top` are the tops of the edges that bound it, on
+    the side where the polygon runs down the raster and on the other.
     """
 
     number: Numbers
@@ -102,7 +103,8 @@ class Spans:
     count: Numbers
     start: npt.NDArray[np.int64]
     step: npt.NDArray[np.int64]
-    tops: npt.NDArray[np.int32]
+    down_top: npt.NDArray[np.int32]
+    up_top: npt.NDArray[np.int32]
 
 
 def spans_of_polygons(projected: Projection, scale: DepthScale, columns: Numbers) -> Spans:
@@ -133,7 +135,8 @@ def spans_of_polygons(projected: Projection, scale: DepthScale, columns: Numbers
         end[kept] - begin,
         scale.keys(start),
         scale.keys(step),
-        np.stack([down_top[kept], up_top[kept]]),
+        down_top[kept],
+        up_top[kept],
     )
 
 
