@@ -11,6 +11,7 @@ import difflib
 import math
 import re
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from typing import Any, TypeVar
 
 import numpy as np
@@ -50,12 +51,18 @@ def known_fields(
 
     `suggested` are the names to choose the nearest right one from, where they are more than the fields.
     """
-    fields = [field.name for field in dataclasses.fields(cls)]
-    names = list(suggested) or fields
+    fields = field_names(cls)
     unknown = [name for name in changes if name not in fields]
     if unknown:
+        names = list(suggested) or fields
         raise InputError([f"{place}: there is no {name!r}{nearest(name, names)}" for name in unknown])
     return dict(changes)
+
+
+@lru_cache
+def field_names(cls: type) -> tuple[str, ...]:
+    """The names of a dataclass's fields."""
+    return tuple(field.name for field in dataclasses.fields(cls))
 
 
 def with_checked(row: Row, **values: object) -> Row:

@@ -14,7 +14,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import Any, TypeVar
 
-from autocolor.checks import Color, color, finite, known_fields, nearest
+from autocolor.checks import Color, color, field_names, finite, known_fields, nearest, with_checked
 from autocolor.created import created_lights, created_parts, created_surface, created_view
 from autocolor.errors import InputError, UsageError
 from autocolor.lights import Light
@@ -116,58 +116,57 @@ class Scene:
 
     def equals(self, other: Scene) -> bool:
         """Whether every field is equal; meshes are compared by identity."""
-        return all(
-            getattr(self, name) is getattr(other, name)
-            or (name != "mesh" and getattr(self, name) == getattr(other, name))
-            for name in FIELDS
-        )
+        return not self.differing_fields(other)
+
+    def differing_fields(self, other: Scene) -> list[str]:
+        """The names of the fields that are not equal; meshes are compared by identity."""
+        mine, others = vars(self), vars(other)
+        return [
+            name
+            for name in field_names(Scene)
+            if mine[name] is not others[name] and (name == "mesh" or mine[name] != others[name])
+        ]
 
     def light(self, name: str) -> Light:
         """The light of that name; UsageError with the nearest right name when there is none."""
-        return _row("light", self.lights, name)
+        return self.lights[_place("light", self.lights, name)]
 
     def surface(self, name: str) -> Surface:
         """The surface of that name; UsageError with the nearest right name when there is none."""
-        return _row("surface", self.surfaces, name)
+        return self.surfaces[_place("surface", self.surfaces, name)]
 
     def part(self, name: str) -> Part:
         """The part of that name; UsageError with the nearest right name when there is none."""
-        return _row("part", self.parts, name)
+        return self.parts[_place("part", self.parts, name)]
 
     def with_light(self, name: str, /, **changes: Any) -> Scene:
         """The scene with some fields of one light changed."""
-        return self._with_row("lights", self.light(name), changes)
+        return self._with_row("lights", _place("light", self.lights, name), changes)
 
     def with_surface(self, name: str, /, **changes: Any) -> Scene:
         """The scene with some fields of one surface changed, its reflectance and paint among them."""
-        return self._with_row("surfaces", self.surface(name), changes)
+        return self._with_row("surfaces", _place("surface", self.surfaces, name), changes)
 
     def with_part(self, name: str, /, **changes: Any) -> Scene:
         """The scene with some fields of one part changed."""
-        return self._with_row("parts", self.part(name), changes)
+        return self._with_row("parts", _place("part", self.parts, name), changes)
 
     def with_view(self, **changes: Any) -> Scene:
         """The scene with some fields of the view changed."""
-        return self._with("view", self.view.replace(**changes))
+        return with_checked(self, view=self.view.replace(**changes))
 
     def only_lights(self, *names: str) -> Scene:
         """The scene with the named lights on and all others off (Paper: Figure 8)."""
         wanted = [self.light(name).name for name in names]
         return self.replace(lights=tuple(light.replace(on=light.name in wanted) for light in self.lights))
 
-    def _with_row(self, table: str, row: Row, changes: dict[str, Any]) -> Scene:
-        changed = row.replace(**changes)
-        rows = tuple(changed if other is row else other for other in getattr(self, table))
+    def _with_row(self, table: str, place: int, changes: dict[str, Any]) -> Scene:
+        rows = getattr(self, table)
+        rows = (*rows[:place], rows[place].replace(**changes), *rows[place + 1 :])
         # Only names lead from table to table: without a new one there is nothing to check again.
-        return (
-            self.replace(**{table: rows}) if {"name", "surface"} & set(changes) else self._with(table, rows)
-        )
-
-    def _with(self, name: str, value: object) -> Scene:
-        """The scene with a field changed to a value that was checked when it was made."""
-        scene = object.__new__(Scene)
-        scene.__dict__.update(self.__dict__, **{name: value})
-        return scene
+        if "name" in changes or "surface" in changes:
+            return self.replace(**{table: rows})
+        return with_checked(self, **{table: rows})
 
     @cached_property
     def surface_number_of_part(self) -> tuple[int, ...]:
@@ -179,9 +178,6 @@ class Scene:
         return (
             f"Scene({self.name!r}: {self.mesh!r}, surfaces {len(self.surfaces)}, lights {len(self.lights)})"
         )  # fmt: skip
-
-
-FIELDS = tuple(field.name for field in dataclasses.fields(Scene))
 
 
 def scene_of(
@@ -228,10 +224,11 @@ def scene_of(
     )
 
 
-def _row(kind: str, rows: Sequence[Row], name: str) -> Row:
-    for row in rows:
+def _place(kind: str, rows: Sequence[Row], name: str) -> int:
+    """Where the row of that name is."""
+    for place, row in enumerate(rows):
         if row.name == name:
-            return row
+            return place
     raise UsageError(f"there is no {kind} {name!r}{nearest(str(name), [row.name for row in rows])}")
 
 

@@ -13,7 +13,8 @@ memories. Each edit makes a new scene; comparing it with the one before tells wh
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,13 +28,11 @@ from autocolor.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, Le
 from autocolor.picture import Picture
 from autocolor.rendering import rendering
 from autocolor.scene import Scene
-from autocolor.tables import Paint
+from autocolor.tables import PAINT_CHECKS, Surface
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
 
 if TYPE_CHECKING:
     from os import PathLike
-
-PAINT_FIELDS = tuple(entry.name for entry in fields(Paint))
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +43,22 @@ class Shown:
     picture: Picture
     ranges: Mapping[str, LevelRange]
     words: npt.NDArray[np.uint16]
-    entries: npt.NDArray[np.uint8]
+
+    @cached_property
+    def entries(self) -> npt.NDArray[np.uint8]:
+        """The whole lookup table, (1024, 3) uint8, read-only."""
+        table = np.zeros((WORDS, 3), np.uint8)
+        table[BACKGROUND] = self.scene.background
+        table[SCREENS.first :] = SCREEN_COLORS
+        for name, (first, levels) in self.ranges.items():
+            table[first : first + levels] = self.entries_of(self.scene.surface(name))
+        table.flags.writeable = False
+        return table
+
+    def entries_of(self, surface: Surface) -> npt.NDArray[np.uint8]:
+        """The entries of the range of a surface, (levels, 3) uint8, read-only."""
+        floor = _floor(self.scene, self.picture, surface.name) if self.scene.contrast == "floor" else 0.0
+        return entries_of(surface.paint, self.ranges[surface.name].levels, floor)
 
 
 def shown(scene: Scene, picture: Picture, before: Shown | None = None) -> Shown:
@@ -61,7 +75,7 @@ def shown(scene: Scene, picture: Picture, before: Shown | None = None) -> Shown:
         words = before.words
     else:
         words = words_of(picture, ranges, scene.scaling, scene.mapping)
-    return Shown(scene, picture, ranges, words, table_of(scene, picture, ranges))
+    return Shown(scene, picture, ranges, words)
 
 
 def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
@@ -86,29 +100,29 @@ def configuration_of(display: HostPort) -> Configuration:
     return configuration
 
 
+def repainted(before: Scene, now: Scene) -> list[Surface] | None:
+    """The surfaces in another paint, where nothing else differs; None where something does."""
+    if now.differing_fields(before) != ["surfaces"] or len(before.surfaces) != len(now.surfaces):
+        return None
+    pairs = [pair for pair in zip(before.surfaces, now.surfaces, strict=True) if pair[0] is not pair[1]]
+    return [new for _, new in pairs] if all(new.is_but_for_paint(old) for old, new in pairs) else None
+
+
 def _send(before: Shown | None, now: Shown, display: HostPort) -> None:
     """Send the entries and the words that differ."""
     components = WORDS * 3
     changed = np.flatnonzero(before.entries != now.entries) if before is not None else np.arange(components)
     if len(changed):
         first, last = int(changed[0]) // 3, int(changed[-1]) // 3
-        short = configuration_of(display).entry_format is EntryFormat.WORD_12
-        load = instructions.load_short_entries if short else instructions.load_entries
-        display.send(load(first, now.entries[first : last + 1]))
+        _send_entries(first, now.entries[first : last + 1], display)
     if before is None or before.words is not now.words:
         display.send(instructions.write_image(now.words))
 
 
-def table_of(scene: Scene, picture: Picture, ranges: Mapping[str, LevelRange]) -> npt.NDArray[np.uint8]:
-    """The whole lookup table of a scene, (1024, 3) uint8, read-only."""
-    table = np.zeros((WORDS, 3), np.uint8)
-    table[BACKGROUND] = scene.background
-    table[SCREENS.first :] = SCREEN_COLORS
-    for name, (first, levels) in ranges.items():
-        floor = _floor(scene, picture, name) if scene.contrast == "floor" else 0.0
-        table[first : first + levels] = entries_of(scene.surface(name).paint, levels, floor)
-    table.flags.writeable = False
-    return table
+def _send_entries(first: int, entries: npt.NDArray[np.uint8], display: HostPort) -> None:
+    short = configuration_of(display).entry_format is EntryFormat.WORD_12
+    load = instructions.load_short_entries if short else instructions.load_entries
+    display.send(load(first, entries))
 
 
 def _floor(scene: Scene, picture: Picture, name: str) -> float:
@@ -166,10 +180,10 @@ class Studio:
         `changes` are fields of its Paint: object_color, light_color ("#rrggbb" or three numbers), blend,
         light_percentage.
         """
-        unknown = [name for name in changes if name not in PAINT_FIELDS]
-        if unknown:
-            guess = nearest(unknown[0], PAINT_FIELDS)
-            raise UsageError(f"recolor takes {', '.join(PAINT_FIELDS)}, not {unknown[0]!r}{guess}")
+        for name in changes:
+            if name not in PAINT_CHECKS:
+                guess = nearest(name, PAINT_CHECKS)
+                raise UsageError(f"recolor takes {', '.join(PAINT_CHECKS)}, not {name!r}{guess}")
         self.edit(self.scene.with_surface(surface, **changes))
 
     def surface(self, name: str, /, **changes: Any) -> None:
@@ -190,9 +204,8 @@ class Studio:
         A drag is many edits and one step. A scene that equals the current one is no step.
         """
         before = self.scene
-        if scene.equals(before):
+        if not self._show(scene):
             return
-        self._show(scene)
         if not (same_step and self._done):
             self._done.append(before)
         self._undone.clear()
@@ -235,13 +248,26 @@ class Studio:
         target.append(before)
         return True
 
-    def _show(self, scene: Scene) -> None:
-        """Compute what changed and send it; nothing is kept of a scene that is refused."""
-        picture = self.picture
-        rendered = rendering(scene, picture.lines, picture.elements, self._rendering)
-        now = shown(scene, rendered.picture, self._shown)
-        _send(self._shown, now, self._display)
-        self._rendering, self._shown = rendered, now
+    def _show(self, scene: Scene) -> bool:
+        """Compute what changed and send it, if anything did; nothing is kept of a scene that is refused."""
+        before = self._shown
+        surfaces = repainted(before.scene, scene)
+        if surfaces is not None:
+            # Another color is no other intensity: the picture and its words stay.
+            now = Shown(scene, before.picture, before.ranges, before.words)
+            for surface in surfaces:
+                if surface.name in now.ranges:
+                    _send_entries(now.ranges[surface.name].first, now.entries_of(surface), self._display)
+        elif scene.equals(before.scene):
+            return False
+        else:
+            picture = before.picture
+            rendered = rendering(scene, picture.lines, picture.elements, self._rendering)
+            now = shown(scene, rendered.picture, before)
+            _send(before, now, self._display)
+            self._rendering = rendered
+        self._shown = now
+        return True
 
     def _repr_png_(self) -> bytes:
         from ramtek_emu.png import png_bytes

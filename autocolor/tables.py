@@ -7,12 +7,24 @@ reflectance properties. Everything here is checked when it is made and never cha
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from autocolor.checks import Color, color, finite, kind, known_fields, switch, text
+from autocolor.checks import (
+    Color,
+    color,
+    field_names,
+    finite,
+    kind,
+    known_fields,
+    switch,
+    text,
+    with_checked,
+)
 from autocolor.errors import InputError
 
 MOST_SURFACES = 255
@@ -54,7 +66,9 @@ class Reflectance:
 
     def replace(self, **changes: Any) -> Reflectance:
         """The properties with some of them changed."""
-        return with_checked(self, **_checked(REFLECTANCE_CHECKS, known_fields(Reflectance, changes, "reflectance")))
+        return with_checked(
+            self, **_checked(REFLECTANCE_CHECKS, known_fields(Reflectance, changes, "reflectance"))
+        )
 
 
 @dataclass(frozen=True)
@@ -72,14 +86,34 @@ class Paint:
     light_percentage: float = 100.0
 
     def __post_init__(self) -> None:
-        problems: list[str] = []
-        for name in ("object_color", "light_color"):
-            object.__setattr__(self, name, color(problems, name, getattr(self, name)))
-        object.__setattr__(self, "blend", finite(problems, "blend", self.blend, at_least=0.0, at_most=1.0))
-        percentage = finite(problems, "light_percentage", self.light_percentage, at_least=0.0, at_most=100.0)
-        object.__setattr__(self, "light_percentage", percentage)
-        if problems:
-            raise InputError(problems)
+        vars(self).update(_checked(PAINT_CHECKS, vars(self)))
+
+    def replace(self, **changes: Any) -> Paint:
+        """The paint with some fields changed."""
+        return with_checked(self, **_checked(PAINT_CHECKS, known_fields(Paint, changes, "paint")))
+
+
+Check = Callable[[list[str], str, object], object]
+REFLECTANCE_CHECKS: Mapping[str, Check] = dict.fromkeys(
+    ("diffuse", "specular", "exponent"), partial(finite, at_least=0.0)
+)
+PAINT_CHECKS: Mapping[str, Check] = {
+    "object_color": color,
+    "light_color": color,
+    "blend": partial(finite, at_least=0.0, at_most=1.0),
+    "light_percentage": partial(finite, at_least=0.0, at_most=100.0),
+}
+TABLE_OF_FIELD = dict.fromkeys(REFLECTANCE_CHECKS, "reflectance") | dict.fromkeys(PAINT_CHECKS, "paint")
+"""The fields that a surface has in its reflectance and in its paint."""
+
+
+def _checked(checks: Mapping[str, Check], values: Mapping[str, object]) -> dict[str, object]:
+    """The values of some fields as they are held; InputError names every one that breaks a rule."""
+    problems: list[str] = []
+    checked = {name: checks[name](problems, name, value) for name, value in values.items()}
+    if problems:
+        raise InputError(problems)
+    return checked
 
 
 @dataclass(frozen=True)
@@ -114,23 +148,21 @@ class Surface:
 
     def replace(self, **changes: Any) -> Surface:
         """The surface with some fields changed, those of its reflectance and of its paint among them."""
-        place = f"surface {self.name!r}"
-        inner = {
-            name: {
-                key: changes.pop(key) for key in list(changes) if key in _fields(type(getattr(self, name)))
-            }
-            for name in ("reflectance", "paint")
-        }
-        names = [*_fields(Surface), *_fields(Reflectance), *_fields(Paint)]
+        own: dict[str, object] = {}
+        inner: dict[str, dict[str, object]] = {}
+        for name, value in changes.items():
+            table = TABLE_OF_FIELD.get(name)
+            (own if table is None else inner.setdefault(table, {}))[name] = value
+        surface = self
+        if own:
+            names = [*field_names(Surface), *TABLE_OF_FIELD]
+            surface = dataclasses.replace(self, **known_fields(Surface, own, f"surface {self.name!r}", names))
         try:
-            for name, fields in inner.items():
-                if fields and isinstance(changes.get(name, getattr(self, name)), type(getattr(self, name))):
-                    changes[name] = dataclasses.replace(changes.get(name, getattr(self, name)), **fields)
+            tables = {table: getattr(surface, table).replace(**values) for table, values in inner.items()}
         except InputError as error:
-            raise InputError([f"{place}: {problem}" for problem in error.problems]) from None
-        known_fields(Surface, changes, place, names)
-        return dataclasses.replace(self, **changes)
+            raise InputError([f"surface {self.name!r}: {problem}" for problem in error.problems]) from None
+        return with_checked(surface, **tables)
 
-
-def _fields(cls: type) -> list[str]:
-    return [entry.name for entry in dataclasses.fields(cls)]
+    def is_but_for_paint(self, other: Surface) -> bool:
+        """Whether the two surfaces differ in their paint at most."""
+        return with_checked(self, paint=other.paint) == other
