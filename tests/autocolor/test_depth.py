@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Mesh, View
+from autocolor.depth import DepthScale, depth_scale
+from autocolor.projection import projection
+from tests.autocolor.strategies import meshes, outside_views, rasters, views
+
+depths = st.floats(1e-9, 1.0)
+
+
+@given(meshes(), views() | outside_views(), rasters)
+def test_the_nearest_node_and_the_last_span_fit_in_a_key(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    projected = projection(mesh, view, *raster)
+    scale = depth_scale(projected)
+    largest = int(scale.keys(projected.inverse_depth).max(initial=0)) + scale.span_limit - 1
+    assert 0 <= largest < 2**63
+    assert projected.first_crossing[-1] < scale.span_limit
+
+
+@given(st.integers(1, 24), depths, depths)
+def test_the_nearer_has_the_larger_key_whatever_the_numbers_of_the_spans_are(
+    bits: int, one: float, other: float
+) -> None:
+    scale = DepthScale(1 << bits, 2.0 ** (62 - bits))
+    near, far = (int(key) for key in scale.keys(np.array([max(one, other), min(one, other)])))
+    assert near >= far
+    assert (near > far) == (near > far + scale.span_limit - 1)
+    assert near % scale.span_limit == 0
+
+
+@given(st.lists(st.floats(-1, 1)))
+def test_one_key_is_the_same_as_many(inverse_depths: list[float]) -> None:
+    scale = DepthScale(1 << 16, 2.0**46)
+    keys = scale.keys(np.array(inverse_depths, np.float64)).tolist()
+    assert keys == [scale.key(each) for each in inverse_depths]
+
+
+def test_a_step_beyond_all_depths_is_still_a_whole_number() -> None:
+    scale = DepthScale(1 << 16, 2.0**46)
+    assert scale.keys(np.array([1e30, -1e30])).tolist() == [2**62, -(2**62)]
