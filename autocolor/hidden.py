@@ -23,7 +23,7 @@ Numbers = npt.NDArray[np.intp]
 
 
 def not_hidden(front: Keys, projected: Projection, scale: DepthScale, columns: Numbers) -> Numbers:
-    """Those of some polygons that may be seen before what is kept in `front`, the depth keys of the pixels."""
+    """Those of some polygons that may be seen before what `front` keeps, the depth keys of the pixels."""
     if not len(columns):
         return columns
     # Find the corners of a box around each polygon.

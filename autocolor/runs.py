@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import numpy.typing as npt
 
@@ -29,3 +31,18 @@ def runs(first: Numbers, count: Numbers, step: Numbers | None = None) -> Numbers
         jump[1:] -= first[:-1] + (count[:-1] - 1) * step[:-1]
     numbers[heads] = jump
     return np.cumsum(numbers, out=numbers)
+
+
+def batches(count: Numbers, most: int) -> Iterator[tuple[slice, slice]]:
+    """Runs in batches of about `most` numbers: which runs, and which of all their numbers.
+
+    >>> list(batches(np.array([3, 2, 4]), 5))
+    [(slice(0, 2, None), slice(0, 5, None)), (slice(2, 3, None), slice(5, 9, None))]
+    """
+    beyond = np.cumsum(count)
+    first, base = 0, 0
+    while first < len(beyond):
+        last = max(first + 1, int(np.searchsorted(beyond, base + most, side="right")))
+        end = int(beyond[last - 1])
+        yield slice(first, last), slice(base, end)
+        first, base = last, end

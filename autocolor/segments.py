@@ -1,4 +1,4 @@
-"""The visible segments of the lines, and from them what is seen at each pixel.
+"""The visible segments of the lines, and what is linear along them.
 
 Paper: "The Lighting Model": the direction of the normal is computed from the node normals by bilinear
 interpolation, along the edges and then along the span. Departs: on the screens of 1983 that was linear in
@@ -8,6 +8,7 @@ direction matters, so the inverse depth never has to be divided out again.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -16,36 +17,30 @@ import numpy.typing as npt
 from autocolor.edges import DOWN_SIDE, UP_SIDE, Side, other_end
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, focal_length
-from autocolor.runs import runs
-from autocolor.seen import (
-    MIRROR,
-    MIRROR_POINT,
-    NORMAL,
-    NORMAL_POINT,
-    POINT,
-    POINT_SQUARED,
-    ROW_COUNT,
-    Seen,
-    surface_slices,
-)
 from autocolor.view import View
 
-PIXELS_AT_ONCE = 1 << 14
-
-# Rows of what is stepped along a segment: the point, the normal, the inverse depth.
+# Rows of what is stepped along a segment: the point, the normal, the inverse depth, the ray.
 POINTS, NORMALS, DEPTH, RAY = slice(0, 3), slice(3, 6), 6, slice(7, 10)
-# Rows of where an edge is cut: the place across, the inverse depth, the normal times the inverse depth.
-ACROSS, CUT_DEPTH, CUT_NORMAL = 0, 1, slice(2, 5)
 
 Singles = npt.NDArray[np.float32]
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
 
 
-class Segments(NamedTuple):
-    """Pixels beside each other that see the same span: the first, and the tops of the span's two edges."""
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Pixels beside each other that see the same polygon, sorted by surface and within one by place.
+
+    The pixels of a segment are `first_pixel`, flat in the raster, and those after it, `count` in all.
+    `polygon` are rows of the polygon table, `surface` numbers. `down_top` and `up_top` are the tops of the
+    edges between which the polygon is seen, `column` its column in the projection.
+    """
 
     first_pixel: Numbers
+    count: Numbers
+    column: Numbers
+    polygon: Numbers
+    surface: npt.NDArray[np.uint8]
     down_top: Numbers
     up_top: Numbers
 
@@ -58,113 +53,43 @@ class Cut(NamedTuple):
     normal: Singles
 
 
-def seen_of_spans(
+def visible_segments(
     span_at_pixel: npt.NDArray[np.int64],
     tops: npt.NDArray[np.int32],
     projected: Projection,
     mesh: Mesh,
-    view: View,
     surface_numbers: tuple[int, ...],
-    one_sided: frozenset[int],
-) -> Seen:
-    """What is seen, computed for the visible pixels only.
+) -> Segments:
+    """The segments that are seen.
 
     `span_at_pixel` has the number of the span that is seen at each pixel, (lines * elements,), 0 for none.
     `tops` has, by those numbers, the tops of the two edges that bound each span: (2, numbers).
     """
-    # Find the segments: pixels beside each other that see the same span.
     head = np.ones(len(span_at_pixel), np.bool_)
     np.not_equal(span_at_pixel[1:], span_at_pixel[:-1], out=head[1:])
     first_pixel = np.flatnonzero(head)
     count = np.diff(first_pixel, append=len(span_at_pixel))
     filled = np.flatnonzero(span_at_pixel[first_pixel])
     first_pixel, count = first_pixel[filled], count[filled]
+    down_top, up_top = np.take(tops, span_at_pixel[first_pixel], axis=1).astype(np.intp)
 
     # Sort them by surface, so that each surface's D, S and N are numbers and not arrays.
-    down_top, up_top = np.take(tops, span_at_pixel[first_pixel], axis=1).astype(np.intp)
     column = down_top % max(projected.corners.shape[1], 1)
-    surface = np.array(surface_numbers, np.uint8)[mesh.part_numbers[projected.polygon_numbers[column]]]
+    polygon = projected.polygon_numbers[column]
+    surface = np.array(surface_numbers, np.uint8)[mesh.part_numbers[polygon]]
     order = np.argsort(surface, kind="stable")
-    first_pixel, count, column, surface = first_pixel[order], count[order], column[order], surface[order]
-
-    # Make ready what is linear along them.
-    low, high = mesh.bounds
-    middle = view.axes @ ((low + high) / 2 - np.array(view.eye)) / projected.unit
-    segments = Segments(first_pixel, down_top[order], up_top[order])
-    start, step = _along_segments(segments, projected, view, middle)
-    # Turn to the eye the normals of polygons that are seen from behind.
-    turned = np.flatnonzero(projected.from_behind[column] & ~np.isin(surface, list(one_sided)))
-    start[NORMALS, turned] *= -1
-    step[NORMALS, turned] *= -1
-
-    # Step along them.
-    pixels, along = runs(first_pixel, count), runs(np.zeros_like(count), count).astype(np.float32)
-    rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
-    ray_step = np.float32(1 / focal_length(projected.lines, view.field_of_view))
-    beyond = np.cumsum(count)
-    cut = 0
-    while cut < len(beyond):
-        base = int(beyond[cut] - count[cut])
-        part = slice(cut, max(cut + 1, int(np.searchsorted(beyond, base + PIXELS_AT_ONCE))))
-        cut = part.stop
-        some = slice(base, int(beyond[cut - 1]))
-        start_here, step_here = (np.repeat(table[:, part], count[part], axis=1) for table in (start, step))
-        _fill(rows[:, some], start_here, step_here, along[some], ray_step)
-
-    for table in (rows, pixels):
-        table.flags.writeable = False
-    return Seen(
-        projected.lines,
-        projected.elements,
-        pixels,
-        surface_slices(np.bincount(surface, count, 1).astype(np.int64)),
-        projected.polygon_numbers[column],
-        count,
-        rows,
-        view,
-        projected.unit,
-        middle,
+    return Segments(
+        first_pixel[order],
+        count[order],
+        column[order],
+        polygon[order],
+        surface[order],
+        down_top[order],
+        up_top[order],
     )
 
 
-def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step: np.float32) -> None:
-    """Fill the rows of some pixels from what is linear along their segments."""
-    # Place the point: it goes along the segment as `along` over the inverse depth does.
-    inverse_depth = step[DEPTH] * along
-    inverse_depth += start[DEPTH]
-    np.divide(along, inverse_depth, out=inverse_depth)
-    step[POINTS] *= inverse_depth
-    np.add(start[POINTS], step[POINTS], out=rows[POINT])
-    # Make the normal a unit vector.
-    step[NORMALS] *= along
-    normal = rows[NORMAL]
-    np.add(start[NORMALS], step[NORMALS], out=normal)
-    length = np.sqrt(_products(normal, normal))
-    # A polygon without area has a normal of 0, and keeps it.
-    length += np.float32(1e-30)
-    normal *= np.reciprocal(length, out=length)
-    # Make the ray a unit vector.
-    ray = start[RAY]
-    ray[0] += along * ray_step
-    np.sqrt(_products(ray, ray), out=length)
-    ray *= np.reciprocal(length, out=length)
-    # Mirror the ray to the eye: M = 2 (N.V) N - V, where V is the ray the other way round.
-    facing = _products(normal, ray)
-    facing *= np.float32(-2)
-    np.multiply(normal, facing, out=rows[MIRROR])
-    rows[MIRROR] += ray
-    # Keep the products with the point.
-    for vector, product in ((POINT, POINT_SQUARED), (NORMAL, NORMAL_POINT), (MIRROR, MIRROR_POINT)):
-        _products(rows[vector], rows[POINT], out=rows[product])
-
-
-def _products(one: Singles, other: Singles, out: Singles | None = None) -> Singles:
-    """The products of two rows of vectors, (3, n) each."""
-    products: Singles = np.einsum("ij,ij->j", one, other, out=out)
-    return products
-
-
-def _along_segments(
+def along_segments(
     segments: Segments, projected: Projection, view: View, middle: Floats
 ) -> tuple[Singles, Singles]:
     """What is stepped along each segment: its value at the first pixel, and what each further pixel adds.

@@ -20,11 +20,11 @@ import numpy.typing as npt
 from autocolor.depth import DepthScale, depth_scale
 from autocolor.edges import Edges, edges_of_sides
 from autocolor.hidden import not_hidden
+from autocolor.interpolation import seen_of_spans
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, projection
-from autocolor.runs import runs
+from autocolor.runs import batches, runs
 from autocolor.seen import Seen
-from autocolor.segments import seen_of_spans
 from autocolor.view import View
 
 POLYGONS_AT_ONCE = 4096
@@ -77,15 +77,10 @@ def keep_front_most(
         tops[0][spans.number] = spans.down_top
         tops[1][spans.number] = spans.up_top
         keys = spans.start + spans.number
-        beyond = np.cumsum(spans.count)
-        cut = 0
-        while cut < len(beyond):
-            # Take the spans of about as many fragments as the caches hold.
-            base = int(beyond[cut] - spans.count[cut])
-            part = slice(cut, max(cut + 1, int(np.searchsorted(beyond, base + FRAGMENTS_AT_ONCE))))
-            cut = part.stop
-            pixel = runs(spans.first_pixel[part], spans.count[part])
-            np.maximum.at(front, pixel, runs(keys[part], spans.count[part], spans.step[part]))
+        for part, _ in batches(spans.count, FRAGMENTS_AT_ONCE):
+            count = spans.count[part]
+            pixel = runs(spans.first_pixel[part], count)
+            np.maximum.at(front, pixel, runs(keys[part], count, spans.step[part]))
 
 
 @dataclass(frozen=True, eq=False)

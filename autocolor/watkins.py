@@ -15,10 +15,10 @@ import numpy as np
 
 from autocolor.depth import DepthScale, depth_scale
 from autocolor.edges import edges
+from autocolor.interpolation import seen_of_spans
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, projection
 from autocolor.seen import Seen
-from autocolor.segments import seen_of_spans
 from autocolor.view import View
 
 

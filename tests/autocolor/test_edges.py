@@ -9,7 +9,6 @@ from autocolor.edges import DOWN_SIDE, UP_SIDE, Edges, Side, edges_of_sides, oth
 from autocolor.projection import Projection, projection
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
 
-
 SIDES: tuple[Side, ...] = (DOWN_SIDE, UP_SIDE)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.runs import runs
+from autocolor.runs import batches, runs
 
 whole = st.integers(-(2**63), 2**63 - 1)
 
@@ -21,3 +21,13 @@ def test_runs_follow_each_other_even_where_the_sum_leaves_64_bits(rows: list[tup
 def test_without_a_step_each_number_is_one_more(rows: list[tuple[int, int]]) -> None:
     first, count = np.array(rows, np.int64).reshape(-1, 2).T
     assert runs(first, count).tolist() == [start + k for start, many in rows for k in range(many)]
+
+
+@given(st.lists(st.integers(1, 9)), st.integers(1, 20))
+def test_batches_hold_every_run_once_and_are_no_larger_than_they_must(counts: list[int], most: int) -> None:
+    every = list(batches(np.array(counts, np.int64), most))
+    assert [k for part, _ in every for k in range(len(counts))[part]] == list(range(len(counts)))
+    for part, some in every:
+        assert sum(counts[: part.start]) == some.start
+        assert sum(counts[part]) == some.stop - some.start
+        assert some.stop - some.start <= most or part.stop == part.start + 1

@@ -77,9 +77,9 @@ class Session:
         return self.tool("getwindowname", self.window()).strip()
 
     def shown(self) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
-        """The pixels of the window, (height, width, 3); none when the window found was one that is gone by now.
+        """The pixels of the window, (height, width, 3).
 
-        While a window opens, short-lived ones of the library below it come and go.
+        There are none when the window that was found is gone: while one opens, others come and go below it.
         """
         geometry = self.tool("getwindowgeometry", "--shell", self.window())
         values = dict(line.split("=") for line in geometry.split() if "=" in line)
