@@ -42,24 +42,25 @@ def test_the_edges_of_both_sides_cut_the_same_lines_of_the_same_polygons(
 def test_an_edge_is_cut_where_the_lines_cross_it(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
     projected = projection(mesh, view, *raster)
     corners = projected.corners.ravel()
-    for cut, row in [
-        (cut, row) for side in SIDES for cut in [all_edges(projected, side)] for row in range(len(cut.top))
-    ]:
-        a, b = corners[cut.top[row]], corners[cut.bottom[row]]
-        assert projected.down[a] <= projected.down[b]
-        assert cut.count[row] > 0
-        for step in (0, int(cut.count[row]) - 1):
-            center = cut.first_line[row] + step + 0.5
-            assert projected.down[a] <= center <= projected.down[b]
-            way = (center - projected.down[a]) / (projected.down[b] - projected.down[a])
+    for cut in (all_edges(projected, side) for side in SIDES):
+        for row in range(len(cut.top)):
+            a, b = corners[cut.top[row]], corners[cut.bottom[row]]
+            assert projected.down[a] <= projected.down[b]
+            assert cut.count[row] > 0
             span = abs(projected.across[b] - projected.across[a])
-            assert cut.across[row] + step * cut.across_step[row] == pytest.approx(
-                projected.across[a] + way * (projected.across[b] - projected.across[a]), abs=1e-9 * (1 + span)
-            )
             depths = projected.inverse_depth[[a, b]]
-            assert cut.inverse_depth[row] + step * cut.inverse_depth_step[row] == pytest.approx(
-                depths[0] + way * (depths[1] - depths[0]), abs=1e-9 * depths.max()
-            )
+            for step in (0, int(cut.count[row]) - 1):
+                center = cut.first_line[row] + step + 0.5
+                assert projected.down[a] <= center <= projected.down[b]
+                way = (center - projected.down[a]) / (projected.down[b] - projected.down[a])
+                place = projected.across[a] + way * (projected.across[b] - projected.across[a])
+                depth = depths[0] + way * (depths[1] - depths[0])
+                assert cut.across[row] + step * cut.across_step[row] == pytest.approx(
+                    place, abs=1e-9 * (1 + span)
+                )
+                assert cut.inverse_depth[row] + step * cut.inverse_depth_step[row] == pytest.approx(
+                    depth, abs=1e-9 * depths.max()
+                )
 
 
 @given(meshes(), outside_views(), rasters)
