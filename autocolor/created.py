@@ -25,6 +25,9 @@ ASPECT = 640 / 480
 POINT = 1e-12
 """Assumed: what is smaller than this fraction of its distance from the origin is taken as a point."""
 
+POINTS_AT_ONCE = 1 << 14
+"""Few enough for one thread: a product of more waits for threads, long where the processors are shared."""
+
 OBJECT_COLORS = (
     "#b3202c", "#2f5fa8", "#c9a227", "#3f7f4f", "#7d4a94", "#c8642c",
     "#3a8c92", "#a8426a", "#7c8a3a", "#5561a8", "#8c5a3c", "#8a949e",
@@ -61,23 +64,25 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
     axes = view.axes
     middle, radius = _sphere_around(mesh)
     if _is_a_point(mesh):
-        points: npt.NDArray[np.float64] = middle + radius * np.array([[-0.5] * 3, [0.5] * 3])
+        points = middle[:, None] + radius * np.array([[-0.5, 0.5]] * 3)
     else:
-        points = mesh.coordinates[np.unique(mesh.node_numbers)]
-    places = (points - middle) @ axes.T
-    size = float(np.abs(places).max())
+        points = mesh.used_coordinate_rows
 
     # A point is within the picture where |across - shift| <= slope (depth + distance). Both bounds together
     # give the shift and the least distance for each direction; the larger distance serves both.
     slope_down = filled * math.tan(math.radians(view.field_of_view) / 2)
-    slopes = (slope_down * ASPECT, slope_down)
-    shifts, distances = [], []
-    for across, slope in zip(places.T[:2], slopes, strict=True):
-        least = float((across + slope * places[:, 2]).min())
-        most = float((across - slope * places[:, 2]).max())
-        shifts.append((least + most) / 2)
-        distances.append((most - least) / (2 * slope))
-    distance = max(*distances, size * 1e-3 - float(places[:, 2].min()))
+    slopes = np.array([slope_down * ASPECT, slope_down])
+    least, most, nearest, size = np.full(2, np.inf), np.full(2, -np.inf), np.inf, 0.0
+    for first in range(0, points.shape[1], POINTS_AT_ONCE):
+        places = axes @ (points[:, first : first + POINTS_AT_ONCE] - middle[:, None])
+        reach = slopes[:, None] * places[2]
+        least = np.minimum(least, (places[:2] + reach).min(axis=1))
+        most = np.maximum(most, (places[:2] - reach).max(axis=1))
+        nearest = min(nearest, float(places[2].min()))
+        size = max(size, float(np.abs(places).max()))
+    shifts = (least + most) / 2
+    distances = (most - least) / (2 * slopes)
+    distance = max(*distances.tolist(), size * 1e-3 - nearest)
     eye = middle + axes.T @ np.array([*shifts, -distance])
     forward = axes[2]
     return view.replace(eye=tuple(eye), direction=tuple(forward))

@@ -27,7 +27,7 @@ class Mesh:
     `coordinates` is (nodes, 3) float64. `node_numbers` is (polygons, 4) intp, rows of the node table counted
     from 0; a triangle repeats its last node, and (polygons, 3) is accepted where all are triangles.
     `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0. Polygons that meet at more than
-    `crease_angle` degrees keep a sharp edge.
+    `crease_angle` degrees keep a sharp edge. The tables are copied, and stand in memory column by column.
     """
 
     coordinates: npt.NDArray[np.float64]
@@ -38,40 +38,45 @@ class Mesh:
 
     def __post_init__(self) -> None:
         problems: list[str] = []
-        coordinates = _array(problems, "node table", self.coordinates, np.float64, (3,))
-        node_numbers = _array(problems, "polygon table", self.node_numbers, np.intp, (3, 4))
-        if node_numbers.shape[1] == 3:
-            node_numbers = node_numbers[:, [0, 1, 2, 2]]
-        part_numbers = np.atleast_1d(_numbers(problems, "part numbers", self.part_numbers, np.intp))
+        coordinate_rows = _columns(problems, "node table", self.coordinates, np.float64, (3,))
+        columns = _columns(problems, "polygon table", self.node_numbers, np.intp, (3, 4))
+        if len(columns) == 3:
+            columns = columns[[0, 1, 2, 2]]
+        part_numbers = np.array(np.atleast_1d(_numbers(problems, "part numbers", self.part_numbers, np.intp)))
         names = () if isinstance(self.part_names, str) else self.part_names
         names = tuple(names) if isinstance(names, Iterable) else ()
         if isinstance(self.part_names, str) or not all(isinstance(name, str) and name for name in names):
             problems.append(f"part table: part names must be texts, one a part, not {self.part_names!r}")
         angle = finite(problems, "mesh: crease_angle", self.crease_angle, at_least=0.0, at_most=180.0)
-        if not (np.abs(coordinates) <= LARGEST_COORDINATE).all():
-            row = int(np.flatnonzero(~(np.abs(coordinates) <= LARGEST_COORDINATE).all(axis=1))[0])
+        if coordinate_rows.size and not (
+            coordinate_rows.min() >= -LARGEST_COORDINATE and coordinate_rows.max() <= LARGEST_COORDINATE
+        ):
+            row = int(np.flatnonzero(~(np.abs(coordinate_rows) <= LARGEST_COORDINATE).all(axis=0))[0])
             problems.append(
                 f"node table: coordinates must be finite and at most 1e30 in size, not"
-                f" {coordinates[row].tolist()} (row {row})"
+                f" {coordinate_rows[:, row].tolist()} (row {row})"
             )
-        _check_rows(problems, "polygon table: a node number", node_numbers, len(coordinates), "node table")
+        node_count, polygon_count = coordinate_rows.shape[1], columns.shape[1]
+        _check_rows(problems, "polygon table: a node number", columns, node_count, "node table")
         _check_rows(problems, "polygon table: a part number", part_numbers, len(names), "part table")
-        if part_numbers.shape != (len(node_numbers),):
+        if part_numbers.shape != (polygon_count,):
             problems.append(
-                f"polygon table: there must be one part number a polygon ({len(node_numbers)}), not an"
+                f"polygon table: there must be one part number a polygon ({polygon_count}), not an"
                 f" array of shape {part_numbers.shape}"
             )
         if len(set(names)) != len(names):
             problems.append("part table: part names must differ, not repeat")
         if problems:
             raise InputError(problems)
-        for name, value in zip(
-            ("coordinates", "node_numbers", "part_numbers", "part_names", "crease_angle"),
-            (coordinates, node_numbers, part_numbers, names, angle),
-            strict=True,
+        for table in (coordinate_rows, columns, part_numbers):
+            table.flags.writeable = False
+        for name, value in (
+            ("coordinates", coordinate_rows.T),
+            ("node_numbers", columns.T),
+            ("part_numbers", part_numbers),
+            ("part_names", names),
+            ("crease_angle", angle),
         ):
-            if isinstance(value, np.ndarray):
-                value.flags.writeable = False
             object.__setattr__(self, name, value)
 
     @cached_property
@@ -79,33 +84,40 @@ class Mesh:
         """Unit normals at the corners of the polygons, made from the adjoining polygons."""
         return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
 
-    @cached_property
+    @property
     def columns(self) -> npt.NDArray[np.intp]:
         """The node numbers with one row a corner, (4, polygons), as batches of polygons are worked on."""
-        return np.ascontiguousarray(self.node_numbers.T)
+        return self.node_numbers.T
 
-    @cached_property
+    @property
     def coordinate_rows(self) -> npt.NDArray[np.float64]:
         """The coordinates with one row an axis, (3, nodes)."""
-        return np.ascontiguousarray(self.coordinates.T)
+        return self.coordinates.T
 
     @cached_property
     def normal_rows(self) -> npt.NDArray[np.float32]:
         """The normals with one row an axis, (3, normals)."""
-        return np.ascontiguousarray(self.normals.vectors.T, np.float32)
+        return self.normals.vectors.T.astype(np.float32, order="C")
 
-    @cached_property
+    @property
     def normal_columns(self) -> npt.NDArray[np.intp]:
         """The numbers of the normals with one row a corner, (4, polygons)."""
-        return np.ascontiguousarray(self.normals.numbers.T)
+        return self.normals.numbers.T
+
+    @property
+    def used_coordinate_rows(self) -> npt.NDArray[np.float64]:
+        """The coordinates of the nodes that polygons use, with one row an axis."""
+        used = np.zeros(len(self.coordinates), np.bool_)
+        used[self.columns] = True
+        return self.coordinate_rows if used.all() else self.coordinate_rows[:, used]
 
     @cached_property
     def bounds(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
         """The least and the largest coordinates of the nodes that polygons use; zeros for an empty mesh."""
         if not len(self.node_numbers):
             return np.zeros(3), np.zeros(3)
-        used = self.coordinates[np.unique(self.node_numbers)]
-        return used.min(axis=0), used.max(axis=0)
+        rows = self.used_coordinate_rows
+        return rows.min(axis=1), rows.max(axis=1)
 
     @cached_property
     def parts_in_use(self) -> tuple[int, ...]:
@@ -116,14 +128,15 @@ class Mesh:
     @property
     def edge_count(self) -> int:
         """How many distinct edges the polygons have (the paper counts 17,940 for its car)."""
-        ends = np.stack([self.node_numbers, np.roll(self.node_numbers, -1, axis=1)], axis=-1).reshape(-1, 2)
-        ends = np.sort(ends[ends[:, 0] != ends[:, 1]], axis=1)
-        return len(np.unique(ends[:, 0] * (len(self.coordinates) + 1) + ends[:, 1]))
+        start, end = self.columns, np.roll(self.columns, -1, axis=0)
+        keys = np.minimum(start, end) * len(self.coordinates) + np.maximum(start, end)
+        sorted_keys = np.sort(keys[start != end])
+        return int(np.count_nonzero(np.diff(sorted_keys, prepend=-1)))
 
     @property
     def triangle_count(self) -> int:
         """How many polygons have three sides."""
-        return int((self.node_numbers[:, 2] == self.node_numbers[:, 3]).sum())
+        return int(np.count_nonzero(self.columns[2] == self.columns[3]))
 
     @staticmethod
     def joined(meshes: Sequence[Mesh]) -> Mesh:
@@ -134,10 +147,10 @@ class Mesh:
         first_nodes = np.cumsum([0] + [len(mesh.coordinates) for mesh in meshes[:-1]])
         rows = [np.array([names.index(name) for name in mesh.part_names], dtype=np.intp) for mesh in meshes]
         return Mesh(
-            np.concatenate([mesh.coordinates for mesh in meshes]),
+            np.concatenate([mesh.coordinate_rows for mesh in meshes], axis=1).T,
             np.concatenate(
-                [mesh.node_numbers + first for mesh, first in zip(meshes, first_nodes, strict=True)]
-            ),
+                [mesh.columns + first for mesh, first in zip(meshes, first_nodes, strict=True)], axis=1
+            ).T,
             np.concatenate([row[mesh.part_numbers] for mesh, row in zip(meshes, rows, strict=True)]),
             names,
             meshes[0].crease_angle,
@@ -149,9 +162,9 @@ class Mesh:
 
 
 def _numbers(problems: list[str], what: str, value: object, dtype: type) -> npt.NDArray[Any]:
-    """A copy of the value as an array of the type, or an empty one after a problem was noted."""
+    """The value as an array of the type, or an empty one after a problem was noted."""
     try:
-        array = np.array(value)
+        array = np.asarray(value)
     except (TypeError, ValueError, OverflowError):
         array = np.array(None)
     if array.size and array.dtype.kind not in ("iu" if dtype is np.intp else "iuf"):
@@ -161,10 +174,10 @@ def _numbers(problems: list[str], what: str, value: object, dtype: type) -> npt.
     return array.astype(dtype, copy=False)
 
 
-def _array(
+def _columns(
     problems: list[str], what: str, value: object, dtype: type, widths: tuple[int, ...]
 ) -> npt.NDArray[Any]:
-    """A copy of the value as (rows, width) of the type, or an empty one after a problem was noted."""
+    """A copy of the value, (rows, width), as (width, rows) of the type; empty after a problem was noted."""
     array = _numbers(problems, what, value, dtype)
     if array.size == 0:
         array = array.reshape(0, widths[-1])
@@ -172,17 +185,16 @@ def _array(
         shape = " or ".join(f"(rows, {width})" for width in widths)
         problems.append(f"{what}: its shape must be {shape}, not {array.shape}")
         array = np.empty((0, widths[-1]), dtype)
-    return np.ascontiguousarray(array)
+    return np.array(array.T, order="C")
 
 
 def _check_rows(
     problems: list[str], what: str, numbers: npt.NDArray[np.intp], count: int, table: str
 ) -> None:
-    """Note the first number that is no row of a table."""
+    """Note the first number, or column of numbers, that is no row of a table."""
+    if not numbers.size or (numbers.min() >= 0 and numbers.max() < count):
+        return
     missing = (numbers < 0) | (numbers >= count)
-    bad = np.flatnonzero(missing.any(axis=1) if missing.ndim > 1 else missing)
-    if len(bad):
-        problems.append(
-            f"{what} must be a row of the {table} (0 to {count - 1}), not {numbers[bad[0]].tolist()}"
-            f" (row {bad[0]})"
-        )
+    row = int(np.flatnonzero(missing.any(axis=0) if missing.ndim > 1 else missing)[0])
+    rule = f"{what} must be a row of the {table} (0 to {count - 1})"
+    problems.append(f"{rule}, not {numbers[..., row].tolist()} (row {row})")

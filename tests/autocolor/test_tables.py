@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import pickle
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,19 @@ def test_a_mesh_is_a_copy_that_never_changes() -> None:
     assert mesh.coordinates.tolist() == np.eye(3).tolist()
     for table in (mesh.coordinates, mesh.node_numbers, mesh.part_numbers):
         assert not table.flags.writeable
+
+
+def test_the_tables_of_a_mesh_stand_in_memory_once_and_column_by_column() -> None:
+    mesh = grid(3, 2, (0, 0, 0), (1, 0, 0), (0, 1, 0))
+    for each in (mesh, pickle.loads(pickle.dumps(mesh))):
+        for table, rows in (
+            (each.coordinates, each.coordinate_rows),
+            (each.node_numbers, each.columns),
+            (each.normals.numbers, each.normal_columns),
+        ):
+            assert np.shares_memory(table, rows)
+            assert rows.flags.c_contiguous
+            assert rows.tolist() == table.T.tolist()
 
 
 @pytest.mark.parametrize(
