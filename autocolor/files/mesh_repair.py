@@ -17,6 +17,7 @@ from autocolor.files.polygon_split import split_polygons
 from autocolor.files.polygons import MeshReport, Polygons, standing
 from autocolor.mesh import Mesh
 from autocolor.node_normals import CREASE_ANGLE
+from autocolor.vectors import cross_products, lengths
 
 AT_A_TIME = 1 << 14
 """Polygons whose corners are looked at together, so that the arrays stay near the processor."""
@@ -100,13 +101,14 @@ def _have_area(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
 
     A bow-tie whose halves cancel has area; a polygon that goes the same way there and back has none.
     """
-    size = np.ptp(corners, axis=1).max(axis=1)
+    rows = np.ascontiguousarray(corners.T)
+    size = np.ptp(rows, axis=1).max(axis=0)
     size[size == 0] = 1.0
-    scaled = (corners - corners[:, :1]) / size[:, None, None]
+    scaled = (rows - rows[:, :1]) / size
 
     def flat(first: int, second: int, third: int) -> npt.NDArray[np.bool_]:
         onward, back = scaled[:, second] - scaled[:, first], scaled[:, third] - scaled[:, first]
-        below: npt.NDArray[np.bool_] = np.linalg.norm(np.cross(onward, back), axis=1) < FLAT
+        below: npt.NDArray[np.bool_] = lengths(cross_products(onward, back)) < FLAT
         return below
 
     return ~((flat(0, 1, 2) & flat(0, 2, 3)) | (flat(0, 1, 3) & flat(1, 2, 3)))
