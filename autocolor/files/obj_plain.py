@@ -2,7 +2,7 @@
 
 `read_plain_obj` gives what `read_obj_lines` gives, or None for anything out of the ordinary: a statement
 that does not start its line, a comment after numbers, nodes with and without colors mixed, any fault.
-Measured: one million quads in 2 to 3 s, where the reader by lines takes 7.
+Measured: one million quads in 1.3 s, where the reader by lines takes 7.
 """
 
 from __future__ import annotations
@@ -112,7 +112,12 @@ def _corners(text: Bytes, chosen: npt.NDArray[np.bool_], lengths: Counts) -> tup
         return None
     if counts.max() > MOST_CORNERS:
         return None
-    words = plain.replace(b"f", b" ").decode("ascii").split()
+    plain = plain.replace(b"f", b" ")
+    if b"-" not in plain:
+        # Measured: a seventh of the time of one word after the other. Where all are digits none is cut short;
+        # one that is too large gives a number that no node has, and where there is none at all it gives a 0.
+        return np.fromstring(plain, np.int64, sep=" ")[: int(counts.sum())], counts
+    words = plain.decode("ascii").split()
     try:
         return np.fromiter(map(int, words), np.int64, len(words)), counts
     except (ValueError, OverflowError):

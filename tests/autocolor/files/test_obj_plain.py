@@ -22,7 +22,7 @@ plain_nodes = st.lists(st.sampled_from(["0", "1", "-2.25", "3e-2"]), min_size=3,
     lambda words: " ".join(["v", *words])
 )
 corners = st.sampled_from(
-    ["1", "2", "3", "-1", "-2", "0", "7", "1/1", "2//3", "3/1/1", "-1/-1", "1/", "1 /2", "+1", "x"]
+    ["1", "2", "3", "-1", "-2", "0", "7", "1/1", "2//3", "3/1/1", "-1/-1", "1/", "1 /2", "+1", "x", "9" * 20]
 )
 polygons = st.lists(corners, max_size=6).map(lambda words: " ".join(["f", *words]))
 plain_polygons = st.lists(
@@ -51,6 +51,7 @@ others = st.sampled_from(
         "\tf 1 2 3",
         "v",
         "f",
+        "f ",
         "f 1 2 \\",
         "vn",
         "v\t1 2 3",
@@ -99,3 +100,20 @@ def test_what_the_patient_reader_refuses_the_fast_one_leaves_alone(text: bytes) 
     except InputError:
         plain = read_plain_obj(text, Statements("car"))
         assert plain is None or (plain.rows < 0).any()
+
+
+TRIANGLE = b"v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+
+
+@pytest.mark.parametrize("line", [b"f \n", b"f \t\n", b"f 1 2 3\nf \n"])
+def test_a_polygon_without_corners_has_none(line: bytes) -> None:
+    plain = read_plain_obj(TRIANGLE + line, Statements("car"))
+    assert plain is not None
+    assert same(plain, read_obj_lines(TRIANGLE + line, "car.obj", Statements("car")))
+
+
+@pytest.mark.parametrize("number", [b"18446744073709551617", b"9223372036854775808", b"9" * 30])
+def test_a_node_number_of_more_than_64_bits_is_that_of_no_node(number: bytes) -> None:
+    plain = read_plain_obj(TRIANGLE + b"f 1 2 " + number + b"\n", Statements("car"))
+    assert plain is not None
+    assert plain.rows.tolist() == [0, 1, -1]
