@@ -53,8 +53,8 @@ def _some_share_a_place(coordinate_rows: Floats) -> bool:
 
 def fans_of_corners(
     places: Numbers, part_numbers: Numbers, normals: Floats, crease_angle: float
-) -> tuple[Numbers, Numbers]:
-    """The fan of each corner, (corners,), and pairs of fans that meet wound against each other, (2, pairs).
+) -> tuple[Numbers, list[Numbers]]:
+    """The fan of each corner, (corners,), and pairs of fans wound against each other, each (2, pairs).
 
     `places`, (4, polygons), has the place of each corner; `normals`, (3, polygons), are unit vectors, or
     zeros. Fans are numbered from 0 in the order of their first corners.
@@ -63,7 +63,7 @@ def fans_of_corners(
     # Join the last two corners of a triangle, which repeats its last node.
     leads[3::4] -= places[2] == places[3]
     least_cosine = np.cos(np.radians(crease_angle)) - 1e-9
-    against = [np.empty((2, 0), np.intp)]
+    against = []
     for one, other in _corners_at_shared_edges(places, part_numbers):
         # Leave creases sharp; where the edge runs the same way in both, one polygon shows its other side.
         opposed = places[one & 3, one >> 2] == places[other & 3, other >> 2]
@@ -77,7 +77,7 @@ def fans_of_corners(
         if len(unlike):
             against.append(np.stack([ends[:, unlike].ravel(), other_ends[:, unlike].ravel()]))
     fans = group_numbers(leads)
-    return fans, fans[np.concatenate(against, axis=1)]
+    return fans, [fans[pairs] for pairs in against]
 
 
 def _corners_at_shared_edges(places: Numbers, part_numbers: Numbers) -> Iterator[tuple[Numbers, Numbers]]:

@@ -49,7 +49,7 @@ def node_normals(
 
     # Add up the normals of each fan, weighted by the angles.
     vectors, numbers = _weighted_sums(fans, normals, angles)
-    if against.size:
+    if against:
         vectors, together = _with_other_sides(vectors, against)
         numbers = together[numbers]
 
@@ -90,7 +90,7 @@ def _weighted_sums(fans: Numbers, normals: Floats, angles: Floats) -> tuple[Floa
     return sums, numbers
 
 
-def _with_other_sides(sums: Floats, against: Numbers) -> tuple[Floats, Numbers]:
+def _with_other_sides(sums: Floats, against: list[Numbers]) -> tuple[Floats, Numbers]:
     """The sums of fans, (3, fans), with those of the fans that are wound against them, and each fan's column.
 
     Every fan stands twice, once for each of its sides; what is wound against each other joins crosswise. So
@@ -98,8 +98,8 @@ def _with_other_sides(sums: Floats, against: Numbers) -> tuple[Floats, Numbers]:
     """
     count = sums.shape[1]
     sides = np.arange(2 * count)
-    one, other = against
-    join(sides, np.concatenate([one, one + count]), np.concatenate([other + count, other]))
+    for one, other in against:
+        join(sides, np.concatenate([one, one + count]), np.concatenate([other + count, other]))
     # The groups in which a fan shows its own side come first.
     groups = group_numbers(sides)
     used = int(groups[:count].max()) + 1

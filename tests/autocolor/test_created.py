@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Mesh, View, render, scene_of
+from autocolor import Mesh, View, created, render, scene_of
 from autocolor.created import created_lights, created_view, framed
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import Vector, directions, meshes, numbers, vectors
@@ -112,3 +112,11 @@ def test_the_key_light_stands_at_the_upper_left_of_the_eye() -> None:
 def test_lights_are_created_for_a_view_from_above() -> None:
     view = framed(View((0, 0, 5), direction=(0, 0, -1)), cube())
     assert all(np.isfinite(light.position).all() for light in created_lights(cube(), view))
+
+
+@given(meshes())
+def test_the_view_does_not_depend_on_how_many_nodes_are_looked_at_at_once(mesh: Mesh) -> None:
+    whole = created_view(mesh)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(created, "POINTS_AT_ONCE", 2)
+        assert created_view(mesh).eye == pytest.approx(whole.eye, abs=1e-9)
