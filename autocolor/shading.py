@@ -2,6 +2,11 @@
 
 Paper: "The Lighting Model" and "Light Controls". The sum over the lights with their strengths is made in
 `picture`; here is what takes the time, and what stays when only strengths change.
+
+Measured and rejected: two threads, each on half of the pixels (as long as one, for the arrays are read from
+memory and the interpreter runs one at a time); two processes (two thirds of the time of one, for a second
+copy of everything); all lights on some pixels before the next (a twentieth less); fewer pixels at once than
+131,072 (a tenth more at a quarter of that).
 """
 
 from __future__ import annotations
