@@ -8,7 +8,7 @@ BEARING_FORMULAS = [
     "autocolor.camera_space", "autocolor.color_blending", "autocolor.created", "autocolor.intensity_mapping",
     "autocolor.level_ranges",
     "autocolor.light_controls", "autocolor.lights", "autocolor.node_normals", "autocolor.picture",
-    "autocolor.reflection", "autocolor.scene", "autocolor.seen", "autocolor.shading",
+    "autocolor.reflection", "autocolor.scene", "autocolor.segments", "autocolor.shading",
     "autocolor.tables", "autocolor.view", "autocolor.visible_surfaces", "autocolor.watkins",
     "ramtek_emu.character_rom", "ramtek_emu.configuration", "ramtek_emu.decoder", "ramtek_emu.vectors",
     "ramtek_emu.curves", "ramtek_emu.timing", "ramtek_emu.frame_buffer", "ramtek_emu.host_port",
