@@ -103,26 +103,25 @@ def cut_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
 
     for column in through.tolist():
         nodes, rows = corners[:, column].tolist(), corner_normals[:, column].tolist()
+        depths = places[2, corners[:, column]].tolist()
         cut_nodes: list[int] = []
         cut_rows: list[int] = []
-        for corner in range(4):
-            a, b = nodes[corner], nodes[(corner + 1) % 4]
-            if not before[corner, column]:
-                cut_nodes.append(a)
+        for corner, other in ((0, 1), (1, 2), (2, 3), (3, 0)):
+            if depths[corner] >= near:
+                cut_nodes.append(nodes[corner])
                 cut_rows.append(rows[corner])
-            if before[corner, column] != before[(corner + 1) % 4, column]:
-                low, high = min(a, b), max(a, b)
-                way = (near - places[2, low]) / (places[2, high] - places[2, low])
-                if (low, high) not in node_of_edge:
-                    node_of_edge[low, high] = places.shape[1] + len(new_places)
-                    place = places[:, low] + way * (places[:, high] - places[:, low])
+            if (depths[corner] < near) != (depths[other] < near):
+                low, high = (corner, other) if nodes[corner] < nodes[other] else (other, corner)
+                way = (near - depths[low]) / (depths[high] - depths[low])
+                edge = nodes[low], nodes[high]
+                if edge not in node_of_edge:
+                    node_of_edge[edge] = places.shape[1] + len(new_places)
+                    place = places[:, edge[0]] + way * (places[:, edge[1]] - places[:, edge[0]])
                     place[2] = near
                     new_places.append(place)
-                cut_nodes.append(node_of_edge[low, high])
+                cut_nodes.append(node_of_edge[edge])
                 cut_rows.append(normals.shape[1] + len(new_normals))
-                low_row, high_row = rows[corner], rows[(corner + 1) % 4]
-                if low != a:
-                    low_row, high_row = high_row, low_row
+                low_row, high_row = rows[low], rows[high]
                 new_normals.append(normals[:, low_row] + way * (normals[:, high_row] - normals[:, low_row]))
         # Cut a polygon of five or six sides into a quad and what is left.
         for first in range(1, len(cut_nodes) - 1, 2):

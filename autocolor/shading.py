@@ -91,11 +91,11 @@ def _shade(
     if lit is not None and not lit.any():
         out[:] = 0
         return False
-    distance = _squared_distance(rows, position)
+    distance, ahead = _distance_and_ahead(rows, position, ready.toward)
     nearest = float(distance.min())
     if nearest < close:
         rows, position = _around_light(rows, position), np.zeros(3)
-        distance = rows[POINT_SQUARED].copy()
+        distance, ahead = _distance_and_ahead(rows, position, ready.toward)
         nearest = float(distance.min())
     if nearest < LEAST_DISTANCE:
         np.maximum(distance, np.float32(LEAST_DISTANCE), out=distance)
@@ -109,10 +109,8 @@ def _shade(
     facing = cos_incidence > 0
     lit = facing if lit is None else np.logical_and(lit, facing, out=lit)
     cos_light = None
-    if ready.toward is not None:
-        cos_light = ready.toward.astype(np.float32) @ rows[POINT]
-        cos_light -= np.float32(ready.toward @ position)
-        cos_light *= inverse
+    if ahead is not None:
+        cos_light = np.multiply(ahead, inverse, out=ahead)
         lit &= inside_cone(ready, cos_light)
     lit_count = np.count_nonzero(lit)
     if not lit_count:
@@ -141,12 +139,24 @@ def _shade(
     return True
 
 
-def _squared_distance(rows: Singles, position: Floats) -> Singles:
-    """|P - p|^2 as one product: P.P - 2 p.P + p.p."""
-    factors = np.array([*(-2 * position), 1], np.float32)
-    squared: Singles = factors @ rows[POINT.start : POINT_SQUARED + 1]
-    squared += np.float32(position @ position)
-    return squared
+def _distance_and_ahead(
+    rows: Singles, position: Floats, toward: Floats | None
+) -> tuple[Singles, Singles | None]:
+    """The squared distance of each point from the light, and how far it is ahead in the light's direction.
+
+    |P - p|^2 is P.P - 2 p.P + p.p, and both are linear in P and P.P. Measured: a product of two rows with
+    these takes as long as that of one.
+    """
+    factors = np.zeros((1 if toward is None else 2, 4), np.float32)
+    factors[0] = *(-2 * position), 1
+    if toward is not None:
+        factors[1, :3] = toward
+    products = factors @ rows[POINT.start : POINT_SQUARED + 1]
+    products[0] += np.float32(position @ position)
+    if toward is None:
+        return products[0], None
+    products[1] -= np.float32(toward @ position)
+    return products[0], products[1]
 
 
 def _around_light(rows: Singles, position: Floats) -> Singles:

@@ -69,17 +69,25 @@ class View:
         else:
             assert self.target is not None
             toward = np.array(self.target) - np.array(self.eye)
-        forward = toward / np.abs(toward).max()
-        forward /= np.linalg.norm(forward)
-        right = np.cross(forward, (0.0, 0.0, 1.0))
+        x, y, z = (toward / np.abs(toward).max()).tolist()
+        length = math.hypot(x, y, z)
+        x, y, z = x / length, y / length, z / length
+        # Right is forward x up, and down is forward x right.
+        right, flat = (y, -x, 0.0), math.hypot(x, y)
         # Closer to the up axis than this, rounding would choose the picture's top.
-        if np.linalg.norm(right) < 1e-9:
-            right = np.cross(forward, (0.0, 1.0, 0.0))
-        right /= np.linalg.norm(right)
-        down = np.cross(forward, right)
+        if flat < 1e-9:
+            right, flat = (-z, 0.0, x), math.hypot(z, x)
+        u, v, w = right[0] / flat, right[1] / flat, right[2] / flat
+        forward, right, down = (x, y, z), (u, v, w), (y * w - z * v, z * u - x * w, x * v - y * u)
         turn = math.radians(self.angle)
         cosine, sine = math.cos(turn), math.sin(turn)
-        axes = np.stack([cosine * right - sine * down, sine * right + cosine * down, forward])
+        axes = np.array(
+            [
+                [cosine * a - sine * b for a, b in zip(right, down, strict=True)],
+                [sine * a + cosine * b for a, b in zip(right, down, strict=True)],
+                forward,
+            ]
+        )
         axes.flags.writeable = False
         return axes
 
