@@ -27,6 +27,8 @@ LEAST_NEAR = 1e-12
 LEAST_UNIT = 2.0**-800
 """Assumed: far below the size of any object, and still a divisor for the farthest light."""
 
+POINTS_AT_ONCE = 1 << 14
+
 Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
 Numbers = npt.NDArray[np.intp]
@@ -76,11 +78,14 @@ def rotated(axes: Floats, rows: npt.NDArray[Real], origin: Vector = (0.0, 0.0, 0
     process has the second processor, for its threads wait for each other.
     """
     turned = np.empty_like(rows)
-    moved = [row - start for row, start in zip(rows, origin, strict=True)] if any(origin) else rows
-    for axis, out in zip(axes.astype(rows.dtype), turned, strict=True):
-        np.multiply(moved[0], axis[0], out=out)
-        out += moved[1] * axis[1]
-        out += moved[2] * axis[2]
+    axes = axes.astype(rows.dtype)
+    for first in range(0, rows.shape[1], POINTS_AT_ONCE):
+        part = slice(first, first + POINTS_AT_ONCE)
+        moved = [row[part] - start for row, start in zip(rows, origin, strict=True)]
+        for axis, out in zip(axes, turned[:, part], strict=True):
+            np.multiply(moved[0], axis[0], out=out)
+            out += moved[1] * axis[1]
+            out += moved[2] * axis[2]
     return turned
 
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.camera_space import camera_space
+from autocolor.camera_space import CameraPolygons, camera_space
 from autocolor.mesh import Mesh
 from autocolor.view import View
 
@@ -70,34 +70,35 @@ class Projection:
 def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     """The polygons of the mesh that may be seen, each crossed at most twice by any line."""
     camera = camera_space(mesh, view)
-    corners, corner_normals = camera.corners, camera.corner_normals
 
-    # Project.
+    # Project the nodes.
     inverse_depth = 1.0 / np.maximum(camera.places[2], camera.near)
     scale = focal_length(lines, view.field_of_view) * inverse_depth
     across = camera.places[0] * scale + elements / 2
     down = camera.places[1] * scale + lines / 2
     first_line = np.clip(np.ceil(down - 0.5), 0, lines).astype(np.intp)
 
-    kept = _seen_at_all(first_line, across, corners, elements)
-    corners, corner_normals = np.take(corners, kept, axis=1), np.take(corner_normals, kept, axis=1)
-    polygon_numbers, first_lines = camera.polygon_numbers[kept], first_line[corners]
-
-    # Clockwise on the raster (lines grow downward) is counterclockwise from the outside: the front.
-    x, y = across[corners], down[corners]
-    from_behind = (x[2] - x[0]) * (y[3] - y[1]) - (x[3] - x[1]) * (y[2] - y[0]) > 0
+    # Find the polygons that may be seen.
+    columns = camera.corners.shape[1]
+    pieces = [
+        _may_be_seen(camera, across, down, first_line, elements, first)
+        for first in range(0, max(columns, 1), POLYGONS_AT_ONCE)
+    ]
+    corners = np.concatenate([piece.corners for piece in pieces], axis=1)
+    corner_normals = np.concatenate([piece.corner_normals for piece in pieces], axis=1)
+    polygon_numbers, from_behind, crossings, zigzag = (
+        np.concatenate([piece[row] for piece in pieces]) for row in range(2, 6)
+    )
 
     # Cut in two the quads that some lines cross four times.
-    rising = np.diff(first_lines, axis=0, append=first_lines[:1])
-    zigzag = np.flatnonzero(
-        (rising[0] * rising[1] < 0) & (rising[1] * rising[2] < 0) & (rising[2] * rising[3] < 0)
-    )
-    if len(zigzag):
-        corners, corner_normals, parents = _cut_in_two(zigzag, x, y, corners, corner_normals)
+    quads = np.flatnonzero(zigzag)
+    if len(quads):
+        corners, corner_normals, parents = _cut_in_two(quads, across, down, corners, corner_normals)
         polygon_numbers, from_behind = polygon_numbers[parents], from_behind[parents]
         first_lines = first_line[corners]
+        crossings = most_of_four(first_lines) - least_of_four(first_lines)
     first_crossing = np.zeros(corners.shape[1] + 1, np.intp)
-    np.cumsum(most_of_four(first_lines) - least_of_four(first_lines), out=first_crossing[1:])
+    np.cumsum(crossings, out=first_crossing[1:])
     return Projection(
         lines,
         elements,
@@ -115,18 +116,45 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     )
 
 
-def _seen_at_all(first_line: Numbers, across: Floats, corners: Numbers, elements: int) -> Numbers:
-    """The columns of the polygons that cross a line and reach over the center of a pixel of the picture."""
-    kept = []
-    for first in range(0, corners.shape[1], POLYGONS_AT_ONCE):
-        some = corners[:, first : first + POLYGONS_AT_ONCE]
-        first_lines, acrosses = first_line[some], across[some]
-        # A cut may round a little beyond its edge's ends.
-        left = np.ceil(least_of_four(acrosses) - (0.5 + ROUNDING))
-        beyond = np.ceil(most_of_four(acrosses) - (0.5 - ROUNDING))
-        crosses = least_of_four(first_lines) < most_of_four(first_lines)
-        kept.append(np.flatnonzero(crosses & (left < beyond) & (beyond > 0) & (left < elements)) + first)
-    return np.concatenate(kept) if kept else np.empty(0, np.intp)
+class Polygons(NamedTuple):
+    """Polygons that may be seen: as in a projection, and how many lines they cross.
+
+    Of those that `zigzag` some lines cross four edges.
+    """
+
+    corners: Numbers
+    corner_normals: Numbers
+    polygon_numbers: Numbers
+    from_behind: npt.NDArray[np.bool_]
+    crossings: Numbers
+    zigzag: npt.NDArray[np.bool_]
+
+
+def _may_be_seen(
+    camera: CameraPolygons, across: Floats, down: Floats, first_line: Numbers, elements: int, first: int
+) -> Polygons:
+    """Those of the polygons from `first` on that cross a line and reach over the center of a pixel."""
+    some = slice(first, first + POLYGONS_AT_ONCE)
+    corners = camera.corners[:, some]
+    lines, x = first_line[corners], across[corners]
+    crossings = most_of_four(lines) - least_of_four(lines)
+    # A cut may round a little beyond its edge's ends.
+    left = np.ceil(least_of_four(x) - (0.5 + ROUNDING))
+    beyond = np.ceil(most_of_four(x) - (0.5 - ROUNDING))
+    kept = np.flatnonzero((crossings > 0) & (left < beyond) & (beyond > 0) & (left < elements))
+
+    corners, x = np.take(corners, kept, axis=1), np.take(x, kept, axis=1)
+    y = down[corners]
+    fall = np.diff(np.take(lines, kept, axis=1), axis=0)
+    return Polygons(
+        corners,
+        np.take(camera.corner_normals[:, some], kept, axis=1),
+        camera.polygon_numbers[some][kept],
+        # Clockwise on the raster (lines grow downward) is counterclockwise from the outside: the front.
+        (x[2] - x[0]) * (y[3] - y[1]) - (x[3] - x[1]) * (y[2] - y[0]) > 0,
+        crossings[kept],
+        (fall[0] * fall[1] < 0) & (fall[1] * fall[2] < 0) & ((fall[0] + fall[1] + fall[2]) * fall[2] > 0),
+    )
 
 
 def least_of_four(rows: npt.NDArray[Any] | Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
@@ -142,14 +170,14 @@ def most_of_four(rows: npt.NDArray[Any]) -> npt.NDArray[Any]:
 
 
 def _cut_in_two(
-    quads: Numbers, x: Floats, y: Floats, corners: Numbers, corner_normals: Numbers
+    quads: Numbers, across: Floats, down: Floats, corners: Numbers, corner_normals: Numbers
 ) -> tuple[Numbers, Numbers, Numbers]:
     """The polygons with each of some quads replaced by two triangles, and the column each came from.
 
     The cut runs from corner 0 to corner 2 where the other two lie on either side of it, else from 1 to 3, so
     that a dart is cut at its notch. The triangles stand together in the place of their quad.
     """
-    x, y = x[:, quads], y[:, quads]
+    x, y = across[corners[:, quads]], down[corners[:, quads]]
     side = [
         (x[2] - x[0]) * (y[corner] - y[0]) - (y[2] - y[0]) * (x[corner] - x[0]) for corner in (1, 3)
     ]  # fmt: skip
