@@ -22,6 +22,8 @@ from autocolor.view import View
 # Rows of what is stepped along a segment: the point, the normal, the inverse depth, the ray.
 POINTS, NORMALS, DEPTH, RAY = slice(0, 3), slice(3, 6), 6, slice(7, 10)
 
+SEGMENTS_AT_ONCE = 1 << 14
+
 Singles = npt.NDArray[np.float32]
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
@@ -99,14 +101,32 @@ def along_segments(
     the same for all. The steps are (7, segments). The differences are taken here in float64, so that a point
     is as exact from afar as from near.
     """
-    line, element = np.divmod(segments.first_pixel, projected.elements)
-    down = _cut(projected, segments.down_top, DOWN_SIDE, line)
-    up = _cut(projected, segments.up_top, UP_SIDE, line)
+    count = len(segments.count)
+    start, step = np.empty((10, count), np.float32), np.empty((7, count), np.float32)
+    focal = focal_length(projected.lines, view.field_of_view)
+    for first in range(0, count, SEGMENTS_AT_ONCE):
+        part = slice(first, first + SEGMENTS_AT_ONCE)
+        _fill_along(start[:, part], step[:, part], segments, part, projected, focal, middle)
+    return start, step
+
+
+def _fill_along(
+    start: Singles,
+    step: Singles,
+    segments: Segments,
+    part: slice,
+    projected: Projection,
+    focal: float,
+    middle: Floats,
+) -> None:
+    """Fill the values and the steps of some of the segments."""
+    line, element = np.divmod(segments.first_pixel[part], projected.elements)
+    down = _cut(projected, segments.down_top[part], DOWN_SIDE, line)
+    up = _cut(projected, segments.up_top[part], UP_SIDE, line)
     # The inverse depth is linear from the one cut to the other.
     width, offset = up.across - down.across, element + 0.5 - down.across
     depth_step = (up.inverse_depth - down.inverse_depth) / width
     inverse_depth = down.inverse_depth + depth_step * offset
-    start, step = np.empty((10, len(line)), np.float32), np.empty((7, len(line)), np.float32)
     start[DEPTH], step[DEPTH] = inverse_depth, depth_step
     # So is the normal times the inverse depth, here to a scale of about 1, which float32 holds from afar too.
     both = down.inverse_depth + up.inverse_depth
@@ -116,7 +136,6 @@ def along_segments(
     np.add(down.normal, step[NORMALS] * offset.astype(np.float32), out=start[NORMALS])
 
     # The point is the ray over the inverse depth; one pixel further the ray is `ray_step` more.
-    focal = focal_length(projected.lines, view.field_of_view)
     ray = ((element + 0.5 - projected.elements / 2) / focal, (line + 0.5 - projected.lines / 2) / focal, 1.0)
     depth = 1 / inverse_depth
     for axis, ray_step in enumerate((1 / focal, 0.0, 0.0)):
@@ -124,7 +143,6 @@ def along_segments(
         start[axis] = place - middle[axis]
         step[axis] = ray_step - place * depth_step
         start[RAY.start + axis] = ray[axis]
-    return start, step
 
 
 def _cut(projected: Projection, top: Numbers, side: Side, line: Numbers) -> Cut:

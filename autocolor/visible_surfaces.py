@@ -27,7 +27,7 @@ from autocolor.runs import batches, runs
 from autocolor.seen import Seen
 from autocolor.view import View
 
-POLYGONS_AT_ONCE = 1 << 14
+POLYGONS_AT_ONCE = 1 << 15
 FRAGMENTS_AT_ONCE = 1 << 16
 
 Floats = npt.NDArray[np.float64]
