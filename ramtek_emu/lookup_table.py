@@ -24,6 +24,8 @@ class LookupTable:
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
         self.entry_format = configuration.entry_format
         self.size = configuration.entries
+        self.word_count = self.size if self.entry_format is EntryFormat.WORD_12 else 2 * self.size
+        """How many words the whole table is on the wire."""
         self.address = 0
         """The word address that comes next."""
         self.written = 0
@@ -31,14 +33,10 @@ class LookupTable:
         self._packed: NDArray[np.uint32] = np.zeros(self.size, "<u4")
         # In this byte order the two halves of a packed entry are the two words of the 24-bit format.
         self._halves: Words = self._packed.view("<u2")
+        self._bits_there: Words = np.tile(np.array((0xFFFF, 0x00FF), np.uint16), self.size)
         self.packed: NDArray[np.uint32] = self._packed.view()
         """The entries as 0x00RRGGBB, (entries,) uint32, read-only; always the present ones."""
         self.packed.flags.writeable = False
-
-    @property
-    def word_count(self) -> int:
-        """How many words the whole table is on the wire."""
-        return self.size if self.entry_format is EntryFormat.WORD_12 else 2 * self.size
 
     @property
     def addressed_entry(self) -> int:
@@ -63,11 +61,11 @@ class LookupTable:
         count = self.word_count
         self.address = (address + len(words)) % count
         self.written += len(words)
-        first, words = (address + max(0, len(words) - count)) % count, words[-count:]
-        before_wrap = count - first
-        self._store(first, words[:before_wrap])
-        if len(words) > before_wrap:
-            self._store(0, words[before_wrap:])
+        first, before_wrap = address % count, count - address % count
+        while len(words) > before_wrap:
+            self._store(first, words[:before_wrap])
+            first, words, before_wrap = 0, words[before_wrap:], count
+        self._store(first, words)
 
     def read(self, address: int, count: int) -> Words:
         """`count` words for the wire from a word address on; the counter goes on and wraps at the end."""
@@ -86,6 +84,5 @@ class LookupTable:
             # Full scale of four bits is full scale of eight: 15 becomes 255.
             self._packed[first : first + len(words)] = nibbles * 17
             return
-        halves = self._halves[first : first + len(words)]
-        halves[:] = words
-        halves[1 - first % 2 :: 2] &= 0x00FF
+        run = slice(first, first + len(words))
+        np.bitwise_and(words, self._bits_there[run], out=self._halves[run])

@@ -50,9 +50,11 @@ class ScanOut:
         self._parameters = parameters
         self._beam = beam
         self._words = configuration.largest_word + 1
+        self._is_parted = self._words < lookup_table.size
         # np.take is fastest with indices of the machine's own size; they are renewed when words were written.
         self._indices = np.zeros((self.lines, self.elements), np.intp)
-        self._written: tuple[object, ...] = (0, *self._view())
+        self._written: tuple[object, ...] = ()
+        """What the indices were made from."""
         self._gray: tuple[int, Pixels] = (-1, lookup_table.packed)
         # With a beam: what the monitor shows, and how far the beam has come since power-on.
         self._glass: Pixels = np.zeros((self.lines, self.elements), np.uint32)
@@ -84,14 +86,19 @@ class ScanOut:
 
     def scan_out_into(self, pixels: Pixels) -> None:
         """Write the field as 0x00RRGGBB into a (lines, elements) uint32 array."""
+        # Chosen first, while this code is in the cache: a field pushes it out.
+        cursors = [
+            cursor
+            for cursor in self._cursors.all
+            if cursor.is_visible and (self._blink() or not cursor.blinks)
+        ]
         if self._beam is not None:
             self._finish_field(self._beam, pixels)
         else:
             self._renew_indices()
             self._table().take(self._indices, out=pixels, mode="wrap")
-        for cursor in self._cursors.all:
-            if cursor.is_visible and (self._blink() or not cursor.blinks):
-                mark(pixels, cursor)
+        for cursor in cursors:
+            mark(pixels, cursor)
 
     def field(self) -> NDArray[np.uint8]:
         """The field, (lines, elements, 3) uint8: red, green, blue."""
@@ -133,11 +140,11 @@ class ScanOut:
         )
 
     def _renew_indices(self) -> None:
-        now = (self._frame_buffer.written, *self._view())
+        parameters = self._parameters()
+        now = self._frame_buffer.written, parameters.origin, parameters.zoom, parameters.origin_at_bottom
         if self._written == now:
             return
         self._written = now
-        parameters = self._parameters()
         across, down = parameters.zoom
         target = self._indices[::-1] if parameters.origin_at_bottom else self._indices
         if (across, down) == (1, 1):
@@ -165,12 +172,10 @@ class ScanOut:
                 low = (table >> 4 & 0xF0 | table & 0x0F) if short else table & 0xFF
                 self._gray = self._lookup_table.written, (low * 0x010101).astype(np.uint32)
             table = self._gray[1]
-        first = self._partition()
-        return table[first:] if first else table
+        return table[self._partition() :] if self._is_parted else table
 
     def _partition(self) -> int:
-        part = self._words
-        return self._lookup_table.addressed_entry // part * part if part < self._lookup_table.size else 0
+        return self._lookup_table.addressed_entry // self._words * self._words if self._is_parted else 0
 
 
 def copy_around(target: NDArray[np.intp], words: NDArray[np.uint16], element: int, line: int) -> None:
