@@ -55,12 +55,14 @@ def checked_stream(words: object) -> NDArray[np.uint16]:
     array = whole_numbers(words, "a stream of words", WordsError)
     if array.ndim != 1:
         raise WordsError(f"a stream of words must be one row, not of shape {array.shape}; flatten it first")
-    if array.dtype != np.uint16 and array.size and (array.max() > 0xFFFF or array.min() < 0):
+    if array.dtype == np.uint16:
+        return array  # type: ignore[return-value]
+    if array.size and (array.max() > 0xFFFF or array.min() < 0):
         (place,) = np.argwhere((array < 0) | (array > 0xFFFF))[0]
         raise WordsError(
             f"a word of a stream must be 0 to 65535, not {array[place]} (word {place}); mask it to 16 bits"
         )
-    return array.astype(np.uint16, copy=False)
+    return array.astype(np.uint16)
 
 
 def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[np.uint8]:
@@ -70,7 +72,7 @@ def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[n
         raise ColorsError(
             f"colors must be an (n, 3) array of red, green, blue, not of shape {array.shape}; reshape it"
         )
-    if isinstance(first, bool) or not isinstance(first, int | np.integer) or not 0 <= first < entries:
+    if isinstance(first, bool) or not isinstance(first, (int, np.integer)) or not 0 <= first < entries:
         raise ColorsError(
             f"the first entry must be 0 to {entries - 1}, not {first!r}; choose an entry of the table"
         )
@@ -79,13 +81,15 @@ def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[n
             f"a run of entries must end at {entries - 1}, not {first + len(array) - 1} "
             f"({len(array)} from {first} on); send fewer"
         )
-    if array.dtype != np.uint8 and array.size and (array.max() > 255 or array.min() < 0):
+    if array.dtype == np.uint8:
+        return array  # type: ignore[return-value]
+    if array.size and (array.max() > 255 or array.min() < 0):
         row, column = np.argwhere((array < 0) | (array > 255))[0]
         raise ColorsError(
             f"a color must be 0 to 255, not {array[row, column]} "
             f"(entry {first + row}, {('red', 'green', 'blue')[column]}); clip it first"
         )
-    return array.astype(np.uint8, copy=False)
+    return array.astype(np.uint8)
 
 
 def checked_place(place: Window, memory: Window, thing: str) -> None:

@@ -66,26 +66,28 @@ class Decoder:
             if self._count < self._needed:
                 return
             head = self._held[: min(self._count, MOST_HEAD)].tolist()
-            self._needed = self._words_needed(head)
+            form = self._form(head[0])
+            self._needed = words_needed(form, head)
             if self._needed == self._count:
                 whole = self._held[: self._count].copy()
                 self.clear()
-                yield self._instruction(head, whole)
+                yield instruction_of(form, head, whole)
         while place < len(words):
             head = words[place : place + MOST_HEAD].tolist()
-            if in_rows and self._form(head[0]) is ILLEGAL:
+            form = self._form(head[0])
+            if in_rows and form is ILLEGAL:
                 row = self._illegal_row(words, place)
                 yield Instruction(ILLEGAL, 0, {}, None, words[place : place + row])
                 place += row
                 continue
-            needed = self._words_needed(head)
+            needed = words_needed(form, head)
             if needed > len(words) - place:
                 # Hold the beginning of an instruction.
                 self._needed, self._count = needed, len(words) - place
                 self._held[: self._count] = words[place:]
                 return
             place += needed
-            yield self._instruction(head, words[place - needed : place])
+            yield instruction_of(form, head, words[place - needed : place])
 
     def _illegal_row(self, words: Words, place: int) -> int:
         """How many words from `place` on begin nothing."""
@@ -104,66 +106,65 @@ class Decoder:
             return ILLEGAL
         return form
 
-    def _words_needed(self, head: list[int]) -> int:
-        """How many words the instruction that begins here is, as far as these first words tell."""
-        form = self._form(head[0])
-        if form.fixed is not None:
-            count = 1 + len(form.fixed)
-            if form.replies or "length" not in form.fixed or len(head) < count:
-                return count
-            return count + (head[1 + form.fixed.index("length")] + 1) // 2
-        flags = head[0]
-        count = FLAG_WORDS[flags & 6]
-        if len(head) < count:
-            return count
-        if count > 1 and not form.asks:
-            first, second = flag_words(head)
-            count += sum(operand.words for operand in operands_named(first, second))
-            if first & CONIC and flags & Flags.DATA and form.name == "WC":
-                place = short_length_place(head)
-                if place is not None and len(head) <= place:
-                    return place + 1
-                count -= 6 if place is not None and head[place] == 4 else 0
-        if flags & Flags.DATA:
-            count += 1
-            if not form.replies and len(head) >= count:
-                count += (head[count - 1] + 1) // 2
-        return count
-
-    def _instruction(self, head: list[int], words: Words) -> Instruction:
-        form = self._form(head[0])
-        if form is ILLEGAL:
-            return Instruction(form, 0, {"word": (head[0],)})
-        low_byte = head[0] & 0xFF
-        operands: dict[str, tuple[int, ...]] = {}
-        length: int | None = None
-        if form.fixed is not None:
-            place = 1 + len(form.fixed)
-            for name, word in zip(form.fixed, head[1:place], strict=True):
-                if name == "length":
-                    length = word
-                else:
-                    operands[name] = (word,)
-        else:
-            place = FLAG_WORDS[low_byte & 6]
-            if place > 1:
-                for operand in operands_named(*flag_words(head)):
-                    size = 0 if form.asks else operand.words
-                    if operand.name == "conic" and form.name == "WC" and low_byte & Flags.DATA:
-                        length_place = short_length_place(head)
-                        size = 6 if length_place is not None and head[length_place] == 4 else 12
-                    operands[operand.name] = tuple(head[place : place + size])
-                    place += size
-            if low_byte & Flags.DATA:
-                length = head[place]
-                place += 1
-        return Instruction(
-            form, low_byte, operands, length, words[place:] if place < len(words) else NO_WORDS
-        )
-
 
 FLAG_WORDS = {0: 1, Flags.OPERANDS_1: 2, Flags.OPERANDS_2: 2, Flags.OPERANDS_1 | Flags.OPERANDS_2: 3}
 """The instruction word and the flag words that its flags announce."""
+
+
+def words_needed(form: Form, head: list[int]) -> int:
+    """How many words an instruction of a form is, as far as its first words tell."""
+    if form.fixed is not None:
+        count = 1 + len(form.fixed)
+        if form.replies or "length" not in form.fixed or len(head) < count:
+            return count
+        return count + (head[1 + form.fixed.index("length")] + 1) // 2
+    flags = head[0]
+    count = FLAG_WORDS[flags & 6]
+    if len(head) < count:
+        return count
+    if count > 1 and not form.asks:
+        first, second = flag_words(head)
+        count += sum(operand.words for operand in operands_named(first, second))
+        if first & CONIC and flags & Flags.DATA and form.name == "WC":
+            place = short_length_place(head)
+            if place is not None and len(head) <= place:
+                return place + 1
+            count -= 6 if place is not None and head[place] == 4 else 0
+    if flags & Flags.DATA:
+        count += 1
+        if not form.replies and len(head) >= count:
+            count += (head[count - 1] + 1) // 2
+    return count
+
+
+def instruction_of(form: Form, head: list[int], words: Words) -> Instruction:
+    """An instruction of a form from its first words and all of them."""
+    if form is ILLEGAL:
+        return Instruction(form, 0, {"word": (head[0],)})
+    low_byte = head[0] & 0xFF
+    operands: dict[str, tuple[int, ...]] = {}
+    length: int | None = None
+    if form.fixed is not None:
+        place = 1 + len(form.fixed)
+        for name, word in zip(form.fixed, head[1:place], strict=True):
+            if name == "length":
+                length = word
+            else:
+                operands[name] = (word,)
+    else:
+        place = FLAG_WORDS[low_byte & 6]
+        if place > 1:
+            for operand in operands_named(*flag_words(head)):
+                size = 0 if form.asks else operand.words
+                if operand.name == "conic" and form.name == "WC" and low_byte & Flags.DATA:
+                    length_place = short_length_place(head)
+                    size = 6 if length_place is not None and head[length_place] == 4 else 12
+                operands[operand.name] = tuple(head[place : place + size])
+                place += size
+        if low_byte & Flags.DATA:
+            length = head[place]
+            place += 1
+    return Instruction(form, low_byte, operands, length, words[place:] if place < len(words) else NO_WORDS)
 
 
 def flag_words(head: list[int]) -> tuple[int, int]:

@@ -5,13 +5,18 @@
 """
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from struct import Struct
 
 import numpy as np
 
 from .checks import checked_colors, checked_words, whole_numbers
 from .errors import InstructionError, WordsError
-from .instruction import MOST_BYTES, NO_WORDS, Instruction, Numbers, Words, encode, normal, operand_words
+from .instruction import MOST_BYTES, NO_WORDS, Instruction, Numbers, Words, encode, normal
 from .instruction_set import FORM_OF_NAME, Flags
+
+LOW_BYTE_FIRST = np.dtype("<u2")
+THREE_WORDS = Struct("<3H")
 
 
 def reset() -> Words:
@@ -52,8 +57,7 @@ def write_image(words: object, left: int = 0, top: int = 0, planes: int = 10) ->
     if elements <= most:
         most -= most % elements
     starts = range(0, flat.size, most)
-    window = operand_words("window", (left, top, left + elements - 1, top + lines - 1))
-    head = encode(normal("WI", {"window": window}, length=2 * min(most, flat.size)))
+    head = image_head(left, top, left + elements - 1, top + lines - 1, 2 * min(most, flat.size))
     stream = np.empty(flat.size + len(head) + 2 * (len(starts) - 1), np.uint16)
     place = 0
     for start in starts:
@@ -64,6 +68,14 @@ def write_image(words: object, left: int = 0, top: int = 0, planes: int = 10) ->
         stream[place : place + part.size] = part
         place += part.size
     return stream
+
+
+@lru_cache(maxsize=64, typed=True)
+def image_head(left: int, top: int, right: int, bottom: int, length: int) -> Words:
+    """The words of a WI with a window, up to its data."""
+    head = encode(normal("WI", {"window": (left, top, right, bottom)}, length=length))
+    head.flags.writeable = False
+    return head
 
 
 def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple[Words, int]]:
@@ -81,11 +93,12 @@ def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple
 def load_entries(first: int, colors: object, entries: int = 1024) -> Words:
     """LAM: (n, 3) colors, 0 to 255, for the entries from `first` on, in the 24-bit format."""
     checked = checked_colors(first, colors, entries)
-    stream = np.zeros(3 + 2 * len(checked), "<u2")
-    stream[:3] = FORM_OF_NAME["LAM"].opcode << 8, 2 * first, 4 * len(checked)
+    data = checked.tobytes()
     # In the memory of a VAX the two words of an entry are the bytes blue, green, red, 0.
-    stream[3:].view(np.uint8).reshape(-1, 4)[:, 2::-1] = checked
-    return stream.astype(np.uint16, copy=False)
+    memory = bytearray(6 + 4 * len(checked))
+    memory[6::4], memory[7::4], memory[8::4] = data[2::3], data[1::3], data[0::3]
+    memory[:6] = THREE_WORDS.pack(FORM_OF_NAME["LAM"].opcode << 8, 2 * first, 4 * len(checked))
+    return np.frombuffer(memory, LOW_BYTE_FIRST)
 
 
 def load_short_entries(first: int, colors: object, entries: int = 1024) -> Words:
