@@ -70,9 +70,18 @@ class FrameBuffer:
 
         Where `dots` are given, only those are written.
         """
-        size = window.width * window.height
+        along, runs = order.inner_and_outer(window)
+        size = along * runs
         if size == 0:
             return start
+        inner, outer = order.entry(window, start)
+        count, rest = divmod(len(words), along)
+        if dots is None and inner == rest == 0 and 0 <= outer < outer + count <= runs:
+            # The plain case: whole runs, none of them twice.
+            corner = order.corner(window)
+            entered = order.stepped(corner, 0, outer)
+            self.write_block(entered, order, words.reshape(count, along), enable)
+            return order.stepped(corner, 0, (outer + count) % runs)
         before = order.words_before(window, start)
         if 0 < before < len(words):
             head, tail = (None, None) if dots is None else (dots[:before], dots[before:])

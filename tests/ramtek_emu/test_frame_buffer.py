@@ -41,6 +41,21 @@ def test_a_run_writes_what_a_walk_word_by_word_writes(
 
 
 @quick
+@given(rasters(), windows(), scan_codes, st.integers(0, 12), st.integers(0, 14), masks)
+def test_whole_runs_of_a_window_are_written_as_a_walk_writes_them(
+    raster: NDArray[np.uint16], window: Window, code: int, first: int, count: int, mask: int
+) -> None:
+    order = SCAN_ORDERS[code]
+    along, runs = order.inner_and_outer(window)
+    start = order.stepped(order.corner(window), 0, first % runs)
+    words = [(number * 37) & 1023 for number in range(along * count)]
+    buffer, twin = filled(raster), raster.tolist()
+    after = buffer.write_run(window, order, start, np.array(words, np.uint16), WriteEnable(mask))
+    assert after == reference.write_run(twin, window, code, start, words, mask & 1023, WriteEnable().window)
+    assert buffer.words.tolist() == twin
+
+
+@quick
 @given(rasters(), windows(), scan_codes, points, st.integers(0, 300))
 def test_a_run_reads_what_a_walk_word_by_word_reads(
     raster: NDArray[np.uint16], window: Window, code: int, start: Point, count: int
