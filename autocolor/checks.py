@@ -9,7 +9,6 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import math
-import re
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import Any, TypeVar
@@ -27,8 +26,6 @@ LARGEST_COORDINATE = 1e30
 
 LARGEST_PLACE = 1e36
 """Assumed: an eye and lights have room around the largest object."""
-
-COLOR_PATTERN = re.compile(r"#[0-9a-fA-F]{6}")
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
@@ -65,13 +62,15 @@ def field_names(cls: type) -> tuple[str, ...]:
     return tuple(field.name for field in dataclasses.fields(cls))
 
 
-def with_checked(row: Row, **values: object) -> Row:
+def with_checked(row: Row, values: Mapping[str, object]) -> Row:
     """A copy of a frozen row with some fields changed to values that were checked; nothing is checked again.
 
     What the row computed of itself and keeps goes along: no such thing may depend on these fields.
     """
     copy = object.__new__(type(row))
-    vars(copy).update(vars(row), **values)
+    fields = vars(copy)
+    fields.update(vars(row))
+    fields.update(values)
     return copy
 
 
@@ -132,17 +131,16 @@ def kind(problems: list[str], what: str, value: object, cls: type) -> None:
 
 def color(problems: list[str], what: str, value: object) -> Color:
     """The value as red, green and blue from 0 to 255, when it is "#rrggbb" or three whole numbers."""
-    if isinstance(value, str) and COLOR_PATTERN.fullmatch(value):
-        return (int(value[1:3], 16), int(value[3:5], 16), int(value[5:7], 16))
     try:
+        if isinstance(value, str) and len(value) == 7 and value[0] == "#":
+            # Six hexadecimal digits with nothing between them make three bytes.
+            red, green, blue = bytes.fromhex(value[1:])
+            return (red, green, blue)
         given = list(value)  # type: ignore[call-overload]
-        words = any(isinstance(part, (str, bytes, bool)) for part in given)
-        parts = [] if words else [int(part) for part in given]
-        if parts != given:
-            parts = []
+        parts = [int(part) for part in given if not isinstance(part, (str, bytes, bool))]
+        if parts == given and len(parts) == 3 and min(parts) >= 0 and max(parts) <= 255:
+            return (parts[0], parts[1], parts[2])
     except (TypeError, ValueError, OverflowError):
-        parts = []
-    if len(parts) != 3 or not all(0 <= part <= 255 for part in parts):
-        problems.append(f'{what} must be "#rrggbb" or three whole numbers from 0 to 255, not {value!r}')
-        return (0, 0, 0)
-    return (parts[0], parts[1], parts[2])
+        pass
+    problems.append(f'{what} must be "#rrggbb" or three whole numbers from 0 to 255, not {value!r}')
+    return (0, 0, 0)

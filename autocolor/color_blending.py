@@ -12,7 +12,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.rounding import half_up, halves_up
+from autocolor.rounding import half_up
 from autocolor.tables import Paint
 
 
@@ -34,13 +34,20 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     blend weighs the colors and the level darkens them, so that a blend never changes how bright a level
     is when the two colors are alike. With the blend at the maximum there is no shift.
     """
-    level = np.arange(levels)
-    begin = blend_level(paint, levels)
-    weight = np.maximum(level - begin, 0) / max(levels - 1 - begin, 1) * (paint.light_percentage / 100)
-    share = floor + (1 - floor) * level / max(levels - 1, 1)
-    ramps = np.stack([(1 - weight) * share, weight * share], axis=1)
-    colors = ramps @ np.array([paint.object_color, paint.light_color], np.float64)
-    # Mixing in floats may miss a whole color by the last bit, just below a half.
-    entries: npt.NDArray[np.uint8] = halves_up(colors + 1e-9).astype(np.uint8)
+    shares = color_shares(blend_level(paint, levels), paint.light_percentage, levels, floor)
+    colors = shares @ np.array((paint.object_color, paint.light_color), np.float64)
+    # Mixing in floats may miss a whole color by the last bit, just below a half; then cut off the fractions.
+    entries: npt.NDArray[np.uint8] = (colors + (0.5 + 1e-9)).astype(np.uint8)
     entries.flags.writeable = False
     return entries
+
+
+@lru_cache(maxsize=512)
+def color_shares(begin: int, percentage: float, levels: int, floor: float) -> npt.NDArray[np.float64]:
+    """How much of the object color and, from `begin` on, of the light color each level has, (levels, 2)."""
+    level = np.arange(levels)
+    weight = np.maximum(level - begin, 0) / max(levels - 1 - begin, 1) * (percentage / 100)
+    share = floor + (1 - floor) * level / max(levels - 1, 1)
+    shares = np.stack([(1 - weight) * share, weight * share], axis=1)
+    shares.flags.writeable = False
+    return shares

@@ -64,12 +64,6 @@ class Reflectance:
     def __post_init__(self) -> None:
         vars(self).update(_checked(REFLECTANCE_CHECKS, vars(self)))
 
-    def replace(self, **changes: Any) -> Reflectance:
-        """The properties with some of them changed."""
-        return with_checked(
-            self, **_checked(REFLECTANCE_CHECKS, known_fields(Reflectance, changes, "reflectance"))
-        )
-
 
 @dataclass(frozen=True)
 class Paint:
@@ -88,10 +82,6 @@ class Paint:
     def __post_init__(self) -> None:
         vars(self).update(_checked(PAINT_CHECKS, vars(self)))
 
-    def replace(self, **changes: Any) -> Paint:
-        """The paint with some fields changed."""
-        return with_checked(self, **_checked(PAINT_CHECKS, known_fields(Paint, changes, "paint")))
-
 
 Check = Callable[[list[str], str, object], object]
 REFLECTANCE_CHECKS: Mapping[str, Check] = dict.fromkeys(
@@ -103,14 +93,14 @@ PAINT_CHECKS: Mapping[str, Check] = {
     "blend": partial(finite, at_least=0.0, at_most=1.0),
     "light_percentage": partial(finite, at_least=0.0, at_most=100.0),
 }
-TABLE_OF_FIELD = dict.fromkeys(REFLECTANCE_CHECKS, "reflectance") | dict.fromkeys(PAINT_CHECKS, "paint")
-"""The fields that a surface has in its reflectance and in its paint."""
 
 
 def _checked(checks: Mapping[str, Check], values: Mapping[str, object]) -> dict[str, object]:
     """The values of some fields as they are held; InputError names every one that breaks a rule."""
     problems: list[str] = []
-    checked = {name: checks[name](problems, name, value) for name, value in values.items()}
+    checked = {}
+    for name, value in values.items():
+        checked[name] = checks[name](problems, name, value)
     if problems:
         raise InputError(problems)
     return checked
@@ -149,20 +139,32 @@ class Surface:
     def replace(self, **changes: Any) -> Surface:
         """The surface with some fields changed, those of its reflectance and of its paint among them."""
         own: dict[str, object] = {}
-        inner: dict[str, dict[str, object]] = {}
+        reflectance: dict[str, object] = {}
+        paint: dict[str, object] = {}
         for name, value in changes.items():
-            table = TABLE_OF_FIELD.get(name)
-            (own if table is None else inner.setdefault(table, {}))[name] = value
+            table = paint if name in PAINT_CHECKS else reflectance if name in REFLECTANCE_CHECKS else own
+            table[name] = value
         surface = self
         if own:
-            names = [*field_names(Surface), *TABLE_OF_FIELD]
+            names = [*field_names(Surface), *REFLECTANCE_CHECKS, *PAINT_CHECKS]
             surface = dataclasses.replace(self, **known_fields(Surface, own, f"surface {self.name!r}", names))
+        tables: dict[str, object] = {}
         try:
-            tables = {table: getattr(surface, table).replace(**values) for table, values in inner.items()}
+            if reflectance:
+                tables["reflectance"] = with_checked(
+                    surface.reflectance, _checked(REFLECTANCE_CHECKS, reflectance)
+                )
+            if paint:
+                tables["paint"] = with_checked(surface.paint, _checked(PAINT_CHECKS, paint))
         except InputError as error:
             raise InputError([f"surface {self.name!r}: {problem}" for problem in error.problems]) from None
-        return with_checked(surface, **tables)
+        return with_checked(surface, tables)
 
     def is_but_for_paint(self, other: Surface) -> bool:
         """Whether the two surfaces differ in their paint at most."""
-        return with_checked(self, paint=other.paint) == other
+        return (self.name, self.reflectance, self.two_sided, self.levels) == (
+            other.name,
+            other.reflectance,
+            other.two_sided,
+            other.levels,
+        )

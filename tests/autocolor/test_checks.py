@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, Light, View
-from autocolor.checks import color, finite, known_fields, nearest, switch, vector
+from autocolor.checks import color, finite, known_fields, nearest, switch, vector, with_checked
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -85,6 +85,12 @@ def test_a_color_is_a_text_or_three_whole_numbers(value: object) -> None:
         "#fff",
         "0a10ff",
         "#0a10ff\n",
+        "#0a 10f",
+        "#0a10 f",
+        "#0a10fg",
+        "#\uff10a10ff",
+        "",
+        b"#0a10ff",
         (1, 2),
         (1, 2, 256),
         (-1, 2, 3),
@@ -131,3 +137,11 @@ def test_an_unknown_field_is_refused_by_name(cls: type, changes: dict[str, Any],
     with pytest.raises(InputError) as refusal:
         known_fields(cls, changes, "place")
     assert str(refusal.value) == sentence
+
+
+def test_a_row_with_checked_values_shares_all_others() -> None:
+    view = View((1, 2, 3), target=(0, 0, 0), field_of_view=40)
+    turned = with_checked(view, {"angle": 5.0})
+    assert turned == view.replace(angle=5)
+    assert turned.eye is view.eye
+    assert view.angle == 0

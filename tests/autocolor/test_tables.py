@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 import pickle
 from typing import Any
@@ -172,6 +173,31 @@ def test_a_refused_field_is_told_with_the_surface() -> None:
         Surface("body").replace(difuse=2)
     with pytest.raises(InputError, match=r"part 'door': there is no 'surfaces'; did you mean 'surface'\?"):
         Part("door", "body").replace(surfaces="glass")
+
+
+def test_every_problem_of_a_change_is_told_and_in_its_order() -> None:
+    with pytest.raises(InputError) as refusal:
+        Surface("body").replace(blend=2, object_color="red")
+    assert refusal.value.problems == (
+        "surface 'body': blend must be a number from 0 to 1, not 2",
+        "surface 'body': object_color must be \"#rrggbb\" or three whole numbers from 0 to 255, not 'red'",
+    )
+
+
+OTHER_VALUES = {
+    "name": "hood",
+    "reflectance": Reflectance(diffuse=0.1),
+    "paint": Paint(blend=0.1),
+    "two_sided": False,
+    "levels": 7,
+}
+
+
+@pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(Surface)])
+def test_surfaces_are_the_same_but_for_paint_when_nothing_else_differs(field: str) -> None:
+    surface = Surface("body")
+    other = surface.replace(**{field: OTHER_VALUES[field]})
+    assert surface.is_but_for_paint(other) == (field == "paint")
 
 
 def test_parts_and_surfaces_of_other_kinds_are_refused_in_a_sentence() -> None:
