@@ -153,7 +153,7 @@ class Scene:
 
     def with_view(self, **changes: Any) -> Scene:
         """The scene with some fields of the view changed."""
-        return with_checked(self, view=self.view.replace(**changes))
+        return with_checked(self, {"view": self.view.replace(**changes)})
 
     def only_lights(self, *names: str) -> Scene:
         """The scene with the named lights on and all others off (Paper: Figure 8)."""
@@ -166,7 +166,7 @@ class Scene:
         # Only names lead from table to table: without a new one there is nothing to check again.
         if "name" in changes or "surface" in changes:
             return self.replace(**{table: rows})
-        return with_checked(self, **{table: rows})
+        return with_checked(self, {table: rows})
 
     @cached_property
     def surface_number_of_part(self) -> tuple[int, ...]:

@@ -12,70 +12,24 @@ memories. Each edit makes a new scene; comparing it with the one before tells wh
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from autocolor.checks import nearest
-from autocolor.color_blending import entries_of
 from autocolor.errors import UsageError
-from autocolor.intensity_mapping import words_of
-from autocolor.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
+from autocolor.level_ranges import WORDS, LevelRange
 from autocolor.picture import Picture
 from autocolor.rendering import rendering
 from autocolor.scene import Scene
+from autocolor.shown import Shown, shown
 from autocolor.tables import PAINT_CHECKS, Surface
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
 
 if TYPE_CHECKING:
     from os import PathLike
-
-
-@dataclass(frozen=True, eq=False)
-class Shown:
-    """What a display holds of a scene and its picture: the words, the entries, and which are whose."""
-
-    scene: Scene
-    picture: Picture
-    ranges: Mapping[str, LevelRange]
-    words: npt.NDArray[np.uint16]
-
-    @cached_property
-    def entries(self) -> npt.NDArray[np.uint8]:
-        """The whole lookup table, (1024, 3) uint8, read-only."""
-        table = np.zeros((WORDS, 3), np.uint8)
-        table[BACKGROUND] = self.scene.background
-        table[SCREENS.first :] = SCREEN_COLORS
-        for name, (first, levels) in self.ranges.items():
-            table[first : first + levels] = self.entries_of(self.scene.surface(name))
-        table.flags.writeable = False
-        return table
-
-    def entries_of(self, surface: Surface) -> npt.NDArray[np.uint8]:
-        """The entries of the range of a surface, (levels, 3) uint8, read-only."""
-        floor = _floor(self.scene, self.picture, surface.name) if self.scene.contrast == "floor" else 0.0
-        return entries_of(surface.paint, self.ranges[surface.name].levels, floor)
-
-
-def shown(scene: Scene, picture: Picture, before: Shown | None = None) -> Shown:
-    """What a display holds of a scene with its picture; `before` lends the words if they did not change."""
-    in_use = {scene.parts[number].surface for number in scene.mesh.parts_in_use}
-    ranges = level_ranges(scene.surfaces, in_use)
-    if (
-        before is not None
-        and before.picture is picture
-        and before.ranges == ranges
-        and before.scene.scaling == scene.scaling
-        and before.scene.mapping == scene.mapping
-    ):
-        words = before.words
-    else:
-        words = words_of(picture, ranges, scene.scaling, scene.mapping)
-    return Shown(scene, picture, ranges, words)
 
 
 def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
@@ -101,35 +55,35 @@ def configuration_of(display: HostPort) -> Configuration:
 
 
 def repainted(before: Scene, now: Scene) -> list[Surface] | None:
-    """The surfaces in another paint, where nothing else differs; None where something does."""
-    if now.differing_fields(before) != ["surfaces"] or len(before.surfaces) != len(now.surfaces):
+    """The surfaces in another paint, where nothing else of them differs; None where something does."""
+    if len(before.surfaces) != len(now.surfaces):
         return None
-    pairs = [pair for pair in zip(before.surfaces, now.surfaces, strict=True) if pair[0] is not pair[1]]
-    return [new for _, new in pairs] if all(new.is_but_for_paint(old) for old, new in pairs) else None
+    surfaces = []
+    for old, new in zip(before.surfaces, now.surfaces, strict=True):
+        if new is not old:
+            if not new.is_but_for_paint(old):
+                return None
+            surfaces.append(new)
+    return surfaces
 
 
 def _send(before: Shown | None, now: Shown, display: HostPort) -> None:
     """Send the entries and the words that differ."""
-    components = WORDS * 3
-    changed = np.flatnonzero(before.entries != now.entries) if before is not None else np.arange(components)
-    if len(changed):
-        first, last = int(changed[0]) // 3, int(changed[-1]) // 3
-        _send_entries(first, now.entries[first : last + 1], display)
+    if before is None:
+        display.send(encoder_of_entries(display)(0, now.entries))
+    elif not now.has_entries_of(before):
+        changed = np.flatnonzero((before.entries != now.entries).any(axis=1))
+        if len(changed):
+            first, last = int(changed[0]), int(changed[-1])
+            display.send(encoder_of_entries(display)(first, now.entries[first : last + 1]))
     if before is None or before.words is not now.words:
         display.send(instructions.write_image(now.words))
 
 
-def _send_entries(first: int, entries: npt.NDArray[np.uint8], display: HostPort) -> None:
+def encoder_of_entries(display: HostPort) -> Callable[[int, npt.NDArray[np.uint8]], npt.NDArray[np.uint16]]:
+    """What makes the instruction that loads entries from a first one on, in the display's format."""
     short = configuration_of(display).entry_format is EntryFormat.WORD_12
-    load = instructions.load_short_entries if short else instructions.load_entries
-    display.send(load(first, entries))
-
-
-def _floor(scene: Scene, picture: Picture, name: str) -> float:
-    """The minimum as a fraction of the maximum, of the surface or of the whole object."""
-    number = 0 if scene.scaling == "object" else picture.surfaces.index(name) + 1
-    extent = picture.relative_ranges.get(number)
-    return extent.minimum / extent.maximum if extent is not None and extent.maximum > 0 else 0.0
+    return instructions.load_short_entries if short else instructions.load_entries
 
 
 class Studio:
@@ -142,6 +96,7 @@ class Studio:
     def __init__(self, scene: Scene, display: HostPort) -> None:
         configuration = configuration_of(display)
         self._display = display
+        self._load_entries = encoder_of_entries(display)
         self._rendering = rendering(scene, configuration.shown_lines, configuration.shown_elements)
         self._shown = shown(scene, self._rendering.picture)
         self._done: list[Scene] = []
@@ -204,8 +159,10 @@ class Studio:
         A drag is many edits and one step. A scene that equals the current one is no step.
         """
         before = self.scene
-        if not self._show(scene):
+        differing = scene.differing_fields(before)
+        if not differing:
             return
+        self._show(scene, differing)
         if not (same_step and self._done):
             self._done.append(before)
         self._undone.clear()
@@ -243,23 +200,22 @@ class Studio:
         if not source:
             return False
         before = self.scene
-        self._show(source[-1])
+        self._show(source[-1], source[-1].differing_fields(before))
         source.pop()
         target.append(before)
         return True
 
-    def _show(self, scene: Scene) -> bool:
-        """Compute what changed and send it, if anything did; nothing is kept of a scene that is refused."""
+    def _show(self, scene: Scene, differing: list[str]) -> None:
+        """Compute what changed and send it; nothing is kept of a scene that is refused."""
         before = self._shown
-        surfaces = repainted(before.scene, scene)
+        surfaces = repainted(before.scene, scene) if differing == ["surfaces"] else None
         if surfaces is not None:
             # Another color is no other intensity: the picture and its words stay.
             now = Shown(scene, before.picture, before.ranges, before.words)
             for surface in surfaces:
                 if surface.name in now.ranges:
-                    _send_entries(now.ranges[surface.name].first, now.entries_of(surface), self._display)
-        elif scene.equals(before.scene):
-            return False
+                    first = now.ranges[surface.name].first
+                    self._display.send(self._load_entries(first, now.entries_of(surface)))
         else:
             picture = before.picture
             rendered = rendering(scene, picture.lines, picture.elements, self._rendering)
@@ -267,7 +223,6 @@ class Studio:
             _send(before, now, self._display)
             self._rendering = rendered
         self._shown = now
-        return True
 
     def _repr_png_(self) -> bytes:
         from ramtek_emu.png import png_bytes

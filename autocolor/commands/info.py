@@ -40,7 +40,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
     """The facts of a scene as values that JSON can hold."""
     from autocolor.files.quad_shapes import quad_shapes
     from autocolor.rendering import render
-    from autocolor.studio import shown
+    from autocolor.shown import shown
 
     scene = report.scene
     mesh = scene.mesh

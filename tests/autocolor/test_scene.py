@@ -140,6 +140,16 @@ def test_a_table_of_something_else_is_refused(rows: dict[str, Any]) -> None:
         scene_of(cube()).replace(**rows)
 
 
+def test_the_fields_that_differ_are_named() -> None:
+    scene = scene_of(cube())
+    assert scene.differing_fields(scene.replace(ambient=scene.ambient)) == []
+    assert scene.differing_fields(scene.with_surface("cube", blend=0.1).replace(ambient=3)) == [
+        "surfaces",
+        "ambient",
+    ]
+    assert scene.differing_fields(scene.replace(mesh=cube())) == ["mesh"]
+
+
 def test_an_unknown_field_of_a_scene_is_refused() -> None:
     with pytest.raises(InputError, match=r"scene: there is no 'ambiant'; did you mean 'ambient'\?"):
         scene_of(cube()).replace(ambiant=1)

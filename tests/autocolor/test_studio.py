@@ -255,6 +255,45 @@ def test_a_drag_is_one_step() -> None:
     assert held(display) == before
 
 
+def test_a_drag_that_comes_back_to_where_it_began_is_undone_to_the_scene_itself() -> None:
+    studio, _ = opened()
+    scene, blend = studio.scene, studio.scene.surface("body").paint.blend
+    studio.recolor("body", blend=0.5)
+    studio.edit(studio.scene.with_surface("body", blend=blend), same_step=True)
+    assert studio.is_changed
+    assert studio.undo()
+    assert studio.scene is scene
+    assert not studio.is_changed
+
+
+def test_several_surfaces_in_other_paints_are_recolored_at_once() -> None:
+    studio, display = opened()
+    written = display.frame_buffer.written
+    scene = studio.scene.with_surface("body", blend=0.1).with_surface("wheels", object_color="#102030")
+    studio.edit(scene)
+    assert display.frame_buffer.written == written
+    assert held(display) == fresh(scene)
+
+
+def test_a_surface_that_no_part_has_is_recolored_without_sending_anything() -> None:
+    scene = car()
+    studio, display = opened(scene.replace(surfaces=[*scene.surfaces, Surface("spare")]))
+    written = display.lookup_table.written
+    studio.recolor("spare", object_color="#102030")
+    assert studio.scene.surface("spare").paint.object_color == (16, 32, 48)
+    assert display.lookup_table.written == written
+    assert studio.undo()
+
+
+@pytest.mark.parametrize("contrast", ["stretch", "floor"])
+def test_a_light_sends_entries_only_where_the_floor_of_a_surface_moves(contrast: str) -> None:
+    studio, display = opened(car().replace(contrast=contrast))
+    written = display.lookup_table.written
+    studio.light("key", intensity=2.5)
+    assert (display.lookup_table.written > written) == (contrast == "floor")
+    assert held(display) == fresh(studio.scene)
+
+
 def test_an_edit_that_is_refused_changes_nothing() -> None:
     studio, display = opened()
     studio.recolor("body", blend=0.5)
