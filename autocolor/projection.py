@@ -23,6 +23,7 @@ ROUNDING = 1e-6
 """In pixels, far above what the cut of an edge is rounded by."""
 
 POLYGONS_AT_ONCE = 1 << 15
+NODES_AT_ONCE = 1 << 14
 
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
@@ -71,12 +72,7 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     """The polygons of the mesh that may be seen, each crossed at most twice by any line."""
     camera = camera_space(mesh, view)
 
-    # Project the nodes.
-    inverse_depth = 1.0 / np.maximum(camera.places[2], camera.near)
-    scale = focal_length(lines, view.field_of_view) * inverse_depth
-    across = camera.places[0] * scale + elements / 2
-    down = camera.places[1] * scale + lines / 2
-    first_line = np.clip(np.ceil(down - 0.5), 0, lines).astype(np.intp)
+    across, down, inverse_depth, first_line = _on_raster(camera, view, lines, elements)
 
     # Find the polygons that may be seen.
     columns = camera.corners.shape[1]
@@ -114,6 +110,25 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
         from_behind,
         first_crossing,
     )
+
+
+def _on_raster(
+    camera: CameraPolygons, view: View, lines: int, elements: int
+) -> tuple[Floats, Floats, Floats, Numbers]:
+    """Of each node the place across and down, the inverse depth, and the first line at or below it."""
+    count = camera.places.shape[1]
+    across, down, inverse_depth = np.empty(count), np.empty(count), np.empty(count)
+    first_line = np.empty(count, np.intp)
+    focal = focal_length(lines, view.field_of_view)
+    for first in range(0, count, NODES_AT_ONCE):
+        some = slice(first, first + NODES_AT_ONCE)
+        x, y, depth = camera.places[:, some]
+        np.divide(1.0, np.maximum(depth, camera.near), out=inverse_depth[some])
+        scale = focal * inverse_depth[some]
+        np.add(x * scale, elements / 2, out=across[some])
+        np.add(y * scale, lines / 2, out=down[some])
+        first_line[some] = np.clip(np.ceil(down[some] - 0.5), 0, lines)
+    return across, down, inverse_depth, first_line
 
 
 class Polygons(NamedTuple):
