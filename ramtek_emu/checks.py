@@ -52,11 +52,11 @@ def checked_words(words: object, planes: int = 10) -> NDArray[np.uint16]:
 
 def checked_stream(words: object) -> NDArray[np.uint16]:
     """A flat row of 16-bit words as a host sends them; uint16 arrays are taken as they are."""
+    if isinstance(words, np.ndarray) and words.dtype == np.uint16 and words.ndim == 1:
+        return words
     array = whole_numbers(words, "a stream of words", WordsError)
     if array.ndim != 1:
         raise WordsError(f"a stream of words must be one row, not of shape {array.shape}; flatten it first")
-    if array.dtype == np.uint16:
-        return array  # type: ignore[return-value]
     if array.size and (array.max() > 0xFFFF or array.min() < 0):
         (place,) = np.argwhere((array < 0) | (array > 0xFFFF))[0]
         raise WordsError(
