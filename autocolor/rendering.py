@@ -128,7 +128,11 @@ def _sees_the_same(old: Scene, new: Scene) -> bool:
         old.mesh is new.mesh
         and old.view == new.view
         and old.surface_number_of_part == new.surface_number_of_part
-        and [surface.two_sided for surface in old.surfaces] == [surface.two_sided for surface in new.surfaces]
+        and (
+            old.surfaces is new.surfaces
+            or [surface.two_sided for surface in old.surfaces]
+            == [surface.two_sided for surface in new.surfaces]
+        )
     )
 
 
@@ -136,6 +140,9 @@ def _composes_the_same(old: Scene, new: Scene) -> bool:
     return (
         old.ambient == new.ambient
         and old.lights == new.lights
-        and [(surface.name, surface.reflectance) for surface in old.surfaces]
-        == [(surface.name, surface.reflectance) for surface in new.surfaces]
+        and (
+            old.surfaces is new.surfaces
+            or [(surface.name, surface.reflectance) for surface in old.surfaces]
+            == [(surface.name, surface.reflectance) for surface in new.surfaces]
+        )
     )

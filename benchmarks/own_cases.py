@@ -47,7 +47,8 @@ def own_cases(scene: Scene) -> Iterator[Case]:
     yield Case(COPY, lambda: np.copyto(copy, session.field))
     # What a scan-out owes to words that were written before it is not its own.
     yield Case(SCAN_OUT, session.scan_out, session.scan_out)
-    yield Case(ENTRIES, entries)
+    # The whole table is made only when somebody asks for it.
+    yield Case(ENTRIES, entries, lambda: session.studio.entries)
     yield Case(STREAM, words)
     yield Case(RECOLOR, session.recolor, session.scan_out)
     yield Case(MAPPING, lambda: session.studio.edit(session.studio.scene.replace(mapping=next(curves))))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import cycle
+from itertools import count, cycle
 from pathlib import Path
 
 import numpy as np
@@ -59,7 +59,8 @@ class Session:
         self.display = Ramtek9300(configuration)
         self.studio = autocolor.Studio(scene, self.display)
         self.field = np.zeros((lines, elements), np.uint32)
-        self.colors = cycle(["#b01020", "#1f3f8f"])
+        # Never the same twice, for what was made for a color before may be kept.
+        self.colors = (f"#{number % 0x1000000:06x}" for number in count(0xB01020, 0x101))
 
     def scan_out(self) -> None:
         """Scan the field out."""
