@@ -20,7 +20,8 @@ def power_of(cosines: Singles, exponent: float) -> Singles:
     takes to find the cosines which are not negligible and to raise those alone; a few products take half of
     that again; a clip takes a quarter of the time of a minimum and a maximum.
     """
-    if exponent == 0:
+    single = np.float32(min(exponent, LARGEST))
+    if single == 0:
         return np.ones_like(cosines)
     # Rounding may leave a cosine above 1, which a large exponent would make a light of its own.
     powers: Singles = np.clip(cosines, np.float32(0), np.float32(1))
@@ -28,7 +29,7 @@ def power_of(cosines: Singles, exponent: float) -> Singles:
         return _multiplied(powers, int(exponent))
     with np.errstate(divide="ignore", over="ignore", under="ignore"):
         np.log(powers, out=powers)
-        powers *= np.float32(min(exponent, LARGEST))
+        powers *= single
         return np.exp(powers, out=powers)
 
 

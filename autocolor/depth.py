@@ -1,8 +1,11 @@
 """Depth as a whole number: what the hidden-surface algorithms compare.
 
-The inverse depth is linear along a line of the raster, so in whole numbers it is stepped without any
-rounding: which of two spans is nearer is the same wherever the count begins, and the batch and the literal
-algorithm agree at every pixel. Below the depth a key has room for the number of the span.
+The inverse depth is linear along a line of the raster. Its first value and its step are rounded to whole
+numbers once, and then stepped without any rounding: a running sum over all spans is exact, and the batch and
+the literal algorithm find the same number at every pixel. It is off by at most half a unit for each pixel
+from the left end of the span.
+
+Below the depth a key has room for the number of the span.
 """
 
 from __future__ import annotations
@@ -20,7 +23,7 @@ KEY_BITS = 62
 
 @dataclass(frozen=True)
 class DepthScale:
-    """Keys are whole multiples of `span_limit`, `factor` of them the inverse depth 1.
+    """Keys are whole multiples of `span_limit`; the inverse depth 1 is `factor` of them.
 
     The numbers of all spans are below `span_limit`, a power of two.
     """
@@ -29,13 +32,16 @@ class DepthScale:
     factor: float
 
     def key(self, inverse_depth: float) -> int:
-        """The key of an inverse depth, or of a difference of two."""
+        """The key of an inverse depth, or of a difference of two.
+
+        Halves go to the even number: it is no level that anyone sees, and as exact either way.
+        """
         return round(inverse_depth * self.factor) * self.span_limit
 
     def keys(self, inverse_depth: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
         """The keys of inverse depths, or of differences of them; a number of a span can be added.
 
-        A difference beyond the largest key stands for one that is stepped over no pixel.
+        A difference beyond the largest key can only belong to a span of one pixel, which takes no step.
         """
         whole = np.rint(inverse_depth * self.factor)
         most = 2.0**KEY_BITS / self.span_limit
@@ -43,7 +49,8 @@ class DepthScale:
 
 
 def depth_scale(projected: Projection) -> DepthScale:
-    """The finest scale that holds the nearest node and the numbers of all spans."""
+    """The finest scale that holds the nearest corner of a polygon and the numbers of all spans."""
     span_limit = 1 << (int(projected.first_crossing[-1]) + 1).bit_length()
-    largest = float(projected.inverse_depth.max(initial=1e-300))
+    # In units no corner is farther than 1.
+    largest = float(projected.inverse_depth[projected.corners].max(initial=1.0))
     return DepthScale(span_limit, 2.0 ** (KEY_BITS - span_limit.bit_length() + 1) / largest)

@@ -75,7 +75,7 @@ def edges_of_sides(projected: Projection, columns: Numbers) -> tuple[Edges, Edge
     lines follow each other without a gap. Edges that cross no line are left out.
     """
     lines = projected.first_line[np.take(projected.corners, columns, axis=1)]
-    count, across = len(columns), projected.corners.shape[1]
+    count, polygons = len(columns), projected.corners.shape[1]
     # Walk round each polygon from its highest corner, as it runs.
     highest = least_of_four((lines << 2) + np.arange(4)[:, None]) & 3
     walk = (highest[:, None] + np.arange(4)) & 3
@@ -83,14 +83,14 @@ def edges_of_sides(projected: Projection, columns: Numbers) -> tuple[Edges, Edge
     walk += np.arange(count)[:, None]
     line = np.take(lines, walk)
 
-    def side(way: Side, corners: list[int]) -> Edges:
+    def side(turn: Side, corners: list[int]) -> Edges:
         falls = np.zeros((count, 4), np.bool_)
         for step, (upper, lower) in enumerate(pairwise(corners)):
             np.less(line[:, upper], line[:, lower], out=falls[:, step])
         found = np.flatnonzero(falls)
         polygon = found >> 2
-        top, column = (highest[polygon] + way * (found & 3)) & 3, columns[polygon]
-        return edges(projected, top * across + column, ((top + way) & 3) * across + column)
+        top, column = (highest[polygon] + turn * (found & 3)) & 3, columns[polygon]
+        return edges(projected, top * polygons + column, ((top + turn) & 3) * polygons + column)
 
     return side(DOWN_SIDE, [0, 1, 2, 3]), side(UP_SIDE, [0, 3, 2, 1])
 

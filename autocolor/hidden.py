@@ -44,8 +44,9 @@ def not_hidden(front: Keys, projected: Projection, scale: DepthScale, columns: N
         [farthest[first, above], farthest[last, above], farthest[first, below], farthest[last, below]]
     )
 
-    # What is between the corners may round to a little more than the nearest of them.
-    nearest = scale.keys(most_of_four(projected.inverse_depth[corners])) + 2 * scale.span_limit
+    # A step that is rounded may leave the corners behind by half a unit a pixel.
+    nearest = scale.keys(most_of_four(projected.inverse_depth[corners]))
+    nearest += (extent // 2 + 2) * scale.span_limit
     kept: Numbers = columns[(extent > size) | (nearest >= behind)]
     return kept
 

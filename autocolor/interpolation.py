@@ -8,17 +8,7 @@ import numpy.typing as npt
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, focal_length
 from autocolor.runs import batches, runs
-from autocolor.seen import (
-    MIRROR,
-    MIRROR_POINT,
-    NORMAL,
-    NORMAL_POINT,
-    POINT,
-    POINT_SQUARED,
-    ROW_COUNT,
-    Seen,
-    surface_slices,
-)
+from autocolor.seen import MIRROR, NORMAL, POINT, ROW_COUNT, Seen, keep_products, products, surface_slices
 from autocolor.segments import DEPTH, NORMALS, POINTS, RAY, along_segments, visible_segments
 from autocolor.view import View
 
@@ -78,36 +68,27 @@ def seen_of_spans(
 
 def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step: np.float32) -> None:
     """Fill the rows of some pixels from what is linear along their segments."""
-    # Place the point: it goes along the segment as `along` over the inverse depth does.
+    # Place the point and the normal: they go along the segment as `along` over the inverse depth does.
     inverse_depth = step[DEPTH] * along
     inverse_depth += start[DEPTH]
-    np.divide(along, inverse_depth, out=inverse_depth)
-    step[POINTS] *= inverse_depth
-    np.add(start[POINTS], step[POINTS], out=rows[POINT])
-    # Make the normal a unit vector.
-    step[NORMALS] *= along
+    way = np.divide(along, inverse_depth, out=inverse_depth)
     normal = rows[NORMAL]
-    np.add(start[NORMALS], step[NORMALS], out=normal)
-    length = np.sqrt(_products(normal, normal))
+    for out, linear in ((rows[POINT], POINTS), (normal, NORMALS)):
+        step[linear] *= way
+        np.add(start[linear], step[linear], out=out)
+    # Make the normal a unit vector.
+    length = np.sqrt(products(normal, normal))
     # A polygon without area has a normal of 0, and keeps it.
     length += np.float32(1e-30)
     normal *= np.reciprocal(length, out=length)
     # Make the ray a unit vector.
     ray = start[RAY]
     ray[0] += along * ray_step
-    np.sqrt(_products(ray, ray), out=length)
+    np.sqrt(products(ray, ray), out=length)
     ray *= np.reciprocal(length, out=length)
     # Mirror the ray to the eye: M = 2 (N.V) N - V, where V is the ray the other way round.
-    facing = _products(normal, ray)
+    facing = products(normal, ray)
     facing *= np.float32(-2)
     np.multiply(normal, facing, out=rows[MIRROR])
     rows[MIRROR] += ray
-    # Keep the products with the point.
-    for vector, product in ((POINT, POINT_SQUARED), (NORMAL, NORMAL_POINT), (MIRROR, MIRROR_POINT)):
-        _products(rows[vector], rows[POINT], out=rows[product])
-
-
-def _products(one: Singles, other: Singles, out: Singles | None = None) -> Singles:
-    """The products of two rows of vectors, (3, n) each."""
-    products: Singles = np.einsum("ij,ij->j", one, other, out=out)
-    return products
+    keep_products(rows)

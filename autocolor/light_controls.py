@@ -28,8 +28,8 @@ FAR_FLAP = 1e30
 class Controls:
     """One light's controls, made ready for the points of one view.
 
-    `toward` is the unit vector of the light direction in camera space, or None for a point source.
-    `least_cosine` is what cos(L) must reach, None where nothing is cut. `flaps` is (sides, 4): a point
+    `toward` is the unit vector of the light direction in camera space, or None where the light is the same
+    all around; `least_cosine` is what cos(L) must reach, None with it. `flaps` is (sides, 4): a point
     is inside where every row's product with (P, 1) is at least 0.
     """
 
@@ -48,7 +48,7 @@ def controls(light: Light, seen: Seen) -> Controls:
     there too; with C > 0 the hemisphere ends at 90.
     """
     toward, least = None, None
-    if light.axis is not None:
+    if light.axis is not None and (light.concentration > 0 or light.cone_angle is not None):
         toward = seen.camera_direction(light.axis)
         if light.cone_angle is not None:
             # A float32 rounding of the rim keeps a cone that ends on a line of pixels from fraying.
@@ -86,10 +86,9 @@ def inside_flaps(ready: Controls, rows: Singles) -> npt.NDArray[np.bool_] | None
     return within
 
 
-def inside_cone(ready: Controls, cos_light: Singles) -> npt.NDArray[np.bool_] | np.bool_:
-    """Whether each point is in the cone and before the light."""
-    if ready.least_cosine is None:
-        return np.True_
+def inside_cone(ready: Controls, cos_light: Singles) -> npt.NDArray[np.bool_]:
+    """Whether each point is in the cone and before the light; `ready` has a direction."""
+    assert ready.least_cosine is not None
     inside: npt.NDArray[np.bool_] = (
         cos_light > 0 if ready.least_cosine == 0 else cos_light >= np.float32(ready.least_cosine)
     )

@@ -25,6 +25,8 @@ from autocolor.seen import Seen, SurfaceSlice
 from autocolor.shading import DIFFUSE, SPECULAR, LightPlanes
 from autocolor.tables import Surface
 
+LARGEST = float(np.finfo(np.float32).max)
+
 Singles = npt.NDArray[np.float32]
 
 
@@ -152,6 +154,8 @@ def composed(
     `planes` has the two planes of each light that shines. Raises InputError where the sum would leave the
     range of float32: such an intensity is refused by name, never clipped into a level.
     """
+    if not ambient < LARGEST:
+        raise InputError(f"ambient must stay below {LARGEST:.3g}, not {ambient:g}; lower it")
     shining = [light for light in lights if light.name in planes and light.on and light.intensity > 0]
     weights = {}
     for surface in seen.slices:
@@ -194,15 +198,12 @@ def _refuse_overflow(
     name: str, weights: list[tuple[float, float]], shining: list[Light], ambient: float
 ) -> None:
     """Refuse weights whose sum float32 can't hold, naming the light that does most to it."""
-    largest = float(np.finfo(np.float32).max)
     total = ambient + sum(diffuse + specular for diffuse, specular in weights)
-    if math.isfinite(total) and total < largest:
+    if math.isfinite(total) and total < LARGEST:
         return
-    if not weights:
-        raise InputError(f"ambient must stay below {largest:.3g}, not {ambient:g}; lower it")
     light = max(zip(weights, shining, strict=True), key=lambda row: sum(row[0]))[1]
     raise InputError(
-        f"surface {name!r} under light {light.name!r}: intensities must stay below {largest:.3g}, not reach"
+        f"surface {name!r} under light {light.name!r}: intensities must stay below {LARGEST:.3g}, not reach"
         f" {total:g}; lower the light's intensity or the surface's diffuse and specular"
     )
 

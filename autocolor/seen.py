@@ -25,6 +25,18 @@ MIRROR, MIRROR_POINT = slice(8, 11), 11
 ROW_COUNT = 12
 
 
+def products(one: Singles, other: Singles) -> Singles:
+    """The products of vectors, (3, n) each."""
+    each: Singles = np.einsum("ij,ij->j", one, other)
+    return each
+
+
+def keep_products(rows: Singles) -> None:
+    """Write the products with the point into rows whose vectors are there."""
+    for vector, product in ((POINT, POINT_SQUARED), (NORMAL, NORMAL_POINT), (MIRROR, MIRROR_POINT)):
+        np.einsum("ij,ij->j", rows[vector], rows[POINT], out=rows[product])
+
+
 @dataclass(frozen=True, eq=False)
 class SurfaceSlice:
     """The pixels `start` to `stop` of what is seen, all of one surface."""

@@ -2,8 +2,8 @@
 
 Paper: "The Lighting Model": the direction of the normal is computed from the node normals by bilinear
 interpolation, along the edges and then along the span. Departs: on the screens of 1983 that was linear in
-the picture; here it is right in perspective, by interpolating the normal times the inverse depth. Only the
-direction matters, so the inverse depth never has to be divided out again.
+the picture; here it is right in perspective: halfway on the surface between two nodes, and not halfway in the
+picture, the normal is halfway between theirs.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.edges import DOWN_SIDE, UP_SIDE, Side, other_end
+from autocolor.edges import DOWN_SIDE, UP_SIDE, Side, edges, other_end
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, focal_length
 from autocolor.view import View
@@ -96,10 +96,10 @@ def along_segments(
 ) -> tuple[Singles, Singles]:
     """What is stepped along each segment: its value at the first pixel, and what each further pixel adds.
 
-    The values are (10, segments) float32: the point around the middle, which is stepped in proportion to the
-    depth; the normal times the inverse depth, to a scale; the inverse depth; and the ray, whose step is
-    the same for all. The steps are (7, segments). The differences are taken here in float64, so that a point
-    is as exact from afar as from near.
+    The values are (10, segments) float32: the point around the middle and the normal, whose steps count in
+    proportion to the depth; the inverse depth; and the ray, whose step is the same for all. The steps are
+    (7, segments). The differences are taken here in float64, so that a point is as exact from afar as from
+    near.
     """
     count = len(segments.count)
     start, step = np.empty((10, count), np.float32), np.empty((7, count), np.float32)
@@ -128,12 +128,13 @@ def _fill_along(
     depth_step = (up.inverse_depth - down.inverse_depth) / width
     inverse_depth = down.inverse_depth + depth_step * offset
     start[DEPTH], step[DEPTH] = inverse_depth, depth_step
-    # So is the normal times the inverse depth, here to a scale of about 1, which float32 holds from afar too.
-    both = down.inverse_depth + up.inverse_depth
-    for cut in (down, up):
-        cut.normal[...] *= (cut.inverse_depth / both).astype(np.float32)
-    np.divide(up.normal - down.normal, width.astype(np.float32), out=step[NORMALS])
-    np.add(down.normal, step[NORMALS] * offset.astype(np.float32), out=start[NORMALS])
+    # The normal is not: it goes from the one cut to the other as fast as the points of the surface do.
+    weight = offset / width * up.inverse_depth / inverse_depth
+    rate = ((1 - weight) * up.inverse_depth + weight * down.inverse_depth) / width
+    difference = up.normal - down.normal
+    np.multiply(difference, rate.astype(np.float32), out=step[NORMALS])
+    difference *= weight.astype(np.float32)
+    np.add(down.normal, difference, out=start[NORMALS])
 
     # The point is the ray over the inverse depth; one pixel further the ray is `ray_step` more.
     ray = ((element + 0.5 - projected.elements / 2) / focal, (line + 0.5 - projected.lines / 2) / focal, 1.0)
@@ -148,18 +149,18 @@ def _fill_along(
 def _cut(projected: Projection, top: Numbers, side: Side, line: Numbers) -> Cut:
     """Where each edge is cut by its line."""
     bottom = other_end(projected, top, side)
+    edge = edges(projected, top, bottom)
+    # The very numbers that the spans were made of: where a polygon is seen edge-on, others may not be a span.
+    lines_below = line - edge.first_line
+    across = edge.across + lines_below * edge.across_step
+    inverse_depth = edge.inverse_depth + lines_below * edge.inverse_depth_step
+    # Interpolate the normal right in perspective: weighted by the inverse depths of the ends.
     corners, normals = projected.corners.ravel(), projected.corner_normals.ravel()
     a, b = corners[top], corners[bottom]
-    across, inverse_depth, height = projected.across[a], projected.inverse_depth[a], projected.down[a]
-    way = (line + 0.5 - height) / (projected.down[b] - height)
-    bottom_depth = projected.inverse_depth[b]
-    # Interpolate the normal right in perspective: weighted by the inverse depths.
-    weight = way * bottom_depth / (way * bottom_depth + (1 - way) * inverse_depth)
+    share = (line + 0.5 - projected.down[a]) / (projected.down[b] - projected.down[a])
+    top_weight, bottom_weight = (1 - share) * projected.inverse_depth[a], share * projected.inverse_depth[b]
+    weight = (bottom_weight / (top_weight + bottom_weight)).astype(np.float32)
     # Measured: `take` along the second axis has a quarter of the time of an index there.
     normal = np.take(projected.normals, normals[top], axis=1)
-    normal += weight.astype(np.float32) * (np.take(projected.normals, normals[bottom], axis=1) - normal)
-    return Cut(
-        across + way * (projected.across[b] - across),
-        inverse_depth + way * (bottom_depth - inverse_depth),
-        normal,
-    )
+    normal += weight * (np.take(projected.normals, normals[bottom], axis=1) - normal)
+    return Cut(across, inverse_depth, normal)

@@ -19,7 +19,16 @@ import numpy.typing as npt
 from autocolor.light_controls import Controls, concentrated, controls, inside_cone, inside_flaps
 from autocolor.lights import Light
 from autocolor.reflection import phong_diffuse, phong_specular
-from autocolor.seen import MIRROR, MIRROR_POINT, NORMAL, NORMAL_POINT, POINT, POINT_SQUARED, Seen
+from autocolor.seen import (
+    MIRROR,
+    MIRROR_POINT,
+    NORMAL,
+    NORMAL_POINT,
+    POINT,
+    POINT_SQUARED,
+    Seen,
+    keep_products,
+)
 
 CLOSE = 0.02
 """Below this squared distance, as a fraction of the squares it is the difference of, subtract the points."""
@@ -163,6 +172,5 @@ def _around_light(rows: Singles, position: Floats) -> Singles:
     """The rows with their points around the light, for a light so near that differences would cancel."""
     moved = rows.copy()
     moved[POINT] -= position.astype(np.float32)[:, None]
-    for vector, product in ((POINT, POINT_SQUARED), (NORMAL, NORMAL_POINT), (MIRROR, MIRROR_POINT)):
-        np.einsum("ij,ij->j", moved[vector], moved[POINT], out=moved[product])
+    keep_products(moved)
     return moved

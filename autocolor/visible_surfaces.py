@@ -1,4 +1,4 @@
-"""Watkins' scan-line algorithm for all lines at once: which polygon is seen at each pixel, and where.
+"""Watkins' scan-line algorithm for all lines at once: which polygon is seen at each pixel.
 
 Paper: "Introduction", [3, 21]. The steps are those of the literal algorithm in `watkins`, each done for all
 lines before the next: edges are cut by the lines, the two cuts of a polygon on a line bound a span, and the
@@ -55,6 +55,7 @@ def visible_surfaces(
     keep_front_most(front, tops, projected, scale, np.flatnonzero(~projected.from_behind))
     behind = not_hidden(front, projected, scale, np.flatnonzero(projected.from_behind))
     keep_front_most(front, tops, projected, scale, behind)
+    # Of the keys keep the numbers of the spans.
     front &= scale.span_limit - 1
     return seen_of_spans(front, tops, projected, mesh, view, surface_numbers, one_sided)
 
@@ -76,6 +77,7 @@ def keep_front_most(
         spans = spans_of_polygons(projected, scale, columns[first : first + POLYGONS_AT_ONCE])
         tops[0][spans.number] = spans.down_top
         tops[1][spans.number] = spans.up_top
+        # Step the keys over the pixels of each span, and keep the largest at each pixel.
         keys = spans.start + spans.number
         for part, _ in batches(spans.count, FRAGMENTS_AT_ONCE):
             count = spans.count[part]
@@ -115,15 +117,17 @@ def spans_of_polygons(projected: Projection, scale: DepthScale, columns: Numbers
     first_crossing = projected.first_crossing[columns]
     number = runs(first_crossing + 1, projected.first_crossing[columns + 1] - first_crossing)
 
-    # Keep the spans that hold a pixel's center: left <= center < right.
-    begin = _first_center(np.minimum(down_across, up_across), projected.elements)
-    end = _first_center(np.maximum(down_across, up_across), projected.elements)
+    # Pair the cuts to spans, and keep those that hold a pixel's center: left <= center < right.
+    left, right = np.minimum(down_across, up_across), np.maximum(down_across, up_across)
+    begin, end = _first_center(left, projected.elements), _first_center(right, projected.elements)
     kept = np.flatnonzero(end > begin)
-    begin, down_across, down_depth = begin[kept], down_across[kept], down_depth[kept]
+    begin, left, right = begin[kept], left[kept], right[kept]
+    down_is_left = down_across[kept] <= up_across[kept]
+    down_depth, up_depth = down_depth[kept], up_depth[kept]
 
-    # Step the depth from the first of them on.
-    step = (up_depth[kept] - down_depth) / (up_across[kept] - down_across)
-    start = down_depth + (begin + 0.5 - down_across) * step
+    # Step the depth from the left, whichever way the polygon runs, so that twins are equally near.
+    step = (up_depth - down_depth) / np.where(down_is_left, right - left, left - right)
+    start = np.where(down_is_left, down_depth, up_depth) + (begin + 0.5 - left) * step
     return Spans(
         number[kept],
         line[kept] * projected.elements + begin,

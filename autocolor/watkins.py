@@ -43,10 +43,10 @@ class Edge:
 
 
 @dataclass
-class Segment:
-    """What a line sees of one polygon: its samples from `first` to before `beyond`.
+class Span:
+    """What a line sees of one polygon: its pixels from `first` to before `beyond`.
 
-    The depth key is `start` at the first sample and `step` more at each further one. `down_top` and `up_top`
+    The depth key is `start` at the first pixel and `step` more at each further one. `down_top` and `up_top`
     are the tops of its two edges.
     """
 
@@ -59,7 +59,7 @@ class Segment:
     up_top: int
 
     def key(self, element: int) -> tuple[int, int]:
-        """The depth key at a sample, the nearer the larger; of equal ones the later polygon counts."""
+        """The depth key at a pixel, the nearer the larger; of equal ones the later polygon counts."""
         return self.start + (element - self.first) * self.step, self.polygon
 
 
@@ -76,22 +76,22 @@ def watkins(
     scale = depth_scale(projected)
     bucket = y_buckets(projected)
     active: list[Edge] = []
-    segment_at_pixel = np.zeros(lines * elements, np.int64)
+    span_at_pixel = np.zeros(lines * elements, np.int64)
     tops = [(0, 0)]
 
     for line in range(lines):
         # Enter the edges that begin on this line, and drop those that ended above it.
         active = [edge for edge in active if edge.beyond_line > line] + bucket.get(line, [])
-        # Find the visible segments from left to right.
+        # Find the visible spans from left to right.
         numbers: dict[int, int] = {}
-        for segment, first, beyond in visible_segments(segments_of_line(active, scale, line, elements)):
-            if segment.polygon not in numbers:
-                numbers[segment.polygon] = len(tops)
-                tops.append((segment.down_top, segment.up_top))
-            segment_at_pixel[line * elements + first : line * elements + beyond] = numbers[segment.polygon]
+        for span, first, beyond in visible_spans(spans_of_line(active, scale, line, elements)):
+            if span.polygon not in numbers:
+                numbers[span.polygon] = len(tops)
+                tops.append((span.down_top, span.up_top))
+            span_at_pixel[line * elements + first : line * elements + beyond] = numbers[span.polygon]
 
     return seen_of_spans(
-        segment_at_pixel,
+        span_at_pixel,
         np.array(tops, np.int32).T,
         projected,
         mesh,
@@ -127,53 +127,50 @@ def y_buckets(projected: Projection) -> dict[int, list[Edge]]:
     return buckets
 
 
-def segments_of_line(active: list[Edge], scale: DepthScale, line: int, elements: int) -> list[Segment]:
-    """The segments of a line that hold a sample, in the order of their left ends."""
+def spans_of_line(active: list[Edge], scale: DepthScale, line: int, elements: int) -> list[Span]:
+    """The spans of a line that hold a pixel's center, in the order of their left ends."""
     pairs: dict[int, list[Edge]] = {}
     for edge in active:
         pairs.setdefault(edge.polygon, []).append(edge)
-    segments = []
+    spans = []
     for polygon, pair in pairs.items():
         # Pair the cuts of the polygon: the edge that it runs down, and the one that it runs up.
         down, up = sorted(pair, key=lambda edge: not edge.falls)
-        (down_across, down_depth), (up_across, up_depth) = down.cut(line), up.cut(line)
-        first, beyond = (
-            min(max(math.ceil(across - 0.5), 0), elements) for across in sorted((down_across, up_across))
-        )
+        left, right = sorted((down.cut(line), up.cut(line)), key=lambda cut: cut[0])
+        first = min(max(math.ceil(left[0] - 0.5), 0), elements)
+        beyond = min(max(math.ceil(right[0] - 0.5), 0), elements)
         if beyond > first:
-            step = (up_depth - down_depth) / (up_across - down_across)
-            start = down_depth + (first + 0.5 - down_across) * step
-            segments.append(
-                Segment(polygon, first, beyond, scale.key(start), scale.key(step), down.top, up.top)
-            )
-    return sorted(segments, key=lambda segment: segment.first)
+            step = (right[1] - left[1]) / (right[0] - left[0])
+            start = left[1] + (first + 0.5 - left[0]) * step
+            spans.append(Span(polygon, first, beyond, scale.key(start), scale.key(step), down.top, up.top))
+    return sorted(spans, key=lambda span: span.first)
 
 
-def visible_segments(segments: list[Segment]) -> Iterator[tuple[Segment, int, int]]:
-    """The segments that are seen and the samples where they are, from left to right.
+def visible_spans(spans: list[Span]) -> Iterator[tuple[Span, int, int]]:
+    """The spans that are seen and the pixels where they are, from left to right.
 
-    The ends of the segments cut the line into sample spans, within which none begins or ends.
+    The ends of the spans cut the line into intervals, within which none begins or ends.
     """
-    ends = sorted({end for segment in segments for end in (segment.first, segment.beyond)})
-    active: list[Segment] = []
-    entering = iter(segments)
+    ends = sorted({end for span in spans for end in (span.first, span.beyond)})
+    active: list[Span] = []
+    entering = iter(spans)
     following = next(entering, None)
     for first, beyond in pairwise(ends):
-        active = [segment for segment in active if segment.beyond > first]
+        active = [span for span in active if span.beyond > first]
         while following is not None and following.first == first:
             active.append(following)
             following = next(entering, None)
         if active:
-            yield from nearest_in_span(active, first, beyond)
+            yield from nearest_in_interval(active, first, beyond)
 
 
-def nearest_in_span(segments: list[Segment], first: int, beyond: int) -> Iterator[tuple[Segment, int, int]]:
-    """The nearest of the segments at the samples of a span; the span is cut in two until it is one."""
-    nearest = max(segments, key=lambda segment: segment.key(first))
+def nearest_in_interval(spans: list[Span], first: int, beyond: int) -> Iterator[tuple[Span, int, int]]:
+    """The nearest of the spans at the pixels of an interval, which is cut in two until it is one."""
+    nearest = max(spans, key=lambda span: span.key(first))
     # Depths change evenly: what is nearest at both ends is nearest all the way.
-    if all(nearest.key(beyond - 1) >= segment.key(beyond - 1) for segment in segments):
+    if all(nearest.key(beyond - 1) >= span.key(beyond - 1) for span in spans):
         yield nearest, first, beyond
         return
     middle = (first + beyond) // 2
-    yield from nearest_in_span(segments, first, middle)
-    yield from nearest_in_span(segments, middle, beyond)
+    yield from nearest_in_interval(spans, first, middle)
+    yield from nearest_in_interval(spans, middle, beyond)

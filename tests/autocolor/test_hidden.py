@@ -8,7 +8,7 @@ from autocolor import Mesh, View
 from autocolor.depth import depth_scale
 from autocolor.hidden import not_hidden
 from autocolor.projection import projection
-from autocolor.visible_surfaces import keep_front_most, visible_surfaces
+from autocolor.visible_surfaces import keep_front_most
 from tests.autocolor.meshes import sphere
 from tests.autocolor.strategies import meshes, outside_views, views
 
@@ -42,4 +42,3 @@ def test_the_far_side_of_a_ball_is_hidden_but_near_its_rim(distance: float) -> N
     behind = int(projection(sphere(), view, *RASTER).from_behind.sum())
     assert visible <= kept
     assert len(kept) < 0.9 * behind
-    assert set(visible_surfaces(sphere(), view, (1,), *RASTER).polygon_numbers.tolist())

@@ -128,6 +128,14 @@ def test_intensities_that_float32_cannot_hold_are_refused_with_surface_and_light
         render(huge.with_surface("sphere", reflectance=Reflectance(1e300, 0, 1)))
 
 
+def test_an_ambient_that_float32_cannot_hold_is_refused_even_where_nothing_is_seen() -> None:
+    scene = wall_scene().replace(ambient=1e39)
+    for each in (scene, scene.with_view(eye=(0, 40, 0), direction=(0, 1, 0))):
+        with pytest.raises(InputError) as refused:
+            render(each, 9, 12)
+        assert str(refused.value) == "ambient must stay below 3.4e+38, not 1e+39; lower it"
+
+
 def test_a_picture_shows_itself_and_tells_about_itself() -> None:
     picture = render(wall_scene(sphere(), lights=[Light("key", (2, -3, 3))]), 12, 16)
     assert picture._repr_png_().startswith(b"\x89PNG")

@@ -1,0 +1,65 @@
+"""What is linear along a segment, where a polygon is seen edge-on or reaches far beyond the picture."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Mesh, View
+from autocolor.visible_surfaces import visible_surfaces
+from autocolor.watkins import watkins
+from tests.autocolor.strategies import numbers
+
+tenths = st.integers(-20, 20).map(lambda number: number / 10)
+
+
+def panel(*corners: tuple[float, float, float]) -> Mesh:
+    return Mesh(np.array(corners), np.array([[0, 1, 2, 3]]), np.array([0]), ("panel",))
+
+
+@given(tenths, tenths, tenths, st.integers(1, 30).map(lambda number: number / 10))
+def test_a_board_that_is_seen_edge_on_has_points_on_itself(
+    across: float, first: float, low: float, size: float
+) -> None:
+    mesh = panel(
+        (across, first, low),
+        (across, first + size, low),
+        (across, first + size, low + size),
+        (across, first, low + size),
+    )
+    for eye in ((across, first - 3.0, low + 0.3), (across + 1e-9, first - 3.0, low + 0.3)):
+        seen = visible_surfaces(mesh, View(eye, direction=(0, 1, 0), field_of_view=40), (1,), 24, 33)
+        points = seen.points
+        assert np.isfinite(seen.rows).all()
+        assert (np.abs(points[:, 0] - across) < 1e-3 * size).all()
+        assert ((points[:, 1] > first - 0.01 * size) & (points[:, 1] < first + 1.01 * size)).all()
+
+
+@pytest.mark.parametrize("beside", [1e-4, 1e-3, 0.1])
+@pytest.mark.parametrize("turn", [0.0, 0.3, -0.7])
+def test_a_flat_wall_close_beside_the_eye_keeps_its_normal(beside: float, turn: float) -> None:
+    wall = panel((beside, -50, -20), (beside, 70, -20), (beside, 70, 20), (beside, -50, 20))
+    view = View((0.0, 0.0, 0.0), direction=(turn, 1.0, 0.1), field_of_view=60)
+    normals = visible_surfaces(wall, view, (1,), 48, 64).normals
+    assert len(normals)
+    assert normals == pytest.approx(np.tile([-1.0, 0.0, 0.0], (len(normals), 1)), abs=1e-5)
+
+
+@given(numbers(-1, 1), numbers(0.1, 1), numbers(-1, 1), numbers(-0.5, 0.5), st.integers(0, 3))
+def test_of_twins_that_run_against_each_other_the_later_is_seen(
+    left: float, width: float, slope: float, twist: float, first: int
+) -> None:
+    corners = [
+        (left, slope, -0.7),
+        (left + width, -slope, -0.6),
+        (left + width, -slope + twist, 0.5),
+        (left, slope, 0.8),
+    ]
+    backward = np.roll([3, 2, 1, 0], first)
+    mesh = Mesh(np.array(corners), np.array([[0, 1, 2, 3], backward]), np.array([0, 1]), ("one", "other"))
+    view = View((0.3, -4.0, 0.2), target=(0.1, 0.0, 0.0), field_of_view=40)
+    for algorithm in (visible_surfaces, watkins):
+        polygons = algorithm(mesh, view, (1, 2), 40, 53).polygon_numbers
+        assert (polygons == 1).all()
