@@ -51,6 +51,4 @@ class DepthScale:
 def depth_scale(projected: Projection) -> DepthScale:
     """The finest scale that holds the nearest corner of a polygon and the numbers of all spans."""
     span_limit = 1 << (int(projected.first_crossing[-1]) + 1).bit_length()
-    # In units no corner is farther than 1.
-    largest = float(projected.inverse_depth[projected.corners].max(initial=1.0))
-    return DepthScale(span_limit, 2.0 ** (KEY_BITS - span_limit.bit_length() + 1) / largest)
+    return DepthScale(span_limit, 2.0 ** (KEY_BITS - span_limit.bit_length() + 1) / projected.nearest)

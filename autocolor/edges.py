@@ -33,11 +33,13 @@ class Edges:
 
     An edge crosses the `count` lines from `first_line`; `across` (pixels) and `inverse_depth` are its values
     at the center of the first, and the steps what each further line adds. `top` and `bottom` are numbers of
-    its ends in the flat corners of the projection.
+    its ends in the flat corners of the projection, `upper` and `lower` their nodes.
     """
 
     top: Numbers
     bottom: Numbers
+    upper: Numbers
+    lower: Numbers
     first_line: Numbers
     count: Numbers
     across: Floats
@@ -59,6 +61,8 @@ def edges(projected: Projection, top: Numbers, bottom: Numbers) -> Edges:
     return Edges(
         top,
         bottom,
+        a,
+        b,
         first_line,
         projected.first_line[b] - first_line,
         across + below_top * across_step,

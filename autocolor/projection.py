@@ -50,7 +50,8 @@ class Projection:
     column a polygon, numbers of nodes and of columns of `normals`, (3, normals) float32 in camera space.
     `polygon_numbers` are the rows of the mesh's polygon table, `from_behind` whether the eye sees the back.
     The crossings of polygons and lines are numbered polygon by polygon from the top down: those of polygon p
-    from first_crossing[p] to before first_crossing[p + 1], (polygons + 1,) intp.
+    from first_crossing[p] to before first_crossing[p + 1], (polygons + 1,) intp. No corner of a polygon has
+    an inverse depth above `nearest`.
     """
 
     lines: int
@@ -66,6 +67,7 @@ class Projection:
     polygon_numbers: Numbers
     from_behind: npt.NDArray[np.bool_]
     first_crossing: Numbers
+    nearest: float
 
 
 def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
@@ -95,6 +97,10 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
         crossings = most_of_four(first_lines) - least_of_four(first_lines)
     first_crossing = np.zeros(corners.shape[1] + 1, np.intp)
     np.cumsum(crossings, out=first_crossing[1:])
+    nearest = float(inverse_depth.max(initial=1.0))
+    if nearest * camera.near >= 1:
+        # Nodes that are not before the eye stand at the near plane, where no polygon may reach.
+        nearest = float(inverse_depth[corners].max(initial=1.0))
     return Projection(
         lines,
         elements,
@@ -109,6 +115,7 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
         polygon_numbers,
         from_behind,
         first_crossing,
+        nearest,
     )
 
 

@@ -155,9 +155,9 @@ def _cut(projected: Projection, top: Numbers, side: Side, line: Numbers) -> Cut:
     across = edge.across + lines_below * edge.across_step
     inverse_depth = edge.inverse_depth + lines_below * edge.inverse_depth_step
     # Interpolate the normal right in perspective: weighted by the inverse depths of the ends.
-    corners, normals = projected.corners.ravel(), projected.corner_normals.ravel()
-    a, b = corners[top], corners[bottom]
-    share = (line + 0.5 - projected.down[a]) / (projected.down[b] - projected.down[a])
+    a, b, normals = edge.upper, edge.lower, projected.corner_normals.ravel()
+    upper_place = projected.down[a]
+    share = (line + 0.5 - upper_place) / (projected.down[b] - upper_place)
     top_weight, bottom_weight = (1 - share) * projected.inverse_depth[a], share * projected.inverse_depth[b]
     weight = (bottom_weight / (top_weight + bottom_weight)).astype(np.float32)
     # Measured: `take` along the second axis has a quarter of the time of an index there.
