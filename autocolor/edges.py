@@ -49,22 +49,27 @@ class Edges:
 
 
 def edges(projected: Projection, top: Numbers, bottom: Numbers) -> Edges:
-    """The edges between corners; each must cross a line."""
+    """The edges between corners; each must cross a line.
+
+    Measured, here and wherever much is picked: `take` has two thirds of the time of an index.
+    """
     corners = projected.corners.ravel()
-    a, b = corners[top], corners[bottom]
-    first_line = projected.first_line[a]
-    down, across, inverse_depth = projected.down[a], projected.across[a], projected.inverse_depth[a]
-    height = projected.down[b] - down
+    a, b = corners.take(top), corners.take(bottom)
+    first_line = projected.first_line.take(a)
+    down, across, inverse_depth = (
+        table.take(a) for table in (projected.down, projected.across, projected.inverse_depth)
+    )
+    height = projected.down.take(b) - down
     below_top = first_line + 0.5 - down
-    across_step = (projected.across[b] - across) / height
-    inverse_depth_step = (projected.inverse_depth[b] - inverse_depth) / height
+    across_step = (projected.across.take(b) - across) / height
+    inverse_depth_step = (projected.inverse_depth.take(b) - inverse_depth) / height
     return Edges(
         top,
         bottom,
         a,
         b,
         first_line,
-        projected.first_line[b] - first_line,
+        projected.first_line.take(b) - first_line,
         across + below_top * across_step,
         across_step,
         inverse_depth + below_top * inverse_depth_step,
@@ -78,7 +83,7 @@ def edges_of_sides(projected: Projection, columns: Numbers) -> tuple[Edges, Edge
     They are in the order of the polygons, and those of one polygon from its top to its bottom, so that their
     lines follow each other without a gap. Edges that cross no line are left out.
     """
-    lines = projected.first_line[np.take(projected.corners, columns, axis=1)]
+    lines = projected.first_line.take(projected.corners.take(columns, axis=1))
     count, polygons = len(columns), projected.corners.shape[1]
     # Walk round each polygon from its highest corner, as it runs.
     highest = least_of_four((lines << 2) + np.arange(4)[:, None]) & 3

@@ -158,7 +158,7 @@ def _may_be_seen(
     """Those of the polygons from `first` on that cross a line and reach over the center of a pixel."""
     some = slice(first, first + POLYGONS_AT_ONCE)
     corners = camera.corners[:, some]
-    lines, x = first_line[corners], across[corners]
+    lines, x = first_line.take(corners), across.take(corners)
     crossings = most_of_four(lines) - least_of_four(lines)
     # A cut may round a little beyond its edge's ends.
     left = np.ceil(least_of_four(x) - (0.5 + ROUNDING))
@@ -166,15 +166,15 @@ def _may_be_seen(
     kept = np.flatnonzero((crossings > 0) & (left < beyond) & (beyond > 0) & (left < elements))
 
     corners, x = np.take(corners, kept, axis=1), np.take(x, kept, axis=1)
-    y = down[corners]
+    y = down.take(corners)
     fall = np.diff(np.take(lines, kept, axis=1), axis=0)
     return Polygons(
         corners,
         np.take(camera.corner_normals[:, some], kept, axis=1),
-        camera.polygon_numbers[some][kept],
+        camera.polygon_numbers[some].take(kept),
         # Clockwise on the raster (lines grow downward) is counterclockwise from the outside: the front.
         (x[2] - x[0]) * (y[3] - y[1]) - (x[3] - x[1]) * (y[2] - y[0]) > 0,
-        crossings[kept],
+        crossings.take(kept),
         (fall[0] * fall[1] < 0) & (fall[1] * fall[2] < 0) & ((fall[0] + fall[1] + fall[2]) * fall[2] > 0),
     )
 

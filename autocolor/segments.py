@@ -71,9 +71,9 @@ def visible_segments(
     np.not_equal(span_at_pixel[1:], span_at_pixel[:-1], out=head[1:])
     first_pixel = np.flatnonzero(head)
     count = np.diff(first_pixel, append=len(span_at_pixel))
-    filled = np.flatnonzero(span_at_pixel[first_pixel])
-    first_pixel, count = first_pixel[filled], count[filled]
-    down_top, up_top = np.take(tops, span_at_pixel[first_pixel], axis=1).astype(np.intp)
+    filled = np.flatnonzero(span_at_pixel.take(first_pixel))
+    first_pixel, count = first_pixel.take(filled), count.take(filled)
+    down_top, up_top = np.take(tops, span_at_pixel.take(first_pixel), axis=1).astype(np.intp)
 
     # Sort them by surface, so that each surface's D, S and N are numbers and not arrays.
     column = down_top % max(projected.corners.shape[1], 1)
@@ -81,13 +81,13 @@ def visible_segments(
     surface = np.array(surface_numbers, np.uint8)[mesh.part_numbers[polygon]]
     order = np.argsort(surface, kind="stable")
     return Segments(
-        first_pixel[order],
-        count[order],
-        column[order],
-        polygon[order],
-        surface[order],
-        down_top[order],
-        up_top[order],
+        first_pixel.take(order),
+        count.take(order),
+        column.take(order),
+        polygon.take(order),
+        surface.take(order),
+        down_top.take(order),
+        up_top.take(order),
     )
 
 
@@ -156,9 +156,12 @@ def _cut(projected: Projection, top: Numbers, side: Side, line: Numbers) -> Cut:
     inverse_depth = edge.inverse_depth + lines_below * edge.inverse_depth_step
     # Interpolate the normal right in perspective: weighted by the inverse depths of the ends.
     a, b, normals = edge.upper, edge.lower, projected.corner_normals.ravel()
-    upper_place = projected.down[a]
-    share = (line + 0.5 - upper_place) / (projected.down[b] - upper_place)
-    top_weight, bottom_weight = (1 - share) * projected.inverse_depth[a], share * projected.inverse_depth[b]
+    upper_place = projected.down.take(a)
+    share = (line + 0.5 - upper_place) / (projected.down.take(b) - upper_place)
+    top_weight, bottom_weight = (
+        (1 - share) * projected.inverse_depth.take(a),
+        share * projected.inverse_depth.take(b),
+    )
     weight = (bottom_weight / (top_weight + bottom_weight)).astype(np.float32)
     # Measured: `take` along the second axis has a quarter of the time of an index there.
     normal = np.take(projected.normals, normals[top], axis=1)

@@ -125,21 +125,24 @@ def _shade(
     if not lit_count:
         out[:] = 0
         return False
-    few = lit_count < FEW * len(lit)
-    chosen = np.flatnonzero(lit) if few else slice(None)
-
-    # Reflect it to the eye, and take of both terms what the controls leave.
     cos_eye = light @ rows[MIRROR.start : MIRROR_POINT + 1]
     cos_eye *= inverse
-    diffuse = phong_diffuse(cos_incidence[chosen])
-    specular = phong_specular(cos_eye[chosen], exponent)
+    few = lit_count < FEW * len(lit)
+    if few:
+        chosen = np.flatnonzero(lit)
+        cos_incidence, cos_eye = cos_incidence.take(chosen), cos_eye.take(chosen)
+        cos_light = None if cos_light is None else cos_light.take(chosen)
+
+    # Reflect it to the eye, and take of both terms what the controls leave.
+    diffuse = phong_diffuse(cos_incidence)
+    specular = phong_specular(cos_eye, exponent)
     multiplier: Singles | np.float32 = np.float32(1)
     if cos_light is not None and ready.concentration > 0:
-        multiplier = concentrated(cos_light[chosen], ready.concentration)
+        multiplier = concentrated(cos_light, ready.concentration)
     if few:
         out[:] = 0
-        out[DIFFUSE, chosen] = diffuse * multiplier
-        out[SPECULAR, chosen] = specular * multiplier
+        out[DIFFUSE][chosen] = diffuse * multiplier
+        out[SPECULAR][chosen] = specular * multiplier
         return True
     if lit_count < len(lit):
         multiplier = multiplier * lit

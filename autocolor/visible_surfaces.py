@@ -118,24 +118,25 @@ def spans_of_polygons(projected: Projection, scale: DepthScale, columns: Numbers
     number = runs(first_crossing + 1, projected.first_crossing[columns + 1] - first_crossing)
 
     # Pair the cuts to spans, and keep those that hold a pixel's center: left <= center < right.
-    left, right = np.minimum(down_across, up_across), np.maximum(down_across, up_across)
-    begin, end = _first_center(left, projected.elements), _first_center(right, projected.elements)
+    begin = _first_center(np.minimum(down_across, up_across), projected.elements)
+    end = _first_center(np.maximum(down_across, up_across), projected.elements)
     kept = np.flatnonzero(end > begin)
-    begin, left, right = begin[kept], left[kept], right[kept]
-    down_is_left = down_across[kept] <= up_across[kept]
-    down_depth, up_depth = down_depth[kept], up_depth[kept]
+    begin, end = begin.take(kept), end.take(kept)
+    down_across, up_across = down_across.take(kept), up_across.take(kept)
+    down_depth, up_depth = down_depth.take(kept), up_depth.take(kept)
 
     # Step the depth from the left, whichever way the polygon runs, so that twins are equally near.
-    step = (up_depth - down_depth) / np.where(down_is_left, right - left, left - right)
-    start = np.where(down_is_left, down_depth, up_depth) + (begin + 0.5 - left) * step
+    step = (up_depth - down_depth) / (up_across - down_across)
+    start = np.where(down_across <= up_across, down_depth, up_depth)
+    start += (begin + 0.5 - np.minimum(down_across, up_across)) * step
     return Spans(
-        number[kept],
-        line[kept] * projected.elements + begin,
-        end[kept] - begin,
+        number.take(kept),
+        line.take(kept) * projected.elements + begin,
+        end - begin,
         scale.keys(start),
         scale.keys(step),
-        down_top[kept],
-        up_top[kept],
+        down_top.take(kept),
+        up_top.take(kept),
     )
 
 
