@@ -104,14 +104,18 @@ def _planes(scene: Scene, seen: Seen, before: Rendering | None) -> dict[str, Lig
         for number, exponent in exponents.items()
         if before is not None and before.scene.surfaces[number - 1].reflectance.exponent != exponent
     )
+    renewed: list[Light] = []
+    kept: list[LightPlanes | None] = []
     for light in scene.lights:
         same = light.name in old and _only_weighs_another(old_lights[light.name], light)
         if same and not changed:
             planes[light.name] = old[light.name]
         elif light.on and light.intensity > 0:
-            kept = old[light.name] if same else None
-            planes[light.name] = light_planes(light, seen, exponents, kept, changed)
-    return planes
+            renewed.append(light)
+            kept.append(old[light.name] if same else None)
+    names = [light.name for light in renewed]
+    planes.update(zip(names, light_planes(renewed, seen, exponents, kept, changed), strict=True))
+    return {light.name: planes[light.name] for light in scene.lights if light.name in planes}
 
 
 SHAPING = tuple(field.name for field in dataclasses.fields(Light) if field.name not in ("intensity", "on"))

@@ -16,7 +16,6 @@ from functools import partial, wraps
 from importlib import import_module
 from typing import Any, NamedTuple
 
-from autocolor import Light
 from benchmarks.cases import Case, spread, timed
 from benchmarks.points import QUANTITIES, session
 
@@ -49,7 +48,7 @@ STEPS = (
     Step("autocolor.intensity_mapping", "words_of", "shown"),
     Step("autocolor.studio", "_send", FRAME),
 )
-"""The steps of a frame in their order; one that is called for a light has a line for each of them."""
+"""The steps of a frame in their order."""
 
 ROUNDS = 15
 SCENES = {"the coupe": ("lines", 480), "hills of a million polygons": ("polygons", 1_000_000)}
@@ -98,10 +97,8 @@ class Watch:
             finally:
                 seconds = time.perf_counter() - begin
                 self.doing.pop()
-                about = arguments[0] if arguments else None
-                line = f"{step.function}, {about.name}" if isinstance(about, Light) else step.function
-                self.step_of_line[line] = step
-                self.frame[line] = self.frame.get(line, 0.0) + seconds
+                self.step_of_line[step.function] = step
+                self.frame[step.function] = self.frame.get(step.function, 0.0) + seconds
 
         return timed_step
 

@@ -11,7 +11,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Reflectance, Scene, View, render
-from autocolor.shading import light_planes
+from autocolor.seen import Seen
+from autocolor.shading import LightPlanes, light_planes
 from autocolor.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import sphere, wall, wall_scene
 from tests.autocolor.reference import Lit, light_at, minus, plus, ray, times, unit
@@ -19,6 +20,18 @@ from tests.autocolor.strategies import flaps, lights, numbers, reflectances
 
 LINES, ELEMENTS = 12, 16
 WALLS = [wall(), wall(7, 5)]
+
+
+def planes_of(
+    light: Light,
+    seen: Seen,
+    exponent: float,
+    kept: LightPlanes | None = None,
+    changed: frozenset[int] = frozenset(),
+) -> LightPlanes:
+    """The planes of one light on the one surface there is."""
+    (planes,) = light_planes([light], seen, {1: exponent}, [kept], changed)
+    return planes
 
 
 def expected_on_wall(scene: Scene, lines: int, elements: int) -> dict[tuple[int, int], Lit]:
@@ -210,8 +223,8 @@ def test_half_of_a_directed_light_is_left_at_the_angle_of_its_concentration(
 ) -> None:
     light = Light("light", (0.0, -0.5, 0.0), direction=(0.0, 1.0, 0.0))
     seen = visible_surfaces(wall(), View((0, -4, 0), target=(0, 0, 0), field_of_view=25), (1,), 401, 401)
-    whole = light_planes(light, seen, {1: 20.0}).values[0]
-    directed = light_planes(light.replace(concentration=concentration), seen, {1: 20.0}).values[0]
+    whole = planes_of(light, seen, 20.0).values[0]
+    directed = planes_of(light.replace(concentration=concentration), seen, 20.0).values[0]
     angles = np.degrees(np.arctan2(np.hypot(seen.points[:, 0], seen.points[:, 2]), 0.5))
     order = np.argsort(angles)
     falling = (directed / whole)[order]
@@ -328,9 +341,9 @@ def kept_planes_arguments() -> tuple[Light, Any]:
 
 def test_planes_that_are_kept_change_only_on_the_surfaces_that_changed() -> None:
     light, seen = kept_planes_arguments()
-    old = light_planes(light, seen, {1: 20.0})
-    same = light_planes(light, seen, {1: 5.0}, kept=old)
-    renewed = light_planes(light, seen, {1: 5.0}, kept=old, changed=frozenset({1}))
+    old = planes_of(light, seen, 20.0)
+    same = planes_of(light, seen, 5.0, old)
+    renewed = planes_of(light, seen, 5.0, old, frozenset({1}))
     assert same.values.tobytes() == old.values.tobytes()
-    assert renewed.values.tobytes() == light_planes(light, seen, {1: 5.0}).values.tobytes()
+    assert renewed.values.tobytes() == planes_of(light, seen, 5.0).values.tobytes()
     assert not renewed.values.flags.writeable

@@ -84,14 +84,6 @@ def test_the_lines_below_a_line_add_up_to_it(session: Session) -> None:
         assert sum(below) == pytest.approx(lines[row]["ms"]["median"])
 
 
-def test_each_light_has_a_line_of_its_own(session: Session) -> None:
-    watch = steps.Watch()
-    with steps.wrapped(watch):
-        frame = watch.timed_frame(session.frame)
-    names = [line["step"].partition(", ")[2] for line in steps.lines(watch, [frame])]
-    assert {light.name for light in session.studio.scene.lights if light.on} <= set(names)
-
-
 def test_after_a_measurement_the_package_is_as_before(session: Session) -> None:
     before = dict(vars(rendering)), dict(rendering.ALGORITHMS)
     with steps.wrapped(steps.Watch()):
