@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from autocolor.checks import Vector
 from autocolor.mesh import Mesh
+from autocolor.runs import pieces
 from autocolor.view import View
 
 NEAR = 1e-6
@@ -79,8 +80,7 @@ def rotated(axes: Floats, rows: npt.NDArray[Real], origin: Vector = (0.0, 0.0, 0
     """
     turned = np.empty_like(rows)
     axes = axes.astype(rows.dtype)
-    for first in range(0, rows.shape[1], POINTS_AT_ONCE):
-        part = slice(first, first + POINTS_AT_ONCE)
+    for part in pieces(rows.shape[1], POINTS_AT_ONCE):
         moved = [row[part] - start for row, start in zip(rows, origin, strict=True)]
         for axis, out in zip(axes, turned[:, part], strict=True):
             np.multiply(moved[0], axis[0], out=out)

@@ -12,7 +12,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.rounding import half_up
+from autocolor.rounding import half_up, halves_up
 from autocolor.tables import Paint
 
 
@@ -36,8 +36,8 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     """
     shares = color_shares(blend_level(paint, levels), paint.light_percentage, levels, floor)
     colors = shares @ np.array((paint.object_color, paint.light_color), np.float64)
-    # Mixing in floats may miss a whole color by the last bit, just below a half; then cut off the fractions.
-    entries: npt.NDArray[np.uint8] = (colors + (0.5 + 1e-9)).astype(np.uint8)
+    # Mixing in floats may miss a whole color by the last bit, just below a half.
+    entries: npt.NDArray[np.uint8] = halves_up(colors + 1e-9).astype(np.uint8)
     entries.flags.writeable = False
     return entries
 

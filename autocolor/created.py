@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from autocolor.lights import Light
 from autocolor.mesh import Mesh
+from autocolor.runs import pieces
 from autocolor.tables import Paint, Part, Surface
 from autocolor.view import View
 
@@ -73,8 +74,8 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
     slope_down = filled * math.tan(math.radians(view.field_of_view) / 2)
     slopes = np.array([slope_down * ASPECT, slope_down])
     least, most, nearest, size = np.full(2, np.inf), np.full(2, -np.inf), np.inf, 0.0
-    for first in range(0, points.shape[1], POINTS_AT_ONCE):
-        places = axes @ (points[:, first : first + POINTS_AT_ONCE] - middle[:, None])
+    for some in pieces(points.shape[1], POINTS_AT_ONCE):
+        places = axes @ (points[:, some] - middle[:, None])
         reach = slopes[:, None] * places[2]
         least = np.minimum(least, (places[:2] + reach).min(axis=1))
         most = np.maximum(most, (places[:2] - reach).max(axis=1))

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.joined import group_numbers, join
+from autocolor.runs import pieces
 
 AT_ONCE = 1 << 15
 
@@ -88,12 +89,12 @@ def _corners_at_shared_edges(places: Numbers, part_numbers: Numbers) -> Iterator
     # Give every edge a key, whichever way it runs; those without length share theirs with none.
     keys = np.empty((places.shape[1], 4), np.int64)
     beyond = np.int64(places.max(initial=-1)) + 1
-    for first in range(0, len(keys), AT_ONCE):
-        start = places[:, first : first + AT_ONCE]
+    for some in pieces(len(keys), AT_ONCE):
+        start = places[:, some]
         end = np.roll(start, -1, axis=0)
         key = np.minimum(start, end) * beyond + np.maximum(start, end)
         key[start == end] = -1
-        keys[first : first + AT_ONCE] = key.T
+        keys[some] = key.T
     flat = keys.ravel()
     # Sort the edges so that the polygons of a part along the same edge stand next to each other.
     several = bool((part_numbers != part_numbers[:1]).any())

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from autocolor.runs import pieces
+
 AT_ONCE = 1 << 15
 
 Numbers = npt.NDArray[np.intp]
@@ -31,8 +33,8 @@ def group_numbers(leads: Numbers) -> Numbers:
     numbers = np.cumsum(leads == np.arange(len(leads)))
     numbers -= 1
     groups = np.empty_like(leads)
-    for first in range(0, len(leads), AT_ONCE):
-        some = np.arange(first, min(first + AT_ONCE, len(leads)))
+    for part in pieces(len(leads), AT_ONCE):
+        some = np.arange(part.start, part.stop)
         groups[some] = numbers[_lowest(leads, some)]
     return groups
 

@@ -80,9 +80,9 @@ def _flap_sides(light: Light, seen: Seen) -> Singles:
 def inside_flaps(ready: Controls, rows: Singles) -> npt.NDArray[np.bool_] | None:
     """Whether each point is within the flaps; None where there are none."""
     within: npt.NDArray[np.bool_] | None = None
-    for *normal, limit in ready.flaps:
-        side = np.array(normal) @ rows[POINT] >= -limit
-        within = side if within is None else np.logical_and(within, side, out=within)
+    for side in ready.flaps:
+        inside = side[:3] @ rows[POINT] >= -side[3]
+        within = inside if within is None else np.logical_and(within, inside, out=within)
     return within
 
 

@@ -9,7 +9,6 @@ a file that repeats its nodes is as smooth as one that shares them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,12 +16,14 @@ import numpy.typing as npt
 
 from autocolor.fans import fans_of_corners, places_of_corners
 from autocolor.joined import group_numbers, join
+from autocolor.runs import pieces
 from autocolor.vectors import cross_products, lengths
 
 CREASE_ANGLE = 40.0
 """Assumed: degrees; edges of boxes stay sharp, and a cylinder of ten sides or more is smooth."""
 
 POLYGONS_AT_ONCE = 1 << 13
+"""So many that their corners stay near the processor."""
 
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
@@ -71,7 +72,7 @@ def node_normals(
 def _normals_and_angles(rows: Floats, columns: Numbers) -> tuple[Floats, Floats]:
     """The normals of the polygons, (3, polygons), and the angles at their corners, (4, polygons)."""
     normals, angles = np.empty((3, columns.shape[1])), np.empty(columns.shape)
-    for some in _batches(columns.shape[1]):
+    for some in pieces(columns.shape[1], POLYGONS_AT_ONCE):
         corners = np.take(rows, columns[:, some], axis=1)
         normals[:, some] = polygon_normals(corners)
         angles[:, some] = _corner_angles(corners)
@@ -82,7 +83,7 @@ def _weighted_sums(fans: Numbers, normals: Floats, angles: Floats) -> tuple[Floa
     """The sums of the weighted normals of each fan, (3, fans), and the fan of each corner, (4, polygons)."""
     sums = np.zeros((3, int(fans.max(initial=-1)) + 1))
     numbers = np.empty(angles.shape, np.intp)
-    for some in _batches(angles.shape[1]):
+    for some in pieces(angles.shape[1], POLYGONS_AT_ONCE):
         fan = fans[4 * some.start : 4 * some.stop]
         numbers[:, some] = fan.reshape(-1, 4).T
         for sum_row, normal_row in zip(sums, normals, strict=True):
@@ -139,9 +140,3 @@ def _corner_angles(corners: Floats) -> Floats:
     angles: Floats = np.arctan2(lengths(cross_products(inward, onward)), 0.0 - (inward * onward).sum(axis=0))
     angles[3, triangle] = 0.0
     return angles
-
-
-def _batches(count: int) -> Iterator[slice]:
-    """The polygons, so many at a time that their corners stay near the processor."""
-    for first in range(0, count, POLYGONS_AT_ONCE):
-        yield slice(first, min(first + POLYGONS_AT_ONCE, count))

@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from autocolor.camera_space import CameraPolygons, camera_space
 from autocolor.mesh import Mesh
+from autocolor.runs import pieces
 from autocolor.view import View
 
 ROUNDING = 1e-6
@@ -77,19 +78,18 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     across, down, inverse_depth, first_line = _on_raster(camera, view, lines, elements)
 
     # Find the polygons that may be seen.
-    columns = camera.corners.shape[1]
-    pieces = [
-        _may_be_seen(camera, across, down, first_line, elements, first)
-        for first in range(0, max(columns, 1), POLYGONS_AT_ONCE)
+    found = [
+        _may_be_seen(camera, across, down, first_line, elements, some)
+        for some in pieces(max(camera.corners.shape[1], 1), POLYGONS_AT_ONCE)
     ]
-    corners = np.concatenate([piece.corners for piece in pieces], axis=1)
-    corner_normals = np.concatenate([piece.corner_normals for piece in pieces], axis=1)
-    polygon_numbers, from_behind, crossings, zigzag = (
-        np.concatenate([piece[row] for piece in pieces]) for row in range(2, 6)
-    )
+    corners = np.concatenate([each.corners for each in found], axis=1)
+    corner_normals = np.concatenate([each.corner_normals for each in found], axis=1)
+    polygon_numbers = np.concatenate([each.polygon_numbers for each in found])
+    from_behind = np.concatenate([each.from_behind for each in found])
+    crossings = np.concatenate([each.crossings for each in found])
 
     # Cut in two the quads that some lines cross four times.
-    quads = np.flatnonzero(zigzag)
+    quads = np.flatnonzero(np.concatenate([each.zigzag for each in found]))
     if len(quads):
         corners, corner_normals, parents = _cut_in_two(quads, across, down, corners, corner_normals)
         polygon_numbers, from_behind = polygon_numbers[parents], from_behind[parents]
@@ -127,8 +127,7 @@ def _on_raster(
     across, down, inverse_depth = np.empty(count), np.empty(count), np.empty(count)
     first_line = np.empty(count, np.intp)
     focal = focal_length(lines, view.field_of_view)
-    for first in range(0, count, NODES_AT_ONCE):
-        some = slice(first, first + NODES_AT_ONCE)
+    for some in pieces(count, NODES_AT_ONCE):
         x, y, depth = camera.places[:, some]
         np.divide(1.0, np.maximum(depth, camera.near), out=inverse_depth[some])
         scale = focal * inverse_depth[some]
@@ -153,10 +152,9 @@ class Polygons(NamedTuple):
 
 
 def _may_be_seen(
-    camera: CameraPolygons, across: Floats, down: Floats, first_line: Numbers, elements: int, first: int
+    camera: CameraPolygons, across: Floats, down: Floats, first_line: Numbers, elements: int, some: slice
 ) -> Polygons:
-    """Those of the polygons from `first` on that cross a line and reach over the center of a pixel."""
-    some = slice(first, first + POLYGONS_AT_ONCE)
+    """Those of some polygons that cross a line and reach over the center of a pixel."""
     corners = camera.corners[:, some]
     lines, x = first_line.take(corners), across.take(corners)
     crossings = most_of_four(lines) - least_of_four(lines)

@@ -1,4 +1,7 @@
-"""Runs of whole numbers, one after another: the lines of an edge, the pixels of a span, its depths."""
+"""Runs of whole numbers, one after another: the lines of an edge, the pixels of a span, its depths.
+
+And such numbers in parts, of as many as the caches hold of what is worked on.
+"""
 
 from __future__ import annotations
 
@@ -31,6 +34,16 @@ def runs(first: Numbers, count: Numbers, step: Numbers | None = None) -> Numbers
         jump[1:] -= first[:-1] + (count[:-1] - 1) * step[:-1]
     numbers[heads] = jump
     return np.cumsum(numbers, out=numbers)
+
+
+def pieces(stop: int, most: int, start: int = 0) -> Iterator[slice]:
+    """The numbers from `start` to before `stop`, at most so many at a time.
+
+    >>> list(pieces(5, 3))
+    [slice(0, 3, None), slice(3, 5, None)]
+    """
+    for first in range(start, stop, most):
+        yield slice(first, min(first + most, stop))
 
 
 def batches(count: Numbers, most: int) -> Iterator[tuple[slice, slice]]:

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from autocolor.runs import pieces
 from autocolor.view import View
 
 PIXELS_AT_ONCE = 1 << 17
@@ -47,8 +48,7 @@ class SurfaceSlice:
 
     def parts(self) -> Iterator[slice]:
         """The pixels, in slices of as many as are worked on at once."""
-        for first in range(self.start, self.stop, PIXELS_AT_ONCE):
-            yield slice(first, min(first + PIXELS_AT_ONCE, self.stop))
+        return pieces(self.stop, PIXELS_AT_ONCE, self.start)
 
 
 def surface_slices(counts: npt.NDArray[np.int64]) -> tuple[SurfaceSlice, ...]:

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from autocolor.edges import DOWN_SIDE, UP_SIDE, Side, edges, other_end
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, focal_length
+from autocolor.runs import pieces
 from autocolor.view import View
 
 # Rows of what is stepped along a segment: the point, the normal, the inverse depth, the ray.
@@ -104,8 +105,7 @@ def along_segments(
     count = len(segments.count)
     start, step = np.empty((10, count), np.float32), np.empty((7, count), np.float32)
     focal = focal_length(projected.lines, view.field_of_view)
-    for first in range(0, count, SEGMENTS_AT_ONCE):
-        part = slice(first, first + SEGMENTS_AT_ONCE)
+    for part in pieces(count, SEGMENTS_AT_ONCE):
         _fill_along(start[:, part], step[:, part], segments, part, projected, focal, middle)
     return start, step
 

@@ -112,9 +112,9 @@ def light_planes(
     return [LightPlanes(each, frozenset(numbers)) for each, numbers in zip(values, reached, strict=True)]
 
 
-def _shade(out: Singles, rows: Singles, light_there: Placed, exponent: float) -> bool:
+def _shade(out: Singles, rows: Singles, light: Placed, exponent: float) -> bool:
     """Write the two planes of some pixels of one surface; whether the light has any effect there."""
-    position, close, ready = light_there
+    position, close, ready = light
     lit = inside_flaps(ready, rows)
     if lit is not None and not lit.any():
         out[:] = 0
@@ -131,8 +131,8 @@ def _shade(out: Singles, rows: Singles, light_there: Placed, exponent: float) ->
     np.reciprocal(inverse, out=inverse)
 
     # Find what faces the light and is within its controls.
-    light = np.array([*position, -1], np.float32)
-    cos_incidence = light @ rows[NORMAL.start : NORMAL_POINT + 1]
+    factors = np.array([*position, -1], np.float32)
+    cos_incidence = factors @ rows[NORMAL.start : NORMAL_POINT + 1]
     cos_incidence *= inverse
     facing = cos_incidence > 0
     lit = facing if lit is None else np.logical_and(lit, facing, out=lit)
@@ -144,7 +144,7 @@ def _shade(out: Singles, rows: Singles, light_there: Placed, exponent: float) ->
     if not lit_count:
         out[:] = 0
         return False
-    cos_eye = light @ rows[MIRROR.start : MIRROR_POINT + 1]
+    cos_eye = factors @ rows[MIRROR.start : MIRROR_POINT + 1]
     cos_eye *= inverse
     few = lit_count < FEW * len(lit)
     if few:

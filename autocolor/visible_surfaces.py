@@ -23,7 +23,7 @@ from autocolor.hidden import not_hidden
 from autocolor.interpolation import seen_of_spans
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, projection
-from autocolor.runs import batches, runs
+from autocolor.runs import batches, pieces, runs
 from autocolor.seen import Seen
 from autocolor.view import View
 
@@ -73,8 +73,8 @@ def keep_front_most(
     at each pixel, and of those that are equally near the last. `tops` gets, by the numbers of the spans, the
     tops of their edges on the down side and on the up side.
     """
-    for first in range(0, len(columns), POLYGONS_AT_ONCE):
-        spans = spans_of_polygons(projected, scale, columns[first : first + POLYGONS_AT_ONCE])
+    for some in pieces(len(columns), POLYGONS_AT_ONCE):
+        spans = spans_of_polygons(projected, scale, columns[some])
         tops[0][spans.number] = spans.down_top
         tops[1][spans.number] = spans.up_top
         # Step the keys over the pixels of each span, and keep the largest at each pixel.

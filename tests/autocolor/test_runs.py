@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.runs import batches, runs
+from autocolor.runs import batches, pieces, runs
 
 whole = st.integers(-(2**63), 2**63 - 1)
 
@@ -31,3 +31,10 @@ def test_batches_hold_every_run_once_and_are_no_larger_than_they_must(counts: li
         assert sum(counts[: part.start]) == some.start
         assert sum(counts[part]) == some.stop - some.start
         assert some.stop - some.start <= most or part.stop == part.start + 1
+
+
+@given(st.integers(0, 50), st.integers(0, 50), st.integers(1, 20))
+def test_pieces_hold_every_number_once_and_never_too_many(start: int, length: int, most: int) -> None:
+    every = list(pieces(start + length, most, start))
+    assert [number for piece in every for number in range(100)[piece]] == list(range(start, start + length))
+    assert all(0 < piece.stop - piece.start <= most for piece in every)
