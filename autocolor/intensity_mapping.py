@@ -40,19 +40,24 @@ def words_of(
     intensities that are not finite.
     """
     words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
+    fractions = {}
     for surface in picture.slices:
         name = picture.surfaces[surface.surface_number - 1]
         of_whole = scaling == "object"
         extent = picture.relative_ranges[0 if of_whole else surface.surface_number]
-        everything = picture.relative if of_whole else picture.relative[surface.start : surface.stop]
         if not (np.isfinite(extent.minimum) and np.isfinite(extent.maximum)):
             raise InputError(f"surface {name!r}: an intensity must be finite, not {extent.maximum:g}")
-        fraction = fraction_of(extent, mapping, everything)
-        first, levels = ranges[name]
-        for some in surface.parts():
-            level = levels_of(fraction(picture.relative[some]), levels)
-            level += np.uint16(first)
-            words[picture.pixels[some]] = level
+        everything = picture.relative if of_whole else picture.relative[surface.pixels]
+        fractions[surface.surface_number] = fraction_of(extent, mapping, everything)
+
+    for share in picture.shares:
+        intensities, pixels = picture.relative[share.pixels], picture.pixels[share.pixels]
+        here = np.empty(len(pixels), np.uint16)
+        for surface in share.slices:
+            first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
+            fraction = fractions[surface.surface_number](intensities[surface.pixels])
+            np.add(levels_of(fraction, levels), np.uint16(first), out=here[surface.pixels])
+        words[pixels] = here
     words.flags.writeable = False
     return words.reshape(picture.lines, picture.elements)
 

@@ -148,6 +148,11 @@ class Light:
         return []
 
     @property
+    def shines(self) -> bool:
+        """Whether it gives any light."""
+        return self.on and self.intensity > 0
+
+    @property
     def axis(self) -> Vector | None:
         """The unit vector of the light direction, or None for a point source."""
         if self.direction is not None:

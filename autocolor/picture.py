@@ -11,7 +11,7 @@ times as strong give the same proportions, and the levels that are made from the
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -21,13 +21,15 @@ import numpy.typing as npt
 
 from autocolor.errors import InputError
 from autocolor.lights import Light
-from autocolor.seen import Seen, SurfaceSlice
-from autocolor.shading import DIFFUSE, SPECULAR, LightPlanes
+from autocolor.seen import Share, SurfaceSlice, shares
+from autocolor.shading import DIFFUSE, SPECULAR
 from autocolor.tables import Surface
 
 LARGEST = float(np.finfo(np.float32).max)
 
 Singles = npt.NDArray[np.float32]
+SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
+"""Weights of a light's diffuse and of its specular plane, by surface number."""
 
 
 class IntensityRange(NamedTuple):
@@ -46,6 +48,19 @@ class PictureRanges:
 
     whole: IntensityRange
     surfaces: Mapping[str, IntensityRange]
+
+
+@dataclass(frozen=True, eq=False)
+class LightPlanes:
+    """What one light gives to what is seen, in the order of `Seen.pixels`; read-only in a picture.
+
+    `values` is (2, n) float32: its diffuse and its specular plane, without D, S and the light's intensity.
+    `weighed` is (n,) float32: their sum by the `weights`, so that a light that stays need only be added.
+    """
+
+    values: Singles
+    weighed: Singles
+    weights: SurfaceWeights
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,17 +99,19 @@ class Picture:
         """Surface numbers, (lines, elements) uint8: number k is surfaces[k - 1], 0 is none; read-only."""
         numbers = np.empty(len(self.pixels), np.uint8)
         for surface in self.slices:
-            numbers[surface.start : surface.stop] = surface.surface_number
+            numbers[surface.pixels] = surface.surface_number
         raster: npt.NDArray[np.uint8] = self._raster(numbers)
         return raster
 
     @cached_property
+    def shares(self) -> tuple[Share, ...]:
+        """The visible pixels, in shares to work on."""
+        return shares(self.slices)
+
+    @cached_property
     def relative_ranges(self) -> Mapping[int, IntensityRange]:
         """Minimum and maximum of `relative` by surface number; those of the whole picture under 0."""
-        ranges = {
-            surface.surface_number: _range(self.relative[surface.start : surface.stop])
-            for surface in self.slices
-        }
+        ranges = {surface.surface_number: _range(self.relative[surface.pixels]) for surface in self.slices}
         least = min((each.minimum for each in ranges.values()), default=0.0)
         most = max((each.maximum for each in ranges.values()), default=0.0)
         return {0: IntensityRange(least, most), **ranges}
@@ -142,56 +159,67 @@ class Picture:
         )
 
 
-def composed(
-    seen: Seen,
-    planes: Mapping[str, LightPlanes],
-    surfaces: Sequence[Surface],
-    lights: Sequence[Light],
-    ambient: float,
-) -> Picture:
-    """The picture: the sum of the planes, each with D or S and its light's intensity, plus the ambient.
+class Weights(NamedTuple):
+    """What the ambient and the lights that shine weigh in the sum, in proportion to `scale`.
 
-    `planes` has the two planes of each light that shines. Raises InputError where the sum would leave the
-    range of float32: such an intensity is refused by name, never clipped into a level.
+    `lights` has by a light's name, and then by surface number, the weights of its diffuse and of its specular
+    plane.
+    """
+
+    scale: float
+    ambient: np.float32
+    lights: Mapping[str, SurfaceWeights]
+
+
+def weights_of(
+    surface_numbers: Iterable[int], surfaces: Sequence[Surface], lights: Sequence[Light], ambient: float
+) -> Weights:
+    """The weights of the lights that shine, on the surfaces that are seen.
+
+    Raises InputError where the sum would leave the range of float32: such an intensity is refused by name,
+    never clipped into a level.
     """
     if not ambient < LARGEST:
         raise InputError(f"ambient must stay below {LARGEST:.3g}, not {ambient:g}; lower it")
-    shining = [light for light in lights if light.name in planes and light.on and light.intensity > 0]
-    weights = {}
-    for surface in seen.slices:
-        reflectance = surfaces[surface.surface_number - 1].reflectance
-        weights[surface.surface_number] = [
-            (light.intensity * reflectance.diffuse, light.intensity * reflectance.specular)
-            for light in shining
-        ]
-    scale = max([ambient, *(weight for rows in weights.values() for pair in rows for weight in pair)]) or 1.0
-    for number, rows in weights.items():
-        _refuse_overflow(surfaces[number - 1].name, rows, shining, ambient)
-
-    relative = np.empty(len(seen.pixels), np.float32)
-    for surface in seen.slices:
-        pairs = (np.array(weights[surface.surface_number]).reshape(-1, 2) / scale).astype(np.float32)
-        reaching = [
-            (planes[light.name].values, pair)
-            for light, pair in zip(shining, pairs, strict=True)
-            if surface.surface_number in planes[light.name].reached
-        ]
-        for part in surface.parts():
-            out = relative[part]
-            out[:] = np.float32(ambient / scale)
-            for values, pair in reaching:
-                out += pair @ values[:, part]
-    relative.flags.writeable = False
-    return Picture(
-        seen.lines,
-        seen.elements,
-        tuple(surface.name for surface in surfaces),
-        seen.pixels,
-        seen.slices,
-        relative,
+    shining = [light for light in lights if light.shines]
+    strengths: dict[str, dict[int, tuple[float, float]]] = {light.name: {} for light in shining}
+    for number in surface_numbers:
+        name, reflectance = surfaces[number - 1].name, surfaces[number - 1].reflectance
+        for light in shining:
+            strengths[light.name][number] = (
+                light.intensity * reflectance.diffuse,
+                light.intensity * reflectance.specular,
+            )
+        _refuse_overflow(name, [strengths[light.name][number] for light in shining], shining, ambient)
+    all_strengths = [each for rows in strengths.values() for pair in rows.values() for each in pair]
+    scale = max([ambient, *all_strengths]) or 1.0
+    return Weights(
         scale,
-        dict(planes),
+        np.float32(ambient / scale),
+        {
+            name: {
+                number: (np.float32(diffuse / scale), np.float32(specular / scale))
+                for number, (diffuse, specular) in rows.items()
+            }
+            for name, rows in strengths.items()
+        },
     )
+
+
+def weigh(planes: LightPlanes, share: Share) -> None:
+    """Fill in `weighed` of a light's planes where the pixels of a share are."""
+    values, weighed = planes.values[:, share.pixels], planes.weighed[share.pixels]
+    for surface in share.slices:
+        pair = np.array(planes.weights[surface.surface_number])
+        np.matmul(pair, values[:, surface.pixels], out=weighed[surface.pixels])
+
+
+def add_up(relative: Singles, planes: Iterable[LightPlanes], ambient: np.float32, share: Share) -> None:
+    """Fill in the intensities, in proportion to the scale, where the pixels of a share are."""
+    sums = relative[share.pixels]
+    sums[:] = ambient
+    for each in planes:
+        sums += each.weighed[share.pixels]
 
 
 def _refuse_overflow(

@@ -20,5 +20,9 @@ def phong_diffuse(cos_incidence: Singles) -> Singles:
 
 
 def phong_specular(cos_eye: Singles, exponent: float) -> Singles:
-    """cos^N(E); a negative cosine counts as 0."""
+    """cos^N(E); a negative cosine counts as 0. The array of the cosines is worked in."""
+    # Most surfaces mirror some of the lights away from the eye.
+    if exponent > 0 and cos_eye.max(initial=0.0) <= 0:
+        cos_eye[:] = 0
+        return cos_eye
     return power_of(cos_eye, exponent)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.runs import pieces
 from autocolor.view import View
 
 PIXELS_AT_ONCE = 1 << 17
@@ -40,15 +40,24 @@ def keep_products(rows: Singles) -> None:
 
 @dataclass(frozen=True, eq=False)
 class SurfaceSlice:
-    """The pixels `start` to `stop` of what is seen, all of one surface."""
+    """The pixels `start` to `stop`, all of one surface."""
 
     surface_number: int
     start: int
     stop: int
 
-    def parts(self) -> Iterator[slice]:
-        """The pixels, in slices of as many as are worked on at once."""
-        return pieces(self.stop, PIXELS_AT_ONCE, self.start)
+    @property
+    def pixels(self) -> slice:
+        """The pixels as a slice."""
+        return slice(self.start, self.stop)
+
+
+@dataclass(frozen=True, eq=False)
+class Share:
+    """Pixels of what is seen that are worked on at once, and those of each surface, counted in the share."""
+
+    pixels: slice
+    slices: tuple[SurfaceSlice, ...]
 
 
 def surface_slices(counts: npt.NDArray[np.int64]) -> tuple[SurfaceSlice, ...]:
@@ -57,6 +66,27 @@ def surface_slices(counts: npt.NDArray[np.int64]) -> tuple[SurfaceSlice, ...]:
     return tuple(
         SurfaceSlice(number, int(stops[number] - counts[number]), int(stops[number]))
         for number in np.flatnonzero(counts).tolist()
+    )
+
+
+def shares(slices: Sequence[SurfaceSlice]) -> tuple[Share, ...]:
+    """All pixels in equal shares.
+
+    How they are cut depends on nothing but the slices: what is computed again is then computed in the same
+    steps, and comes to the same last bit.
+    """
+    total = slices[-1].stop if slices else 0
+    count = -(-total // PIXELS_AT_ONCE)
+    bounds = [total * number // count for number in range(count + 1)] if count else []
+    return tuple(Share(slice(start, stop), _within(slices, start, stop)) for start, stop in pairwise(bounds))
+
+
+def _within(slices: Sequence[SurfaceSlice], start: int, stop: int) -> tuple[SurfaceSlice, ...]:
+    """The parts of slices from `start` to `stop`, counted from there."""
+    return tuple(
+        SurfaceSlice(each.surface_number, max(each.start, start) - start, min(each.stop, stop) - start)
+        for each in slices
+        if each.start < stop and each.stop > start
     )
 
 
@@ -82,6 +112,11 @@ class Seen:
     view: View
     unit: float
     middle: Floats
+
+    @cached_property
+    def shares(self) -> tuple[Share, ...]:
+        """All pixels, in shares to work on."""
+        return shares(self.slices)
 
     @cached_property
     def reach(self) -> float:

@@ -3,17 +3,17 @@
 Paper: "The Lighting Model" and "Light Controls". The sum over the lights with their strengths is made in
 `picture`; here is what takes the time, and what stays when only strengths change.
 
-Measured and rejected: two threads, each on half of the pixels (as long as one, for the arrays are read from
-memory and the interpreter runs one at a time); two processes (two thirds of the time of one, for a second
-copy of everything); fewer pixels at once than 131,072 (a tenth more at a quarter of that); the cosines of all
-lights as one matrix product (a sixth less, but it rounds otherwise than that of one light, and an edit must
-give what a fresh picture gives).
+Measured and rejected: one surface after another (a tenth longer on the coupe, whose smaller surfaces are
+hardly worth the calls); fewer pixels at once than 131,072 (a tenth more at a quarter of that); two threads,
+each on half of the pixels (as long as one: what they compute they must fetch from memory, and between any two
+calls they wait for the interpreter); two processes (two thirds of the time of one, for a second copy of
+everything); the cosines of all lights as one matrix product (a twentieth less).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -24,20 +24,19 @@ from autocolor.lights import Light
 from autocolor.reflection import phong_diffuse, phong_specular
 from autocolor.seen import (
     MIRROR,
-    MIRROR_POINT,
     NORMAL,
-    NORMAL_POINT,
     POINT,
     POINT_SQUARED,
     Seen,
+    Share,
     keep_products,
 )
 
 CLOSE = 0.02
 """Below this squared distance, as a fraction of the squares it is the difference of, subtract the points."""
 
-LEAST_DISTANCE = 1e-37
-"""Squared, in units; what is nearer is taken to be as far, so that its inverse is finite."""
+LEAST_SQUARE = 1e-37
+"""Of a ray, in units; what is nearer to the light is taken to be as far, so that the inverse is finite."""
 
 FARTHEST = 1e15
 """In units; the rays of a light that is farther are parallel, and float32 can hold the square of this."""
@@ -49,18 +48,7 @@ DIFFUSE, SPECULAR = 0, 1
 
 Singles = npt.NDArray[np.float32]
 Floats = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class LightPlanes:
-    """The diffuse and the specular plane of a light.
-
-    `values` is (2, n) float32, read-only, in the order of `Seen.pixels`, 0 where the light has no effect;
-    `reached` are the numbers of the surfaces where it has any.
-    """
-
-    values: Singles
-    reached: frozenset[int]
+Numbers = npt.NDArray[np.intp]
 
 
 class Placed(NamedTuple):
@@ -83,99 +71,113 @@ def placed(light: Light, seen: Seen) -> Placed:
     return Placed(position, close, controls(light, seen))
 
 
-def light_planes(
-    lights: Sequence[Light],
-    seen: Seen,
-    exponents: Mapping[int, float],
-    kept: Sequence[LightPlanes | None],
-    changed: frozenset[int] = frozenset(),
-) -> list[LightPlanes]:
-    """The planes of some lights.
+def shade(planes: Singles, light: Placed, seen: Seen, share: Share, exponents: Mapping[int, float]) -> None:
+    """Fill the diffuse and the specular plane of a light where the pixels of a share are.
 
-    `exponents` has N for each surface number that is seen. `kept` has for each light None, or planes of the
-    same light to take over but for the surfaces with the `changed` numbers.
+    `planes` is (2, n) float32, in the order of `Seen.pixels`; they become 0 where the light has no effect.
+    `exponents` has N for each surface number that is seen.
     """
-    ready = [placed(light, seen) for light in lights]
-    size = (2, len(seen.pixels))
-    values = [np.empty(size, np.float32) if old is None else old.values.copy() for old in kept]
-    reached = [set() if old is None else set(old.reached - changed) for old in kept]
-    for surface in seen.slices:
-        number = surface.surface_number
-        renewed = [row for row, old in enumerate(kept) if old is None or number in changed]
-        # Take all lights before the next pixels, whose rows are then fetched from memory once.
-        for part in surface.parts():
-            for row in renewed:
-                if _shade(values[row][:, part], seen.rows[:, part], ready[row], exponents[number]):
-                    reached[row].add(number)
-    for each in values:
-        each.flags.writeable = False
-    return [LightPlanes(each, frozenset(numbers)) for each, numbers in zip(values, reached, strict=True)]
-
-
-def _shade(out: Singles, rows: Singles, light: Placed, exponent: float) -> bool:
-    """Write the two planes of some pixels of one surface; whether the light has any effect there."""
-    position, close, ready = light
-    lit = inside_flaps(ready, rows)
+    out, rows = planes[:, share.pixels], seen.rows[:, share.pixels]
+    lit = inside_flaps(light.controls, rows)
     if lit is not None and not lit.any():
         out[:] = 0
-        return False
-    distance, ahead = _distance_and_ahead(rows, position, ready.toward)
-    nearest = float(distance.min())
-    if nearest < close:
-        rows, position = _around_light(rows, position), np.zeros(3)
-        distance, ahead = _distance_and_ahead(rows, position, ready.toward)
-        nearest = float(distance.min())
-    if nearest < LEAST_DISTANCE:
-        np.maximum(distance, np.float32(LEAST_DISTANCE), out=distance)
-    inverse = np.sqrt(distance, out=distance)
+        return
+    rays = _rays(rows, light)
+    inverse = np.sqrt(rays.squares, out=rays.squares)
     np.reciprocal(inverse, out=inverse)
 
     # Find what faces the light and is within its controls.
-    factors = np.array([*position, -1], np.float32)
-    cos_incidence = factors @ rows[NORMAL.start : NORMAL_POINT + 1]
+    cos_incidence = rays.along(NORMAL)
     cos_incidence *= inverse
     facing = cos_incidence > 0
     lit = facing if lit is None else np.logical_and(lit, facing, out=lit)
     cos_light = None
-    if ahead is not None:
-        cos_light = np.multiply(ahead, inverse, out=ahead)
-        lit &= inside_cone(ready, cos_light)
+    if rays.ahead is not None:
+        cos_light = np.multiply(rays.ahead, inverse, out=rays.ahead)
+        lit &= inside_cone(light.controls, cos_light)
     lit_count = np.count_nonzero(lit)
     if not lit_count:
         out[:] = 0
-        return False
-    cos_eye = factors @ rows[MIRROR.start : MIRROR_POINT + 1]
-    cos_eye *= inverse
-    few = lit_count < FEW * len(lit)
-    if few:
-        chosen = np.flatnonzero(lit)
-        cos_incidence, cos_eye = cos_incidence.take(chosen), cos_eye.take(chosen)
+        return
+
+    # Of few pixels take those alone.
+    chosen = np.flatnonzero(lit) if lit_count < FEW * len(lit) else None
+    ends = [each.stop for each in share.slices]
+    lit_out = out
+    if chosen is not None:
+        ends = np.searchsorted(chosen, ends).tolist()
+        cos_incidence = cos_incidence.take(chosen)
         cos_light = None if cos_light is None else cos_light.take(chosen)
+        lit_out = np.empty((2, lit_count), np.float32)
 
     # Reflect it to the eye, and take of both terms what the controls leave.
-    diffuse = phong_diffuse(cos_incidence)
-    specular = phong_specular(cos_eye, exponent)
-    multiplier: Singles | np.float32 = np.float32(1)
-    if cos_light is not None and ready.concentration > 0:
-        multiplier = concentrated(cos_light, ready.concentration)
-    if few:
+    if cos_light is not None and light.controls.concentration > 0:
+        multiplier = concentrated(cos_light, light.controls.concentration)
+    else:
+        multiplier = np.ones(len(cos_incidence), np.float32)
+    if chosen is None and lit_count < len(lit):
+        multiplier *= lit.astype(np.float32)
+    np.multiply(phong_diffuse(cos_incidence), multiplier, out=lit_out[DIFFUSE])
+    cos_eye = rays.along(MIRROR)
+    cos_eye *= inverse
+    if chosen is not None:
+        cos_eye = cos_eye.take(chosen)
+    for each, (start, end) in zip(share.slices, pairwise([0, *ends]), strict=True):
+        specular = phong_specular(cos_eye[start:end], exponents[each.surface_number])
+        np.multiply(specular, multiplier[start:end], out=lit_out[SPECULAR, start:end])
+    if chosen is not None:
         out[:] = 0
-        out[DIFFUSE][chosen] = diffuse * multiplier
-        out[SPECULAR][chosen] = specular * multiplier
-        return True
-    if lit_count < len(lit):
-        multiplier = multiplier * lit
-    np.multiply(diffuse, multiplier, out=out[DIFFUSE])
-    np.multiply(specular, multiplier, out=out[SPECULAR])
-    return True
+        for plane, values in zip(out, lit_out, strict=True):
+            plane[chosen] = values
 
 
-def _distance_and_ahead(
+class _Rays(NamedTuple):
+    """The rays p - P from points to a light, of any length.
+
+    `squares` are those of the rays, never 0; `ahead` is how far each point is ahead in the light's direction,
+    None where the light has none. `rows` are those of the points; `close` are the places of points so near
+    to the light that differences would cancel, and `close_rows` their rows with the light in the middle.
+    """
+
+    squares: Singles
+    ahead: Singles | None
+    rows: Singles
+    position: Floats
+    close: Numbers
+    close_rows: Singles
+
+    def along(self, vector: slice) -> Singles:
+        """The product of each ray with the vector in three of the rows, after which its product with P is."""
+        factors = np.array([*self.position, -1], np.float32)
+        products: Singles = factors @ self.rows[vector.start : vector.stop + 1]
+        if len(self.close):
+            products[self.close] = -self.close_rows[vector.stop]
+        return products
+
+
+def _rays(rows: Singles, light: Placed) -> _Rays:
+    """The rays from the points in some rows to a light."""
+    toward = light.controls.toward
+    squares, ahead = _squares_and_ahead(rows, light.position, toward)
+    close, close_rows = np.empty(0, np.intp), rows[:, :0]
+    if squares.min() <= light.close:
+        close = np.flatnonzero(squares <= light.close)
+        close_rows = rows.take(close, axis=1)
+        close_rows[POINT] -= light.position.astype(np.float32)[:, None]
+        keep_products(close_rows)
+        close_squares, close_ahead = _squares_and_ahead(close_rows, np.zeros(3), toward)
+        squares[close] = np.maximum(close_squares, np.float32(LEAST_SQUARE))
+        if ahead is not None:
+            ahead[close] = close_ahead
+    return _Rays(squares, ahead, rows, light.position, close, close_rows)
+
+
+def _squares_and_ahead(
     rows: Singles, position: Floats, toward: Floats | None
 ) -> tuple[Singles, Singles | None]:
-    """The squared distance of each point from the light, and how far it is ahead in the light's direction.
+    """The square of each ray, and how far its point is ahead in the light's direction.
 
-    |P - p|^2 is P.P - 2 p.P + p.p, and both are linear in P and P.P. Measured: a product of two rows with
+    (p - P)^2 is P.P - 2 p.P + p.p, and both are linear in P and P.P. Measured: a product of two rows with
     these takes as long as that of one.
     """
     factors = np.zeros((1 if toward is None else 2, 4), np.float32)
@@ -188,11 +190,3 @@ def _distance_and_ahead(
         return products[0], None
     products[1] -= np.float32(toward @ position)
     return products[0], products[1]
-
-
-def _around_light(rows: Singles, position: Floats) -> Singles:
-    """The rows with their points around the light, for a light so near that differences would cancel."""
-    moved = rows.copy()
-    moved[POINT] -= position.astype(np.float32)[:, None]
-    keep_products(moved)
-    return moved

@@ -68,7 +68,7 @@ def test_what_only_weighs_the_lights_keeps_their_planes(edit: Any) -> None:
     assert after.seen is before.seen
     assert after.picture is not before.picture
     for name, planes in after.picture.light_planes.items():
-        assert planes is before.picture.light_planes[name]
+        assert planes.values is before.picture.light_planes[name].values
 
 
 @pytest.mark.parametrize("edit", KEY_LIGHT)
@@ -105,6 +105,21 @@ def test_what_is_kept_gives_the_same_picture_as_a_fresh_one(edit: Any) -> None:
     fresh = render(edit(two_surfaces()), 24, 32)
     assert after.picture.intensity.tobytes() == fresh.intensity.tobytes()
     assert after.picture.surface_number.tobytes() == fresh.surface_number.tobytes()
+
+
+EXPONENT = [lambda scene: scene.with_surface("sphere", exponent=3)]
+
+
+@pytest.mark.parametrize("edit", [*RECOLORINGS, *WEIGHTS, *KEY_LIGHT, *EXPONENT])
+def test_a_picture_in_many_shares_is_kept_and_computed_as_in_one(
+    edit: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    in_one = edited(two_surfaces(), edit)[1].picture
+    monkeypatch.setattr("autocolor.seen.PIXELS_AT_ONCE", 37)
+    _, after = edited(two_surfaces(), edit)
+    assert len(after.seen.shares) > 3
+    assert after.picture.intensity.tobytes() == render(edit(two_surfaces()), 24, 32).intensity.tobytes()
+    assert after.picture.intensity == pytest.approx(in_one.intensity, rel=1e-5)
 
 
 @given(scenes(), scenes())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -10,7 +11,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.seen import MIRROR, MIRROR_POINT, NORMAL, NORMAL_POINT, POINT, POINT_SQUARED
+from autocolor.seen import (
+    MIRROR,
+    MIRROR_POINT,
+    NORMAL,
+    NORMAL_POINT,
+    POINT,
+    POINT_SQUARED,
+    shares,
+    surface_slices,
+)
 from autocolor.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.reference import ray
@@ -146,3 +156,17 @@ def test_from_within_a_sphere_the_normals_point_inward_unless_it_is_one_sided(
     seen = visible_surfaces(sphere(24, 16), view, (1,), 30, 30, one_sided)
     along = seen.points / np.linalg.norm(seen.points, axis=1)[:, None]
     assert np.abs(seen.normals - sign * along).max() < 0.02
+
+
+@given(st.lists(st.integers(1, 40), max_size=6), st.integers(1, 50))
+def test_shares_have_every_pixel_of_every_surface_once(counts: list[int], at_once: int) -> None:
+    slices = surface_slices(np.array([0, *counts]))
+    with mock.patch("autocolor.seen.PIXELS_AT_ONCE", at_once):
+        every = shares(slices)
+    numbers = np.zeros(sum(counts), int)
+    for share in every:
+        here = numbers[share.pixels]
+        assert 0 < len(here) <= at_once
+        for each in share.slices:
+            here[each.pixels] += each.surface_number
+    assert numbers.tolist() == [number + 1 for number, count in enumerate(counts) for _ in range(count)]

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Reflectance, Scene, View, render
 from autocolor.seen import Seen
-from autocolor.shading import LightPlanes, light_planes
+from autocolor.shading import placed, shade
 from autocolor.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import sphere, wall, wall_scene
 from tests.autocolor.reference import Lit, light_at, minus, plus, ray, times, unit
@@ -22,15 +22,11 @@ LINES, ELEMENTS = 12, 16
 WALLS = [wall(), wall(7, 5)]
 
 
-def planes_of(
-    light: Light,
-    seen: Seen,
-    exponent: float,
-    kept: LightPlanes | None = None,
-    changed: frozenset[int] = frozenset(),
-) -> LightPlanes:
+def planes_of(light: Light, seen: Seen, exponent: float) -> npt.NDArray[np.float32]:
     """The planes of one light on the one surface there is."""
-    (planes,) = light_planes([light], seen, {1: exponent}, [kept], changed)
+    planes = np.empty((2, len(seen.pixels)), np.float32)
+    for share in seen.shares:
+        shade(planes, placed(light, seen), seen, share, {1: exponent})
     return planes
 
 
@@ -223,8 +219,8 @@ def test_half_of_a_directed_light_is_left_at_the_angle_of_its_concentration(
 ) -> None:
     light = Light("light", (0.0, -0.5, 0.0), direction=(0.0, 1.0, 0.0))
     seen = visible_surfaces(wall(), View((0, -4, 0), target=(0, 0, 0), field_of_view=25), (1,), 401, 401)
-    whole = planes_of(light, seen, 20.0).values[0]
-    directed = planes_of(light.replace(concentration=concentration), seen, 20.0).values[0]
+    whole = planes_of(light, seen, 20.0)[0]
+    directed = planes_of(light.replace(concentration=concentration), seen, 20.0)[0]
     angles = np.degrees(np.arctan2(np.hypot(seen.points[:, 0], seen.points[:, 2]), 0.5))
     order = np.argsort(angles)
     falling = (directed / whole)[order]
@@ -332,18 +328,3 @@ def test_a_sphere_is_lit_as_the_paper_says(two_sided: bool) -> None:
         expected = sum(lit.intensity for lit in each)
         if min(lit.from_jump for lit in each) > 0.02:
             assert float(picture.intensity[line, element]) == pytest.approx(expected, abs=0.01)
-
-
-def kept_planes_arguments() -> tuple[Light, Any]:
-    light = Light("light", (0.5, -2.0, 0.5))
-    return light, visible_surfaces(sphere(), View((0, -4, 1), target=(0, 0, 0)), (1,), 24, 24)
-
-
-def test_planes_that_are_kept_change_only_on_the_surfaces_that_changed() -> None:
-    light, seen = kept_planes_arguments()
-    old = planes_of(light, seen, 20.0)
-    same = planes_of(light, seen, 5.0, old)
-    renewed = planes_of(light, seen, 5.0, old, frozenset({1}))
-    assert same.values.tobytes() == old.values.tobytes()
-    assert renewed.values.tobytes() == planes_of(light, seen, 5.0).values.tobytes()
-    assert not renewed.values.flags.writeable
