@@ -47,6 +47,7 @@ class Mesh:
         names = tuple(names) if isinstance(names, Iterable) else ()
         if isinstance(self.part_names, str) or not all(isinstance(name, str) and name for name in names):
             problems.append(f"part table: part names must be texts, one a part, not {self.part_names!r}")
+            names = tuple(map(repr, names))
         angle = finite(problems, "mesh: crease_angle", self.crease_angle, at_least=0.0, at_most=180.0)
         if coordinate_rows.size and not (
             coordinate_rows.min() >= -LARGEST_COORDINATE and coordinate_rows.max() <= LARGEST_COORDINATE
