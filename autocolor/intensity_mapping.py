@@ -56,15 +56,17 @@ def words_of(
         for surface in share.slices:
             first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
             fraction = fractions[surface.surface_number](intensities[surface.pixels])
-            np.add(levels_of(fraction, levels), np.uint16(first), out=here[surface.pixels])
+            np.copyto(here[surface.pixels], levels_of(fraction, levels), casting="unsafe")
+            here[surface.pixels] += np.uint16(first)
         words[pixels] = here
     words.flags.writeable = False
     return words.reshape(picture.lines, picture.elements)
 
 
-def levels_of(shown: Singles, levels: int) -> npt.NDArray[np.uint16]:
-    """The levels, 0 to levels - 1, of fractions from 0 to 1."""
-    return halves_up(shown * np.float32(levels - 1)).astype(np.uint16)
+def levels_of(shown: Singles, levels: int) -> Singles:
+    """The levels, 0 to levels - 1, of fractions from 0 to 1, in the array of the fractions."""
+    shown *= np.float32(levels - 1)
+    return halves_up(shown)
 
 
 def fraction_of(

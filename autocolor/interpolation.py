@@ -80,12 +80,12 @@ def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step
     length = np.sqrt(products(normal, normal))
     # A polygon without area has a normal of 0, and keeps it.
     length += np.float32(1e-30)
-    normal *= np.reciprocal(length, out=length)
+    normal /= length
     # Make the ray a unit vector.
     ray = start[RAY]
     ray[0] += along * ray_step
     np.sqrt(products(ray, ray), out=length)
-    ray *= np.reciprocal(length, out=length)
+    ray /= length
     # Mirror the ray to the eye: M = 2 (N.V) N - V, where V is the ray the other way round.
     facing = products(normal, ray)
     facing *= np.float32(-2)

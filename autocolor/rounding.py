@@ -19,7 +19,7 @@ def half_up(value: float) -> int:
 
 
 def halves_up(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """The whole numbers nearest to an array's numbers, in the array's own type."""
-    rounded: npt.NDArray[Any] = values + values.dtype.type(0.5)
-    np.floor(rounded, out=rounded)
-    return rounded
+    """The whole numbers nearest to an array's numbers, in the array itself."""
+    values += values.dtype.type(0.5)
+    np.floor(values, out=values)
+    return values

@@ -92,7 +92,7 @@ def _within(slices: Sequence[SurfaceSlice], start: int, stop: int) -> tuple[Surf
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """The visible pixels, sorted by surface and within one by place.
+    """The visible pixels, sorted by surface; within one, those of a polygon mostly stand together.
 
     `pixels` are their flat places in the raster, (n,) intp. They come in segments, pixels beside each other
     that see the same polygon: `segment_polygons` are rows of the polygon table, `segment_lengths` how many

@@ -17,7 +17,7 @@ from autocolor.depth import DepthScale, depth_scale
 from autocolor.edges import edges
 from autocolor.interpolation import seen_of_spans
 from autocolor.mesh import Mesh
-from autocolor.projection import Projection, projection
+from autocolor.projection import Projection, least_of_four, projection
 from autocolor.seen import Seen
 from autocolor.view import View
 
@@ -77,22 +77,21 @@ def watkins(
     bucket = y_buckets(projected)
     active: list[Edge] = []
     span_at_pixel = np.zeros(lines * elements, np.int64)
-    tops = [(0, 0)]
+    tops = np.zeros((2, int(projected.first_crossing[-1]) + 1), np.int32)
+    top_line = least_of_four(projected.first_line[projected.corners])
 
     for line in range(lines):
         # Enter the edges that begin on this line, and drop those that ended above it.
         active = [edge for edge in active if edge.beyond_line > line] + bucket.get(line, [])
         # Find the visible spans from left to right.
-        numbers: dict[int, int] = {}
         for span, first, beyond in visible_spans(spans_of_line(active, scale, line, elements)):
-            if span.polygon not in numbers:
-                numbers[span.polygon] = len(tops)
-                tops.append((span.down_top, span.up_top))
-            span_at_pixel[line * elements + first : line * elements + beyond] = numbers[span.polygon]
+            number = int(projected.first_crossing[span.polygon] + line - top_line[span.polygon]) + 1
+            tops[:, number] = span.down_top, span.up_top
+            span_at_pixel[line * elements + first : line * elements + beyond] = number
 
     return seen_of_spans(
         span_at_pixel,
-        np.array(tops, np.int32).T,
+        tops,
         projected,
         mesh,
         view,

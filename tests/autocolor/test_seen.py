@@ -40,7 +40,7 @@ def test_from_within_a_closed_mesh_no_crack_is_seen(mesh: Mesh, data: st.DataObj
     )
     lines, elements = data.draw(rasters)
     seen = visible_surfaces(mesh, view, (1,), lines, elements)
-    assert seen.pixels.tolist() == list(range(lines * elements))
+    assert sorted(seen.pixels.tolist()) == list(range(lines * elements))
 
 
 @given(st.integers(0, 1 << 32), st.integers(1, 30))
@@ -68,14 +68,14 @@ def test_every_pixel_whose_center_is_inside_is_seen_and_no_other() -> None:
             for element in range(elements)
             if left < element + 0.5 < right and bottom < lines - line - 0.5 < top
         ]
-        assert seen.pixels.tolist() == inside
+        assert sorted(seen.pixels.tolist()) == inside
 
 
 @given(meshes(), views(), rasters)
 def test_no_row_is_ever_other_than_a_finite_number(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
     seen = visible_surfaces(mesh, view, (1, 2), *raster)
     assert np.isfinite(seen.rows).all()
-    assert (np.diff(seen.pixels[: seen.slices[0].stop]) > 0).all() if seen.slices else True
+    assert len(np.unique(seen.pixels)) == len(seen.pixels)
 
 
 @given(meshes(), views(), rasters)

@@ -77,7 +77,7 @@ def test_a_floor_that_runs_from_behind_the_eye_fills_the_picture_up_to_the_horiz
     floor = grid(1, 1, (-1000, -1000, 0), (2000, 0, 0), (0, 2000, 0))
     view = View((0.0, 0.0, 1.0), direction=(0.0, 1.0, 0.0), field_of_view=60.0)
     seen = visible_surfaces(floor, view, (1,), 20, 30)
-    assert seen.pixels.tolist() == list(range(10 * 30, 20 * 30))
+    assert sorted(seen.pixels.tolist()) == list(range(10 * 30, 20 * 30))
 
 
 @given(st.integers(1, 7), st.integers(1, 7), rasters)
@@ -87,7 +87,7 @@ def test_polygons_over_the_edge_of_the_picture_fill_it(
     wide = grid(columns, rows, (-100, 0, -100), (200, 0, 0), (0, 0, 200))
     view = View((0.3, -4.0, -0.2), direction=(0.0, 1.0, 0.1), field_of_view=50.0)
     seen = visible_surfaces(wide, view, (1,), *raster)
-    assert seen.pixels.tolist() == list(range(raster[0] * raster[1]))
+    assert sorted(seen.pixels.tolist()) == list(range(raster[0] * raster[1]))
 
 
 def test_more_polygons_than_are_taken_at_once_are_seen_as_rays_see_them() -> None:
