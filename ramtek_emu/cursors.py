@@ -110,7 +110,7 @@ class Cursors:
     @property
     def seen(self) -> tuple[tuple[int, int, int], ...]:
         """Element, line and state of every cursor that is visible."""
-        return tuple((each.element, each.line, each.state) for each in self.all if each.is_visible)
+        return tuple([(each.element, each.line, each.state) for each in self.all if each.state & VISIBLE])
 
     def forget_enter(self) -> None:
         """Take back an ENTER that no cursor's reader has been told of."""

@@ -30,6 +30,7 @@ class LookupTable:
         """The word address that comes next."""
         self.written = 0
         """Entry words ever written; it only grows."""
+        self._last_run = 0, 0, 0
         self._packed: NDArray[np.uint32] = np.zeros(self.size, "<u4")
         # In this byte order the two halves of a packed entry are the two words of the 24-bit format.
         self._halves: Words = self._packed.view("<u2")
@@ -50,17 +51,24 @@ class LookupTable:
         colors.flags.writeable = False
         return colors
 
+    def run_written_since(self, written: int) -> tuple[int, int] | None:
+        """The first entry of all that were written since the count stood so, and the one after the last.
+
+        None when they are not one run, or it is too long ago to tell.
+        """
+        since, first, end = self._last_run
+        return (first, end) if written >= since else None
+
     def write(self, first: int, colors: object) -> None:
         """Write (n, 3) colors from Python; ColorsError when a color or the place does not fit."""
         checked = checked_colors(first, colors, self.size)
         self._packed.view(np.uint8).reshape(-1, 4)[first : first + len(checked), 2::-1] = checked
-        self.written += len(checked)
+        self._note(first, first + len(checked), len(checked))
 
     def load(self, address: int, words: Words) -> None:
         """Write words from the wire; the address is a word's, the counter goes on and wraps at the end."""
         count = self.word_count
         self.address = (address + len(words)) % count
-        self.written += len(words)
         first, before_wrap = address % count, count - address % count
         while len(words) > before_wrap:
             self._store(first, words[:before_wrap])
@@ -83,6 +91,15 @@ class LookupTable:
             nibbles = (wide & 0xF00) << 8 | (wide & 0xF0) << 4 | wide & 0xF
             # Full scale of four bits is full scale of eight: 15 becomes 255.
             self._packed[first : first + len(words)] = nibbles * 17
+            self._note(first, first + len(words), len(words))
             return
         run = slice(first, first + len(words))
         np.bitwise_and(words, self._bits_there[run], out=self._halves[run])
+        self._note(first >> 1, first + len(words) + 1 >> 1, len(words))
+
+    def _note(self, first: int, end: int, words: int) -> None:
+        """Count words that were written to a run of entries."""
+        # A run that is written again and again, as while a color is dragged, stays one run.
+        if words and self._last_run[1:] != (first, end):
+            self._last_run = self.written, first, end
+        self.written += words

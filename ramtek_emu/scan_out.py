@@ -12,19 +12,25 @@ how the 9300 mixed it into the video is in no source.
 """
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .configuration import Configuration, EntryFormat
-from .cursors import SHAPE_CENTER, VISIBLE, Cursor, Cursors
+from .cursors import BLINK, SHAPE_CENTER, VISIBLE, Cursor, Cursors
 from .frame_buffer import FrameBuffer
 from .lookup_table import LookupTable
 from .parameters import Parameters
+from .shown_lines import lines_with
 from .timing import Beam
 
 Pixels = NDArray[np.uint32]
 WHITE = np.uint32(0xFFFFFF)
+PLAIN_VIEW = (0, 0), (1, 1), False
+"""Origin, zoom and video origin that show the lines of the memory as they are."""
+Stamp = tuple[int, tuple[object, ...]]
+"""What a field is made from: entry words ever written, and all else. Fields with equal stamps are equal."""
 
 
 class ScanOut:
@@ -57,23 +63,26 @@ class ScanOut:
         self._indices = np.zeros((self.lines, self.elements), np.intp)
         self._written: tuple[object, ...] = ()
         """What the indices were made from."""
+        shown_words = frame_buffer.words[: self.lines, : self.elements]
+        self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
         self._gray: tuple[int, Pixels] = (-1, lookup_table.packed)
         # With a beam: what the monitor shows, and how far the beam has come since power-on.
         self._glass: Pixels = np.zeros((self.lines, self.elements), np.uint32)
         self._painted = 0
 
     @property
-    def stamp(self) -> tuple[object, ...]:
+    def stamp(self) -> Stamp:
         """A value that moves whenever the field may have changed."""
-        return (
+        parameters, seen, beam = self._parameters(), self._cursors.seen, self._beam
+        return self._lookup_table.written, (
             self._frame_buffer.written,
-            self._lookup_table.written,
-            self._partition(),
-            self._view(),
-            self._cursors.seen,
-            self._cursors.changed,
-            any(cursor.is_visible and cursor.blinks for cursor in self._cursors.all) and self._blink(),
-            self._beam and self._beam.lines_done,
+            parameters.origin,
+            parameters.zoom,
+            parameters.origin_at_bottom,
+            self._is_parted and self._partition(),
+            seen,
+            seen and (self._cursors.changed, any(state & BLINK for _, _, state in seen) and self._blink()),
+            beam and beam.lines_done,
         )
 
     @property
@@ -93,9 +102,23 @@ class ScanOut:
         else:
             self._renew_indices()
             self._table().take(self._indices, out=pixels, mode="wrap")
-        for cursor in self._cursors.all:
-            if cursor.state & VISIBLE and (self._blink() or not cursor.blinks):
-                mark(pixels, cursor)
+        self._mark_cursors(pixels)
+
+    def scan_out_changes_into(self, pixels: Pixels, held: Stamp | None) -> Stamp:
+        """Make an array hold the present field, and return its stamp.
+
+        `held` is the stamp of the field that the array holds, None where it holds something else: whoever
+        draws on a field must say None. After a load of entries only lines that show some of them are written.
+        """
+        stamp = self.stamp
+        if held is None or held[1:] != stamp[1:] or self._beam is not None:
+            self.scan_out_into(pixels)
+            return stamp
+        self._renew_indices()
+        first, end = self._lines_showing(self._lookup_table.run_written_since(held[0]))
+        self._table().take(self._indices[first:end], out=pixels[first:end], mode="wrap")
+        self._mark_cursors(pixels[first:end], first)
+        return stamp
 
     def field(self) -> NDArray[np.uint8]:
         """The field, (lines, elements, 3) uint8: red, green, blue."""
@@ -136,12 +159,23 @@ class ScanOut:
             self._frame_buffer.words[np.ix_(rows, columns)], out=pixels[first:last], mode="wrap"
         )
 
+    def _mark_cursors(self, pixels: Pixels, first_line: int = 0) -> None:
+        for cursor in self._cursors.all:
+            if cursor.state & VISIBLE and (self._blink() or not cursor.blinks):
+                mark(pixels, cursor, first_line)
+
+    def _lines_showing(self, run: tuple[int, int] | None) -> tuple[int, int]:
+        """The first line that shows an entry of a run, and the one after the last; all where not plain."""
+        is_plain = self._words == self._lookup_table.size and self._written[1:] == PLAIN_VIEW
+        return self._lines_with(*run) if run and is_plain else (0, self.lines)
+
     def _renew_indices(self) -> None:
         parameters = self._parameters()
         now = self._frame_buffer.written, parameters.origin, parameters.zoom, parameters.origin_at_bottom
         if self._written == now:
             return
         self._written = now
+        self._lines_with.cache_clear()
         across, down = parameters.zoom
         target = self._indices[::-1] if parameters.origin_at_bottom else self._indices
         if (across, down) == (1, 1):
@@ -153,10 +187,6 @@ class ScanOut:
         for repeat in range(down):
             part = target[repeat::down]
             part[...] = rows[: len(part)]
-
-    def _view(self) -> tuple[object, ...]:
-        parameters = self._parameters()
-        return parameters.origin, parameters.zoom, parameters.origin_at_bottom
 
     def _blink(self) -> bool:
         return self.blink_is_on if self._beam is None else self._beam.blink_is_on
@@ -193,10 +223,10 @@ def copy_around(target: NDArray[np.intp], words: NDArray[np.uint16], element: in
         done += height
 
 
-def mark(pixels: Pixels, cursor: Cursor) -> None:
-    """Draw a cursor on a field, around its position, clipped at the field's edges."""
+def mark(pixels: Pixels, cursor: Cursor, first_line: int = 0) -> None:
+    """Draw a cursor on the lines of a field from a first one on, clipped at the edges."""
     size = cursor.shape.shape[0]
-    top, left = cursor.line - SHAPE_CENTER, cursor.element - SHAPE_CENTER
+    top, left = cursor.line - first_line - SHAPE_CENTER, cursor.element - SHAPE_CENTER
     up, across = max(0, -top), max(0, -left)
     part = pixels[max(0, top) : max(0, top + size), max(0, left) : max(0, left + size)]
     shape = cursor.shape[up : up + part.shape[0], across : across + part.shape[1]]

@@ -28,6 +28,7 @@ from .display import Ramtek9300
 from .errors import NoScreenError
 from .placement import pixel_under
 from .placement import placement as placement
+from .scan_out import Stamp
 
 TICK_MILLISECONDS = 15
 BLINK_SECONDS = 0.5  # Seen for so long, then not. Assumed: as in the time model.
@@ -131,6 +132,7 @@ class Monitor(Console):
         room = int(desktop[0] * 0.95), int(desktop[1] * 0.9)
         self._window_size = placement(self._size, room)[2:]
         self._field = pygame.Surface(self._size, 0, 32, FIELD_MASKS)
+        self._held: Stamp | None = None
         self._open = True
         pygame.display.set_caption(self._caption)
         pygame.key.set_repeat(KEY_DELAY, KEY_INTERVAL)
@@ -184,9 +186,10 @@ class Monitor(Console):
         pygame.mouse.set_visible(not any(cursor.is_visible for cursor in self.display.joystick.driven))
         place = placement(self._size, screen.get_size(), self.fit)
         if screen.get_size() == self._size and screen.get_masks() == FIELD_MASKS:
-            self._scan_out(screen)
+            # Programs around this one may draw on the screen too: it is not known what it holds.
+            self._scan_out(screen, None)
         else:
-            self._scan_out(self._field)
+            self._held = self._scan_out(self._field, self._held)
             screen.fill((0, 0, 0))
             if place[2:] == self._size:
                 screen.blit(self._field, place[:2])
@@ -216,9 +219,9 @@ class Monitor(Console):
             ) from cause
         self._shown = None
 
-    def _scan_out(self, surface: pygame.Surface) -> None:
+    def _scan_out(self, surface: pygame.Surface, held: Stamp | None) -> Stamp:
         # The surface stays locked as long as the array lives: it ends with this line.
-        self.display.scan_out.scan_out_into(np.asarray(surface.get_view("2")).T)
+        return self.display.scan_out.scan_out_changes_into(np.asarray(surface.get_view("2")).T, held)
 
     def _handle(self, event: pygame.event.Event) -> None:
         if event.type in REDRAWN_ON:

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import PRINCETON_9300, ColorsError, Ramtek9300, instructions
+from ramtek_emu import GMR_9300, PRINCETON_9300, ColorsError, Configuration, Ramtek9300, instructions
 from ramtek_emu.lookup_table import LookupTable
 from tests.ramtek_emu.strategies import quick, words
 
@@ -22,6 +22,45 @@ def test_a_load_lands_word_by_word_at_the_counter_and_wraps(first: int, row: lis
     assert table.entries.tolist() == [
         [twin[2 * entry + 1], twin[2 * entry] >> 8, twin[2 * entry] & 0xFF] for entry in range(1024)
     ]
+
+
+runs = st.tuples(st.integers(0, 2047), st.sampled_from([0, 1, 2, 3, 50, 2048, 2049]))
+
+
+@quick
+@given(
+    st.sampled_from([GMR_9300, PRINCETON_9300]),
+    st.lists(runs, min_size=1, max_size=4),
+    st.lists(st.integers(0, 3), min_size=1, max_size=8),
+)
+def test_all_that_was_written_since_a_count_lies_in_the_run(
+    configuration: Configuration, choice: list[tuple[int, int]], loads: list[int]
+) -> None:
+    table = LookupTable(configuration)
+    before = [(0, table.packed.copy())]
+    for number, which in enumerate(loads):
+        address, count = choice[which % len(choice)]
+        row = (np.arange(count) * 31 + number * 0x0101 + 1).astype(np.uint16)
+        table.load(address, row)
+        for written, packed in before:
+            run = table.run_written_since(written)
+            first, end = run or (0, table.size)
+            differing = np.flatnonzero(table.packed != packed)
+            assert ((first <= differing) & (differing < end)).all()
+        before.append((table.written, table.packed.copy()))
+
+
+def test_a_run_that_is_loaded_again_and_again_stays_the_run_of_all_that_was_written() -> None:
+    table = LookupTable()
+    table.load(0, np.zeros(2048, np.uint16))
+    written = table.written
+    for number in range(3):
+        table.load(21, np.full(4, number, np.uint16))
+        table.load(100, np.zeros(0, np.uint16))
+        assert table.run_written_since(written) == (10, 13)
+    table.write(13, [[1, 2, 3]])
+    assert table.run_written_since(written) is None
+    assert table.run_written_since(table.written - 1) == (13, 14)
 
 
 @quick

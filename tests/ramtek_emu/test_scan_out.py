@@ -1,11 +1,18 @@
+from dataclasses import replace
+from typing import Any
+from unittest.mock import patch
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ramtek_emu import Configuration, Ramtek9300, instructions
+from ramtek_emu import Configuration, EntryFormat, Ramtek9300, instructions
+from ramtek_emu.scan_out import Stamp
+from ramtek_emu.shown_lines import lines_with
+from ramtek_emu.timing import Timing
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import SMALL, quick, rasters
+from tests.ramtek_emu.strategies import SMALL, quick, rasters, ten_bit_words, thorough
 
 
 @quick
@@ -63,3 +70,177 @@ def test_with_fewer_planes_the_address_counter_picks_the_part_of_the_table() -> 
     assert display.field().tolist() == [[[0, 0, 0], [0, 0, 0]]]
     display.send(park + np.array([0, 0x200, 0], np.uint16))
     assert display.field().tolist() == [[[50, 50, 50], [50, 50, 50]]]
+
+
+PLACES = st.tuples(st.integers(0, 8), st.integers(0, 12))
+LOADS = st.tuples(st.integers(0, 8), st.integers(-3, 18), st.sampled_from([0, 1, 5, 210, 2100]))
+"""The line that shows a run of entries, how far from its first one the run begins, and its words."""
+MEMORY_ACTIONS = st.one_of(
+    st.tuples(st.just("load"), LOADS),
+    st.tuples(st.just("load"), LOADS),
+    st.tuples(st.just("write entries"), LOADS),
+    st.tuples(st.just("write words"), st.tuples(PLACES, ten_bit_words)),
+    st.tuples(st.just("cursor"), st.tuples(PLACES, st.integers(0, 1), st.integers(0, 3))),
+    st.tuples(st.just("draw on it"), st.integers(0, 8)),
+)
+VIEW_ACTIONS = st.one_of(
+    st.tuples(st.just("origin"), PLACES),
+    st.tuples(st.just("origin"), st.just((0, 0))),
+    st.tuples(st.just("zoom"), st.sampled_from([1, 1, 2])),
+    st.tuples(st.just("count from the bottom"), st.booleans()),
+    st.tuples(st.just("shape"), st.integers(0, 255)),
+    st.tuples(st.just("blink"), st.booleans()),
+    st.tuples(st.just("scan out another"), st.none()),
+)
+SCANNED_OUT = st.sampled_from([True, True, False])
+"""Whether a field is made after the action."""
+STEPS = st.lists(st.tuples(MEMORY_ACTIONS, SCANNED_OUT), min_size=10, max_size=30) | st.lists(
+    st.tuples(MEMORY_ACTIONS | VIEW_ACTIONS, SCANNED_OUT), min_size=10, max_size=30
+)
+KINDS: list[dict[str, Any]] = [
+    {},
+    {"visible_lines": 7, "visible_elements": 10},
+    {"entry_format": EntryFormat.WORD_12},
+    {"monochrome": True},
+    {"planes": 8},
+    {"planes": 12},
+    {"timing": Timing()},
+]
+
+
+def do(display: Ramtek9300, name: str, value: Any) -> None:
+    """One thing that may change the field."""
+    if name in ("load", "write entries"):
+        line, offset, count = value
+        data = np.random.default_rng(display.lookup_table.written).integers(0, 0x10000, count)
+        address = 200 * line + offset
+        if name == "load":
+            display.send(np.array([0x0300, address & 0x7FF, 2 * count, *data], np.uint16))
+        else:
+            first = max(0, address // 2)
+            display.lookup_table.write(first, np.stack([data[: 1024 - first] & 0xFF] * 3, axis=1))
+    elif name == "write words":
+        (line, element), word = value
+        word &= display.configuration.largest_word
+        display.send(instructions.erase((element, line, element + 3, line), word))
+    elif name == "origin":
+        display.send(instructions.set_parameters(origin=value))
+    elif name == "zoom":
+        display.send(instructions.zoom(value))
+    elif name == "count from the bottom":
+        display.processor.parameters.origin_at_bottom = value
+    elif name == "cursor":
+        (line, element), number, look = value
+        visible, blinking = look != 0, look == 3
+        display.send(instructions.write_cursor(number, element, line, visible=visible, blinking=blinking))
+    elif name == "shape":
+        display.cursors.shape(0, np.full((32, 4), value, np.uint8))
+    elif name == "blink":
+        display.scan_out.blink_is_on = value
+
+
+@given(st.sampled_from(KINDS), st.integers(1, 4), STEPS)
+@thorough
+def test_a_field_that_is_kept_is_always_the_one_that_a_whole_scan_out_makes(
+    kind: dict[str, Any], strip: int, steps: list[tuple[tuple[str, Any], bool]]
+) -> None:
+    configuration = replace(SMALL, **kind)
+    display = Ramtek9300(configuration)
+    # Each line shows entries that no other does.
+    words = np.arange(9)[:, np.newaxis] * 100 + np.arange(13) % 8
+    display.send(instructions.write_image(words & configuration.largest_word))
+    scan_out, held = display.scan_out, None
+    kept, fresh = (np.zeros((scan_out.lines, scan_out.elements), np.uint32) for _ in range(2))
+    with patch("ramtek_emu.shown_lines.STRIP", strip):
+        for (name, value), is_scanned_out in steps:
+            if name == "draw on it":
+                kept[value % len(kept)], held = 0xABCDEF, None
+            elif name == "scan out another":
+                scan_out.scan_out_into(fresh)
+            else:
+                do(display, name, value)
+            if is_scanned_out:
+                held = scan_out.scan_out_changes_into(kept, held)
+                assert held == scan_out.stamp
+                fresh[...] = 0x123456
+                scan_out.scan_out_into(fresh)
+                assert (kept == fresh).all()
+
+
+@quick
+@given(rasters(60, 5), st.integers(0, 1023), st.integers(1, 1024))
+def test_the_lines_that_show_a_run_of_entries_are_found(
+    raster: NDArray[np.uint16], first: int, count: int
+) -> None:
+    end = min(first + count, 1024)
+    with patch("ramtek_emu.shown_lines.STRIP", 7):
+        top, bottom = lines_with(raster, first, end)
+    showing = [line for line, words in enumerate(raster.tolist()) if any(first <= w < end for w in words)]
+    assert (top, bottom) == (0, 0) if not showing else top <= showing[0] < top + 7
+    assert not showing or bottom - 7 <= showing[-1] < bottom
+
+
+def test_after_a_load_only_lines_that_may_show_its_entries_are_written() -> None:
+    display = Ramtek9300()
+    display.send(instructions.write_image(np.repeat(np.arange(480), 640).reshape(480, 640)))
+    pixels = np.zeros((480, 640), np.uint32)
+    held = display.scan_out.scan_out_changes_into(pixels, None)
+    for blue in (1, 2):
+        pixels[...] = 0
+        display.send(instructions.load_entries(200, [[0, 0, blue]] * 3))
+        held = display.scan_out.scan_out_changes_into(pixels, held)
+        assert pixels[200:203].tolist() == [[blue] * 640] * 3
+        assert held == display.scan_out.stamp
+    pixels[...] = 7
+    display.scan_out.scan_out_changes_into(pixels, held)
+    assert (pixels[:100] == 7).all()
+    assert (pixels[300:] == 7).all()
+    display.scan_out.scan_out_changes_into(pixels, None)
+    assert set(pixels[:, 0].tolist()) == {0, 2}
+
+
+class KeptField:
+    """A field that is brought up to date, and compared with a whole one each time."""
+
+    def __init__(self, display: Ramtek9300) -> None:
+        self.scan_out = display.scan_out
+        self.pixels, self.fresh = (np.zeros((display.scan_out.lines, 13), np.uint32) for _ in range(2))
+        self.held: Stamp | None = None
+
+    def is_right(self) -> bool:
+        self.held = self.scan_out.scan_out_changes_into(self.pixels, self.held)
+        self.scan_out.scan_out_into(self.fresh)
+        return bool((self.pixels == self.fresh).all())
+
+
+@patch("ramtek_emu.shown_lines.STRIP", 1)
+def test_words_that_were_written_meanwhile_show_the_next_load_of_the_same_entries() -> None:
+    display = Ramtek9300(SMALL)
+    kept = KeptField(display)
+    for blue, line in enumerate((2, 7, 4), 1):
+        display.send(instructions.erase((3, line, 5, line), 300))
+        assert kept.is_right()
+        display.send(instructions.load_entries(300, [[0, 0, blue]]))
+        assert kept.is_right()
+
+
+@patch("ramtek_emu.shown_lines.STRIP", 1)
+def test_a_view_that_came_back_shows_the_next_load() -> None:
+    display = Ramtek9300(SMALL)
+    display.send(instructions.write_image(np.arange(117).reshape(9, 13)))
+    kept = KeptField(display)
+    assert kept.is_right()
+    display.send(instructions.set_parameters(origin=(0, 4)))
+    display.scan_out.scan_out_into(kept.fresh)
+    display.send(instructions.set_parameters(origin=(0, 0)))
+    display.send(instructions.load_entries(50, [[1, 2, 3]]))
+    assert kept.is_right()
+
+
+def test_a_part_of_the_table_that_is_parked_at_is_shown_by_a_field_that_is_kept() -> None:
+    display = Ramtek9300(replace(SMALL, planes=8))
+    kept = KeptField(display)
+    display.send(instructions.load_entries(256, [[1, 2, 3]]))
+    for address in (0, 0x200, 0, 0x400):
+        display.send(instructions.park_table(address))
+        assert kept.is_right()

@@ -125,6 +125,17 @@ def test_the_window_refreshes_only_when_something_was_written(monitor: Monitor) 
     assert monitor.refreshed == before + 1
 
 
+def test_an_enlarged_field_that_is_recolored_again_and_again_is_shown(monitor: Monitor) -> None:
+    pygame.display.set_mode((1280, 960), pygame.RESIZABLE)
+    settle(monitor)
+    for number in range(4):
+        if number == 2:
+            monitor.display.send(instructions.erase((100, 400, 200, 450), 9))
+        monitor.display.send(instructions.load_entries(9, [[200, 100, 50 + number]]))
+        monitor.step()
+        assert (shown()[::2, ::2] == monitor.display.field()).all()
+
+
 def test_full_screen_keeps_whole_multiples_and_the_window_s_size(monitor: Monitor) -> None:
     size = pygame.display.get_window_size()
     press(monitor, pygame.K_F11)
