@@ -14,6 +14,7 @@ from benchmarks.points import ALL_LIGHTS, FRAME, ONE_LIGHT, RECOLOR, STEP, Sessi
 from ramtek_emu import instructions
 
 COPY, SCAN_OUT = "copy of one field", "scan-out"
+FIRST_RECOLOR = "first recolor after other words"
 ENTRIES, STREAM = "entries of a surface, sent", "words of a picture, sent"
 INTENSITY, MAPPING = "a light's intensity", "mapping curve"
 
@@ -36,6 +37,13 @@ def own_cases(scene: Scene) -> Iterator[Case]:
     def words() -> None:
         session.display.send(instructions.write_image(session.studio.words))
 
+    def scan_out() -> None:
+        session.display.scan_out.scan_out_into(session.field)
+
+    def first() -> None:
+        words()
+        session.scan_out()
+
     def frame() -> None:
         session.frame()
         session.scan_out()
@@ -46,11 +54,13 @@ def own_cases(scene: Scene) -> Iterator[Case]:
 
     yield Case(COPY, lambda: np.copyto(copy, session.field))
     # What a scan-out owes to words that were written before it is not its own.
-    yield Case(SCAN_OUT, session.scan_out, session.scan_out)
+    yield Case(SCAN_OUT, scan_out, session.scan_out)
     # The whole table is made only when somebody asks for it.
     yield Case(ENTRIES, entries, lambda: session.studio.entries)
     yield Case(STREAM, words)
-    yield Case(RECOLOR, session.recolor, session.scan_out)
+    # As while a color is dragged: only the first recoloring after other words looks for the surface's lines.
+    yield Case(FIRST_RECOLOR, session.recolor, first)
+    yield Case(RECOLOR, session.recolor, session.recolor)
     yield Case(MAPPING, lambda: session.studio.edit(session.studio.scene.replace(mapping=next(curves))))
     yield Case(
         INTENSITY, lambda: session.studio.light(lamp, intensity=next(steps) * scene.lights[0].intensity)

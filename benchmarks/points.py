@@ -19,6 +19,7 @@ from autocolor.scene import scene_of
 from benchmarks.cases import Case
 from benchmarks.hills import hills, side_of
 from ramtek_emu import Configuration, Ramtek9300
+from ramtek_emu.scan_out import Stamp
 
 COUPE = Path(__file__).parents[1] / "scenes" / "coupe"
 LINES = 480
@@ -59,12 +60,13 @@ class Session:
         self.display = Ramtek9300(configuration)
         self.studio = autocolor.Studio(scene, self.display)
         self.field = np.zeros((lines, elements), np.uint32)
+        self.held: Stamp | None = None
         # Never the same twice, for what was made for a color before may be kept.
         self.colors = (f"#{number % 0x1000000:06x}" for number in count(0xB01020, 0x101))
 
     def scan_out(self) -> None:
-        """Scan the field out."""
-        self.display.scan_out.scan_out_into(self.field)
+        """Bring the field up to date, as a window does."""
+        self.held = self.display.scan_out.scan_out_changes_into(self.field, self.held)
 
     def frame(self) -> None:
         """Move the eye."""
@@ -91,8 +93,9 @@ class Session:
         yield Case(prefix + FRAME, self.frame)
         yield Case(prefix + ONE_LIGHT, self.one_light)
         yield Case(prefix + ALL_LIGHTS, self.all_lights)
-        # What a scan-out owes to words that were written before it is not the recoloring's.
-        yield Case(prefix + RECOLOR, self.recolor, before=self.scan_out)
+        # What a scan-out owes to words that were written before it is not the recoloring's: their indices, and
+        # the lines that show the surface.
+        yield Case(prefix + RECOLOR, self.recolor, before=self.recolor)
 
 
 def session(quantity: Quantity, size: int) -> Session:
