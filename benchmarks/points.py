@@ -93,7 +93,7 @@ class Session:
         yield Case(prefix + FRAME, self.frame)
         yield Case(prefix + ONE_LIGHT, self.one_light)
         yield Case(prefix + ALL_LIGHTS, self.all_lights)
-        # What a scan-out owes to words that were written before it is not the recoloring's: their indices, and
+        # What a scan-out owes to words that were written before it is not the recoloring's: indices, and
         # the lines that show the surface.
         yield Case(prefix + RECOLOR, self.recolor, before=self.recolor)
 
