@@ -12,8 +12,14 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.rounding import half_up, halves_up
+from autocolor.rounding import HALF, half_up
 from autocolor.tables import Paint
+
+ROUNDING = (HALF + 1e-9,) * 3
+"""What makes the nearest color of a mixed one when the fractions are cut off.
+
+Mixing in floats may miss a whole color by the last bit, just below a half.
+"""
 
 
 def blend_level(paint: Paint, levels: int) -> int:
@@ -35,19 +41,23 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     is when the two colors are alike. With the blend at the maximum there is no shift.
     """
     shares = color_shares(blend_level(paint, levels), paint.light_percentage, levels, floor)
-    colors = shares @ np.array((paint.object_color, paint.light_color), np.float64)
-    # Mixing in floats may miss a whole color by the last bit, just below a half.
-    entries: npt.NDArray[np.uint8] = halves_up(colors + 1e-9).astype(np.uint8)
+    # One product mixes and rounds. Measured with cold caches, where a call costs more than what it computes:
+    # rounding apart, or "@" in place of "dot", takes 1.4 times as long, both together twice.
+    colors = np.array((paint.object_color, paint.light_color, ROUNDING), np.float64)
+    entries: npt.NDArray[np.uint8] = shares.dot(colors).astype(np.uint8)
     entries.flags.writeable = False
     return entries
 
 
 @lru_cache(maxsize=512)
 def color_shares(begin: int, percentage: float, levels: int, floor: float) -> npt.NDArray[np.float64]:
-    """How much of the object color and, from `begin` on, of the light color each level has, (levels, 2)."""
+    """How much of the object color, from `begin` on of the light color, and of the rounding each level has.
+
+    (levels, 3); every level has one whole rounding.
+    """
     level = np.arange(levels)
     weight = np.maximum(level - begin, 0) / max(levels - 1 - begin, 1) * (percentage / 100)
     share = floor + (1 - floor) * level / max(levels - 1, 1)
-    shares = np.stack([(1 - weight) * share, weight * share], axis=1)
+    shares = np.stack([(1 - weight) * share, weight * share, np.ones(levels)], axis=1)
     shares.flags.writeable = False
     return shares

@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+HALF = 0.5
+"""What is added to a number before the next lower whole number is taken."""
+
 
 def half_up(value: float) -> int:
     """The whole number nearest to a number, the upper one of two.
@@ -15,11 +18,10 @@ def half_up(value: float) -> int:
     >>> half_up(2.5), half_up(-2.5)
     (3, -2)
     """
-    return math.floor(value + 0.5)
+    return math.floor(value + HALF)
 
 
 def halves_up(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """The whole numbers nearest to an array's numbers, in the array itself."""
-    values += values.dtype.type(0.5)
+    values += values.dtype.type(HALF)
     np.floor(values, out=values)
     return values
