@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-STRIP = 48
-"""Lines that are searched at once. Measured: 16 take 1.3 times as long, 96 no less."""
+STRIP = 32
+"""Lines that are searched at once. Measured: 16 take 1.2 times as long, 48 find more lines than needed."""
 
 
 def lines_with(words: NDArray[np.uint16], first: int, end: int) -> tuple[int, int]:
@@ -13,8 +13,8 @@ def lines_with(words: NDArray[np.uint16], first: int, end: int) -> tuple[int, in
     They are given in whole strips: some lines at either end may have none. (0, 0) when no line has one.
     """
     # Search from the top and from the bottom; what lies in between is not read, so that search and scan-out
-    # of these lines together take hardly longer than scan-out of all. Measured: looking at every line takes
-    # twice as long.
+    # of these lines together take little longer than scan-out of all. Measured: looking at every line takes
+    # twice as long; finding the very lines in the outermost strips pays after ten fields with the same entries.
     top, bottom = 0, len(words)
     while top < bottom and not has_any(words[top : top + STRIP], first, end):
         top += STRIP
