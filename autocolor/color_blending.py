@@ -45,7 +45,7 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     # rounding apart, or "@" in place of "dot", takes 1.4 times as long, both together twice.
     colors = np.array((paint.object_color, paint.light_color, ROUNDING), np.float64)
     entries: npt.NDArray[np.uint8] = shares.dot(colors).astype(np.uint8)
-    entries.flags.writeable = False
+    entries.setflags(write=False)
     return entries
 
 
