@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from .errors import ColorsError, WordsError
 from .scan_orders import Window
 
+BYTE = np.dtype(np.uint8)
+
 
 def whole_numbers(
     values: object, thing: str, error: type[WordsError] | type[ColorsError]
@@ -81,7 +83,7 @@ def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[n
             f"a run of entries must end at {entries - 1}, not {first + len(array) - 1} "
             f"({len(array)} from {first} on); send fewer"
         )
-    if array.dtype == np.uint8:
+    if array.dtype == BYTE:
         return array  # type: ignore[return-value]
     if array.size and (array.max() > 255 or array.min() < 0):
         row, column = np.argwhere((array < 0) | (array > 255))[0]

@@ -17,6 +17,8 @@ from .instruction_set import FORM_OF_NAME, Flags
 
 LOW_BYTE_FIRST = np.dtype("<u2")
 THREE_WORDS = Struct("<3H")
+LOAD = FORM_OF_NAME["LAM"].opcode << 8
+"""The first word of the instruction that loads the lookup table."""
 
 
 def reset() -> Words:
@@ -97,7 +99,7 @@ def load_entries(first: int, colors: object, entries: int = 1024) -> Words:
     # In the memory of a VAX the two words of an entry are the bytes blue, green, red, 0.
     memory = bytearray(6 + 4 * len(checked))
     memory[6::4], memory[7::4], memory[8::4] = data[2::3], data[1::3], data[0::3]
-    memory[:6] = THREE_WORDS.pack(FORM_OF_NAME["LAM"].opcode << 8, 2 * first, 4 * len(checked))
+    memory[:6] = THREE_WORDS.pack(LOAD, 2 * first, 4 * len(checked))
     return np.frombuffer(memory, LOW_BYTE_FIRST)
 
 
@@ -108,7 +110,7 @@ def load_short_entries(first: int, colors: object, entries: int = 1024) -> Words
     """
     checked = checked_colors(first, colors, entries)
     red, green, blue = checked.astype(np.uint16).T >> 4
-    head = np.array((FORM_OF_NAME["LAM"].opcode << 8, first, 2 * len(checked)), np.uint16)
+    head = np.array((LOAD, first, 2 * len(checked)), np.uint16)
     return np.concatenate((head, red << 8 | green << 4 | blue))
 
 
@@ -117,7 +119,7 @@ def park_table(address: int = 0) -> Words:
 
     Hardware: LIN, JPL, NCAR send it after a load; it matters with fewer planes than address bits.
     """
-    return np.array((FORM_OF_NAME["LAM"].opcode << 8, address, 0), np.uint16)
+    return np.array((LOAD, address, 0), np.uint16)
 
 
 def read_entries(address: int = 0, words: int = 2048) -> Words:

@@ -34,7 +34,8 @@ class LookupTable:
         self._packed: NDArray[np.uint32] = np.zeros(self.size, "<u4")
         # In this byte order the two halves of a packed entry are the two words of the 24-bit format.
         self._halves: Words = self._packed.view("<u2")
-        self._bits_there: Words = np.tile(np.array((0xFFFF, 0x00FF), np.uint16), self.size)
+        self._unused: NDArray[np.uint8] = self._packed.view(np.uint8)[3::4]
+        """The byte of each entry that no color is in."""
         self.packed: NDArray[np.uint32] = self._packed.view()
         """The entries as 0x00RRGGBB, (entries,) uint32, read-only; always the present ones."""
         self.packed.flags.writeable = False
@@ -93,8 +94,9 @@ class LookupTable:
             self._packed[first : first + len(words)] = nibbles * 17
             self._note(first, first + len(words), len(words))
             return
-        run = slice(first, first + len(words))
-        np.bitwise_and(words, self._bits_there[run], out=self._halves[run])
+        # Measured with cold caches: masking the words while they are written takes 1.3 times as long.
+        self._halves[first : first + len(words)] = words
+        self._unused[first >> 1 : first + len(words) + 1 >> 1] = 0
         self._note(first >> 1, first + len(words) + 1 >> 1, len(words))
 
     def _note(self, first: int, end: int, words: int) -> None:
