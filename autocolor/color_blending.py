@@ -22,9 +22,9 @@ Mixing in floats may miss a whole color by the last bit, just below a half.
 """
 
 
-def blend_level(paint: Paint, levels: int) -> int:
+def blend_level(blend: float, levels: int) -> int:
     """The highest level that is purely the object color."""
-    return half_up(paint.blend * (levels - 1))
+    return half_up(blend * (levels - 1))
 
 
 @lru_cache(maxsize=512)
@@ -40,7 +40,7 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     blend weighs the colors and the level darkens them, so that a blend never changes how bright a level
     is when the two colors are alike. With the blend at the maximum there is no shift.
     """
-    shares = color_shares(blend_level(paint, levels), paint.light_percentage, levels, floor)
+    shares = color_shares(paint.blend, paint.light_percentage, levels, floor)
     # One product mixes and rounds. Measured with cold caches, where a call costs more than what it computes:
     # rounding apart, or "@" in place of "dot", takes 1.4 times as long, both together twice.
     colors = np.array((paint.object_color, paint.light_color, ROUNDING), np.float64)
@@ -49,13 +49,13 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     return entries
 
 
-@lru_cache(maxsize=512)
-def color_shares(begin: int, percentage: float, levels: int, floor: float) -> npt.NDArray[np.float64]:
-    """How much of the object color, from `begin` on of the light color, and of the rounding each level has.
+@lru_cache(maxsize=128)
+def color_shares(blend: float, percentage: float, levels: int, floor: float) -> npt.NDArray[np.float64]:
+    """How much of the object color, of the light color and of the rounding each level has, (levels, 3).
 
-    (levels, 3); every level has one whole rounding.
+    The light color begins above the blend level; the rounding is a whole one everywhere.
     """
-    level = np.arange(levels)
+    level, begin = np.arange(levels), blend_level(blend, levels)
     weight = np.maximum(level - begin, 0) / max(levels - 1 - begin, 1) * (percentage / 100)
     share = floor + (1 - floor) * level / max(levels - 1, 1)
     shares = np.stack([(1 - weight) * share, weight * share, np.ones(levels)], axis=1)

@@ -25,14 +25,14 @@ def test_the_lowest_level_is_black_and_the_highest_the_light_color_at_100_percen
 ) -> None:
     entries = entries_of(paint.__class__(paint.object_color, paint.light_color, paint.blend, 100.0), levels)
     assert entries[0].tolist() == [0, 0, 0]
-    never = blend_level(paint, levels) == levels - 1
+    never = blend_level(paint.blend, levels) == levels - 1
     assert tuple(entries[-1].tolist()) == (paint.object_color if never else paint.light_color)
 
 
 @given(paints, st.integers(2, 300))
 def test_below_the_blend_level_there_is_only_the_object_color(paint: Paint, levels: int) -> None:
     plain = entries_of(Paint(paint.object_color, (0, 0, 0), 1.0), levels)
-    upto = blend_level(paint, levels) + 1
+    upto = blend_level(paint.blend, levels) + 1
     assert entries_of(paint, levels)[:upto].tolist() == plain[:upto].tolist()
 
 
