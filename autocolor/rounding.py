@@ -22,6 +22,7 @@ def half_up(value: float) -> int:
 
 
 def halves_up(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """The whole numbers nearest to an array's numbers, in the array itself."""
     values += values.dtype.type(HALF)
     np.floor(values, out=values)
     return values

@@ -132,7 +132,8 @@ class Monitor(Console):
         room = int(desktop[0] * 0.95), int(desktop[1] * 0.9)
         self._window_size = placement(self._size, room)[2:]
         self._field = pygame.Surface(self._size, 0, 32, FIELD_MASKS)
-        self._held: Stamp | None = None
+        self._held: tuple[pygame.Surface, Stamp] | None = None
+        """The surface that was last scanned out to, and what it holds."""
         self._open = True
         pygame.display.set_caption(self._caption)
         pygame.key.set_repeat(KEY_DELAY, KEY_INTERVAL)
@@ -186,10 +187,9 @@ class Monitor(Console):
         pygame.mouse.set_visible(not any(cursor.is_visible for cursor in self.display.joystick.driven))
         place = placement(self._size, screen.get_size(), self.fit)
         if screen.get_size() == self._size and screen.get_masks() == FIELD_MASKS:
-            # Programs around this one may draw on the screen too: it is not known what it holds.
-            self._scan_out(screen, None)
+            self._scan_out(screen)
         else:
-            self._held = self._scan_out(self._field, self._held)
+            self._scan_out(self._field)
             screen.fill((0, 0, 0))
             if place[2:] == self._size:
                 screen.blit(self._field, place[:2])
@@ -217,15 +217,17 @@ class Monitor(Console):
                 f"a window must have a screen that takes it, not this one ({cause}); "
                 "ask for a picture file instead"
             ) from cause
-        self._shown = None
+        self._shown = self._held = None
 
-    def _scan_out(self, surface: pygame.Surface, held: Stamp | None) -> Stamp:
+    def _scan_out(self, surface: pygame.Surface) -> None:
+        held = self._held[1] if self._held is not None and self._held[0] is surface else None
         # The surface stays locked as long as the array lives: it ends with this line.
-        return self.display.scan_out.scan_out_changes_into(np.asarray(surface.get_view("2")).T, held)
+        stamp = self.display.scan_out.scan_out_changes_into(np.asarray(surface.get_view("2")).T, held)
+        self._held = surface, stamp
 
     def _handle(self, event: pygame.event.Event) -> None:
         if event.type in REDRAWN_ON:
-            self._shown = None
+            self._shown = self._held = None
         elif event.type == pygame.QUIT:
             self.ask_to_close()
         elif event.type == pygame.KEYDOWN:

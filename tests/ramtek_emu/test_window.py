@@ -125,15 +125,16 @@ def test_the_window_refreshes_only_when_something_was_written(monitor: Monitor) 
     assert monitor.refreshed == before + 1
 
 
-def test_an_enlarged_field_that_is_recolored_again_and_again_is_shown(monitor: Monitor) -> None:
-    pygame.display.set_mode((1280, 960), pygame.RESIZABLE)
+@pytest.mark.parametrize("scale", [1, 2])
+def test_a_field_that_is_recolored_again_and_again_is_shown(monitor: Monitor, scale: int) -> None:
+    pygame.display.set_mode((640 * scale, 480 * scale), pygame.RESIZABLE)
     settle(monitor)
     for number in range(4):
         if number == 2:
             monitor.display.send(instructions.erase((100, 400, 200, 450), 9))
         monitor.display.send(instructions.load_entries(9, [[200, 100, 50 + number]]))
         monitor.step()
-        assert (shown()[::2, ::2] == monitor.display.field()).all()
+        assert (shown()[::scale, ::scale] == monitor.display.field()).all()
 
 
 def test_full_screen_keeps_whole_multiples_and_the_window_s_size(monitor: Monitor) -> None:
