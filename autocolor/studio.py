@@ -139,7 +139,13 @@ class Studio:
             if name not in PAINT_CHECKS:
                 guess = nearest(name, PAINT_CHECKS)
                 raise UsageError(f"recolor takes {', '.join(PAINT_CHECKS)}, not {name!r}{guess}")
-        self.edit(self.scene.with_surface(surface, **changes))
+        before = self.scene
+        scene = before.with_surface(surface, **changes)
+        repainted = scene.surface(surface)
+        # Known by name, what differs need not be looked for.
+        if repainted != before.surface(surface):
+            self._repaint(scene, [repainted])
+            self._note_step(before)
 
     def surface(self, name: str, /, **changes: Any) -> None:
         """Change any field of a surface, of its reflectance or of its paint."""
@@ -163,9 +169,7 @@ class Studio:
         if not differing:
             return
         self._show(scene, differing)
-        if not (same_step and self._done):
-            self._done.append(before)
-        self._undone.clear()
+        self._note_step(before, same_step)
 
     def undo(self) -> bool:
         """Go back one step; False where there is none."""
@@ -196,6 +200,12 @@ class Studio:
         self._display.send(instructions.reset())
         _send(None, self._shown, self._display)
 
+    def _note_step(self, before: Scene, same_step: bool = False) -> None:
+        """Keep the scene before an edit to go back to."""
+        if not (same_step and self._done):
+            self._done.append(before)
+        self._undone.clear()
+
     def _step(self, source: list[Scene], target: list[Scene]) -> bool:
         if not source:
             return False
@@ -210,18 +220,22 @@ class Studio:
         before = self._shown
         surfaces = repainted(before.scene, scene) if differing == ["surfaces"] else None
         if surfaces is not None:
-            # Another color is no other intensity: the picture and its words stay.
-            now = Shown(scene, before.picture, before.ranges, before.words)
-            for surface in surfaces:
-                if surface.name in now.ranges:
-                    first = now.ranges[surface.name].first
-                    self._display.send(self._load_entries(first, now.entries_of(surface)))
-        else:
-            picture = before.picture
-            rendered = rendering(scene, picture.lines, picture.elements, self._rendering)
-            now = shown(scene, rendered.picture, before)
-            _send(before, now, self._display)
-            self._rendering = rendered
+            self._repaint(scene, surfaces)
+            return
+        picture = before.picture
+        rendered = rendering(scene, picture.lines, picture.elements, self._rendering)
+        now = shown(scene, rendered.picture, before)
+        _send(before, now, self._display)
+        self._rendering, self._shown = rendered, now
+
+    def _repaint(self, scene: Scene, surfaces: list[Surface]) -> None:
+        """Send the entries of some surfaces: another color is no other intensity, picture and words stay."""
+        before = self._shown
+        now = Shown(scene, before.picture, before.ranges, before.words)
+        for surface in surfaces:
+            if surface.name in now.ranges:
+                first = now.ranges[surface.name].first
+                self._display.send(self._load_entries(first, now.entries_of(surface)))
         self._shown = now
 
     def _repr_png_(self) -> bytes:
