@@ -55,12 +55,13 @@ class LightPlanes:
     """What one light gives to what is seen, in the order of `Seen.pixels`; read-only in a picture.
 
     `values` is (2, n) float32: its diffuse and its specular plane, without D, S and the light's intensity.
-    `weighed` is (n,) float32: their sum by the `weights`, so that a light that stays need only be added.
+    `weights` are what they weigh in the sum. `weighed` is their sum by the weights, (n,) float32, where it is
+    kept: for a light that stays while others are moved, and need then only be added.
     """
 
     values: Singles
-    weighed: Singles
     weights: SurfaceWeights
+    weighed: Singles | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,20 +207,12 @@ def weights_of(
     )
 
 
-def weigh(planes: LightPlanes, share: Share) -> None:
-    """Fill in `weighed` of a light's planes where the pixels of a share are."""
-    values, weighed = planes.values[:, share.pixels], planes.weighed[share.pixels]
+def weigh(planes: LightPlanes, share: Share, out: Singles) -> None:
+    """Fill `out` with the weighed sum of a light's planes at the pixels of a share."""
+    values = planes.values[:, share.pixels]
     for surface in share.slices:
         pair = np.array(planes.weights[surface.surface_number])
-        np.matmul(pair, values[:, surface.pixels], out=weighed[surface.pixels])
-
-
-def add_up(relative: Singles, planes: Iterable[LightPlanes], ambient: np.float32, share: Share) -> None:
-    """Fill in the intensities, in proportion to the scale, where the pixels of a share are."""
-    sums = relative[share.pixels]
-    sums[:] = ambient
-    for each in planes:
-        sums += each.weighed[share.pixels]
+        np.matmul(pair, values[:, surface.pixels], out=out[surface.pixels])
 
 
 def _refuse_overflow(

@@ -76,8 +76,23 @@ def test_one_light_moved_computes_its_planes_alone(edit: Any) -> None:
     before, after = edited(two_surfaces(), edit)
     assert after.seen is before.seen
     for light in after.scene.lights:
-        kept = after.picture.light_planes[light.name] is before.picture.light_planes.get(light.name)
-        assert kept == (light.name not in ("key", "lamp"))
+        old, new = (each.picture.light_planes.get(light.name) for each in (before, after))
+        assert new is not None
+        assert (old is not None and new.values is old.values) == (light.name not in ("key", "lamp"))
+
+
+def test_what_stays_while_a_light_is_dragged_is_kept_weighed() -> None:
+    first = rendering(two_surfaces(), 24, 32)
+    dragged = [first]
+    for step in (1, 2, 3):
+        scene = first.scene.with_light("key", position=(4, -3, step))
+        dragged.append(rendering(scene, 24, 32, dragged[-1]))
+        assert dragged[-1].picture.intensity.tobytes() == render(scene, 24, 32).intensity.tobytes()
+    for light in first.scene.lights:
+        weighed = [each.picture.light_planes[light.name].weighed for each in dragged]
+        assert weighed[0] is None
+        assert (weighed[1] is None) == (light.name == "key")
+        assert weighed[1] is weighed[2] is weighed[3]
 
 
 @pytest.mark.parametrize("edit", EVERYTHING)
