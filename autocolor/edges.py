@@ -87,15 +87,15 @@ def edges_of_sides(projected: Projection, columns: Numbers) -> tuple[Edges, Edge
     count, polygons = len(columns), projected.corners.shape[1]
     # Walk round each polygon from its highest corner, as it runs.
     highest = least_of_four((lines << 2) + np.arange(4)[:, None]) & 3
-    walk = (highest[:, None] + np.arange(4)) & 3
+    walk = (highest + np.arange(4)[:, None]) & 3
     walk *= count
-    walk += np.arange(count)[:, None]
+    walk += np.arange(count)
     line = np.take(lines, walk)
 
     def side(turn: Side, corners: list[int]) -> Edges:
         falls = np.zeros((count, 4), np.bool_)
         for step, (upper, lower) in enumerate(pairwise(corners)):
-            np.less(line[:, upper], line[:, lower], out=falls[:, step])
+            np.less(line[upper], line[lower], out=falls[:, step])
         found = np.flatnonzero(falls)
         polygon = found >> 2
         top, column = (highest[polygon] + turn * (found & 3)) & 3, columns[polygon]
