@@ -97,7 +97,7 @@ def cut_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
     """
     places, normals, near = polygons.places, polygons.normals, polygons.near
     corners, corner_normals = polygons.corners, polygons.corner_normals
-    before = (places[2] < near)[corners]
+    before = (places[2] < near).take(corners)
     cut_off = before[0] & before[1] & before[2] & before[3]
     touched = before[0] | before[1] | before[2] | before[3]
     whole, through = np.flatnonzero(~touched), np.flatnonzero(touched & ~cut_off)

@@ -9,7 +9,7 @@ from autocolor.mesh import Mesh
 from autocolor.projection import Projection, focal_length
 from autocolor.runs import batches, runs
 from autocolor.seen import MIRROR, NORMAL, POINT, ROW_COUNT, Seen, keep_products, products, surface_slices
-from autocolor.segments import DEPTH, NORMALS, POINTS, RAY, along_segments, visible_segments
+from autocolor.segments import DEPTH, NORMALS, POINTS, RAY, Segments, along_segments, visible_segments
 from autocolor.view import View
 
 PIXELS_AT_ONCE = 1 << 14
@@ -56,7 +56,7 @@ def seen_of_spans(
         projected.lines,
         projected.elements,
         pixels,
-        surface_slices(np.bincount(segments.surface, count, 1).astype(np.int64)),
+        surface_slices(_pixels_of_surfaces(segments)),
         segments.polygon,
         count,
         rows,
@@ -64,6 +64,13 @@ def seen_of_spans(
         projected.unit,
         middle,
     )
+
+
+def _pixels_of_surfaces(segments: Segments) -> npt.NDArray[np.int64]:
+    """How many pixels each surface number has, from 0 on; the segments are sorted by it."""
+    numbers = np.arange(int(segments.surface.max(initial=0)) + 2)
+    beyond = np.append(0, np.cumsum(segments.count))
+    return np.diff(beyond[np.searchsorted(segments.surface, numbers)])
 
 
 def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step: np.float32) -> None:
