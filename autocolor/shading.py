@@ -1,7 +1,7 @@
 """One light on what is seen: its diffuse and its specular plane, without D, S and the light's intensity.
 
 Paper: "The Lighting Model" and "Light Controls". The sum over the lights with their strengths is made in
-`picture`; here is what takes the time, and what stays when only strengths change.
+`lighting`; here is what takes the time, and what stays when only strengths change.
 
 Measured and rejected: one surface after another (a tenth longer on the coupe, whose smaller surfaces are
 hardly worth the calls); fewer pixels at once than 131,072 (a tenth more at a quarter of that); two threads,
