@@ -11,11 +11,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from autocolor.light_planes import LightPlanes, weigh
 from autocolor.lights import Light
-from autocolor.picture import LightPlanes, Picture, SurfaceWeights, weigh, weights_of
+from autocolor.picture import Picture
 from autocolor.scene import Scene
 from autocolor.seen import Seen
 from autocolor.shading import placed, shade
+from autocolor.weights import SurfaceWeights, weights_of
 
 SHAPING = tuple(field.name for field in dataclasses.fields(Light) if field.name not in ("intensity", "on"))
 """The fields of a light that its planes depend on; the others only weigh them."""

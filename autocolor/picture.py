@@ -3,15 +3,11 @@
 Paper: "The Lighting Model": the intensity at a point is the sum of the contributions of all lights plus an
 ambient term, held as an unscaled floating-point value; the surface number stands in an auxiliary array, and
 minima and maxima of the whole picture and of each surface are found on the way.
-
-The sum is made in proportion to the strongest weight and only then multiplied by it. So the same lights k
-times as strong give the same proportions, and the levels that are made from these do not change by rounding.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -19,17 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from autocolor.errors import InputError
-from autocolor.lights import Light
+from autocolor.light_planes import DIFFUSE, SPECULAR, LightPlanes
 from autocolor.seen import Share, SurfaceSlice, shares
-from autocolor.shading import DIFFUSE, SPECULAR
-from autocolor.tables import Surface
-
-LARGEST = float(np.finfo(np.float32).max)
 
 Singles = npt.NDArray[np.float32]
-SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
-"""Weights of a light's diffuse and of its specular plane, by surface number."""
 
 
 class IntensityRange(NamedTuple):
@@ -48,20 +37,6 @@ class PictureRanges:
 
     whole: IntensityRange
     surfaces: Mapping[str, IntensityRange]
-
-
-@dataclass(frozen=True, eq=False)
-class LightPlanes:
-    """What one light gives to what is seen, in the order of `Seen.pixels`; read-only in a picture.
-
-    `values` is (2, n) float32: its diffuse and its specular plane, without D, S and the light's intensity.
-    `weights` are what they weigh in the sum. `weighed` is their sum by the weights, (n,) float32, where it is
-    kept: for a light that stays while others are moved, and need then only be added.
-    """
-
-    values: Singles
-    weights: SurfaceWeights
-    weighed: Singles | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,75 +133,6 @@ class Picture:
             f"Picture({self.lines} x {self.elements}, {len(self.pixels)} pixels of {len(self.slices)}"
             f" surfaces, intensities {whole.minimum:.4g} to {whole.maximum:.4g})"
         )
-
-
-class Weights(NamedTuple):
-    """What the ambient and the lights that shine weigh in the sum, in proportion to `scale`.
-
-    `lights` has by a light's name, and then by surface number, the weights of its diffuse and of its specular
-    plane.
-    """
-
-    scale: float
-    ambient: np.float32
-    lights: Mapping[str, SurfaceWeights]
-
-
-def weights_of(
-    surface_numbers: Iterable[int], surfaces: Sequence[Surface], lights: Sequence[Light], ambient: float
-) -> Weights:
-    """The weights of the lights that shine, on the surfaces that are seen.
-
-    Raises InputError where the sum would leave the range of float32: such an intensity is refused by name,
-    never clipped into a level.
-    """
-    if not ambient < LARGEST:
-        raise InputError(f"ambient must stay below {LARGEST:.3g}, not {ambient:g}; lower it")
-    shining = [light for light in lights if light.shines]
-    strengths: dict[str, dict[int, tuple[float, float]]] = {light.name: {} for light in shining}
-    for number in surface_numbers:
-        name, reflectance = surfaces[number - 1].name, surfaces[number - 1].reflectance
-        for light in shining:
-            strengths[light.name][number] = (
-                light.intensity * reflectance.diffuse,
-                light.intensity * reflectance.specular,
-            )
-        _refuse_overflow(name, [strengths[light.name][number] for light in shining], shining, ambient)
-    all_strengths = [each for rows in strengths.values() for pair in rows.values() for each in pair]
-    scale = max([ambient, *all_strengths]) or 1.0
-    return Weights(
-        scale,
-        np.float32(ambient / scale),
-        {
-            name: {
-                number: (np.float32(diffuse / scale), np.float32(specular / scale))
-                for number, (diffuse, specular) in rows.items()
-            }
-            for name, rows in strengths.items()
-        },
-    )
-
-
-def weigh(planes: LightPlanes, share: Share, out: Singles) -> None:
-    """Fill `out` with the weighed sum of a light's planes at the pixels of a share."""
-    values = planes.values[:, share.pixels]
-    for surface in share.slices:
-        pair = np.array(planes.weights[surface.surface_number])
-        np.matmul(pair, values[:, surface.pixels], out=out[surface.pixels])
-
-
-def _refuse_overflow(
-    name: str, weights: list[tuple[float, float]], shining: list[Light], ambient: float
-) -> None:
-    """Refuse weights whose sum float32 can't hold, naming the light that does most to it."""
-    total = ambient + sum(diffuse + specular for diffuse, specular in weights)
-    if math.isfinite(total) and total < LARGEST:
-        return
-    light = max(zip(weights, shining, strict=True), key=lambda row: sum(row[0]))[1]
-    raise InputError(
-        f"surface {name!r} under light {light.name!r}: intensities must stay below {LARGEST:.3g}, not reach"
-        f" {total:g}; lower the light's intensity or the surface's diffuse and specular"
-    )
 
 
 def _range(values: Singles) -> IntensityRange:

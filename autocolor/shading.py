@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.light_controls import Controls, concentrated, controls, inside_cone, inside_flaps
+from autocolor.light_planes import DIFFUSE, SPECULAR
 from autocolor.lights import Light
 from autocolor.reflection import phong_diffuse, phong_specular
 from autocolor.seen import (
@@ -43,8 +44,6 @@ FARTHEST = 1e15
 
 FEW = 0.3
 """Below this fraction of lit pixels it takes less time to pick them than to compute them all."""
-
-DIFFUSE, SPECULAR = 0, 1
 
 Singles = npt.NDArray[np.float32]
 Floats = npt.NDArray[np.float64]

@@ -44,7 +44,7 @@ STEPS = (
     Step("autocolor.interpolation", "_fill", "seen_of_spans"),
     Step("autocolor.lighting", "lit", "rendering"),
     Step("autocolor.shading", "shade", "lit"),
-    Step("autocolor.picture", "weigh", "lit"),
+    Step("autocolor.light_planes", "weigh", "lit"),
     Step("autocolor.studio", "shown", FRAME),
     Step("autocolor.intensity_mapping", "words_of", "shown"),
     Step("autocolor.studio", "_send", FRAME),

@@ -1,0 +1,85 @@
+"""What lights and ambient weigh in the sum that is a picture's intensity.
+
+Paper: "The Lighting Model": a light gives its intensity times (D cos(I) + S cos^N(E)), and the ambient term
+is added. The weights are in proportion to the strongest of them, and only the sum is multiplied by that: so
+the same lights k times as strong give the same proportions, and the levels that are made from these do not
+change by rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from autocolor.errors import InputError
+from autocolor.lights import Light
+from autocolor.tables import Surface
+
+LARGEST = float(np.finfo(np.float32).max)
+
+SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
+"""Weights of a light's diffuse and of its specular plane, by surface number."""
+
+
+class Weights(NamedTuple):
+    """What the ambient and the lights that shine weigh in the sum, in proportion to `scale`.
+
+    `lights` has by a light's name, and then by surface number, the weights of its diffuse and of its specular
+    plane.
+    """
+
+    scale: float
+    ambient: np.float32
+    lights: Mapping[str, SurfaceWeights]
+
+
+def weights_of(
+    surface_numbers: Iterable[int], surfaces: Sequence[Surface], lights: Sequence[Light], ambient: float
+) -> Weights:
+    """The weights of the lights that shine, on the surfaces that are seen.
+
+    Raises InputError where the sum would leave the range of float32: such an intensity is refused by name,
+    never clipped into a level.
+    """
+    if not ambient < LARGEST:
+        raise InputError(f"ambient must stay below {LARGEST:.3g}, not {ambient:g}; lower it")
+    shining = [light for light in lights if light.shines]
+    strengths: dict[str, dict[int, tuple[float, float]]] = {light.name: {} for light in shining}
+    for number in surface_numbers:
+        name, reflectance = surfaces[number - 1].name, surfaces[number - 1].reflectance
+        for light in shining:
+            strengths[light.name][number] = (
+                light.intensity * reflectance.diffuse,
+                light.intensity * reflectance.specular,
+            )
+        _refuse_overflow(name, [strengths[light.name][number] for light in shining], shining, ambient)
+    all_strengths = [each for rows in strengths.values() for pair in rows.values() for each in pair]
+    scale = max([ambient, *all_strengths]) or 1.0
+    return Weights(
+        scale,
+        np.float32(ambient / scale),
+        {
+            name: {
+                number: (np.float32(diffuse / scale), np.float32(specular / scale))
+                for number, (diffuse, specular) in rows.items()
+            }
+            for name, rows in strengths.items()
+        },
+    )
+
+
+def _refuse_overflow(
+    name: str, weights: list[tuple[float, float]], shining: list[Light], ambient: float
+) -> None:
+    """Refuse weights whose sum float32 can't hold, naming the light that does most to it."""
+    total = ambient + sum(diffuse + specular for diffuse, specular in weights)
+    if math.isfinite(total) and total < LARGEST:
+        return
+    light = max(zip(weights, shining, strict=True), key=lambda row: sum(row[0]))[1]
+    raise InputError(
+        f"surface {name!r} under light {light.name!r}: intensities must stay below {LARGEST:.3g}, not reach"
+        f" {total:g}; lower the light's intensity or the surface's diffuse and specular"
+    )
