@@ -78,6 +78,7 @@ def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[n
         raise ColorsError(
             f"the first entry must be 0 to {entries - 1}, not {first!r}; choose an entry of the table"
         )
+    first = int(first)
     if first + len(array) > entries:
         raise ColorsError(
             f"a run of entries must end at {entries - 1}, not {first + len(array) - 1} "

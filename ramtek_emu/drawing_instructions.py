@@ -9,7 +9,7 @@ import numpy as np
 from . import curves, text, vectors
 from .instruction import Instruction
 from .instruction_set import Flags
-from .parameters import STANDARD_FONT
+from .parameters import STANDARD_FONT, signed
 from .processor import Processor, executes
 from .scan_orders import Point
 
@@ -107,7 +107,7 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
         transparent=bool(instruction.low_byte & Flags.ADDITIVE),
     )
     is_standard = parameters.font == STANDARD_FONT
-    parameters.start = text.write_text(
+    next_cell = text.write_text(
         processor.frame_buffer,
         processor.characters if is_standard else processor.loaded_characters,
         instruction.data_bytes(),
@@ -117,6 +117,8 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
         start=parameters.start,
         enable=parameters.enable,
     )
+    # The operating point is a pair of registers of 16 bits.
+    parameters.start = Point(signed(next_cell.element & 0xFFFF), signed(next_cell.line & 0xFFFF))
 
 
 @executes("LPF")

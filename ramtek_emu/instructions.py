@@ -99,7 +99,7 @@ def load_entries(first: int, colors: object, entries: int = 1024) -> Words:
     # In the memory of a VAX the two words of an entry are the bytes blue, green, red, 0.
     memory = bytearray(6 + 4 * len(checked))
     memory[6::4], memory[7::4], memory[8::4] = data[2::3], data[1::3], data[0::3]
-    memory[:6] = THREE_WORDS.pack(LOAD, 2 * first, 4 * len(checked))
+    memory[:6] = THREE_WORDS.pack(LOAD, 2 * int(first), 4 * len(checked))
     return np.frombuffer(memory, LOW_BYTE_FIRST)
 
 
@@ -110,7 +110,7 @@ def load_short_entries(first: int, colors: object, entries: int = 1024) -> Words
     """
     checked = checked_colors(first, colors, entries)
     red, green, blue = checked.astype(np.uint16).T >> 4
-    head = np.array((LOAD, first, 2 * len(checked)), np.uint16)
+    head = np.array((LOAD, int(first), 2 * len(checked)), np.uint16)
     return np.concatenate((head, red << 8 | green << 4 | blue))
 
 

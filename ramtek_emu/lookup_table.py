@@ -31,6 +31,7 @@ class LookupTable:
         self.written = 0
         """Entry words ever written; it only grows."""
         self._last_run = 0, 0, 0
+        """Of the run written last: entry words written before it, its first entry, the one after its last."""
         self._packed: NDArray[np.uint32] = np.zeros(self.size, "<u4")
         # In this byte order the two halves of a packed entry are the two words of the 24-bit format.
         self._halves: Words = self._packed.view("<u2")
@@ -63,8 +64,9 @@ class LookupTable:
     def write(self, first: int, colors: object) -> None:
         """Write (n, 3) colors from Python; ColorsError when a color or the place does not fit."""
         checked = checked_colors(first, colors, self.size)
-        self._packed.view(np.uint8).reshape(-1, 4)[first : first + len(checked), 2::-1] = checked
-        self._note(first, first + len(checked), len(checked))
+        first, end = int(first), int(first) + len(checked)
+        self._packed.view(np.uint8).reshape(-1, 4)[first:end, 2::-1] = checked
+        self._note(first, end, len(checked))
 
     def load(self, address: int, words: Words) -> None:
         """Write words from the wire; the address is a word's, the counter goes on and wraps at the end."""
@@ -96,8 +98,9 @@ class LookupTable:
             return
         # Measured with cold caches: masking the words while they are written takes 1.3 times as long.
         self._halves[first : first + len(words)] = words
-        self._unused[first >> 1 : first + len(words) + 1 >> 1] = 0
-        self._note(first >> 1, first + len(words) + 1 >> 1, len(words))
+        first_entry, end_entry = first >> 1, first + len(words) + 1 >> 1
+        self._unused[first_entry:end_entry] = 0
+        self._note(first_entry, end_entry, len(words))
 
     def _note(self, first: int, end: int, words: int) -> None:
         """Count words that were written to a run of entries."""

@@ -27,8 +27,10 @@ from .timing import Beam
 
 Pixels = NDArray[np.uint32]
 WHITE = np.uint32(0xFFFFFF)
-PLAIN_VIEW = (0, 0), (1, 1), False
-"""Origin, zoom and video origin that show the lines of the memory as they are."""
+View = tuple[tuple[int, int], tuple[int, int], bool]
+"""Origin, zoom, and whether the origin is at the bottom."""
+PLAIN_VIEW: View = (0, 0), (1, 1), False
+"""The one that shows the lines of the memory as they are."""
 Stamp = tuple[int, tuple[object, ...]]
 """What a field is made from: entry words ever written, and all else. Fields with equal stamps are equal."""
 
@@ -61,8 +63,8 @@ class ScanOut:
         # Measured: mode "clip" takes 1.3 times as long; words widened 32 lines at a time for each field, 1.8
         # times; indices on huge pages 3 % less, which is not worth the memory.
         self._indices = np.zeros((self.lines, self.elements), np.intp)
-        self._written: tuple[object, ...] = ()
-        """What the indices were made from."""
+        self._indices_of: tuple[int, View] = (-1, PLAIN_VIEW)
+        """Words ever written when the indices were made, and the view that they are of."""
         shown_words = frame_buffer.words[: self.lines, : self.elements]
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
         self._gray: tuple[int, Pixels] = (-1, lookup_table.packed)
@@ -73,12 +75,10 @@ class ScanOut:
     @property
     def stamp(self) -> Stamp:
         """A value that moves whenever the field may have changed."""
-        parameters, seen, beam = self._parameters(), self._cursors.seen, self._beam
+        seen, beam = self._cursors.seen, self._beam
         return self._lookup_table.written, (
             self._frame_buffer.written,
-            parameters.origin,
-            parameters.zoom,
-            parameters.origin_at_bottom,
+            self._view(),
             self._is_parted and self._partition(),
             seen,
             seen and (self._cursors.changed, any(state & BLINK for _, _, state in seen) and self._blink()),
@@ -111,11 +111,12 @@ class ScanOut:
         draws on a field must say None. After a load of entries only lines that show some of them are written.
         """
         stamp = self.stamp
-        if held is None or held[1:] != stamp[1:] or self._beam is not None:
+        held_entries, held_rest = held or (0, None)
+        if held_rest != stamp[1] or self._beam is not None:
             self.scan_out_into(pixels)
             return stamp
         self._renew_indices()
-        first, end = self._lines_showing(self._lookup_table.run_written_since(held[0]))
+        first, end = self._lines_showing(self._lookup_table.run_written_since(held_entries))
         self._table().take(self._indices[first:end], out=pixels[first:end], mode="wrap")
         self._mark_cursors(pixels[first:end], first)
         return stamp
@@ -166,27 +167,30 @@ class ScanOut:
 
     def _lines_showing(self, run: tuple[int, int] | None) -> tuple[int, int]:
         """The first line that shows an entry of a run, and the one after the last; all where not plain."""
-        is_plain = self._words == self._lookup_table.size and self._written[1:] == PLAIN_VIEW
+        is_plain = self._words == self._lookup_table.size and self._indices_of[1] == PLAIN_VIEW
         return self._lines_with(*run) if run and is_plain else (0, self.lines)
 
     def _renew_indices(self) -> None:
-        parameters = self._parameters()
-        now = self._frame_buffer.written, parameters.origin, parameters.zoom, parameters.origin_at_bottom
-        if self._written == now:
+        now = self._frame_buffer.written, self._view()
+        if self._indices_of == now:
             return
-        self._written = now
+        self._indices_of = now
         self._lines_with.cache_clear()
-        across, down = parameters.zoom
-        target = self._indices[::-1] if parameters.origin_at_bottom else self._indices
+        origin, (across, down), origin_at_bottom = now[1]
+        target = self._indices[::-1] if origin_at_bottom else self._indices
         if (across, down) == (1, 1):
-            copy_around(target, self._frame_buffer.words, *parameters.origin)
+            copy_around(target, self._frame_buffer.words, *origin)
             return
         rows = np.empty((-(-self.lines // down), self.elements), np.intp)
         for repeat in range(across):
-            copy_around(rows[:, repeat::across], self._frame_buffer.words, *parameters.origin)
+            copy_around(rows[:, repeat::across], self._frame_buffer.words, *origin)
         for repeat in range(down):
             part = target[repeat::down]
             part[...] = rows[: len(part)]
+
+    def _view(self) -> View:
+        parameters = self._parameters()
+        return parameters.origin, parameters.zoom, parameters.origin_at_bottom
 
     def _blink(self) -> bool:
         return self.blink_is_on if self._beam is None else self._beam.blink_is_on

@@ -6,10 +6,10 @@ from tests.fidelity_ledger import KINDS, ROOT, document, lines_of_packages, line
 
 BEARING_FORMULAS = [
     "autocolor.camera_space", "autocolor.color_blending", "autocolor.created", "autocolor.intensity_mapping",
-    "autocolor.level_ranges",
+    "autocolor.level_ranges", "autocolor.weights",
     "autocolor.light_controls", "autocolor.lights", "autocolor.node_normals", "autocolor.picture",
     "autocolor.reflection", "autocolor.scene", "autocolor.segments", "autocolor.shading",
-    "autocolor.tables", "autocolor.view", "autocolor.weights", "autocolor.visible_surfaces", "autocolor.watkins",
+    "autocolor.tables", "autocolor.view", "autocolor.visible_surfaces", "autocolor.watkins",
     "ramtek_emu.character_rom", "ramtek_emu.configuration", "ramtek_emu.decoder", "ramtek_emu.vectors",
     "ramtek_emu.curves", "ramtek_emu.timing", "ramtek_emu.frame_buffer", "ramtek_emu.host_port",
     "ramtek_emu.lookup_table", "ramtek_emu.parameters", "ramtek_emu.processor", "ramtek_emu.scan_out",

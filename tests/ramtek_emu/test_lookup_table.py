@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -109,6 +111,21 @@ def test_entries_are_read_only_and_written_only_grows() -> None:
         table.entries[0, 0] = 1
     with pytest.raises(ValueError, match="read-only"):
         table.packed[0] = 1
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.int8, np.int64])
+def test_the_first_entry_may_be_a_number_of_numpy_s(kind: Any) -> None:
+    colors = [[1, 2, 3]] * 10
+    assert (
+        instructions.load_entries(kind(120), colors).tolist()
+        == instructions.load_entries(120, colors).tolist()
+    )
+    short = instructions.load_short_entries(kind(120), colors)
+    assert short.tolist() == instructions.load_short_entries(120, colors).tolist()
+    one, other = LookupTable(), LookupTable()
+    one.write(kind(120), colors)
+    other.write(120, colors)
+    assert one.packed.tolist() == other.packed.tolist()
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from ramtek_emu import InstructionError, Ramtek9300, instructions
 from ramtek_emu.scan_orders import SCAN_ORDERS, Point, Window
+from ramtek_emu.snapshot import display_of, snapshot_bytes
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, sent_words, thorough, windows
 
@@ -59,6 +60,17 @@ def test_text_may_run_off_the_screen() -> None:
     display.send(instructions.write_text("edge", -10, -4, 7))
     assert display.words[:5, :18].any()
     assert display.words[475:, 630:].any()
+
+
+def test_the_operating_point_after_text_stays_one_of_16_bits() -> None:
+    display = Ramtek9300()
+    display.send(instructions.write_text("A", 32761, 0))
+    display.send(instructions.set_parameters(start=(32767, 0), spacing=(20, 0)))
+    display.send(np.array([0x0C01, 2, 0x4142], np.uint16))
+    assert all(-0x8000 <= number < 0x8000 for number in display.processor.parameters.start)
+    assert (
+        display_of(snapshot_bytes(display)).processor.parameters.start == display.processor.parameters.start
+    )
 
 
 def test_text_with_the_widest_spacing_takes_little_time_and_memory() -> None:
