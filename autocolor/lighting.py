@@ -14,9 +14,10 @@ import numpy as np
 from autocolor.light_planes import LightPlanes, weigh
 from autocolor.lights import Light
 from autocolor.picture import Picture
+from autocolor.rays import placed
 from autocolor.scene import Scene
 from autocolor.seen import Seen
-from autocolor.shading import placed, shade
+from autocolor.shading import shade
 from autocolor.weights import SurfaceWeights, weights_of
 
 SHAPING = tuple(field.name for field in dataclasses.fields(Light) if field.name not in ("intensity", "on"))
