@@ -15,8 +15,8 @@ import numpy.typing as npt
 from autocolor.rounding import HALF, half_up
 from autocolor.tables import Paint
 
-ROUNDING = (HALF + 1e-9,) * 3
-"""What makes the nearest color of a mixed one when the fractions are cut off.
+HALVES_UP = (HALF + 1e-9,) * 3
+"""What rounds a mixed color when it is added and the fractions are then cut off.
 
 Mixing in floats may miss a whole color by the last bit, just below a half.
 """
@@ -43,7 +43,7 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     shares = color_shares(paint.blend, paint.light_percentage, levels, floor)
     # One product mixes and rounds. Measured with cold caches, where a call costs more than what it computes:
     # rounding apart, or "@" in place of "dot", takes 1.4 times as long, both together twice.
-    colors = np.array((paint.object_color, paint.light_color, ROUNDING), np.float64)
+    colors = np.array((paint.object_color, paint.light_color, HALVES_UP), np.float64)
     entries: npt.NDArray[np.uint8] = shares.dot(colors).astype(np.uint8)
     entries.setflags(write=False)
     return entries

@@ -40,23 +40,29 @@ def words_of(
     intensities that are not finite.
     """
     words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
-    fractions = {}
+    extents = picture.relative_ranges
     for surface in picture.slices:
-        name = picture.surfaces[surface.surface_number - 1]
-        of_whole = scaling == "object"
-        extent = picture.relative_ranges[0 if of_whole else surface.surface_number]
+        extent = extents[surface.surface_number]
         if not (np.isfinite(extent.minimum) and np.isfinite(extent.maximum)):
+            name = picture.surfaces[surface.surface_number - 1]
             raise InputError(f"surface {name!r}: an intensity must be finite, not {extent.maximum:g}")
-        everything = picture.relative if of_whole else picture.relative[surface.pixels]
-        fractions[surface.surface_number] = fraction_of(extent, mapping, everything)
-
+    if scaling == "object":
+        of_all = fraction_of(extents[0], mapping, picture.relative)
+        fractions_of = dict.fromkeys(extents, of_all)
+    else:
+        fractions_of = {
+            surface.surface_number: fraction_of(
+                extents[surface.surface_number], mapping, picture.relative[surface.pixels]
+            )
+            for surface in picture.slices
+        }
     for share in picture.shares:
         intensities, pixels = picture.relative[share.pixels], picture.pixels[share.pixels]
         here = np.empty(len(pixels), np.uint16)
         for surface in share.slices:
             first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
-            fraction = fractions[surface.surface_number](intensities[surface.pixels])
-            np.copyto(here[surface.pixels], levels_of(fraction, levels), casting="unsafe")
+            fractions = fractions_of[surface.surface_number](intensities[surface.pixels])
+            np.copyto(here[surface.pixels], levels_of(fractions, levels), casting="unsafe")
             here[surface.pixels] += np.uint16(first)
         words[pixels] = here
     words.flags.writeable = False

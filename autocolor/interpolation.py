@@ -68,6 +68,7 @@ def seen_of_spans(
 
 def _pixels_of_surfaces(segments: Segments) -> npt.NDArray[np.int64]:
     """How many pixels each surface number has, from 0 on; the segments are sorted by it."""
+    # One number more, for the last surface ends where the next one would begin.
     numbers = np.arange(int(segments.surface.max(initial=0)) + 2)
     beyond = np.append(0, np.cumsum(segments.count))
     return np.diff(beyond[np.searchsorted(segments.surface, numbers)])

@@ -10,37 +10,46 @@ from collections.abc import Mapping, Set
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from autocolor.light_planes import LightPlanes, weigh
 from autocolor.lights import Light
 from autocolor.picture import Picture
-from autocolor.rays import placed
+from autocolor.rays import Placed, placed
 from autocolor.scene import Scene
 from autocolor.seen import Seen
 from autocolor.shading import shade
 from autocolor.weights import SurfaceWeights, weights_of
 
+Singles = npt.NDArray[np.float32]
+
 SHAPING = tuple(field.name for field in dataclasses.fields(Light) if field.name not in ("intensity", "on"))
 """The fields of a light that its planes depend on; the others only weigh them."""
 
 
-def lit(scene: Scene, seen: Seen, before: tuple[Scene, Picture] | None = None) -> Picture:
+class Lender(NamedTuple):
+    """A scene with its picture of the very same that is seen; it lends the planes of lights that stay."""
+
+    scene: Scene
+    picture: Picture
+
+
+def lit(scene: Scene, seen: Seen, lender: Lender | None = None) -> Picture:
     """The picture of what is seen in the light of a scene.
 
-    `before` is a scene with its picture of the very same that is seen; it lends the planes of the lights that
-    did not change. Raises InputError for intensities that float32 can't hold.
+    Raises InputError for intensities that float32 can't hold.
     """
     exponents = {
         surface.surface_number: scene.surfaces[surface.surface_number - 1].reflectance.exponent
         for surface in seen.slices
     }
-    weights = weights_of(exponents, scene.surfaces, scene.lights, scene.ambient)
-    lights = {}
-    for light in scene.lights:
-        begun = _begun(light, exponents, weights.lights.get(light.name), before, len(seen.pixels))
-        if begun is not None:
-            lights[light.name] = begun
-    ready = {name: placed(each.light, seen) for name, each in lights.items() if each.to_shade}
+    weights = weights_of(exponents.keys(), scene.surfaces, scene.lights, scene.ambient)
+    loans = {light.name: _loan(light, exponents, lender) for light in scene.lights}
+    works = [
+        _work(light, loans[light.name], weights.lights[light.name], seen)
+        for light in scene.lights
+        if light.name in weights.lights
+    ]
 
     # Do all there is to a share before the next, whose rows and planes are then fetched from memory once.
     relative = np.empty(len(seen.pixels), np.float32)
@@ -49,81 +58,78 @@ def lit(scene: Scene, seen: Seen, before: tuple[Scene, Picture] | None = None) -
         sums[:] = weights.ambient
         passing = np.empty_like(sums)
         numbers = {surface.surface_number for surface in share.slices}
-        for name, (_, planes, to_shade, to_weigh) in lights.items():
-            if not numbers.isdisjoint(to_shade):
-                shade(planes.values, ready[name], seen, share, exponents)
-            weighed = passing if planes.weighed is None else planes.weighed[share.pixels]
-            if to_weigh:
-                weigh(planes, share, weighed)
-            if name in weights.lights:
-                sums += weighed
+        for work in works:
+            if work.light is not None and not numbers.isdisjoint(work.changed_surfaces):
+                shade(work.planes.values, work.light, seen, share, exponents)
+            weighed = passing if work.planes.weighed is None else work.planes.weighed[share.pixels]
+            if work.to_weigh:
+                weigh(work.planes, share, weighed)
+            sums += weighed
 
-    kept = {name: each.planes for name, each in lights.items()}
-    relative.flags.writeable = False
-    for planes in kept.values():
-        planes.values.flags.writeable = False
-        if planes.weighed is not None:
-            planes.weighed.flags.writeable = False
+    # A light that rests keeps what it has until that would change.
+    made = {name: loan.planes for name, loan in loans.items() if loan.planes and not loan.changed_surfaces}
+    made |= {name: work.planes for name, work in zip(weights.lights, works, strict=True)}
+    planes = {light.name: made[light.name] for light in scene.lights if light.name in made}
+    for each in planes.values():
+        _freeze(each.values, each.weighed)
+    _freeze(relative)
     names = tuple(surface.name for surface in scene.surfaces)
-    return Picture(seen.lines, seen.elements, names, seen.pixels, seen.slices, relative, weights.scale, kept)
+    return Picture(
+        seen.lines, seen.elements, names, seen.pixels, seen.slices, relative, weights.scale, planes
+    )
 
 
-class _Begun(NamedTuple):
-    """A light with its planes, and what of them is still to be computed.
+class _Loan(NamedTuple):
+    """The planes that a light had before, if any, and the numbers of the surfaces where they are wrong."""
 
-    `to_shade` are the numbers of the surfaces where the values are; `to_weigh` is whether their sum is.
+    planes: LightPlanes | None
+    changed_surfaces: Set[int]
+
+
+def _loan(light: Light, exponents: Mapping[int, float], lender: Lender | None) -> _Loan:
+    """What can be lent of a light's planes; `exponents` has N for each surface number that is seen."""
+    lent = None if lender is None else lender.picture.light_planes.get(light.name)
+    if lender is None or lent is None or not _only_weighs_another(lender.scene.light(light.name), light):
+        return _Loan(None, exponents.keys())
+    old = lender.scene.surfaces
+    changed = {number for number in exponents if old[number - 1].reflectance.exponent != exponents[number]}
+    return _Loan(lent, changed)
+
+
+class _Work(NamedTuple):
+    """The planes of a light that shines, and what of them is still to be computed.
+
+    The values are on the surfaces with the numbers `changed_surfaces`, in the light `light`; the sum of both
+    planes is everywhere, if it is `to_weigh`.
     """
 
-    light: Light
     planes: LightPlanes
-    to_shade: Set[int]
+    light: Placed | None
+    changed_surfaces: Set[int]
     to_weigh: bool
 
 
-def _begun(
-    light: Light,
-    exponents: Mapping[int, float],
-    weights: SurfaceWeights | None,
-    before: tuple[Scene, Picture] | None,
-    count: int,
-) -> _Begun | None:
-    """The planes of a light with what can be lent of them; None where a light that rests has none.
-
-    `weights` are those of a light that shines. One that rests keeps what it has until that would change.
-    """
-    lent, to_shade = _lent(light, exponents, before)
-    if weights is None:
-        return None if lent is None or to_shade else _Begun(light, lent, to_shade, to_weigh=False)
-    if lent is None:
-        return _Begun(light, LightPlanes(np.empty((2, count), np.float32), weights), to_shade, to_weigh=True)
-    if to_shade:
-        return _Begun(light, LightPlanes(lent.values.copy(), weights), to_shade, to_weigh=True)
-    if lent.weights != weights:
-        return _Begun(light, LightPlanes(lent.values, weights), to_shade, to_weigh=True)
-    if lent.weighed is None:
+def _work(light: Light, loan: _Loan, weights: SurfaceWeights, seen: Seen) -> _Work:
+    """What there is to do for a light that shines."""
+    lent, changed = loan
+    if lent is not None and not changed:
+        if lent.weights != weights:
+            return _Work(LightPlanes(lent.values, weights), None, changed, to_weigh=True)
+        if lent.weighed is not None:
+            return _Work(lent, None, changed, to_weigh=False)
         # It stays while something else is edited, and will while that goes on.
-        lent = dataclasses.replace(lent, weighed=np.empty(count, np.float32))
-        return _Begun(light, lent, to_shade, to_weigh=True)
-    return _Begun(light, lent, to_shade, to_weigh=False)
-
-
-def _lent(
-    light: Light, exponents: Mapping[int, float], before: tuple[Scene, Picture] | None
-) -> tuple[LightPlanes | None, Set[int]]:
-    """The planes of the same light before, and the numbers of the surfaces on which they are not right."""
-    if before is None:
-        return None, exponents.keys()
-    scene, picture = before
-    lent = picture.light_planes.get(light.name)
-    if lent is None or not _only_weighs_another(scene.light(light.name), light):
-        return None, exponents.keys()
-    return lent, {
-        number
-        for number, exponent in exponents.items()
-        if scene.surfaces[number - 1].reflectance.exponent != exponent
-    }
+        kept = dataclasses.replace(lent, weighed=np.empty(len(seen.pixels), np.float32))
+        return _Work(kept, None, changed, to_weigh=True)
+    values = np.empty((2, len(seen.pixels)), np.float32) if lent is None else lent.values.copy()
+    return _Work(LightPlanes(values, weights), placed(light, seen), changed, to_weigh=True)
 
 
 def _only_weighs_another(old: Light, new: Light) -> bool:
     """Whether two lights have the same planes."""
     return old is new or all(getattr(old, name) == getattr(new, name) for name in SHAPING)
+
+
+def _freeze(*arrays: Singles | None) -> None:
+    for array in arrays:
+        if array is not None:
+            array.flags.writeable = False

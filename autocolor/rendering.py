@@ -4,7 +4,7 @@
 |---|---|
 | mesh, view, the surface of a part | everything |
 | a light's place, aim, concentration, flaps, cone | that light's two planes, the sum |
-| a surface's exponent | every light on that surface, the sum |
+| a surface's exponent | every light on the shares of pixels that it is in, the sum |
 | a light's intensity or switch, ambient, D, S | the sum |
 | anything else | nothing |
 """
@@ -19,7 +19,7 @@ import numpy as np
 
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
-from autocolor.lighting import lit
+from autocolor.lighting import Lender, lit
 from autocolor.picture import Picture
 from autocolor.scene import Scene
 from autocolor.seen import Seen
@@ -83,7 +83,7 @@ def rendering(
         seen = ALGORITHMS[algorithm](
             scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided
         )
-    lender = None if before is None else (before.scene, before.picture)
+    lender = None if before is None else Lender(before.scene, before.picture)
     return Rendering(scene, seen, lit(scene, seen, lender))
 
 

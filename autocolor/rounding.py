@@ -1,4 +1,4 @@
-"""The one rounding rule: to the nearest whole number, halves up."""
+"""The one rounding rule: to the nearest whole number, halves up. `color_blending` adds the half as it mixes."""
 
 from __future__ import annotations
 

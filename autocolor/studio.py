@@ -141,10 +141,10 @@ class Studio:
                 raise UsageError(f"recolor takes {', '.join(PAINT_CHECKS)}, not {name!r}{guess}")
         before = self.scene
         scene = before.with_surface(surface, **changes)
-        repainted = scene.surface(surface)
+        now = scene.surface(surface)
         # Known by name, what differs need not be looked for.
-        if repainted != before.surface(surface):
-            self._repaint(scene, [repainted])
+        if now != before.surface(surface):
+            self._repaint(scene, [now])
             self._note_step(before)
 
     def surface(self, name: str, /, **changes: Any) -> None:

@@ -47,39 +47,38 @@ def weights_of(
     if not ambient < LARGEST:
         raise InputError(f"ambient must stay below {LARGEST:.3g}, not {ambient:g}; lower it")
     shining = [light for light in lights if light.shines]
-    strengths: dict[str, dict[int, tuple[float, float]]] = {light.name: {} for light in shining}
-    for number in surface_numbers:
-        name, reflectance = surfaces[number - 1].name, surfaces[number - 1].reflectance
-        for light in shining:
-            strengths[light.name][number] = (
-                light.intensity * reflectance.diffuse,
-                light.intensity * reflectance.specular,
+    seen = {number: surfaces[number - 1] for number in surface_numbers}
+    strengths = {
+        light.name: {
+            number: (
+                light.intensity * surface.reflectance.diffuse,
+                light.intensity * surface.reflectance.specular,
             )
-        _refuse_overflow(name, [strengths[light.name][number] for light in shining], shining, ambient)
+            for number, surface in seen.items()
+        }
+        for light in shining
+    }
+    for number, surface in seen.items():
+        _refuse_overflow(surface.name, {name: rows[number] for name, rows in strengths.items()}, ambient)
     all_strengths = [each for rows in strengths.values() for pair in rows.values() for each in pair]
     scale = max([ambient, *all_strengths]) or 1.0
-    return Weights(
-        scale,
-        np.float32(ambient / scale),
-        {
-            name: {
-                number: (np.float32(diffuse / scale), np.float32(specular / scale))
-                for number, (diffuse, specular) in rows.items()
-            }
-            for name, rows in strengths.items()
-        },
-    )
+    weights = {
+        name: {
+            number: (np.float32(diffuse / scale), np.float32(specular / scale))
+            for number, (diffuse, specular) in rows.items()
+        }
+        for name, rows in strengths.items()
+    }
+    return Weights(scale, np.float32(ambient / scale), weights)
 
 
-def _refuse_overflow(
-    name: str, weights: list[tuple[float, float]], shining: list[Light], ambient: float
-) -> None:
-    """Refuse weights whose sum float32 can't hold, naming the light that does most to it."""
-    total = ambient + sum(diffuse + specular for diffuse, specular in weights)
+def _refuse_overflow(surface: str, strengths: Mapping[str, tuple[float, float]], ambient: float) -> None:
+    """Refuse what float32 can't hold the sum of, naming the light that does most to it."""
+    total = ambient + sum(diffuse + specular for diffuse, specular in strengths.values())
     if math.isfinite(total) and total < LARGEST:
         return
-    light = max(zip(weights, shining, strict=True), key=lambda row: sum(row[0]))[1]
+    light = max(strengths, key=lambda name: sum(strengths[name]))
     raise InputError(
-        f"surface {name!r} under light {light.name!r}: intensities must stay below {LARGEST:.3g}, not reach"
+        f"surface {surface!r} under light {light!r}: intensities must stay below {LARGEST:.3g}, not reach"
         f" {total:g}; lower the light's intensity or the surface's diffuse and specular"
     )

@@ -17,7 +17,7 @@ from ramtek_emu import Ramtek9300, instructions
 COPY, SCAN_OUT = "copy of one field", "scan-out"
 FIRST_RECOLOR = "first recolor after other words"
 ENTRIES, STREAM = "entries of a surface, sent", "words of a picture, sent"
-INTENSITY, MAPPING = "a light's intensity", "mapping curve"
+INTENSITY, EXPONENT, MAPPING = "a light's intensity", "a surface's exponent", "mapping curve"
 
 
 def own_cases(scene: Scene) -> Iterator[Case]:
@@ -29,6 +29,7 @@ def own_cases(scene: Scene) -> Iterator[Case]:
     session = Session(scene, LINES)
     copy = np.zeros((LINES, ELEMENTS), np.uint32)
     lamp, steps = scene.lights[0].name, count(1 + STEP, STEP)
+    exponents = cycle([scene.surfaces[0].reflectance.exponent + 1, scene.surfaces[0].reflectance.exponent])
     # Curves are changed in a studio of their own: no other case is to pay for a curve, for no peer has any.
     mapped, curves = autocolor.Studio(scene, Ramtek9300()), cycle(["gamma", "linear"])
     levels = session.studio.level_ranges[scene.surfaces[0].name]
@@ -68,6 +69,7 @@ def own_cases(scene: Scene) -> Iterator[Case]:
     yield Case(
         INTENSITY, lambda: session.studio.light(lamp, intensity=next(steps) * scene.lights[0].intensity)
     )
+    yield Case(EXPONENT, lambda: session.studio.surface(scene.surfaces[0].name, exponent=next(exponents)))
     yield Case(ONE_LIGHT, session.one_light)
     yield Case(ALL_LIGHTS, all_lights)
     yield Case(FRAME, frame)

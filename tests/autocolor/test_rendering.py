@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, UsageError, View, render, scene_of
 from autocolor.rendering import Rendering, rendering
+from autocolor.seen import Share
+from autocolor.shading import shade
 from tests.autocolor.meshes import cube, sphere
 from tests.autocolor.strategies import scenes
 
@@ -93,6 +95,37 @@ def test_what_stays_while_a_light_is_dragged_is_kept_weighed() -> None:
         assert weighed[0] is None
         assert (weighed[1] is None) == (light.name == "key")
         assert weighed[1] is weighed[2] is weighed[3]
+
+
+def test_a_light_off_and_on_again_is_neither_computed_nor_weighed_again() -> None:
+    start = two_surfaces()
+    first = rendering(start, 24, 32)
+    moved = rendering(start.with_light("rim", position=(4, -3, 2)), 24, 32, first)
+    dark = rendering(moved.scene.with_light("key", on=False), 24, 32, moved)
+    lit = rendering(moved.scene, 24, 32, dark)
+    kept = moved.picture.light_planes["key"]
+    assert kept.weighed is not None
+    assert dark.picture.light_planes["key"] is lit.picture.light_planes["key"] is kept
+    assert list(lit.picture.light_planes) == [light.name for light in start.lights]
+
+
+def test_an_exponent_computes_only_the_shares_that_its_surface_is_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("autocolor.seen.PIXELS_AT_ONCE", 37)
+    before = rendering(two_surfaces(), 24, 32)
+    shaded = []
+
+    def noting(planes: Any, light: Any, seen: Any, share: Share, exponents: Any) -> None:
+        shaded.append(share.pixels)
+        shade(planes, light, seen, share, exponents)
+
+    monkeypatch.setattr("autocolor.lighting.shade", noting)
+    rendering(before.scene.with_surface("cube", exponent=3), 24, 32, before)
+    having = [
+        share.pixels for share in before.seen.shares if 2 in [each.surface_number for each in share.slices]
+    ]
+    assert 0 < len(having) < len(before.seen.shares)
+    lights = sum(light.shines for light in before.scene.lights)
+    assert shaded == [pixels for pixels in having for _ in range(lights)]
 
 
 @pytest.mark.parametrize("edit", EVERYTHING)
