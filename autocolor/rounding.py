@@ -1,4 +1,4 @@
-"""The one rounding rule: to the nearest whole number, halves up. `color_blending` adds the half as it mixes."""
+"""The one rounding rule: to the nearest whole number, halves up; `color_blending` does it as it mixes."""
 
 from __future__ import annotations
 
