@@ -70,14 +70,20 @@ def surface_slices(counts: npt.NDArray[np.int64]) -> tuple[SurfaceSlice, ...]:
 
 
 def shares(slices: Sequence[SurfaceSlice]) -> tuple[Share, ...]:
-    """All pixels in equal shares.
+    """All pixels in shares of about the same size, cut between two surfaces where that does.
 
     How they are cut depends on nothing but the slices: what is computed again is then computed in the same
     steps, and comes to the same last bit.
     """
     total = slices[-1].stop if slices else 0
     count = -(-total // PIXELS_AT_ONCE)
-    bounds = [total * number // count for number in range(count + 1)] if count else []
+    cuts = [total * number // count for number in range(1, count + 1)]
+    bounds = [0]
+    for cut, following in pairwise(cuts):
+        between = min((each.start for each in slices), key=lambda start: abs(start - cut))
+        fits = all(0 < size <= PIXELS_AT_ONCE for size in (between - bounds[-1], following - between))
+        bounds.append(between if fits else cut)
+    bounds.extend(cuts[-1:])
     return tuple(Share(slice(start, stop), _within(slices, start, stop)) for start, stop in pairwise(bounds))
 
 
