@@ -23,6 +23,7 @@ MET, MISSED, SKIPPED, NOT_COMPARABLE = "met", "MISSED", "skipped", "not comparab
 NOTES = (
     "Edits of a frame, of all lights and of a color end with the field scanned out, those of one light with\n"
     "the words in the frame buffer, those of peers with glFinish; a peer is compared in the same edit.\n"
+    "A recoloring is one of many, as while a color is dragged; the first one is a case of its own.\n"
     "Memory is the peak of making and rendering a scene, its mesh included, over that of the imports."
 )
 
