@@ -43,12 +43,13 @@ def seen_of_spans(
     # Step along the segments.
     count = segments.count
     pixels = runs(segments.first_pixel, count)
-    along = runs(np.zeros_like(count), count).astype(np.float32)
+    heads = np.cumsum(count) - count
     rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
     ray_step = np.float32(1 / focal_length(projected.lines, view.field_of_view))
     for part, some in batches(count, PIXELS_AT_ONCE):
         start_here, step_here = (np.repeat(table[:, part], count[part], axis=1) for table in (start, step))
-        _fill(rows[:, some], start_here, step_here, along[some], ray_step)
+        along = np.arange(some.start, some.stop) - np.repeat(heads[part], count[part])
+        _fill(rows[:, some], start_here, step_here, along.astype(np.float32), ray_step)
 
     for table in (rows, pixels):
         table.flags.writeable = False

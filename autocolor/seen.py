@@ -33,9 +33,9 @@ def products(one: Singles, other: Singles) -> Singles:
 
 
 def keep_products(rows: Singles) -> None:
-    """Write the products with the point into rows whose vectors are there."""
-    for vector, product in ((POINT, POINT_SQUARED), (NORMAL, NORMAL_POINT), (MIRROR, MIRROR_POINT)):
-        np.einsum("ij,ij->j", rows[vector], rows[POINT], out=rows[product])
+    """Write the products with the point into rows whose vectors are there, each after its vector."""
+    vectors = rows.reshape(3, 4, -1)
+    np.einsum("kij,ij->kj", vectors[:, :3], rows[POINT], out=vectors[:, 3])
 
 
 @dataclass(frozen=True, eq=False)
