@@ -171,12 +171,15 @@ class ScanOut:
         return self._lines_with(*run) if run and is_plain else (0, self.lines)
 
     def _renew_indices(self) -> None:
-        now = self._frame_buffer.written, self._view()
+        # The view is told here once more: with cold caches another call takes a fiftieth of a scan-out.
+        parameters = self._parameters()
+        origin, zoom, origin_at_bottom = parameters.origin, parameters.zoom, parameters.origin_at_bottom
+        now = self._frame_buffer.written, (origin, zoom, origin_at_bottom)
         if self._indices_of == now:
             return
         self._indices_of = now
         self._lines_with.cache_clear()
-        origin, (across, down), origin_at_bottom = now[1]
+        across, down = zoom
         target = self._indices[::-1] if origin_at_bottom else self._indices
         if (across, down) == (1, 1):
             copy_around(target, self._frame_buffer.words, *origin)
