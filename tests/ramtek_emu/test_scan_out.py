@@ -176,8 +176,7 @@ def test_the_lines_that_show_a_run_of_entries_are_found(
     with patch("ramtek_emu.shown_lines.STRIP", 7):
         top, bottom = lines_with(raster, first, end)
     showing = [line for line, words in enumerate(raster.tolist()) if any(first <= w < end for w in words)]
-    assert (top, bottom) == (0, 0) if not showing else top <= showing[0] < top + 7
-    assert not showing or bottom - 7 <= showing[-1] < bottom
+    assert (top, bottom) == ((showing[0], showing[-1] + 1) if showing else (0, 0))
 
 
 def test_after_a_load_only_lines_that_may_show_its_entries_are_written() -> None:
