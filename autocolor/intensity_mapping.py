@@ -17,6 +17,7 @@ from autocolor.level_ranges import BACKGROUND, LevelRange
 from autocolor.picture import IntensityRange, Picture
 from autocolor.rounding import halves_up
 from autocolor.scene import Curve
+from autocolor.seen import shares
 
 Singles = npt.NDArray[np.float32]
 
@@ -56,7 +57,7 @@ def words_of(
             )
             for surface in picture.slices
         }
-    for share in picture.shares:
+    for share in shares(picture.slices):
         intensities, pixels = picture.relative[share.pixels], picture.pixels[share.pixels]
         here = np.empty(len(pixels), np.uint16)
         for surface in share.slices:

@@ -8,8 +8,9 @@ import numpy.typing as npt
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, focal_length
 from autocolor.runs import batches, runs
-from autocolor.seen import MIRROR, NORMAL, POINT, ROW_COUNT, Seen, keep_products, products, surface_slices
+from autocolor.seen import MIRROR, NORMAL, POINT, ROW_COUNT, Seen, keep_products, surface_slices
 from autocolor.segments import DEPTH, NORMALS, POINTS, RAY, Segments, along_segments, visible_segments
+from autocolor.vectors import products
 from autocolor.view import View
 
 PIXELS_AT_ONCE = 1 << 14
@@ -43,12 +44,11 @@ def seen_of_spans(
     # Step along the segments.
     count = segments.count
     pixels = runs(segments.first_pixel, count)
-    heads = np.cumsum(count) - count
     rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
     ray_step = np.float32(1 / focal_length(projected.lines, view.field_of_view))
     for part, some in batches(count, PIXELS_AT_ONCE):
         start_here, step_here = (np.repeat(table[:, part], count[part], axis=1) for table in (start, step))
-        along = np.arange(some.start, some.stop) - np.repeat(heads[part], count[part])
+        along = pixels[some] - np.repeat(segments.first_pixel[part], count[part])
         _fill(rows[:, some], start_here, step_here, along.astype(np.float32), ray_step)
 
     for table in (rows, pixels):

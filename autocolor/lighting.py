@@ -45,11 +45,11 @@ def lit(scene: Scene, seen: Seen, lender: Lender | None = None) -> Picture:
     }
     weights = weights_of(exponents.keys(), scene.surfaces, scene.lights, scene.ambient)
     loans = {light.name: _loan(light, exponents, lender) for light in scene.lights}
-    works = [
-        _work(light, loans[light.name], weights.lights[light.name], seen)
+    works = {
+        light.name: _work(light, loans[light.name], weights.lights[light.name], seen)
         for light in scene.lights
         if light.name in weights.lights
-    ]
+    }
 
     # Do all there is to a share before the next, whose rows and planes are then fetched from memory once.
     relative = np.empty(len(seen.pixels), np.float32)
@@ -58,7 +58,7 @@ def lit(scene: Scene, seen: Seen, lender: Lender | None = None) -> Picture:
         sums[:] = weights.ambient
         passing = np.empty_like(sums)
         numbers = {surface.surface_number for surface in share.slices}
-        for work in works:
+        for work in works.values():
             if work.light is not None and not numbers.isdisjoint(work.changed_surfaces):
                 shade(work.planes.values, work.light, seen, share, exponents)
             weighed = passing if work.planes.weighed is None else work.planes.weighed[share.pixels]
@@ -68,7 +68,7 @@ def lit(scene: Scene, seen: Seen, lender: Lender | None = None) -> Picture:
 
     # A light that rests keeps what it has until that would change.
     made = {name: loan.planes for name, loan in loans.items() if loan.planes and not loan.changed_surfaces}
-    made |= {name: work.planes for name, work in zip(weights.lights, works, strict=True)}
+    made |= {name: work.planes for name, work in works.items()}
     planes = {light.name: made[light.name] for light in scene.lights if light.name in made}
     for each in planes.values():
         _freeze(each.values, each.weighed)

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor.light_planes import DIFFUSE, SPECULAR, LightPlanes
-from autocolor.seen import Share, SurfaceSlice, shares
+from autocolor.seen import SurfaceSlice
 
 Singles = npt.NDArray[np.float32]
 
@@ -78,11 +78,6 @@ class Picture:
             numbers[surface.pixels] = surface.surface_number
         raster: npt.NDArray[np.uint8] = self._raster(numbers)
         return raster
-
-    @cached_property
-    def shares(self) -> tuple[Share, ...]:
-        """The visible pixels, in shares to work on."""
-        return shares(self.slices)
 
     @cached_property
     def relative_ranges(self) -> Mapping[int, IntensityRange]:

@@ -19,17 +19,10 @@ Singles = npt.NDArray[np.float32]
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.intp]
 
-# Rows of `Seen.rows`: the point P and P.P; the normal N and N.P; the eye's mirrored ray M and M.P.
-POINT, POINT_SQUARED = slice(0, 3), 3
-NORMAL, NORMAL_POINT = slice(4, 7), 7
-MIRROR, MIRROR_POINT = slice(8, 11), 11
+# Rows of `Seen.rows`: the point P, the normal N and the eye's mirrored ray M, each before its product with P.
+POINT, NORMAL, MIRROR = slice(0, 3), slice(4, 7), slice(8, 11)
+POINT_SQUARED = POINT.stop
 ROW_COUNT = 12
-
-
-def products(one: Singles, other: Singles) -> Singles:
-    """The products of vectors, (3, n) each."""
-    each: Singles = np.einsum("ij,ij->j", one, other)
-    return each
 
 
 def keep_products(rows: Singles) -> None:

@@ -61,15 +61,14 @@ def shade(planes: Singles, light: Placed, seen: Seen, share: Share, exponents: M
     cosines = _Cosines(cos_incidence, rays.cosines_with(MIRROR), rays.cos_light)
     concentration = light.controls.concentration
     ends = [each.stop for each in share.slices]
-    powers = [exponents[each.surface_number] for each in share.slices]
+    of_surfaces = [exponents[each.surface_number] for each in share.slices]
     if count >= FEW * len(is_lit):
-        _reflect(out, cosines, is_lit if count < len(is_lit) else None, concentration, ends, powers)
+        _reflect(out, cosines, is_lit if count < len(is_lit) else None, concentration, ends, of_surfaces)
         return
     chosen = np.flatnonzero(is_lit)
     reflected = np.empty((2, count), np.float32)
-    _reflect(
-        reflected, cosines.of(chosen), None, concentration, np.searchsorted(chosen, ends).tolist(), powers
-    )
+    ends = np.searchsorted(chosen, ends).tolist()
+    _reflect(reflected, cosines.of(chosen), None, concentration, ends, of_surfaces)
     out[:] = 0
     for plane, values in zip(out, reflected, strict=True):
         plane[chosen] = values

@@ -13,9 +13,7 @@ from hypothesis import strategies as st
 from autocolor import Mesh, View
 from autocolor.seen import (
     MIRROR,
-    MIRROR_POINT,
     NORMAL,
-    NORMAL_POINT,
     POINT,
     POINT_SQUARED,
     shares,
@@ -91,7 +89,7 @@ def test_points_lie_on_their_rays_and_rows_agree(mesh: Mesh, view: View, raster:
     assert np.linalg.norm(rows[MIRROR], axis=0) == pytest.approx(np.ones(len(seen.pixels)), abs=1e-5)
     size = 1 + np.abs(rows[POINT]).max(initial=0.0)
     assert (rows[POINT] ** 2).sum(axis=0) == pytest.approx(rows[POINT_SQUARED], rel=1e-5, abs=1e-12)
-    for vector, product in ((NORMAL, NORMAL_POINT), (MIRROR, MIRROR_POINT)):
+    for vector, product in ((NORMAL, NORMAL.stop), (MIRROR, MIRROR.stop)):
         assert (rows[vector] * rows[POINT]).sum(axis=0) == pytest.approx(rows[product], abs=1e-5 * size)
 
 
