@@ -9,31 +9,26 @@ import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
+from numpy.typing import NDArray
 
+from autocolor.arrays import Floats, Numbers, Real, Singles, chunks
 from autocolor.checks import Vector
 from autocolor.mesh import Mesh
-from autocolor.runs import pieces
 from autocolor.view import View
 
-NEAR = 1e-6
+NEAR: Final = 1e-6
 """Assumed: the near plane, as a fraction of the depth of the object's farthest corner."""
 
-LEAST_NEAR = 1e-12
+LEAST_NEAR: Final = 1e-12
 """Assumed: the near plane, in units, where even that corner is hardly before the eye."""
 
-LEAST_UNIT = 2.0**-800
+LEAST_UNIT: Final = 2.0**-800
 """Assumed: far below the size of any object, and still a divisor for the farthest light."""
 
-POINTS_AT_ONCE = 1 << 14
-
-Floats = npt.NDArray[np.float64]
-Singles = npt.NDArray[np.float32]
-Numbers = npt.NDArray[np.intp]
-Real = TypeVar("Real", np.float32, np.float64)
+POINTS_AT_ONCE: Final = 1 << 14
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +67,7 @@ def camera_space(mesh: Mesh, view: View) -> CameraPolygons:
     return cut_at_near_plane(polygons) if reaches_through else polygons
 
 
-def rotated(axes: Floats, rows: npt.NDArray[Real], origin: Vector = (0.0, 0.0, 0.0)) -> npt.NDArray[Real]:
+def rotated(axes: Floats, rows: NDArray[Real], origin: Vector = (0.0, 0.0, 0.0)) -> NDArray[Real]:
     """Points (3, n) around an origin, in other axes.
 
     Measured: a matrix product of so few rows takes as long alone, and up to thirty times as long when another
@@ -80,7 +75,7 @@ def rotated(axes: Floats, rows: npt.NDArray[Real], origin: Vector = (0.0, 0.0, 0
     """
     turned = np.empty_like(rows)
     axes = axes.astype(rows.dtype)
-    for part in pieces(rows.shape[1], POINTS_AT_ONCE):
+    for part in chunks(rows.shape[1], POINTS_AT_ONCE):
         moved = [row[part] - start for row, start in zip(rows, origin, strict=True)]
         for axis, out in zip(axes, turned[:, part], strict=True):
             np.multiply(moved[0], axis[0], out=out)

@@ -11,7 +11,7 @@ import difflib
 import math
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 import numpy as np
 
@@ -21,10 +21,10 @@ Vector = tuple[float, float, float]
 Color = tuple[int, int, int]
 Row = TypeVar("Row")
 
-LARGEST_COORDINATE = 1e30
+LARGEST_COORDINATE: Final = 1e30
 """Assumed: far beyond any object, and its square is still far from the end of the float64 range."""
 
-LARGEST_PLACE = 1e36
+LARGEST_PLACE: Final = 1e36
 """Assumed: an eye and lights have room around the largest object."""
 
 

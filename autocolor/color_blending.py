@@ -8,14 +8,15 @@ color of the light is an assumption of the method, which predicts no color.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Bytes, Floats
 from autocolor.rounding import HALF, half_up
 from autocolor.tables import Paint
 
-HALVES_UP = (HALF + 1e-9,) * 3
+HALVES_UP: Final = (HALF + 1e-9,) * 3
 """What rounds a mixed color when it is added and the fractions are then cut off.
 
 Mixing in floats may miss a whole color by the last bit, just below a half.
@@ -28,7 +29,7 @@ def blend_level(blend: float, levels: int) -> int:
 
 
 @lru_cache(maxsize=512)
-def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.uint8]:
+def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> Bytes:
     """The entries of a range, (levels, 3) uint8, read-only: red, green, blue from the lowest level up.
 
     The colors are those of the paint, darkened in proportion to the level. `floor` is how bright the lowest
@@ -44,13 +45,13 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> npt.NDArray[np.
     # One product mixes and rounds. Measured with cold caches, where a call costs more than what it computes:
     # rounding apart, or "@" in place of "dot", takes 1.4 times as long, both together twice.
     colors = np.array((paint.object_color, paint.light_color, HALVES_UP), np.float64)
-    entries: npt.NDArray[np.uint8] = shares.dot(colors).astype(np.uint8)
+    entries: Bytes = shares.dot(colors).astype(np.uint8)
     entries.setflags(write=False)
     return entries
 
 
 @lru_cache(maxsize=128)
-def color_shares(blend: float, percentage: float, levels: int, floor: float) -> npt.NDArray[np.float64]:
+def color_shares(blend: float, percentage: float, levels: int, floor: float) -> Floats:
     """How much of the object color, of the light color and of the rounding each level has, (levels, 3).
 
     The light color begins above the blend level; the rounding is a whole one everywhere.

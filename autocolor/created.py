@@ -7,29 +7,29 @@ created automatically by the system as they are needed. Assumed: everything abou
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Floats, chunks
 from autocolor.lights import Light
 from autocolor.mesh import Mesh
-from autocolor.runs import pieces
 from autocolor.tables import Paint, Part, Surface
 from autocolor.view import View
 
-FILLED = 0.86
+FILLED: Final = 0.86
 """Assumed: the fraction of the picture's width or height that a framed object fills."""
 
-ASPECT = 640 / 480
+ASPECT: Final = 640 / 480
 """Assumed: the paper's display; a picture of another shape shows more or less on its left and right."""
 
-POINT = 1e-12
+POINT: Final = 1e-12
 """Assumed: what is smaller than this fraction of its distance from the origin is taken as a point."""
 
-POINTS_AT_ONCE = 1 << 14
+POINTS_AT_ONCE: Final = 1 << 14
 """Few enough for one thread: a product of more waits for threads, long where the processors are shared."""
 
-OBJECT_COLORS = (
+OBJECT_COLORS: Final = (
     "#b3202c", "#2f5fa8", "#c9a227", "#3f7f4f", "#7d4a94", "#c8642c",
     "#3a8c92", "#a8426a", "#7c8a3a", "#5561a8", "#8c5a3c", "#8a949e",
 )  # fmt: skip
@@ -74,7 +74,7 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
     slope_down = filled * math.tan(math.radians(view.field_of_view) / 2)
     slopes = np.array([slope_down * ASPECT, slope_down])
     least, most, nearest, size = np.full(2, np.inf), np.full(2, -np.inf), np.inf, 0.0
-    for some in pieces(points.shape[1], POINTS_AT_ONCE):
+    for some in chunks(points.shape[1], POINTS_AT_ONCE):
         places = axes @ (points[:, some] - middle[:, None])
         reach = slopes[:, None] * places[2]
         least = np.minimum(least, (places[:2] + reach).min(axis=1))
@@ -95,7 +95,7 @@ def _is_a_point(mesh: Mesh) -> bool:
     return float((high - low).max()) <= POINT * float(np.abs([low, high]).max())
 
 
-def _sphere_around(mesh: Mesh) -> tuple[npt.NDArray[np.float64], float]:
+def _sphere_around(mesh: Mesh) -> tuple[Floats, float]:
     """The middle and the radius of a sphere around the object; a point is given some room."""
     low, high = mesh.bounds
     if _is_a_point(mesh):

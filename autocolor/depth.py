@@ -11,13 +11,14 @@ Below the depth a key has room for the number of the span.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Floats, Integers
 from autocolor.projection import Projection
 
-KEY_BITS = 62
+KEY_BITS: Final = 62
 """Of the 63 of a positive number; one is room for what rounding adds to the nearest."""
 
 
@@ -38,7 +39,7 @@ class DepthScale:
         """
         return round(inverse_depth * self.factor) * self.span_limit
 
-    def keys(self, inverse_depth: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    def keys(self, inverse_depth: Floats) -> Integers:
         """The keys of inverse depths, or of differences of them; a number of a span can be added.
 
         A difference beyond the largest key can only belong to a span of one pixel, which takes no step.

@@ -9,21 +9,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
+from typing import Final, Literal
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Floats, Numbers
 from autocolor.projection import Projection, least_of_four
 
-Floats = npt.NDArray[np.float64]
-Numbers = npt.NDArray[np.intp]
 Side = Literal[1, -1]
 
-DOWN_SIDE: Side = 1
+DOWN_SIDE: Final[Side] = 1
 """The edges along which a polygon, followed as it runs, goes down the raster."""
 
-UP_SIDE: Side = -1
+UP_SIDE: Final[Side] = -1
 """The edges along which it comes back up."""
 
 

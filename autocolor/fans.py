@@ -8,20 +8,17 @@ time, so that for a large mesh no more is held than a few numbers a corner.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Floats, Numbers, chunks
 from autocolor.joined import group_numbers, join
-from autocolor.runs import pieces
 
-AT_ONCE = 1 << 15
+AT_ONCE: Final = 1 << 15
 
-MIXER = np.uint64(0x9E3779B97F4A7C15)
+MIXER: Final = np.uint64(0x9E3779B97F4A7C15)
 """An odd number with ones and zeros all over: a product with it tells about every bit."""
-
-Floats = npt.NDArray[np.float64]
-Numbers = npt.NDArray[np.intp]
 
 
 def places_of_corners(coordinate_rows: Floats, columns: Numbers) -> Numbers:
@@ -89,7 +86,7 @@ def _corners_at_shared_edges(places: Numbers, part_numbers: Numbers) -> Iterator
     # Give every edge a key, whichever way it runs; those without length share theirs with none.
     keys = np.empty((places.shape[1], 4), np.int64)
     beyond = np.int64(places.max(initial=-1)) + 1
-    for some in pieces(len(keys), AT_ONCE):
+    for some in chunks(len(keys), AT_ONCE):
         start = places[:, some]
         end = np.roll(start, -1, axis=0)
         key = np.minimum(start, end) * beyond + np.maximum(start, end)

@@ -9,20 +9,19 @@ meshes take a twenty-fifth to a twelfth less time. Tiles of several sizes find n
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
+from typing import Final
 
+import numpy as np
+
+from autocolor.arrays import Integers, Numbers
 from autocolor.depth import DepthScale
 from autocolor.projection import Projection, least_of_four, most_of_four
 
-FITTING = 0.9
+FITTING: Final = 0.9
 """How many of the polygons are to be no larger than a tile."""
 
-Keys = npt.NDArray[np.int64]
-Numbers = npt.NDArray[np.intp]
 
-
-def not_hidden(front: Keys, projected: Projection, scale: DepthScale, columns: Numbers) -> Numbers:
+def not_hidden(front: Integers, projected: Projection, scale: DepthScale, columns: Numbers) -> Numbers:
     """Those of some polygons that may be seen before what `front` keeps, the depth keys of the pixels."""
     if not len(columns):
         return columns
@@ -51,8 +50,8 @@ def not_hidden(front: Keys, projected: Projection, scale: DepthScale, columns: N
     return kept
 
 
-def _least_of_rows(keys: Keys, size: int) -> Keys:
+def _least_of_rows(keys: Integers, size: int) -> Integers:
     """The least keys of each `size` rows, and of those that are left over."""
     whole = len(keys) // size * size
-    least: Keys = keys[:whole].reshape(-1, size, keys.shape[1]).min(axis=1)
+    least: Integers = keys[:whole].reshape(-1, size, keys.shape[1]).min(axis=1)
     return least if whole == len(keys) else np.concatenate([least, keys[whole:].min(axis=0, keepdims=True)])

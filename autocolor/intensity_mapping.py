@@ -8,10 +8,11 @@ Blending", Figure 11: a word is the first of its surface's range plus the level.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Singles, Words
 from autocolor.errors import InputError
 from autocolor.level_ranges import BACKGROUND, LevelRange
 from autocolor.picture import IntensityRange, Picture
@@ -19,12 +20,10 @@ from autocolor.rounding import halves_up
 from autocolor.scene import Curve
 from autocolor.seen import shares
 
-Singles = npt.NDArray[np.float32]
-
-GAMMA = 2.2
+GAMMA: Final = 2.2
 """Assumed: the exponent of a television monitor."""
 
-LOGARITHM = 15.0
+LOGARITHM: Final = 15.0
 """Assumed: the logarithm of 1 to 16, four doublings, over the range."""
 
 
@@ -33,7 +32,7 @@ def words_of(
     ranges: Mapping[str, LevelRange],
     scaling: str = "surface",
     mapping: str | Curve = "linear",
-) -> npt.NDArray[np.uint16]:
+) -> Words:
     """The words of a picture, (lines, elements) uint16; the background's where nothing is seen.
 
     `scaling` says whose minimum and maximum become the lowest and the highest level, each "surface" its own
@@ -125,7 +124,7 @@ def _logarithm(shown: Singles) -> Singles:
     return mapped
 
 
-CURVES: Mapping[str, Callable[[Singles], Singles]] = {
+CURVES: Final[Mapping[str, Callable[[Singles], Singles]]] = {
     "linear": _linear,
     "gamma": _gamma,
     "logarithm": _logarithm,

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
+from typing import Final
 
+import numpy as np
+from numpy.typing import NDArray
+
+from autocolor.arrays import Integers, Singles, chunks_of_runs, dot, runs
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, focal_length
-from autocolor.runs import batches, runs
 from autocolor.seen import MIRROR, NORMAL, POINT, ROW_COUNT, Seen, keep_products, surface_slices
 from autocolor.segments import DEPTH, NORMALS, POINTS, RAY, Segments, along_segments, visible_segments
-from autocolor.vectors import products
 from autocolor.view import View
 
-PIXELS_AT_ONCE = 1 << 14
-
-Singles = npt.NDArray[np.float32]
+PIXELS_AT_ONCE: Final = 1 << 14
 
 
 def seen_of_spans(
-    span_at_pixel: npt.NDArray[np.int64],
-    tops: npt.NDArray[np.int32],
+    span_at_pixel: Integers,
+    tops: NDArray[np.int32],
     projected: Projection,
     mesh: Mesh,
     view: View,
@@ -46,7 +45,7 @@ def seen_of_spans(
     pixels = runs(segments.first_pixel, count)
     rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
     ray_step = np.float32(1 / focal_length(projected.lines, view.field_of_view))
-    for part, some in batches(count, PIXELS_AT_ONCE):
+    for part, some in chunks_of_runs(count, PIXELS_AT_ONCE):
         start_here, step_here = (np.repeat(table[:, part], count[part], axis=1) for table in (start, step))
         along = pixels[some] - np.repeat(segments.first_pixel[part], count[part])
         _fill(rows[:, some], start_here, step_here, along.astype(np.float32), ray_step)
@@ -67,7 +66,7 @@ def seen_of_spans(
     )
 
 
-def _pixels_of_surfaces(segments: Segments) -> npt.NDArray[np.int64]:
+def _pixels_of_surfaces(segments: Segments) -> Integers:
     """How many pixels each surface number has, from 0 on; the segments are sorted by it."""
     # One number more, for the last surface ends where the next one would begin.
     numbers = np.arange(int(segments.surface.max(initial=0)) + 2)
@@ -86,17 +85,17 @@ def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step
         step[linear] *= way
         np.add(start[linear], step[linear], out=out)
     # Make the normal a unit vector.
-    length = np.sqrt(products(normal, normal))
+    length = np.sqrt(dot(normal, normal))
     # A polygon without area has a normal of 0, and keeps it.
     length += np.float32(1e-30)
     normal /= length
     # Make the ray a unit vector.
     ray = start[RAY]
     ray[0] += along * ray_step
-    np.sqrt(products(ray, ray), out=length)
+    np.sqrt(dot(ray, ray), out=length)
     ray /= length
     # Mirror the ray to the eye: M = 2 (N.V) N - V, where V is the ray the other way round.
-    facing = products(normal, ray)
+    facing = dot(normal, ray)
     facing *= np.float32(-2)
     np.multiply(normal, facing, out=rows[MIRROR])
     rows[MIRROR] += ray

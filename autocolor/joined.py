@@ -6,14 +6,13 @@ itself. At first every thing is alone, as in `np.arange`.
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
-import numpy.typing as npt
 
-from autocolor.runs import pieces
+from autocolor.arrays import Numbers, chunks
 
-AT_ONCE = 1 << 15
-
-Numbers = npt.NDArray[np.intp]
+AT_ONCE: Final = 1 << 15
 
 
 def join(leads: Numbers, one: Numbers, other: Numbers) -> None:
@@ -33,7 +32,7 @@ def group_numbers(leads: Numbers) -> Numbers:
     numbers = np.cumsum(leads == np.arange(len(leads)))
     numbers -= 1
     groups = np.empty_like(leads)
-    for part in pieces(len(leads), AT_ONCE):
+    for part in chunks(len(leads), AT_ONCE):
         some = np.arange(part.start, part.stop)
         groups[some] = numbers[_lowest(leads, some)]
     return groups

@@ -8,15 +8,15 @@ the top, and what is between is shared equally among the surfaces in use, in the
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from autocolor.errors import InputError
 from autocolor.tables import Surface
 
-WORDS = 1024
-BACKGROUND = 0
-SCREEN_LEVELS = 16
-FEWEST_LEVELS = 2
+WORDS: Final = 1024
+BACKGROUND: Final = 0
+SCREEN_LEVELS: Final = 16
+FEWEST_LEVELS: Final = 2
 
 
 class LevelRange(NamedTuple):
@@ -31,10 +31,10 @@ class LevelRange(NamedTuple):
         return self.first + self.levels - 1
 
 
-SCREENS = LevelRange(WORDS - SCREEN_LEVELS, SCREEN_LEVELS)
+SCREENS: Final = LevelRange(WORDS - SCREEN_LEVELS, SCREEN_LEVELS)
 """The words of the interactive screens: letters, frames, bars."""
 
-SCREEN_COLORS = (
+SCREEN_COLORS: Final = (
     (0, 0, 0), (255, 255, 255), (192, 192, 192), (128, 128, 128), (72, 76, 84), (36, 39, 46),
     (255, 214, 90), (255, 140, 60), (235, 70, 70), (110, 200, 110), (90, 170, 240), (170, 130, 230),
     (120, 220, 220), (240, 150, 190), (150, 110, 70), (210, 225, 160),

@@ -8,19 +8,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
-from autocolor.cosines import power_of
+from autocolor.arrays import Flags, Floats, Singles, power
 from autocolor.lights import Light
 from autocolor.seen import POINT, Seen
 
-Singles = npt.NDArray[np.float32]
-Floats = npt.NDArray[np.float64]
-
-ROUNDING = float(np.finfo(np.float32).eps)
-FAR_FLAP = 1e30
+ROUNDING: Final = float(np.finfo(np.float32).eps)
+FAR_FLAP: Final = 1e30
 """In units; farther than any point, and float32 can hold it."""
 
 
@@ -77,21 +74,19 @@ def _flap_sides(light: Light, seen: Seen) -> Singles:
     return np.array(rows, np.float32).reshape(-1, 4)
 
 
-def inside_flaps(ready: Controls, rows: Singles) -> npt.NDArray[np.bool_] | None:
+def inside_flaps(ready: Controls, rows: Singles) -> Flags | None:
     """Whether each point is within the flaps; None where there are none."""
-    within: npt.NDArray[np.bool_] | None = None
+    within: Flags | None = None
     for side in ready.flaps:
         inside = side[:3] @ rows[POINT] >= -side[3]
         within = inside if within is None else np.logical_and(within, inside, out=within)
     return within
 
 
-def inside_cone(ready: Controls, cos_light: Singles) -> npt.NDArray[np.bool_]:
+def inside_cone(ready: Controls, cos_light: Singles) -> Flags:
     """Whether each point is in the cone and before the light; `ready` has a direction."""
     assert ready.least_cosine is not None
-    inside: npt.NDArray[np.bool_] = (
-        cos_light > 0 if ready.least_cosine == 0 else cos_light >= np.float32(ready.least_cosine)
-    )
+    inside: Flags = cos_light > 0 if ready.least_cosine == 0 else cos_light >= np.float32(ready.least_cosine)
     return inside
 
 
@@ -101,4 +96,4 @@ def concentrated(cos_light: Singles, concentration: float) -> Singles:
     Paper: "Light Direction and Concentration". Half is left at 60 degrees for C = 1, at 21.1 for C = 10 and
     at 10.6 for C = 40.
     """
-    return power_of(cos_light, concentration)
+    return power(cos_light, concentration, out=cos_light)

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Singles
 from autocolor.seen import Share
 from autocolor.weights import SurfaceWeights
 
-DIFFUSE, SPECULAR = 0, 1
-
-Singles = npt.NDArray[np.float32]
+DIFFUSE: Final = 0
+SPECULAR: Final = 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Set
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Singles
 from autocolor.light_planes import LightPlanes, weigh
 from autocolor.lights import Light
 from autocolor.picture import Picture
@@ -21,9 +21,9 @@ from autocolor.seen import Seen
 from autocolor.shading import shade
 from autocolor.weights import SurfaceWeights, weights_of
 
-Singles = npt.NDArray[np.float32]
-
-SHAPING = tuple(field.name for field in dataclasses.fields(Light) if field.name not in ("intensity", "on"))
+SHAPING: Final = tuple(
+    field.name for field in dataclasses.fields(Light) if field.name not in ("intensity", "on")
+)
 """The fields of a light that its planes depend on; the others only weigh them."""
 
 

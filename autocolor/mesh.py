@@ -13,8 +13,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
+from numpy.typing import NDArray
 
+from autocolor.arrays import Floats, Numbers, Singles
 from autocolor.checks import LARGEST_COORDINATE, finite
 from autocolor.errors import InputError
 from autocolor.node_normals import CREASE_ANGLE, NodeNormals, node_normals
@@ -30,9 +31,9 @@ class Mesh:
     `crease_angle` degrees keep a sharp edge. The tables are copied, and stand in memory column by column.
     """
 
-    coordinates: npt.NDArray[np.float64]
-    node_numbers: npt.NDArray[np.intp]
-    part_numbers: npt.NDArray[np.intp]
+    coordinates: Floats
+    node_numbers: Numbers
+    part_numbers: Numbers
     part_names: tuple[str, ...]
     crease_angle: float = CREASE_ANGLE
 
@@ -86,34 +87,34 @@ class Mesh:
         return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
 
     @property
-    def columns(self) -> npt.NDArray[np.intp]:
+    def columns(self) -> Numbers:
         """The node numbers with one row a corner, (4, polygons), as batches of polygons are worked on."""
         return self.node_numbers.T
 
     @property
-    def coordinate_rows(self) -> npt.NDArray[np.float64]:
+    def coordinate_rows(self) -> Floats:
         """The coordinates with one row an axis, (3, nodes)."""
         return self.coordinates.T
 
     @cached_property
-    def normal_rows(self) -> npt.NDArray[np.float32]:
+    def normal_rows(self) -> Singles:
         """The normals with one row an axis, (3, normals)."""
         return self.normals.vectors.T.astype(np.float32, order="C")
 
     @property
-    def normal_columns(self) -> npt.NDArray[np.intp]:
+    def normal_columns(self) -> Numbers:
         """The numbers of the normals with one row a corner, (4, polygons)."""
         return self.normals.numbers.T
 
     @property
-    def used_coordinate_rows(self) -> npt.NDArray[np.float64]:
+    def used_coordinate_rows(self) -> Floats:
         """The coordinates of the nodes that polygons use, with one row an axis."""
         used = np.zeros(len(self.coordinates), np.bool_)
         used[self.columns] = True
         return self.coordinate_rows if used.all() else self.coordinate_rows[:, used]
 
     @cached_property
-    def bounds(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    def bounds(self) -> tuple[Floats, Floats]:
         """The least and the largest coordinates of the nodes that polygons use; zeros for an empty mesh."""
         if not len(self.node_numbers):
             return np.zeros(3), np.zeros(3)
@@ -162,7 +163,7 @@ class Mesh:
         return f"Mesh(nodes {nodes}, polygons {polygons}, parts {parts})"
 
 
-def _numbers(problems: list[str], what: str, value: object, dtype: type) -> npt.NDArray[Any]:
+def _numbers(problems: list[str], what: str, value: object, dtype: type) -> NDArray[Any]:
     """The value as an array of the type, or an empty one after a problem was noted."""
     try:
         array = np.asarray(value)
@@ -177,7 +178,7 @@ def _numbers(problems: list[str], what: str, value: object, dtype: type) -> npt.
 
 def _columns(
     problems: list[str], what: str, value: object, dtype: type, widths: tuple[int, ...]
-) -> npt.NDArray[Any]:
+) -> NDArray[Any]:
     """A copy of the value, (rows, width), as (width, rows) of the type; empty after a problem was noted."""
     array = _numbers(problems, what, value, dtype)
     if array.size == 0:
@@ -189,9 +190,7 @@ def _columns(
     return np.array(array.T, order="C")
 
 
-def _check_rows(
-    problems: list[str], what: str, numbers: npt.NDArray[np.intp], count: int, table: str
-) -> None:
+def _check_rows(problems: list[str], what: str, numbers: Numbers, count: int, table: str) -> None:
     """Note the first number, or column of numbers, that is no row of a table."""
     if not numbers.size or (numbers.min() >= 0 and numbers.max() < count):
         return

@@ -10,23 +10,19 @@ a file that repeats its nodes is as smooth as one that shares them.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Floats, Numbers, chunks, cross, lengths
 from autocolor.fans import fans_of_corners, places_of_corners
 from autocolor.joined import group_numbers, join
-from autocolor.runs import pieces
-from autocolor.vectors import cross_products, lengths
 
-CREASE_ANGLE = 40.0
+CREASE_ANGLE: Final = 40.0
 """Assumed: degrees; edges of boxes stay sharp, and a cylinder of ten sides or more is smooth."""
 
-POLYGONS_AT_ONCE = 1 << 13
+POLYGONS_AT_ONCE: Final = 1 << 13
 """So many that their corners stay near the processor."""
-
-Floats = npt.NDArray[np.float64]
-Numbers = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +68,7 @@ def node_normals(
 def _normals_and_angles(rows: Floats, columns: Numbers) -> tuple[Floats, Floats]:
     """The normals of the polygons, (3, polygons), and the angles at their corners, (4, polygons)."""
     normals, angles = np.empty((3, columns.shape[1])), np.empty(columns.shape)
-    for some in pieces(columns.shape[1], POLYGONS_AT_ONCE):
+    for some in chunks(columns.shape[1], POLYGONS_AT_ONCE):
         corners = np.take(rows, columns[:, some], axis=1)
         normals[:, some] = polygon_normals(corners)
         angles[:, some] = _corner_angles(corners)
@@ -83,7 +79,7 @@ def _weighted_sums(fans: Numbers, normals: Floats, angles: Floats) -> tuple[Floa
     """The sums of the weighted normals of each fan, (3, fans), and the fan of each corner, (4, polygons)."""
     sums = np.zeros((3, int(fans.max(initial=-1)) + 1))
     numbers = np.empty(angles.shape, np.intp)
-    for some in pieces(angles.shape[1], POLYGONS_AT_ONCE):
+    for some in chunks(angles.shape[1], POLYGONS_AT_ONCE):
         fan = fans[4 * some.start : 4 * some.stop]
         numbers[:, some] = fan.reshape(-1, 4).T
         for sum_row, normal_row in zip(sums, normals, strict=True):
@@ -116,7 +112,7 @@ def polygon_normals(corners: Floats) -> Floats:
     size = np.ptp(corners, axis=1).max(axis=0)
     size[size == 0] = 1.0
     scaled = (corners[:, 1:] - corners[:, :1]) / size
-    normals = cross_products(scaled[:, 1], scaled[:, 2] - scaled[:, 0])
+    normals = cross(scaled[:, 1], scaled[:, 2] - scaled[:, 0])
     sizes = lengths(normals)
     flat = sizes < 1e-12
     sizes[flat] = 1.0
@@ -137,6 +133,6 @@ def _corner_angles(corners: Floats) -> Floats:
     onward /= size
     inward /= size
     # Subtract from 0: a negated 0 would make of an edge without length an angle of 180 degrees.
-    angles: Floats = np.arctan2(lengths(cross_products(inward, onward)), 0.0 - (inward * onward).sum(axis=0))
+    angles: Floats = np.arctan2(lengths(cross(inward, onward)), 0.0 - (inward * onward).sum(axis=0))
     angles[3, triangle] = 0.0
     return angles

@@ -13,12 +13,11 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
+from numpy.typing import NDArray
 
+from autocolor.arrays import Bytes, Numbers, Singles
 from autocolor.light_planes import DIFFUSE, SPECULAR, LightPlanes
 from autocolor.seen import SurfaceSlice
-
-Singles = npt.NDArray[np.float32]
 
 
 class IntensityRange(NamedTuple):
@@ -59,7 +58,7 @@ class Picture:
     lines: int
     elements: int
     surfaces: tuple[str, ...]
-    pixels: npt.NDArray[np.intp]
+    pixels: Numbers
     slices: tuple[SurfaceSlice, ...]
     relative: Singles
     scale: float
@@ -71,12 +70,12 @@ class Picture:
         return self._raster(self.relative * np.float32(self.scale))
 
     @cached_property
-    def surface_number(self) -> npt.NDArray[np.uint8]:
+    def surface_number(self) -> Bytes:
         """Surface numbers, (lines, elements) uint8: number k is surfaces[k - 1], 0 is none; read-only."""
         numbers = np.empty(len(self.pixels), np.uint8)
         for surface in self.slices:
             numbers[surface.pixels] = surface.surface_number
-        raster: npt.NDArray[np.uint8] = self._raster(numbers)
+        raster: Bytes = self._raster(numbers)
         return raster
 
     @cached_property
@@ -107,7 +106,7 @@ class Picture:
             for name, planes in self.light_planes.items()
         }
 
-    def _raster(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    def _raster(self, values: NDArray[Any]) -> NDArray[Any]:
         """Values of the visible pixels in their places, 0 elsewhere; read-only."""
         flat = np.zeros(self.lines * self.elements, values.dtype)
         flat[self.pixels] = values

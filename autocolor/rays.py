@@ -5,28 +5,24 @@ Paper: Figures 1 and 3. All are products with rows of `Seen.rows`, in camera spa
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Floats, Numbers, Singles
 from autocolor.light_controls import Controls, controls
 from autocolor.lights import Light
 from autocolor.seen import POINT, POINT_SQUARED, Seen, keep_products
 
-CLOSE = 0.02
+CLOSE: Final = 0.02
 """A point is close to a light where the square of its distance is at most this fraction of the squares that
 it is the difference of: there the two are subtracted before they are squared."""
 
-LEAST_SQUARE = 1e-37
+LEAST_SQUARE: Final = 1e-37
 """The least square of a distance; what is nearer to the light is taken to be as far, so that none is 0."""
 
-FARTHEST = 1e15
+FARTHEST: Final = 1e15
 """In units; the rays of a light that is farther are parallel, and float32 can hold the square of this."""
-
-Singles = npt.NDArray[np.float32]
-Floats = npt.NDArray[np.float64]
-Numbers = npt.NDArray[np.intp]
 
 
 class Placed(NamedTuple):

@@ -6,12 +6,7 @@ their D and S, so that these can change without computing a cosine again.
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
-
-from autocolor.cosines import power_of
-
-Singles = npt.NDArray[np.float32]
+from autocolor.arrays import Singles, power
 
 
 def phong_diffuse(cos_incidence: Singles) -> Singles:
@@ -25,4 +20,4 @@ def phong_specular(cos_eye: Singles, exponent: float) -> Singles:
     if exponent > 0 and cos_eye.max(initial=0.0) <= 0:
         cos_eye[:] = 0
         return cos_eye
-    return power_of(cos_eye, exponent)
+    return power(cos_eye, exponent, out=cos_eye)

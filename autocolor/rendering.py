@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Integral
+from typing import Final
 
 import numpy as np
 
@@ -31,10 +32,10 @@ from autocolor.watkins import watkins
 _ = np.empty(30 << 20, np.uint8)
 del _
 
-LARGEST_RASTER = 16384
+LARGEST_RASTER: Final = 16384
 """Assumed: a picture of this size on both sides takes tens of gigabytes."""
 
-ALGORITHMS: dict[str, Callable[..., Seen]] = {"batch": visible_surfaces, "watkins": watkins}
+ALGORITHMS: Final[dict[str, Callable[..., Seen]]] = {"batch": visible_surfaces, "watkins": watkins}
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
+from numpy.typing import NDArray
 
-HALF = 0.5
+HALF: Final = 0.5
 """What is added to a number before the next lower whole number is taken."""
 
 
@@ -21,7 +21,7 @@ def half_up(value: float) -> int:
     return math.floor(value + HALF)
 
 
-def halves_up(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+def halves_up(values: NDArray[Any]) -> NDArray[Any]:
     """The whole numbers nearest to an array's numbers, in the array itself."""
     values += values.dtype.type(HALF)
     np.floor(values, out=values)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 from autocolor.checks import Color, color, field_names, finite, known_fields, nearest, with_checked
 from autocolor.created import created_lights, created_parts, created_surface, created_view
@@ -22,9 +22,9 @@ from autocolor.mesh import Mesh
 from autocolor.tables import MOST_SURFACES, Part, Surface
 from autocolor.view import View
 
-SCALINGS = ("surface", "object")
-MAPPINGS = ("linear", "gamma", "logarithm", "equalize")
-CONTRASTS = ("stretch", "floor")
+SCALINGS: Final = ("surface", "object")
+MAPPINGS: Final = ("linear", "gamma", "logarithm", "equalize")
+CONTRASTS: Final = ("stretch", "floor")
 
 Curve = tuple[tuple[float, float], ...]
 Row = TypeVar("Row", Part, Surface, Light)

@@ -6,23 +6,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Floats, Integers, Numbers, Singles
 from autocolor.view import View
 
-PIXELS_AT_ONCE = 1 << 17
+PIXELS_AT_ONCE: Final = 1 << 17
 """As many as the caches hold of the arrays that one step needs."""
 
-Singles = npt.NDArray[np.float32]
-Floats = npt.NDArray[np.float64]
-Numbers = npt.NDArray[np.intp]
 
 # Rows of `Seen.rows`: the point P, the normal N and the eye's mirrored ray M, each before its product with P.
-POINT, NORMAL, MIRROR = slice(0, 3), slice(4, 7), slice(8, 11)
-POINT_SQUARED = POINT.stop
-ROW_COUNT = 12
+POINT: Final = slice(0, 3)
+NORMAL: Final = slice(4, 7)
+MIRROR: Final = slice(8, 11)
+POINT_SQUARED: Final = POINT.stop
+ROW_COUNT: Final = 12
 
 
 def keep_products(rows: Singles) -> None:
@@ -53,7 +53,7 @@ class Share:
     slices: tuple[SurfaceSlice, ...]
 
 
-def surface_slices(counts: npt.NDArray[np.int64]) -> tuple[SurfaceSlice, ...]:
+def surface_slices(counts: Integers) -> tuple[SurfaceSlice, ...]:
     """The slices of pixels sorted by surface; `counts` has how many are of each surface number."""
     stops = np.cumsum(counts)
     return tuple(

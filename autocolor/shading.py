@@ -15,22 +15,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Flags, Numbers, Singles
 from autocolor.light_controls import concentrated, inside_cone, inside_flaps
 from autocolor.light_planes import DIFFUSE, SPECULAR
 from autocolor.rays import Placed, rays_to
 from autocolor.reflection import phong_diffuse, phong_specular
 from autocolor.seen import MIRROR, NORMAL, Seen, Share
 
-FEW = 0.3
+FEW: Final = 0.3
 """Below this fraction of lit pixels it takes less time to pick them than to compute them all."""
-
-Singles = npt.NDArray[np.float32]
-Numbers = npt.NDArray[np.intp]
 
 
 def shade(planes: Singles, light: Placed, seen: Seen, share: Share, exponents: Mapping[int, float]) -> None:
@@ -90,7 +87,7 @@ class _Cosines(NamedTuple):
 def _reflect(
     out: Singles,
     cosines: _Cosines,
-    is_lit: npt.NDArray[np.bool_] | None,
+    is_lit: Flags | None,
     concentration: float,
     ends: Sequence[int],
     exponents: Sequence[float],

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Bytes, Words
 from autocolor.color_blending import entries_of
 from autocolor.intensity_mapping import words_of
 from autocolor.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
@@ -16,7 +17,7 @@ from autocolor.picture import Picture
 from autocolor.scene import Scene
 from autocolor.tables import Surface
 
-DIVIDING = ("mesh", "parts", "surfaces")
+DIVIDING: Final = ("mesh", "parts", "surfaces")
 """The fields of a scene that divide the words among its surfaces."""
 
 
@@ -27,10 +28,10 @@ class Shown:
     scene: Scene
     picture: Picture
     ranges: Mapping[str, LevelRange]
-    words: npt.NDArray[np.uint16]
+    words: Words
 
     @cached_property
-    def entries(self) -> npt.NDArray[np.uint8]:
+    def entries(self) -> Bytes:
         """The whole lookup table, (1024, 3) uint8, read-only."""
         table = np.zeros((WORDS, 3), np.uint8)
         table[BACKGROUND] = self.scene.background
@@ -40,7 +41,7 @@ class Shown:
         table.flags.writeable = False
         return table
 
-    def entries_of(self, surface: Surface) -> npt.NDArray[np.uint8]:
+    def entries_of(self, surface: Surface) -> Bytes:
         """The entries of the range of a surface, (levels, 3) uint8, read-only."""
         floor = _floor(self.scene, self.picture, surface.name) if self.scene.contrast == "floor" else 0.0
         return entries_of(surface.paint, self.ranges[surface.name].levels, floor)

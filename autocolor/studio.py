@@ -16,8 +16,8 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.level_ranges import WORDS, LevelRange
@@ -80,7 +80,7 @@ def _send(before: Shown | None, now: Shown, display: HostPort) -> None:
         display.send(instructions.write_image(now.words))
 
 
-def encoder_of_entries(display: HostPort) -> Callable[[int, npt.NDArray[np.uint8]], npt.NDArray[np.uint16]]:
+def encoder_of_entries(display: HostPort) -> Callable[[int, Bytes], Words]:
     """What makes the instruction that loads entries from a first one on, in the display's format."""
     short = configuration_of(display).entry_format is EntryFormat.WORD_12
     return instructions.load_short_entries if short else instructions.load_entries
@@ -120,12 +120,12 @@ class Studio:
         return self._shown.ranges
 
     @property
-    def words(self) -> npt.NDArray[np.uint16]:
+    def words(self) -> Words:
         """The words of the current picture, (lines, elements) uint16; read-only."""
         return self._shown.words
 
     @property
-    def entries(self) -> npt.NDArray[np.uint8]:
+    def entries(self) -> Bytes:
         """The entries of the lookup table, (1024, 3) uint8; read-only."""
         return self._shown.entries
 

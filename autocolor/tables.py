@@ -10,7 +10,7 @@ import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from autocolor.checks import (
 )
 from autocolor.errors import InputError
 
-MOST_SURFACES = 255
+MOST_SURFACES: Final = 255
 """Surface numbers are held in 8 bits, and 0 means that nothing is seen."""
 
 
@@ -84,10 +84,10 @@ class Paint:
 
 
 Check = Callable[[list[str], str, object], object]
-REFLECTANCE_CHECKS: Mapping[str, Check] = dict.fromkeys(
+REFLECTANCE_CHECKS: Final[Mapping[str, Check]] = dict.fromkeys(
     ("diffuse", "specular", "exponent"), partial(finite, at_least=0.0)
 )
-PAINT_CHECKS: Mapping[str, Check] = {
+PAINT_CHECKS: Final[Mapping[str, Check]] = {
     "object_color": color,
     "light_color": color,
     "blend": partial(finite, at_least=0.0, at_most=1.0),

@@ -12,8 +12,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Floats
 from autocolor.checks import Vector, finite, known_fields, vector
 from autocolor.errors import InputError
 
@@ -57,7 +57,7 @@ class View:
             raise InputError(problems)
 
     @cached_property
-    def axes(self) -> npt.NDArray[np.float64]:
+    def axes(self) -> Floats:
         """Right, down and forward as the rows of a (3, 3) rotation, the axes of camera space.
 
         A point's camera coordinates are axes @ (point - eye): elements grow to the right, lines downward,

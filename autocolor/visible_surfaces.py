@@ -13,25 +13,23 @@ round the polygons in the order of the rows).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
+from numpy.typing import NDArray
 
+from autocolor.arrays import Floats, Integers, Numbers, chunks, chunks_of_runs, runs
 from autocolor.depth import DepthScale, depth_scale
 from autocolor.edges import Edges, edges_of_sides
 from autocolor.hidden import not_hidden
 from autocolor.interpolation import seen_of_spans
 from autocolor.mesh import Mesh
 from autocolor.projection import Projection, projection
-from autocolor.runs import batches, pieces, runs
 from autocolor.seen import Seen
 from autocolor.view import View
 
-POLYGONS_AT_ONCE = 1 << 15
-FRAGMENTS_AT_ONCE = 1 << 16
-
-Floats = npt.NDArray[np.float64]
-Numbers = npt.NDArray[np.intp]
+POLYGONS_AT_ONCE: Final = 1 << 15
+FRAGMENTS_AT_ONCE: Final = 1 << 16
 
 
 def visible_surfaces(
@@ -61,8 +59,8 @@ def visible_surfaces(
 
 
 def keep_front_most(
-    front: npt.NDArray[np.int64],
-    tops: npt.NDArray[np.int32],
+    front: Integers,
+    tops: NDArray[np.int32],
     projected: Projection,
     scale: DepthScale,
     columns: Numbers,
@@ -73,13 +71,13 @@ def keep_front_most(
     at each pixel, and of those that are equally near the last. `tops` gets, by the numbers of the spans, the
     tops of their edges on the down side and on the up side.
     """
-    for some in pieces(len(columns), POLYGONS_AT_ONCE):
+    for some in chunks(len(columns), POLYGONS_AT_ONCE):
         spans = spans_of_polygons(projected, scale, columns[some])
         tops[0][spans.number] = spans.down_top
         tops[1][spans.number] = spans.up_top
         # Step the keys over the pixels of each span, and keep the largest at each pixel.
         keys = spans.start + spans.number
-        for part, _ in batches(spans.count, FRAGMENTS_AT_ONCE):
+        for part, _ in chunks_of_runs(spans.count, FRAGMENTS_AT_ONCE):
             count = spans.count[part]
             pixel = runs(spans.first_pixel[part], count)
             np.maximum.at(front, pixel, runs(keys[part], count, spans.step[part]))
@@ -98,10 +96,10 @@ class Spans:
     number: Numbers
     first_pixel: Numbers
     count: Numbers
-    start: npt.NDArray[np.int64]
-    step: npt.NDArray[np.int64]
-    down_top: npt.NDArray[np.int32]
-    up_top: npt.NDArray[np.int32]
+    start: Integers
+    step: Integers
+    down_top: NDArray[np.int32]
+    up_top: NDArray[np.int32]
 
 
 def spans_of_polygons(projected: Projection, scale: DepthScale, columns: Numbers) -> Spans:
@@ -140,7 +138,7 @@ def spans_of_polygons(projected: Projection, scale: DepthScale, columns: Numbers
     )
 
 
-def _cuts(cut: Edges) -> tuple[Floats, Floats, npt.NDArray[np.int32]]:
+def _cuts(cut: Edges) -> tuple[Floats, Floats, NDArray[np.int32]]:
     """Where the lines cut the edges of one side: the place across, the inverse depth, the edge's top."""
     step = runs(np.zeros_like(cut.count), cut.count).astype(np.float64)
     across = step * np.repeat(cut.across_step, cut.count)

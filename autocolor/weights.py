@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from autocolor.errors import InputError
 from autocolor.lights import Light
 from autocolor.tables import Surface
 
-LARGEST = float(np.finfo(np.float32).max)
+LARGEST: Final = float(np.finfo(np.float32).max)
 
 SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
 """Weights of a light's diffuse and of its specular plane, by surface number."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import click
 
 from ramtek_emu.command_group import CommandGroup
 from ramtek_emu.command_line import version_option
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   autocolor                                     the built-in demo in the window
   autocolor render scenes/coupe -o coupe.png    the picture of a scene

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
 from autocolor.errors import MissingInputError
 
-PACKAGE = Path(__file__).resolve().parents[1]
-PLACES = (PACKAGE / "demo", PACKAGE.parent / "scenes" / "coupe")
+PACKAGE: Final = Path(__file__).resolve().parents[1]
+PLACES: Final = (PACKAGE / "demo", PACKAGE.parent / "scenes" / "coupe")
 
 
 def demo_folder() -> Path:

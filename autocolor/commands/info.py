@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -14,7 +14,7 @@ from autocolor.commands.scenes import ended, read, scene_options
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   autocolor info scenes/coupe
   autocolor info car.obj --json

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
+from typing import Final
 
 import click
 
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   autocolor render scenes/coupe --save coupe.npz
   autocolor recolor coupe.npz body --object "#1f3f8f" -o blue.png

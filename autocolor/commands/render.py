@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Final
 
 import click
 
@@ -12,7 +13,7 @@ from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.scenes import ended, read, scene_options
 from autocolor.commands.settings import with_settings
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   autocolor render scenes/coupe -o coupe.png --save coupe.npz
   autocolor render car.obj --up y

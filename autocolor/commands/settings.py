@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -11,8 +11,8 @@ from autocolor.errors import InputError, UsageError
 if TYPE_CHECKING:
     from autocolor.scene import Scene
 
-PLAIN = ("ambient", "scaling", "mapping", "contrast", "background")
-EXAMPLES = {
+PLAIN: Final = ("ambient", "scaling", "mapping", "contrast", "background")
+EXAMPLES: Final = {
     "view": "view.angle=10",
     "lights": "lights.key.intensity=2",
     "surfaces": "surfaces.body.blend=0.3",

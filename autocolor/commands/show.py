@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import click
 
 from autocolor.commands.scenes import ended, read, scene_options
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   ramtek serve --port 9300 --window                      on the machine with the screen
   autocolor show scenes/coupe --to tcp://127.0.0.1:9300

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -13,7 +13,7 @@ from autocolor.commands.scenes import ended, read, scene_options
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   autocolor tables car.obj                  the tables as a scene file, on stdout
   autocolor tables parts/car.obj --write    as parts/scene.toml, to be edited

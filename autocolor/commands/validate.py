@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+from typing import Final
 
 import click
 
 from autocolor.commands.scenes import ended, read, scene_options
 from autocolor.errors import InputError
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   autocolor validate scenes/coupe
   autocolor validate car.obj --strict --json

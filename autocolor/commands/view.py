@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -12,7 +12,7 @@ from autocolor.commands.scenes import ended, read, scene_options
 if TYPE_CHECKING:
     from autocolor.scene import Scene
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   autocolor view scenes/coupe
   autocolor view car.obj --up y --full-screen

@@ -19,6 +19,7 @@ import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -28,13 +29,13 @@ from autocolor.files.mesh_repair import mended
 from autocolor.files.polygons import MeshReport, Polygons
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
 
-MOST_PROBLEMS = 20
+MOST_PROBLEMS: Final = 20
 
-NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-WHOLE_NUMBER = re.compile(r"[+-]?[0-9]{1,18}")
+NUMBER: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+WHOLE_NUMBER: Final = re.compile(r"[+-]?[0-9]{1,18}")
 
-NODE_COLUMNS = ("node", "x", "y", "z")
-POLYGON_COLUMNS = ("polygon", "part", "node1", "node2", "node3", "node4")
+NODE_COLUMNS: Final = ("node", "x", "y", "z")
+POLYGON_COLUMNS: Final = ("polygon", "part", "node1", "node2", "node3", "node4")
 
 
 class Problems:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
-LONGEST_STEM = 100
-REFUSED = frozenset('/\\:*?"<>|')
+LONGEST_STEM: Final = 100
+REFUSED: Final = frozenset('/\\:*?"<>|')
 """What a system would take for something else than a part of a name."""
 
 

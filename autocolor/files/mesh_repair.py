@@ -9,20 +9,21 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
+from typing import Final
 
+import numpy as np
+
+from autocolor.arrays import Flags, Floats, Numbers, cross, lengths
 from autocolor.errors import InputError
 from autocolor.files.polygon_split import split_polygons
 from autocolor.files.polygons import MeshReport, Polygons, standing
 from autocolor.mesh import Mesh
 from autocolor.node_normals import CREASE_ANGLE
-from autocolor.vectors import cross_products, lengths
 
-AT_A_TIME = 1 << 14
+AT_A_TIME: Final = 1 << 14
 """Polygons whose corners are looked at together, so that the arrays stay near the processor."""
 
-FLAT = 1e-12
+FLAT: Final = 1e-12
 """Assumed: twice the area of a triangle over the square of the polygon's size, below which it has none."""
 
 
@@ -80,9 +81,7 @@ def mended(
     return MeshReport(mesh, tuple(f"{place}: {repair}" for repair in repairs))
 
 
-def _without_repeats(
-    corners: npt.NDArray[np.intp], counts: npt.NDArray[np.intp]
-) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], npt.NDArray[np.bool_]]:
+def _without_repeats(corners: Numbers, counts: Numbers) -> tuple[Numbers, Numbers, Flags]:
     """Corners and counts without a corner that equals the following one, and which polygons had such."""
     following = np.arange(1, len(corners) + 1)
     ends = np.cumsum(counts)
@@ -96,7 +95,7 @@ def _without_repeats(
     return corners[kept], kept_counts, kept_counts != counts
 
 
-def _have_area(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+def _have_area(corners: Floats) -> Flags:
     """Whether polygons (n, 4, 3) cover any area: on neither diagonal are both triangles flat.
 
     A bow-tie whose halves cancel has area; a polygon that goes the same way there and back has none.
@@ -106,9 +105,9 @@ def _have_area(corners: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
     size[size == 0] = 1.0
     scaled = (rows - rows[:, :1]) / size
 
-    def flat(first: int, second: int, third: int) -> npt.NDArray[np.bool_]:
+    def flat(first: int, second: int, third: int) -> Flags:
         onward, back = scaled[:, second] - scaled[:, first], scaled[:, third] - scaled[:, first]
-        below: npt.NDArray[np.bool_] = lengths(cross_products(onward, back)) < FLAT
+        below: Flags = lengths(cross(onward, back)) < FLAT
         return below
 
     return ~((flat(0, 1, 2) & flat(0, 2, 3)) | (flat(0, 1, 3) & flat(1, 2, 3)))

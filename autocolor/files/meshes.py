@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Final
 
 from autocolor.errors import InputError
 from autocolor.files.polygons import MeshReport
 
-MESH_SUFFIXES = (".obj",)
+MESH_SUFFIXES: Final = (".obj",)
 
 
 def read_mesh(path: Path, *, up: str = "z", crease_angle: float | None = None) -> MeshReport:

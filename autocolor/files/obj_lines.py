@@ -7,6 +7,7 @@ import math
 import re
 from array import array
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
@@ -17,11 +18,11 @@ from autocolor.files.obj_tables import LONGEST_LINE, ObjTables
 from autocolor.files.polygon_split import MOST_CORNERS
 from autocolor.files.reading import shown
 
-MOST_PROBLEMS = 20
+MOST_PROBLEMS: Final = 20
 """Assumed: sentences for one mesh file; a file with more faults has one that repeats."""
 
-NUMBER = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-CORNER = re.compile(rb"([+-]?[0-9]{1,18})(?:/[+-]?[0-9]*){0,2}")
+NUMBER: Final = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+CORNER: Final = re.compile(rb"([+-]?[0-9]{1,18})(?:/[+-]?[0-9]*){0,2}")
 
 
 class ObjLines:

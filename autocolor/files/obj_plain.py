@@ -9,24 +9,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Bytes, Flags, Floats, Integers
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.files.obj_statements import Statements
 from autocolor.files.obj_tables import LONGEST_LINE, ObjTables
 from autocolor.files.polygon_split import MOST_CORNERS
 
-BLOCK = 1 << 21
+BLOCK: Final = 1 << 21
 """Bytes read at a time: large enough for arrays, small enough to stay out of the way of memory."""
 
-NOT_IN_NODES = b"0123456789+-.eEv \t\n"
-NOT_IN_POLYGONS = b"0123456789-f \t\n"
-TEXTURE_AND_NORMAL = re.compile(rb"(?<=[0-9])/-?[0-9]*(?:/-?[0-9]*)?(?=[ \t\n])")
-
-Bytes = npt.NDArray[np.uint8]
-Counts = npt.NDArray[np.int64]
+NOT_IN_NODES: Final = b"0123456789+-.eEv \t\n"
+NOT_IN_POLYGONS: Final = b"0123456789-f \t\n"
+TEXTURE_AND_NORMAL: Final = re.compile(rb"(?<=[0-9])/-?[0-9]*(?:/-?[0-9]*)?(?=[ \t\n])")
 
 
 def read_plain_obj(data: bytes, statements: Statements) -> ObjTables | None:
@@ -35,7 +33,7 @@ def read_plain_obj(data: bytes, statements: Statements) -> ObjTables | None:
         return None
     node_count = 0
     nodes = [np.empty((0, 3))]
-    tables: list[tuple[Counts, Counts, Counts, Counts]] = []
+    tables: list[tuple[Integers, Integers, Integers, Integers]] = []
     for block in _blocks(data):
         text = np.frombuffer(block, np.uint8)
         ends = np.flatnonzero(text == ord("\n"))
@@ -76,9 +74,7 @@ def _blocks(data: bytes) -> Iterator[bytes]:
         start += len(block)
 
 
-def _coordinates(
-    text: Bytes, chosen: npt.NDArray[np.bool_], lengths: Counts
-) -> npt.NDArray[np.float64] | None:
+def _coordinates(text: Bytes, chosen: Flags, lengths: Integers) -> Floats | None:
     """The first three numbers of the chosen lines, which must all have as many."""
     lines = text[np.repeat(chosen, lengths)]
     if not len(lines):
@@ -98,7 +94,7 @@ def _coordinates(
     return coordinates if (np.abs(coordinates) <= LARGEST_COORDINATE).all() else None
 
 
-def _corners(text: Bytes, chosen: npt.NDArray[np.bool_], lengths: Counts) -> tuple[Counts, Counts] | None:
+def _corners(text: Bytes, chosen: Flags, lengths: Integers) -> tuple[Integers, Integers] | None:
     """The node numbers of the chosen lines, and how many each line has."""
     lines = text[np.repeat(chosen, lengths)]
     if not len(lines):
@@ -124,7 +120,7 @@ def _corners(text: Bytes, chosen: npt.NDArray[np.bool_], lengths: Counts) -> tup
         return None
 
 
-def _words_a_line(lines: Bytes) -> Counts:
+def _words_a_line(lines: Bytes) -> Integers:
     """How many words, with spaces between, each line has."""
     spaces = lines <= ord(" ")
     starts = ~spaces
@@ -134,8 +130,13 @@ def _words_a_line(lines: Bytes) -> Counts:
 
 
 def _part_numbers(
-    block: bytes, others: Counts, starts: Counts, ends: Counts, polygons: Counts, statements: Statements
-) -> Counts | None:
+    block: bytes,
+    others: Integers,
+    starts: Integers,
+    ends: Integers,
+    polygons: Integers,
+    statements: Statements,
+) -> Integers | None:
     """The part number of each polygon, by the names that stand before it among the other lines."""
     numbers = np.empty(len(polygons), np.int64)
     done = 0

@@ -8,14 +8,16 @@ each. `g` or `o` without a name takes the name away.
 
 from __future__ import annotations
 
+from typing import Final
+
 from autocolor.files.reading import shown
 
-UNUSED = frozenset(
+UNUSED: Final = frozenset(
     b"vt vn s mg mtllib maplib usemap lod bevel c_interp d_interp shadow_obj trace_obj".split()
 )
 """Statements that change nothing here; material files are never opened."""
 
-SKIPPED = {
+SKIPPED: Final = {
     b"p": "points",
     b"l": "lines",
     **dict.fromkeys(

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
-LONGEST_LINE = 1 << 20
+from autocolor.arrays import Floats, Integers, Numbers
+
+LONGEST_LINE: Final = 1 << 20
 """Assumed: bytes of one statement, its continuation lines included."""
 
 
@@ -20,14 +22,14 @@ class ObjTables:
     `corner_counts`, `part_numbers` and `nodes_before` (how many nodes stood before it) have a row a polygon.
     """
 
-    coordinates: npt.NDArray[np.float64]
-    numbers: npt.NDArray[np.int64]
-    corner_counts: npt.NDArray[np.int64]
-    part_numbers: npt.NDArray[np.int64]
-    nodes_before: npt.NDArray[np.int64]
+    coordinates: Floats
+    numbers: Integers
+    corner_counts: Integers
+    part_numbers: Integers
+    nodes_before: Integers
 
     @cached_property
-    def rows(self) -> npt.NDArray[np.intp]:
+    def rows(self) -> Numbers:
         """The row of the node table for each corner, -1 where there is no such node."""
         rows = self.numbers - 1
         back = np.flatnonzero(self.numbers < 0)

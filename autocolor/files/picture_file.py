@@ -18,10 +18,10 @@ import struct
 import zipfile
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, Final, NamedTuple, NoReturn
 
 import numpy as np
-import numpy.typing as npt
+from numpy.typing import NDArray
 
 from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes, shown
@@ -31,21 +31,21 @@ from autocolor.picture import Picture
 from autocolor.scene import Scene
 from autocolor.seen import surface_slices
 
-FORMAT = "autocolor picture 1"
-LARGEST_PICTURE_FILE = 4 << 30
-LARGEST_HEADER = 16 << 20
-MOST_VALUES = 1_000_000
-LARGEST_ARRAY_HEADER = 1024
-MOST_PROBLEMS = 20
-LONGEST_PROBLEM = 400
-LARGEST_SINGLE = float(np.finfo(np.float32).max)
+FORMAT: Final = "autocolor picture 1"
+LARGEST_PICTURE_FILE: Final = 4 << 30
+LARGEST_HEADER: Final = 16 << 20
+MOST_VALUES: Final = 1_000_000
+LARGEST_ARRAY_HEADER: Final = 1024
+MOST_PROBLEMS: Final = 20
+LONGEST_PROBLEM: Final = 400
+LARGEST_SINGLE: Final = float(np.finfo(np.float32).max)
 
-ARRAY_HEADER = re.compile(
+ARRAY_HEADER: Final = re.compile(
     rb"\{'descr': '([^']*)', 'fortran_order': False, 'shape': \(((?:\d{1,12}, ?)*(?:\d{1,12})?)\), \} *\n"
 )
 """What numpy writes before an array, as it writes it; it is never evaluated."""
 
-MEMBERS = {
+MEMBERS: Final = {
     "header": ("|u1", 1),
     "relative_intensity": ("<f4", 2),
     "surface_number": ("|u1", 2),
@@ -75,7 +75,7 @@ def write_picture(
     }
     relative = np.zeros(picture.lines * picture.elements, np.float32)
     relative[picture.pixels] = picture.relative
-    arrays: dict[str, npt.NDArray[Any]] = {
+    arrays: dict[str, NDArray[Any]] = {
         "header": np.frombuffer(json.dumps(header, allow_nan=False).encode(), np.uint8),
         "relative_intensity": relative.reshape(picture.lines, picture.elements),
         "surface_number": picture.surface_number,
@@ -127,7 +127,7 @@ def _damaged(source: Path, found: str) -> InputError:
     )
 
 
-def _arrays(source: Path) -> dict[str, npt.NDArray[Any]]:
+def _arrays(source: Path) -> dict[str, NDArray[Any]]:
     """The members of the file, each checked before it is made an array."""
     try:
         with zipfile.ZipFile(io.BytesIO(read_bytes(source, LARGEST_PICTURE_FILE))) as archive:
@@ -146,7 +146,7 @@ def _arrays(source: Path) -> dict[str, npt.NDArray[Any]]:
         raise _damaged(source, f"damaged ({error})") from None
 
 
-def _array(source: Path, name: str, data: bytes) -> npt.NDArray[Any]:
+def _array(source: Path, name: str, data: bytes) -> NDArray[Any]:
     """One member as an array of the type and the dimensions that it must have."""
     dtype, dimensions = MEMBERS[name]
     start = 10 + int.from_bytes(data[8:10], "little")
@@ -162,7 +162,7 @@ def _array(source: Path, name: str, data: bytes) -> npt.NDArray[Any]:
     )
 
 
-def _header(source: Path, data: npt.NDArray[Any]) -> dict[str, Any]:
+def _header(source: Path, data: NDArray[Any]) -> dict[str, Any]:
     """The header as a dictionary with the keys that it must have."""
     place = f"{source.name}, header"
 
@@ -185,9 +185,7 @@ def _header(source: Path, data: npt.NDArray[Any]) -> dict[str, Any]:
     return header
 
 
-def _picture(
-    header: dict[str, Any], scene: Scene, relative: npt.NDArray[Any], numbers: npt.NDArray[Any]
-) -> Picture:
+def _picture(header: dict[str, Any], scene: Scene, relative: NDArray[Any], numbers: NDArray[Any]) -> Picture:
     """The picture, with its visible pixels sorted by surface again."""
     scale = header["scale"]
     names = [surface.name for surface in scene.surfaces]

@@ -6,23 +6,23 @@ pointing inward, triangles are clipped where no other corner lies in them, until
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
+from typing import Final
 
+import numpy as np
+
+from autocolor.arrays import Flags, Floats, Numbers
 from autocolor.errors import InputError
 
-MOST_CORNERS = 1000
+MOST_CORNERS: Final = 1000
 """Assumed: corners of one polygon; clipping takes time with their square."""
 
-MOST_CLIPPING = 200_000_000
+MOST_CLIPPING: Final = 200_000_000
 """Assumed: the sum of the squared corners of all polygons that are clipped, some minutes at the worst."""
 
 Point = tuple[float, float]
 
 
-def split_polygons(
-    coordinates: npt.NDArray[np.float64], corners: npt.NDArray[np.intp], counts: npt.NDArray[np.intp]
-) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+def split_polygons(coordinates: Floats, corners: Numbers, counts: Numbers) -> tuple[Numbers, Numbers]:
     """Pieces (n, 4), each a quad or a triangle that repeats its last node, and the row of each one's polygon.
 
     The pieces stand in the order of the polygons; those with fewer than three corners have none.
@@ -59,8 +59,8 @@ def split_polygons(
 
 
 def _in_their_planes(
-    points: npt.NDArray[np.float64],
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
+    points: Floats,
+) -> tuple[Floats, Flags]:
     """Polygons (n, corners, 3) as (n, corners, 2), turning left, and whether no corner points inward."""
     size = np.ptp(points, axis=1).max(axis=1)
     size[size == 0] = 1.0

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
-import numpy as np
-import numpy.typing as npt
-
+from autocolor.arrays import Floats, Numbers
 from autocolor.mesh import Mesh
 
-UPS = ("x", "y", "z")
+UPS: Final = ("x", "y", "z")
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,10 +19,10 @@ class Polygons:
     `corner_counts` how many each has; `part_numbers` are rows of `part_names`.
     """
 
-    coordinates: npt.NDArray[np.float64]
-    corners: npt.NDArray[np.intp]
-    corner_counts: npt.NDArray[np.intp]
-    part_numbers: npt.NDArray[np.intp]
+    coordinates: Floats
+    corners: Numbers
+    corner_counts: Numbers
+    part_numbers: Numbers
     part_names: tuple[str, ...]
 
 
@@ -35,7 +34,7 @@ class MeshReport:
     repairs: tuple[str, ...] = ()
 
 
-def standing(coordinates: npt.NDArray[np.float64], up: str) -> npt.NDArray[np.float64]:
+def standing(coordinates: Floats, up: str) -> Floats:
     """The coordinates with the file's up axis as the world's z.
 
     Each is an even permutation, so that polygons keep their winding: y up makes (x, y, z) to (x, -z, y),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from autocolor.mesh import Mesh
 
-WARPED = 0.01
+WARPED: Final = 0.01
 """Assumed: how far the diagonals pass each other, over the quad's size, from which it is called warped."""
 
 

@@ -6,16 +6,17 @@ import errno
 import os
 import stat
 from pathlib import Path
+from typing import Final
 
 from autocolor.errors import InputError, MissingInputError
 
-LARGEST_MESH_FILE = 256 * 1024 * 1024
+LARGEST_MESH_FILE: Final = 256 * 1024 * 1024
 """Assumed: bytes; some three million polygons as OBJ, and a bound on the memory that a reader takes."""
 
-LEAST_READ = 1 << 20
+LEAST_READ: Final = 1 << 20
 """Bytes asked for even of a file that says it has less."""
 
-UTF_8_MARK = b"\xef\xbb\xbf"
+UTF_8_MARK: Final = b"\xef\xbb\xbf"
 
 
 def read_bytes(path: Path, largest: int) -> bytes:

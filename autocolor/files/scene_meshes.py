@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from autocolor.errors import InputError
 from autocolor.files.meshes import read_entry
@@ -17,7 +17,7 @@ from autocolor.files.scene_models import MeshKeys
 from autocolor.files.scene_problems import SceneProblems
 from autocolor.files.toml_text import KeyPath
 
-MOST_MESHES = 1000
+MOST_MESHES: Final = 1000
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,12 @@ Importing this module imports pydantic, which takes a while; it is imported when
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-POINT = "must be three finite numbers [x, y, z]"
-FLAP = "must be a table of minimum, maximum and on"
+POINT: Final = "must be three finite numbers [x, y, z]"
+FLAP: Final = "must be a table of minimum, maximum and on"
 
 Number = Annotated[float | None, Field(description="must be a finite number")]
 Switch = Annotated[bool | None, Field(description="must be true or false")]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
@@ -12,9 +12,9 @@ from autocolor.checks import nearest
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.toml_text import KeyPath, key_lines
 
-MOST_PROBLEMS = 100
+MOST_PROBLEMS: Final = 100
 
-LONGEST_SENTENCE = 400
+LONGEST_SENTENCE: Final = 400
 
 Model = TypeVar("Model", bound=BaseModel)
 

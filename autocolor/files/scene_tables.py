@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 from autocolor.created import created_surface
 from autocolor.errors import InputError
@@ -14,7 +14,7 @@ from autocolor.lights import Flap, Light
 from autocolor.tables import MOST_SURFACES, Surface
 from autocolor.view import View
 
-FAR = (1.2345e28, -2.3456e28, 3.4567e28)
+FAR: Final = (1.2345e28, -2.3456e28, 3.4567e28)
 """Stands for a vector that was refused, so that rules between keys are still checked with it."""
 
 

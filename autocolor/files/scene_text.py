@@ -6,12 +6,13 @@ import json
 import math
 import re
 from collections.abc import Mapping, Sequence
+from typing import Final
 
 from autocolor.lights import Flap, Light
 from autocolor.scene import Scene
 from autocolor.tables import Surface
 
-BARE_KEY = re.compile(r"[A-Za-z0-9_-]{1,100}")
+BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 
 
 def scene_text(scene: Scene, mesh_files: Sequence[Mapping[str, str]]) -> str:

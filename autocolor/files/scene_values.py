@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any
+from typing import Any, Final
 
-import numpy.typing as npt
+from numpy.typing import NDArray
 
 from autocolor.checks import known_fields
 from autocolor.errors import InputError
@@ -16,10 +16,11 @@ from autocolor.scene import Scene
 from autocolor.tables import MOST_SURFACES, Paint, Part, Reflectance, Surface
 from autocolor.view import View
 
-MOST_KEYS, MOST_ROWS = 32, 1_000_000
+MOST_KEYS: Final = 32
+MOST_ROWS: Final = 1_000_000
 """Assumed: more keys than any table of ours has; as many rows as a header has values."""
 
-PLAIN = ("ambient", "scaling", "mapping", "contrast", "background", "name")
+PLAIN: Final = ("ambient", "scaling", "mapping", "contrast", "background", "name")
 
 
 def values_of_scene(scene: Scene) -> dict[str, Any]:
@@ -34,9 +35,9 @@ def values_of_scene(scene: Scene) -> dict[str, Any]:
 
 def scene_of_values(
     values: object,
-    coordinates: npt.NDArray[Any],
-    node_numbers: npt.NDArray[Any],
-    part_numbers: npt.NDArray[Any],
+    coordinates: NDArray[Any],
+    node_numbers: NDArray[Any],
+    part_numbers: NDArray[Any],
 ) -> Scene:
     """The scene of such values and the mesh's arrays; InputError where they break a rule."""
     tables = _table(values, "scene")

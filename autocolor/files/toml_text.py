@@ -9,20 +9,20 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Final
 
 from autocolor.errors import InputError
 from autocolor.files.reading import text_problem
 
-LARGEST_TEXT = 1 << 20
+LARGEST_TEXT: Final = 1 << 20
 """Bytes of a scene file."""
 
-MOST_NESTED = 16
-MOST_KEY_PARTS = 8
-LONGEST_WORD = 100
+MOST_NESTED: Final = 16
+MOST_KEY_PARTS: Final = 8
+LONGEST_WORD: Final = 100
 """Assumed: letters or digits of a number or a key without quotes; a scene needs a tenth of that."""
 
-TOKEN = re.compile(
+TOKEN: Final = re.compile(
     r"""
       (?P<comment> \#[^\n]* )
     | (?P<string> \"{3} (?: [^"\\] | \\. | \"{1,2}(?!\") )* (?: \"{3,5} | \Z )

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from autocolor.screens.keys import Binding, Chord
 
 if TYPE_CHECKING:
     from autocolor.screens.viewer import Viewer
 
-TURN = 5.0
+TURN: Final = 5.0
 """Degrees that one press of an arrow goes around the object."""
 
-CLOSER = 0.9
-BLEND = 0.05
+CLOSER: Final = 0.9
+BLEND: Final = 0.05
 
-BINDINGS: tuple[Binding[Viewer], ...] = (
+BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
     Binding((Chord("f1"),), "this help, and back", lambda viewer, _: viewer.show_help()),
     Binding(
         (Chord("f4"),), "the 1024 entries of the table, and back", lambda viewer, _: viewer.show_entries()
@@ -81,7 +81,7 @@ BINDINGS: tuple[Binding[Viewer], ...] = (
         (Chord("escape"),), "one step back; leave, if nothing is unsaved", lambda viewer, _: viewer.escape()
     ),
 )
-WINDOW_KEYS = (
+WINDOW_KEYS: Final = (
     ("F11, Alt+Enter", "full screen, and back"),
     ("F12", "save a numbered screenshot"),
     ("Ctrl+Q", "leave"),

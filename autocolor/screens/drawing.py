@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from autocolor.level_ranges import SCREENS
 from ramtek_emu import HostPort, instructions
 
-WIDTH, HEIGHT = 640, 480
+WIDTH: Final = 640
+HEIGHT: Final = 480
 """Elements and lines that a screen is laid out for."""
 
-BLACK, WHITE, LIGHT_GRAY, GRAY, SLATE, NIGHT, YELLOW, ORANGE = (SCREENS.first + row for row in range(8))
+BLACK: Final = SCREENS.first
+WHITE: Final = SCREENS.first + 1
+LIGHT_GRAY: Final = SCREENS.first + 2
+GRAY: Final = SCREENS.first + 3
+SLATE: Final = SCREENS.first + 4
+NIGHT: Final = SCREENS.first + 5
+YELLOW: Final = SCREENS.first + 6
+ORANGE: Final = SCREENS.first + 7
 
 
 def clear(display: HostPort, word: int = NIGHT) -> None:

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Words
 from autocolor.level_ranges import BACKGROUND, SCREENS, WORDS, LevelRange
 from autocolor.screens.drawing import HEIGHT, WIDTH, YELLOW
 from ramtek_emu import HostPort, instructions
 
-SIDE = 32
-ACROSS, DOWN = WIDTH // SIDE, HEIGHT // SIDE
+SIDE: Final = 32
+ACROSS: Final = WIDTH // SIDE
+DOWN: Final = HEIGHT // SIDE
 
 
-def cell_words(ranges: Mapping[str, LevelRange]) -> npt.NDArray[np.uint16]:
+def cell_words(ranges: Mapping[str, LevelRange]) -> Words:
     """The page as words, (480, 640) uint16: a line runs between cells of different owners."""
     words = np.arange(WORDS, dtype=np.uint16).reshape(SIDE, SIDE)
     owners = np.zeros(WORDS, np.intp)

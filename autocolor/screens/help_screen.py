@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from autocolor.screens.drawing import LIGHT_GRAY, ORANGE, WHITE, YELLOW, clear, text
 from ramtek_emu import HostPort
 
-LEFT, MIDDLE, TOP, STEP = 24, 220, 62, 15
+LEFT: Final = 24
+MIDDLE: Final = 220
+TOP: Final = 62
+STEP: Final = 15
 
-LIMITS = (
+LIMITS: Final = (
     "The blend takes the brightest points of a surface for the color of the",
     "light. It is an approximation: it does not predict a color.",
 )

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
+from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.scene import Scene
 from autocolor.view import View
 
-HIGHEST = math.radians(85)
+HIGHEST: Final = math.radians(85)
 """Assumed: nearer to straight above, the picture would turn under the eye."""
 
 
@@ -33,7 +34,7 @@ def turned(scene: Scene, right: float, up: float) -> View:
     return scene.view.replace(eye=_vector(eye), target=_vector(target))
 
 
-def _azimuth(view: View, away: npt.NDArray[np.float64]) -> float:
+def _azimuth(view: View, away: Floats) -> float:
     """Where the eye stands around the object; from straight above or below, as the picture lies."""
     if math.hypot(away[0], away[1]) < 1e-9 * abs(away[2]):
         # The side that the picture's bottom points to is the one that a lower eye would stand on.
@@ -48,7 +49,7 @@ def moved(scene: Scene, ratio: float) -> View:
     return scene.view.replace(eye=_vector(target + (np.array(scene.view.eye) - target) * ratio))
 
 
-def target_of(scene: Scene) -> npt.NDArray[np.float64]:
+def target_of(scene: Scene) -> Floats:
     """What the eye goes around: the view's target, else the point before it that is as far as the object."""
     view = scene.view
     if view.target is not None:
@@ -61,5 +62,5 @@ def target_of(scene: Scene) -> npt.NDArray[np.float64]:
     return np.asarray(eye + forward * max(depth, least))
 
 
-def _vector(values: npt.NDArray[np.float64]) -> Vector:
+def _vector(values: Floats) -> Vector:
     return (float(values[0]), float(values[1]), float(values[2]))

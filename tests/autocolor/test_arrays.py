@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.arrays import chunks, chunks_of_runs, cross, dot, lengths, power, runs
+
+whole = st.integers(-(2**63), 2**63 - 1)
+
+
+@given(st.lists(st.tuples(whole, st.integers(1, 9), whole)))
+def test_runs_follow_each_other_even_where_the_sum_leaves_64_bits(rows: list[tuple[int, int, int]]) -> None:
+    first, count, step = np.array(rows, np.int64).reshape(-1, 3).T
+    expected = [start + k * by for start, many, by in rows for k in range(many)]
+    wrapped = [(number + 2**63) % 2**64 - 2**63 for number in expected]
+    assert runs(first, count, step).tolist() == wrapped
+
+
+@given(st.lists(st.tuples(st.integers(-1000, 1000), st.integers(1, 9))))
+def test_without_a_step_each_number_is_one_more(rows: list[tuple[int, int]]) -> None:
+    first, count = np.array(rows, np.int64).reshape(-1, 2).T
+    assert runs(first, count).tolist() == [start + k for start, many in rows for k in range(many)]
+
+
+@given(st.lists(st.integers(1, 9)), st.integers(1, 20))
+def test_chunks_of_runs_hold_every_run_once_and_are_no_larger_than_they_must(
+    counts: list[int], most: int
+) -> None:
+    every = list(chunks_of_runs(np.array(counts, np.int64), most))
+    assert [k for part, _ in every for k in range(len(counts))[part]] == list(range(len(counts)))
+    for part, some in every:
+        assert sum(counts[: part.start]) == some.start
+        assert sum(counts[part]) == some.stop - some.start
+        assert some.stop - some.start <= most or part.stop == part.start + 1
+
+
+@given(st.integers(0, 50), st.integers(0, 50), st.integers(1, 20))
+def test_chunks_hold_every_number_once_and_never_too_many(start: int, length: int, most: int) -> None:
+    every = list(chunks(start + length, most, start))
+    assert [number for piece in every for number in range(100)[piece]] == list(range(start, start + length))
+    assert all(0 < piece.stop - piece.start <= most for piece in every)
+
+
+@pytest.mark.parametrize("shape", [(3, 0), (3, 5), (3, 4, 6)])
+def test_products_and_lengths_are_those_that_numpy_has_for_columns(shape: tuple[int, ...]) -> None:
+    one, other = np.random.default_rng(3).normal(size=(2, *shape))
+    assert cross(one, other).tolist() == np.cross(one, other, axis=0).tolist()
+    assert lengths(one) == pytest.approx(np.linalg.norm(one, axis=0))
+
+
+def test_the_dot_product_is_that_of_each_pair_of_columns() -> None:
+    one, other = np.random.default_rng(4).normal(size=(2, 3, 7))
+    assert dot(one, other) == pytest.approx((one * other).sum(axis=0))
+
+
+exponents = st.one_of(
+    st.integers(0, 64).map(float),
+    st.floats(0.0, 200.0),
+    st.sampled_from([1e-300, 1e-46, 1e-45, 1e-7, 63.5, 65.0, 1e6, 1e30, 1e300]),
+)
+
+
+@given(st.lists(st.floats(-1.0, 1.0, width=32), min_size=1), exponents)
+def test_every_cosine_is_raised_and_a_negative_one_counts_as_0(cosines: list[float], exponent: float) -> None:
+    powers = power(np.array(cosines, np.float32), exponent)
+    # Float32 takes the smallest exponents for 0, and anything to the power 0 is 1.
+    single = float(np.float32(min(exponent, 3e38)))
+    expected = [max(cosine, 0.0) ** single for cosine in cosines]
+    assert ((powers >= 0) & (powers <= 1)).all()
+    assert powers.tolist() == pytest.approx(expected, abs=2e-5)
+
+
+@given(st.lists(st.floats(-1.0, 1.0, width=32), min_size=1), exponents)
+def test_powers_are_written_to_out_which_may_be_the_cosines_themselves(
+    cosines: list[float], exponent: float
+) -> None:
+    given_as = np.array(cosines, np.float32)
+    fresh = power(given_as, exponent)
+    assert given_as.tolist() == np.array(cosines, np.float32).tolist()
+    assert power(given_as, exponent, out=given_as) is given_as
+    assert given_as.tolist() == fresh.tolist()
+
+
+@given(exponents)
+def test_a_cosine_that_rounding_left_above_1_stays_1(exponent: float) -> None:
+    assert power(np.array([1.0000002], np.float32), exponent).tolist() == [1.0]
