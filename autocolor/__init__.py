@@ -24,46 +24,46 @@ if TYPE_CHECKING:
     from autocolor.files.picture_file import read_picture as read_picture
     from autocolor.files.picture_file import write_picture as write_picture
     from autocolor.level_ranges import LevelRange as LevelRange
-    from autocolor.lights import Flap as Flap
-    from autocolor.lights import Flaps as Flaps
-    from autocolor.lights import Light as Light
-    from autocolor.mesh import Mesh as Mesh
     from autocolor.picture import Picture as Picture
     from autocolor.rendering import render as render
-    from autocolor.scene import Scene as Scene
-    from autocolor.scene import scene_of as scene_of
+    from autocolor.scene.lights import Flap as Flap
+    from autocolor.scene.lights import Flaps as Flaps
+    from autocolor.scene.lights import Light as Light
+    from autocolor.scene.mesh import Mesh as Mesh
+    from autocolor.scene.scene import Scene as Scene
+    from autocolor.scene.scene import scene_of as scene_of
+    from autocolor.scene.surfaces import Paint as Paint
+    from autocolor.scene.surfaces import Part as Part
+    from autocolor.scene.surfaces import Reflectance as Reflectance
+    from autocolor.scene.surfaces import Surface as Surface
+    from autocolor.scene.view import View as View
     from autocolor.studio import Studio as Studio
-    from autocolor.tables import Paint as Paint
-    from autocolor.tables import Part as Part
-    from autocolor.tables import Reflectance as Reflectance
-    from autocolor.tables import Surface as Surface
-    from autocolor.view import View as View
 
 _HOME = {
     "AutocolorError": "errors",
-    "Flap": "lights",
-    "Flaps": "lights",
+    "Flap": "scene.lights",
+    "Flaps": "scene.lights",
     "InputError": "errors",
     "LevelRange": "level_ranges",
-    "Light": "lights",
-    "Mesh": "mesh",
+    "Light": "scene.lights",
+    "Mesh": "scene.mesh",
     "MissingInputError": "errors",
     "OutputError": "errors",
-    "Paint": "tables",
-    "Part": "tables",
+    "Paint": "scene.surfaces",
+    "Part": "scene.surfaces",
     "Picture": "picture",
-    "Reflectance": "tables",
-    "Scene": "scene",
+    "Reflectance": "scene.surfaces",
+    "Scene": "scene.scene",
     "Studio": "studio",
-    "Surface": "tables",
+    "Surface": "scene.surfaces",
     "UnavailableError": "errors",
     "UsageError": "errors",
-    "View": "view",
+    "View": "scene.view",
     "WriteError": "errors",
     "read_picture": "files.picture_file",
     "read_scene": "files",
     "render": "rendering",
-    "scene_of": "scene",
+    "scene_of": "scene.scene",
     "write_picture": "files.picture_file",
 }
 

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from autocolor.arrays import Floats, Numbers, Real, Singles, chunks
 from autocolor.checks import Vector
-from autocolor.mesh import Mesh
-from autocolor.view import View
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.view import View
 
 NEAR: Final = 1e-6
 """Assumed: the near plane, as a fraction of the depth of the object's farthest corner."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Floats
 from autocolor.rounding import HALF, half_up
-from autocolor.tables import Paint
+from autocolor.scene.surfaces import Paint
 
 HALVES_UP: Final = (HALF + 1e-9,) * 3
 """What rounds a mixed color when it is added and the fractions are then cut off.

@@ -17,7 +17,7 @@ from autocolor.errors import InputError
 from autocolor.level_ranges import BACKGROUND, LevelRange
 from autocolor.picture import IntensityRange, Picture
 from autocolor.rounding import halves_up
-from autocolor.scene import Curve
+from autocolor.scene.scene import Curve
 from autocolor.seen import shares
 
 GAMMA: Final = 2.2

@@ -11,7 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Final, NamedTuple
 
 from autocolor.errors import InputError
-from autocolor.tables import Surface
+from autocolor.scene.surfaces import Surface
 
 WORDS: Final = 1024
 BACKGROUND: Final = 0

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Flags, Floats, Singles, power
-from autocolor.lights import Light
+from autocolor.scene.lights import Light
 from autocolor.seen import POINT, Seen
 
 ROUNDING: Final = float(np.finfo(np.float32).eps)

@@ -13,10 +13,10 @@ import numpy as np
 
 from autocolor.arrays import Singles
 from autocolor.light_planes import LightPlanes, weigh
-from autocolor.lights import Light
 from autocolor.picture import Picture
 from autocolor.rays import Placed, placed
-from autocolor.scene import Scene
+from autocolor.scene.lights import Light
+from autocolor.scene.scene import Scene
 from autocolor.seen import Seen
 from autocolor.shading import shade
 from autocolor.weights import SurfaceWeights, weights_of

@@ -11,7 +11,7 @@ import numpy as np
 
 from autocolor.arrays import Floats, Numbers, Singles
 from autocolor.light_controls import Controls, controls
-from autocolor.lights import Light
+from autocolor.scene.lights import Light
 from autocolor.seen import POINT, POINT_SQUARED, Seen, keep_products
 
 CLOSE: Final = 0.02

@@ -22,7 +22,7 @@ from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.lighting import Lender, lit
 from autocolor.picture import Picture
-from autocolor.scene import Scene
+from autocolor.scene.scene import Scene
 from autocolor.seen import Seen
 from autocolor.visible_surfaces import visible_surfaces
 from autocolor.watkins import watkins

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, Integers, Numbers, Singles
-from autocolor.view import View
+from autocolor.scene.view import View
 
 PIXELS_AT_ONCE: Final = 1 << 17
 """As many as the caches hold of the arrays that one step needs."""

@@ -23,7 +23,7 @@ from autocolor.arrays import Flags, Numbers, Singles
 from autocolor.light_controls import concentrated, inside_cone, inside_flaps
 from autocolor.light_planes import DIFFUSE, SPECULAR
 from autocolor.rays import Placed, rays_to
-from autocolor.reflection import phong_diffuse, phong_specular
+from autocolor.scene.reflection_models import phong_diffuse, phong_specular
 from autocolor.seen import MIRROR, NORMAL, Seen, Share
 
 FEW: Final = 0.3

@@ -14,8 +14,8 @@ from autocolor.color_blending import entries_of
 from autocolor.intensity_mapping import words_of
 from autocolor.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.picture import Picture
-from autocolor.scene import Scene
-from autocolor.tables import Surface
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Surface
 
 DIVIDING: Final = ("mesh", "parts", "surfaces")
 """The fields of a scene that divide the words among its surfaces."""

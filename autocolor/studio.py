@@ -23,9 +23,9 @@ from autocolor.errors import UsageError
 from autocolor.level_ranges import WORDS, LevelRange
 from autocolor.picture import Picture
 from autocolor.rendering import rendering
-from autocolor.scene import Scene
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import PAINT_CHECKS, Surface
 from autocolor.shown import Shown, shown
-from autocolor.tables import PAINT_CHECKS, Surface
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
 
 if TYPE_CHECKING:

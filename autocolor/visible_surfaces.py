@@ -23,10 +23,10 @@ from autocolor.depth import DepthScale, depth_scale
 from autocolor.edges import Edges, edges_of_sides
 from autocolor.hidden import not_hidden
 from autocolor.interpolation import seen_of_spans
-from autocolor.mesh import Mesh
 from autocolor.projection import Projection, projection
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.view import View
 from autocolor.seen import Seen
-from autocolor.view import View
 
 POLYGONS_AT_ONCE: Final = 1 << 15
 FRAGMENTS_AT_ONCE: Final = 1 << 16

@@ -16,10 +16,10 @@ import numpy as np
 from autocolor.depth import DepthScale, depth_scale
 from autocolor.edges import edges
 from autocolor.interpolation import seen_of_spans
-from autocolor.mesh import Mesh
 from autocolor.projection import Projection, least_of_four, projection
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.view import View
 from autocolor.seen import Seen
-from autocolor.view import View
 
 
 @dataclass

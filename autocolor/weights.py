@@ -15,8 +15,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.errors import InputError
-from autocolor.lights import Light
-from autocolor.tables import Surface
+from autocolor.scene.lights import Light
+from autocolor.scene.surfaces import Surface
 
 LARGEST: Final = float(np.finfo(np.float32).max)
 

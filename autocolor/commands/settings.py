@@ -9,7 +9,7 @@ import click
 from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:
-    from autocolor.scene import Scene
+    from autocolor.scene.scene import Scene
 
 PLAIN: Final = ("ambient", "scaling", "mapping", "contrast", "background")
 EXAMPLES: Final = {

@@ -10,7 +10,7 @@ import click
 from autocolor.commands.scenes import ended, read, scene_options
 
 if TYPE_CHECKING:
-    from autocolor.scene import Scene
+    from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = """\b
 Examples:

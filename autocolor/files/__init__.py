@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from autocolor.files.scene_report import SceneReport
-    from autocolor.scene import Scene
+    from autocolor.scene.scene import Scene
 
 __all__ = ["read_scene", "read_scene_with_report"]
 

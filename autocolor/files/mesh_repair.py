@@ -17,8 +17,8 @@ from autocolor.arrays import Flags, Floats, Numbers, cross, lengths
 from autocolor.errors import InputError
 from autocolor.files.polygon_split import split_polygons
 from autocolor.files.polygons import MeshReport, Polygons, standing
-from autocolor.mesh import Mesh
-from autocolor.node_normals import CREASE_ANGLE
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.node_normals import CREASE_ANGLE
 
 AT_A_TIME: Final = 1 << 14
 """Polygons whose corners are looked at together, so that the arrays stay near the processor."""

@@ -28,7 +28,7 @@ from autocolor.files.reading import read_bytes, shown
 from autocolor.files.scene_values import scene_of_values, values_of_scene
 from autocolor.files.writing import write_atomically
 from autocolor.picture import Picture
-from autocolor.scene import Scene
+from autocolor.scene.scene import Scene
 from autocolor.seen import surface_slices
 
 FORMAT: Final = "autocolor picture 1"

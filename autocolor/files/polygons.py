@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from autocolor.arrays import Floats, Numbers
-from autocolor.mesh import Mesh
+from autocolor.scene.mesh import Mesh
 
 UPS: Final = ("x", "y", "z")
 

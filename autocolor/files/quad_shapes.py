@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.mesh import Mesh
+from autocolor.scene.mesh import Mesh
 
 WARPED: Final = 0.01
 """Assumed: how far the diagonals pass each other, over the quad's size, from which it is called warped."""

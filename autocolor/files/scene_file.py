@@ -31,9 +31,9 @@ from autocolor.files.scene_problems import SceneProblems
 from autocolor.files.scene_report import SceneReport, scene_report
 from autocolor.files.scene_tables import lights_of, surfaces_of, view_of
 from autocolor.files.toml_text import LARGEST_TEXT, parsed_toml
-from autocolor.mesh import Mesh
-from autocolor.scene import Scene
-from autocolor.view import View
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import Scene
+from autocolor.scene.view import View
 
 
 def read_scene_file(path: Path, *, outside: bool = False) -> SceneReport:

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from autocolor.mesh import Mesh
-from autocolor.scene import Scene, scene_of
-from autocolor.tables import MOST_SURFACES
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import Scene, scene_of
+from autocolor.scene.surfaces import MOST_SURFACES
 
 
 @dataclass(frozen=True)

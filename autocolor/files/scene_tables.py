@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from autocolor.created import created_surface
 from autocolor.errors import InputError
 from autocolor.files.scene_models import FlapKeys, FlapsKeys, LightKeys, SurfaceKeys, ViewKeys
 from autocolor.files.scene_problems import SceneProblems
 from autocolor.files.toml_text import KeyPath
-from autocolor.lights import Flap, Light
-from autocolor.tables import MOST_SURFACES, Surface
-from autocolor.view import View
+from autocolor.scene.defaults import default_surface
+from autocolor.scene.lights import Flap, Light
+from autocolor.scene.surfaces import MOST_SURFACES, Surface
+from autocolor.scene.view import View
 
 FAR: Final = (1.2345e28, -2.3456e28, 3.4567e28)
 """Stands for a vector that was refused, so that rules between keys are still checked with it."""
@@ -91,11 +91,11 @@ def surfaces_of(problems: SceneProblems, tables: Mapping[str, Any]) -> list[Surf
         keys, _ = problems.checked(("surfaces", name), SurfaceKeys, table)
         for group in _independent(keys):
             try:
-                created_surface(name, number).replace(**group)
+                default_surface(name, number).replace(**group)
             except InputError as error:
                 problems.note_all(("surfaces", name), error, f"surface {name!r}: ")
         if not problems.count:
-            surfaces.append(created_surface(name, number).replace(**keys))
+            surfaces.append(default_surface(name, number).replace(**keys))
     return surfaces
 
 

@@ -8,9 +8,9 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from autocolor.lights import Flap, Light
-from autocolor.scene import Scene
-from autocolor.tables import Surface
+from autocolor.scene.lights import Flap, Light
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Surface
 
 BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 

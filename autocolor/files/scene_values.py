@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from autocolor.checks import known_fields
 from autocolor.errors import InputError
-from autocolor.lights import Flap, Flaps, Light
-from autocolor.mesh import Mesh
-from autocolor.scene import Scene
-from autocolor.tables import MOST_SURFACES, Paint, Part, Reflectance, Surface
-from autocolor.view import View
+from autocolor.scene.lights import Flap, Flaps, Light
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import MOST_SURFACES, Paint, Part, Reflectance, Surface
+from autocolor.scene.view import View
 
 MOST_KEYS: Final = 32
 MOST_ROWS: Final = 1_000_000

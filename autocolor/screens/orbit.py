@@ -9,8 +9,8 @@ import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.scene import Scene
-from autocolor.view import View
+from autocolor.scene.scene import Scene
+from autocolor.scene.view import View
 
 HIGHEST: Final = math.radians(85)
 """Assumed: nearer to straight above, the picture would turn under the eye."""

@@ -9,18 +9,18 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from autocolor.created import OBJECT_COLORS, framed
 from autocolor.errors import AutocolorError
 from autocolor.files import read_scene
 from autocolor.files.file_stem import file_stem
-from autocolor.scene import Scene
+from autocolor.scene.defaults import OBJECT_COLORS, framed
+from autocolor.scene.scene import Scene
+from autocolor.scene.view import View
 from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS
 from autocolor.screens.entries_screen import draw_entries
 from autocolor.screens.help_screen import draw_help
 from autocolor.screens.keys import Binding
 from autocolor.screens.orbit import moved, turned
 from autocolor.studio import Studio
-from autocolor.view import View
 from ramtek_emu import HostPort, RamtekError
 
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from autocolor import read_scene
-from autocolor.mesh import Mesh
+from autocolor.scene.mesh import Mesh
 from scenes.modeling.coupe import make
 from scenes.modeling.pyramid import pyramid_obj
 

@@ -12,10 +12,10 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, chunks
-from autocolor.lights import Light
-from autocolor.mesh import Mesh
-from autocolor.tables import Paint, Part, Surface
-from autocolor.view import View
+from autocolor.scene.lights import Light
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.surfaces import Paint, Part, Surface
+from autocolor.scene.view import View
 
 FILLED: Final = 0.86
 """Assumed: the fraction of the picture's width or height that a framed object fills."""
@@ -36,17 +36,17 @@ OBJECT_COLORS: Final = (
 """Assumed: paints that can be told apart on one screen, given to the surfaces in turn."""
 
 
-def created_parts(mesh: Mesh, surface_of_part: dict[str, str]) -> tuple[Part, ...]:
+def default_parts(mesh: Mesh, surface_of_part: dict[str, str]) -> tuple[Part, ...]:
     """A part for each group of the mesh, with the surface that is named for it, else the one of its name."""
     return tuple(Part(name, surface_of_part.get(name, name)) for name in mesh.part_names)
 
 
-def created_surface(name: str, number: int) -> Surface:
+def default_surface(name: str, number: int) -> Surface:
     """A glossy paint, the color chosen by the surface's number, counted from 0."""
     return Surface(name, paint=Paint(object_color=OBJECT_COLORS[number % len(OBJECT_COLORS)]))  # type: ignore[arg-type]
 
 
-def created_view(mesh: Mesh) -> View:
+def default_view(mesh: Mesh) -> View:
     """A view from the front left and somewhat above, as near as the whole object stays in the picture."""
     azimuth, elevation = math.radians(-125.0), math.radians(18.0)
     toward_eye = (
@@ -105,7 +105,7 @@ def _sphere_around(mesh: Mesh) -> tuple[Floats, float]:
     return (low + high) / 2, float(np.linalg.norm((high - low) / extent) * extent / 2)
 
 
-def created_lights(mesh: Mesh, view: View) -> tuple[Light, ...]:
+def default_lights(mesh: Mesh, view: View) -> tuple[Light, ...]:
     """Four studio lights around the object, aimed at it, placed as seen from the eye.
 
     Key from the upper left, fill from the right, top from above, rim from behind: as around a car in a

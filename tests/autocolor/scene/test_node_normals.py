@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh
-from autocolor.node_normals import node_normals, polygon_normals
+from autocolor.scene.node_normals import node_normals, polygon_normals
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import meshes
 

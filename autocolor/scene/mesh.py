@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from autocolor.arrays import Floats, Numbers, Singles
 from autocolor.checks import LARGEST_COORDINATE, finite
 from autocolor.errors import InputError
-from autocolor.node_normals import CREASE_ANGLE, NodeNormals, node_normals
+from autocolor.scene.node_normals import CREASE_ANGLE, NodeNormals, node_normals
 
 
 @dataclass(frozen=True, eq=False)

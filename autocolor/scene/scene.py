@@ -15,12 +15,12 @@ from itertools import pairwise
 from typing import Any, Final, TypeVar
 
 from autocolor.checks import Color, color, field_names, finite, known_fields, nearest, with_checked
-from autocolor.created import created_lights, created_parts, created_surface, created_view
 from autocolor.errors import InputError, UsageError
-from autocolor.lights import Light
-from autocolor.mesh import Mesh
-from autocolor.tables import MOST_SURFACES, Part, Surface
-from autocolor.view import View
+from autocolor.scene.defaults import default_lights, default_parts, default_surface, default_view
+from autocolor.scene.lights import Light
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
+from autocolor.scene.view import View
 
 SCALINGS: Final = ("surface", "object")
 MAPPINGS: Final = ("linear", "gamma", "logarithm", "equalize")
@@ -201,7 +201,7 @@ def scene_of(
             f"there is no part {name!r} to take a surface{nearest(name, mesh.part_names)}" for name in missing
         )
     given = list(surfaces or ())
-    parts = list(created_parts(mesh, surface_of_part or {}))
+    parts = list(default_parts(mesh, surface_of_part or {}))
     names = {surface.name: None for surface in given} | {part.surface: None for part in parts}
     kept = list(names)[:MOST_SURFACES]
     if len(names) > MOST_SURFACES and len(given) < MOST_SURFACES:
@@ -212,13 +212,13 @@ def scene_of(
     named = set((surface_of_part or {}).values())
     for number, name in enumerate(kept):
         if name not in table and (name not in named or name in mesh.part_names):
-            table[name] = created_surface(name, number)
-    view = created_view(mesh) if view is None else view
+            table[name] = default_surface(name, number)
+    view = default_view(mesh) if view is None else view
     return Scene(
         mesh,
         tuple(parts),
         tuple(table.values()) if len(given) == len({surface.name for surface in given}) else tuple(given),
-        created_lights(mesh, view) if lights is None else tuple(lights),
+        default_lights(mesh, view) if lights is None else tuple(lights),
         view,
         **known_fields(Scene, fields, "scene"),
     )

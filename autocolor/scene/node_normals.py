@@ -15,8 +15,8 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, Numbers, chunks, cross, lengths
-from autocolor.fans import fans_of_corners, places_of_corners
-from autocolor.joined import group_numbers, join
+from autocolor.scene.fans import fans_of_corners, places_of_corners
+from autocolor.scene.union_find import group_numbers, join
 
 CREASE_ANGLE: Final = 40.0
 """Assumed: degrees; edges of boxes stay sharp, and a cylinder of ten sides or more is smooth."""

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Mesh, View, created, render, scene_of
-from autocolor.created import created_lights, created_view, framed
+from autocolor import Mesh, View, render, scene_of
+from autocolor.scene import defaults
+from autocolor.scene.defaults import default_lights, default_view, framed
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import Vector, directions, meshes, numbers, vectors
 
@@ -48,7 +49,7 @@ def test_every_node_is_within_the_picture_with_space_on_all_sides(
 ) -> None:
     placed = resized(mesh, size, middle)
     if direction is None:
-        assert_framed(created_view(placed), placed)
+        assert_framed(default_view(placed), placed)
     else:
         view = View((0, 0, 0), direction=direction, angle=angle, field_of_view=field_of_view)
         around = framed(view, placed)
@@ -101,8 +102,8 @@ def test_created_lights_and_view_grow_with_the_object(size: float) -> None:
 
 
 def test_the_key_light_stands_at_the_upper_left_of_the_eye() -> None:
-    view = created_view(cube())
-    key = created_lights(cube(), view)[0]
+    view = default_view(cube())
+    key = default_lights(cube(), view)[0]
     right, down, _ = view.axes @ (np.array(key.position) - 0.5)
     assert right < 0
     assert down < 0
@@ -111,12 +112,12 @@ def test_the_key_light_stands_at_the_upper_left_of_the_eye() -> None:
 
 def test_lights_are_created_for_a_view_from_above() -> None:
     view = framed(View((0, 0, 5), direction=(0, 0, -1)), cube())
-    assert all(np.isfinite(light.position).all() for light in created_lights(cube(), view))
+    assert all(np.isfinite(light.position).all() for light in default_lights(cube(), view))
 
 
 @given(meshes())
 def test_the_view_does_not_depend_on_how_many_nodes_are_looked_at_at_once(mesh: Mesh) -> None:
-    whole = created_view(mesh)
+    whole = default_view(mesh)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(created, "POINTS_AT_ONCE", 2)
-        assert created_view(mesh).eye == pytest.approx(whole.eye, abs=1e-9)
+        patched.setattr(defaults, "POINTS_AT_ONCE", 2)
+        assert default_view(mesh).eye == pytest.approx(whole.eye, abs=1e-9)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.reflection import phong_diffuse, phong_specular
+from autocolor.scene.reflection_models import phong_diffuse, phong_specular
 from tests.autocolor.meshes import ramp
 from tests.autocolor.strategies import numbers
 

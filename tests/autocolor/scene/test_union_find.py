@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import joined
-from autocolor.joined import group_numbers, join
+from autocolor.scene import union_find
+from autocolor.scene.union_find import group_numbers, join
 
 COUNT = 30
 
@@ -14,7 +14,7 @@ things = st.integers(0, COUNT - 1)
 batches = st.lists(st.lists(st.tuples(things, things), max_size=20), max_size=4)
 
 
-def joined_one_by_one(pairs: list[tuple[int, int]]) -> list[int]:
+def united_one_by_one(pairs: list[tuple[int, int]]) -> list[int]:
     """The lowest of each thing's group, by passing it on until nothing changes."""
     lowest = list(range(COUNT))
     changed = True
@@ -35,13 +35,13 @@ def test_things_are_in_one_group_when_pairs_lead_from_one_to_the_other(
     for pairs in several:
         one, other = np.array(pairs, np.intp).reshape(-1, 2).T
         join(leads, one, other)
-    lowest = joined_one_by_one([pair for pairs in several for pair in pairs])
+    lowest = united_one_by_one([pair for pairs in several for pair in pairs])
     in_order = sorted(set(lowest))
     assert group_numbers(leads).tolist() == [in_order.index(each) for each in lowest]
 
 
 def test_a_long_chain_in_any_order_is_one_group(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(joined, "AT_ONCE", 100)
+    monkeypatch.setattr(union_find, "AT_ONCE", 100)
     chain = np.random.default_rng(7).permutation(10_000)
     leads = np.arange(len(chain))
     links = np.random.default_rng(8).permutation(len(chain) - 1)

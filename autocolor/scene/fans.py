@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, Numbers, chunks
-from autocolor.joined import group_numbers, join
+from autocolor.scene.union_find import group_numbers, join
 
 AT_ONCE: Final = 1 << 15
 

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import dataclasses
 import math
 import pickle
 from typing import Any
@@ -9,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from autocolor import InputError, Mesh, Paint, Part, Reflectance, Surface
+from autocolor import InputError, Mesh
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import meshes
 
@@ -134,85 +133,3 @@ def test_joined_meshes_keep_their_polygons_and_share_parts_of_the_same_name(one:
 def test_the_parts_in_use_have_a_polygon() -> None:
     mesh = mesh_of(part_names=("hood", "door", "roof"), part_numbers=[1])
     assert mesh.parts_in_use == (1,)
-
-
-@pytest.mark.parametrize(
-    ("make", "sentence"),
-    [
-        (lambda: Reflectance(diffuse=-1), "diffuse must be a finite number of at least 0, not -1"),
-        (lambda: Reflectance(exponent=math.inf), "exponent must be a finite number of at least 0, not inf"),
-        (lambda: Paint(blend=1.5), "blend must be a number from 0 to 1, not 1.5"),
-        (lambda: Paint(light_percentage=101), "light_percentage must be a number from 0 to 100, not 101"),
-        (lambda: Surface(""), "a surface's name must be a text of at least one letter, not ''"),
-        (
-            lambda: Surface("body", levels=1),
-            "surface 'body': levels must be a whole number of at least 2, not 1",
-        ),
-        (lambda: Surface("body", two_sided=1), "surface 'body': two_sided must be true or false, not 1"),  # type: ignore[arg-type]
-    ],
-)
-def test_a_row_that_breaks_a_rule_is_refused(make: Any, sentence: str) -> None:
-    with pytest.raises(InputError) as refusal:
-        make()
-    assert str(refusal.value) == sentence
-
-
-def test_a_surface_changes_its_own_fields_and_those_of_reflectance_and_paint() -> None:
-    surface = Surface("body").replace(diffuse=0.2, blend=0.3, two_sided=False, object_color="#102030")
-    assert surface.reflectance == Reflectance(diffuse=0.2)
-    assert surface.paint == Paint(object_color=(16, 32, 48), blend=0.3)
-    assert not surface.two_sided
-    assert surface.replace(paint=Paint(), blend=0.1).paint == Paint(blend=0.1)
-
-
-def test_a_refused_field_is_told_with_the_surface() -> None:
-    with pytest.raises(InputError) as refusal:
-        Surface("body").replace(blend=2)
-    assert str(refusal.value) == "surface 'body': blend must be a number from 0 to 1, not 2"
-    with pytest.raises(InputError, match=r"surface 'body': there is no 'difuse'; did you mean 'diffuse'\?"):
-        Surface("body").replace(difuse=2)
-    with pytest.raises(InputError, match=r"part 'door': there is no 'surfaces'; did you mean 'surface'\?"):
-        Part("door", "body").replace(surfaces="glass")
-
-
-def test_every_problem_of_a_change_is_told_and_in_its_order() -> None:
-    with pytest.raises(InputError) as refusal:
-        Surface("body").replace(blend=2, object_color="red")
-    assert refusal.value.problems == (
-        "surface 'body': blend must be a number from 0 to 1, not 2",
-        "surface 'body': object_color must be \"#rrggbb\" or three whole numbers from 0 to 255, not 'red'",
-    )
-
-
-OTHER_VALUES = {
-    "name": "hood",
-    "reflectance": Reflectance(diffuse=0.1),
-    "paint": Paint(blend=0.1),
-    "two_sided": False,
-    "levels": 7,
-}
-
-
-@pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(Surface)])
-def test_surfaces_are_the_same_but_for_paint_when_nothing_else_differs(field: str) -> None:
-    surface = Surface("body")
-    other = surface.replace(**{field: OTHER_VALUES[field]})
-    assert surface.is_but_for_paint(other) == (field == "paint")
-
-
-def test_parts_and_surfaces_of_other_kinds_are_refused_in_a_sentence() -> None:
-    with pytest.raises(InputError, match="a part's name must be a text of at least one letter, not 3"):
-        Part(3, "wall")  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="part 'hood': surface must be a text"):
-        Part("hood", None)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="surface 'a': paint must be a Paint, not"):
-        Surface("a", paint={"blend": 0.5})  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="surface 'a': reflectance must be a Reflectance, not 5"):
-        Surface("a").replace(reflectance=5, diffuse=0.5)
-
-
-def test_numpy_scalars_serve_as_numbers_and_switches() -> None:
-    surface = Surface("a", two_sided=np.False_, levels=np.int64(5))  # type: ignore[arg-type]
-    assert (surface.two_sided, surface.levels) == (False, 5)
-    assert type(surface.two_sided) is bool
-    assert type(surface.levels) is int

@@ -9,9 +9,10 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given
 
-from autocolor import Mesh, fans, joined, node_normals
-from autocolor.fans import fans_of_corners, places_of_corners
-from autocolor.node_normals import polygon_normals
+from autocolor import Mesh
+from autocolor.scene import fans, node_normals, union_find
+from autocolor.scene.fans import fans_of_corners, places_of_corners
+from autocolor.scene.node_normals import polygon_normals
 from tests.autocolor.meshes import grid, sphere
 from tests.autocolor.strategies import meshes
 
@@ -103,7 +104,7 @@ def test_the_normals_do_not_depend_on_how_many_corners_are_worked_on_at_once(
 
     whole = normals()
     monkeypatch.setattr(fans, "AT_ONCE", at_once)
-    monkeypatch.setattr(joined, "AT_ONCE", at_once)
+    monkeypatch.setattr(union_find, "AT_ONCE", at_once)
     monkeypatch.setattr(node_normals, "POLYGONS_AT_ONCE", at_once)
     for one, other in zip(whole, normals(), strict=True):
         assert one == pytest.approx(other, abs=1e-12)
