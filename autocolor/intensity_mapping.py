@@ -18,7 +18,7 @@ from autocolor.level_ranges import BACKGROUND, LevelRange
 from autocolor.picture import IntensityRange, Picture
 from autocolor.rounding import halves_up
 from autocolor.scene.scene import Curve
-from autocolor.seen import shares
+from autocolor.visibility.visible_points import shares
 
 GAMMA: Final = 2.2
 """Assumed: the exponent of a television monitor."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from autocolor.arrays import Flags, Floats, Singles, power
 from autocolor.scene.lights import Light
-from autocolor.seen import POINT, Seen
+from autocolor.visibility.visible_points import POINT, Seen
 
 ROUNDING: Final = float(np.finfo(np.float32).eps)
 FAR_FLAP: Final = 1e30

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Singles
-from autocolor.seen import Share
+from autocolor.visibility.visible_points import Share
 from autocolor.weights import SurfaceWeights
 
 DIFFUSE: Final = 0

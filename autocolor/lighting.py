@@ -17,8 +17,8 @@ from autocolor.picture import Picture
 from autocolor.rays import Placed, placed
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
-from autocolor.seen import Seen
 from autocolor.shading import shade
+from autocolor.visibility.visible_points import Seen
 from autocolor.weights import SurfaceWeights, weights_of
 
 SHAPING: Final = tuple(

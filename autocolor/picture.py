@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from autocolor.arrays import Bytes, Numbers, Singles
 from autocolor.light_planes import DIFFUSE, SPECULAR, LightPlanes
-from autocolor.seen import SurfaceSlice
+from autocolor.visibility.visible_points import SurfaceSlice
 
 
 class IntensityRange(NamedTuple):

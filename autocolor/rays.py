@@ -12,7 +12,7 @@ import numpy as np
 from autocolor.arrays import Floats, Numbers, Singles
 from autocolor.light_controls import Controls, controls
 from autocolor.scene.lights import Light
-from autocolor.seen import POINT, POINT_SQUARED, Seen, keep_products
+from autocolor.visibility.visible_points import POINT, POINT_SQUARED, Seen, keep_products
 
 CLOSE: Final = 0.02
 """A point is close to a light where the square of its distance is at most this fraction of the squares that

@@ -23,9 +23,9 @@ from autocolor.errors import UsageError
 from autocolor.lighting import Lender, lit
 from autocolor.picture import Picture
 from autocolor.scene.scene import Scene
-from autocolor.seen import Seen
-from autocolor.visible_surfaces import visible_surfaces
-from autocolor.watkins import watkins
+from autocolor.visibility.visible_points import Seen
+from autocolor.visibility.visible_surfaces import visible_surfaces
+from autocolor.visibility.watkins import watkins
 
 # glibc gives large arrays back to the system and fetches them again, page by page, for every frame; once it
 # has seen one of this size go, it keeps them. Measured: 4 to 15 ms a frame.

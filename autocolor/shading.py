@@ -24,7 +24,7 @@ from autocolor.light_controls import concentrated, inside_cone, inside_flaps
 from autocolor.light_planes import DIFFUSE, SPECULAR
 from autocolor.rays import Placed, rays_to
 from autocolor.scene.reflection_models import phong_diffuse, phong_specular
-from autocolor.seen import MIRROR, NORMAL, Seen, Share
+from autocolor.visibility.visible_points import MIRROR, NORMAL, Seen, Share
 
 FEW: Final = 0.3
 """Below this fraction of lit pixels it takes less time to pick them than to compute them all."""

@@ -5,11 +5,12 @@ import pytest
 from tests.fidelity_ledger import KINDS, ROOT, document, lines_of_packages, lines_of_source
 
 BEARING_FORMULAS = [
-    "autocolor.camera_space", "autocolor.color_blending", "autocolor.intensity_mapping",
-    "autocolor.level_ranges", "autocolor.light_controls", "autocolor.picture", "autocolor.scene.defaults",
-    "autocolor.scene.lights", "autocolor.scene.node_normals", "autocolor.scene.reflection_models",
-    "autocolor.scene.scene", "autocolor.scene.surfaces", "autocolor.scene.view", "autocolor.segments",
-    "autocolor.shading", "autocolor.visible_surfaces", "autocolor.watkins", "autocolor.weights",
+    "autocolor.color_blending", "autocolor.intensity_mapping", "autocolor.level_ranges",
+    "autocolor.light_controls", "autocolor.picture", "autocolor.scene.defaults", "autocolor.scene.lights",
+    "autocolor.scene.node_normals", "autocolor.scene.reflection_models", "autocolor.scene.scene",
+    "autocolor.scene.surfaces", "autocolor.scene.view", "autocolor.shading",
+    "autocolor.visibility.camera_space", "autocolor.visibility.visible_spans",
+    "autocolor.visibility.visible_surfaces", "autocolor.visibility.watkins", "autocolor.weights",
     "ramtek_emu.character_rom", "ramtek_emu.configuration", "ramtek_emu.decoder", "ramtek_emu.vectors",
     "ramtek_emu.curves", "ramtek_emu.timing", "ramtek_emu.frame_buffer", "ramtek_emu.host_port",
     "ramtek_emu.lookup_table", "ramtek_emu.parameters", "ramtek_emu.processor", "ramtek_emu.scan_out",

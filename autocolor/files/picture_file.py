@@ -29,7 +29,7 @@ from autocolor.files.scene_values import scene_of_values, values_of_scene
 from autocolor.files.writing import write_atomically
 from autocolor.picture import Picture
 from autocolor.scene.scene import Scene
-from autocolor.seen import surface_slices
+from autocolor.visibility.visible_points import surface_slices
 
 FORMAT: Final = "autocolor picture 1"
 LARGEST_PICTURE_FILE: Final = 4 << 30

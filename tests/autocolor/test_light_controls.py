@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, View
 from autocolor.light_controls import concentrated, controls, inside_cone, inside_flaps
-from autocolor.seen import Seen
-from autocolor.visible_surfaces import visible_surfaces
+from autocolor.visibility.visible_points import Seen
+from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import wall
 from tests.autocolor.strategies import lights, numbers
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, UsageError, View, render, scene_of
 from autocolor.rendering import Rendering, rendering
-from autocolor.seen import Share
 from autocolor.shading import shade
+from autocolor.visibility.visible_points import Share
 from tests.autocolor.meshes import cube, sphere
 from tests.autocolor.strategies import scenes
 
@@ -110,7 +110,7 @@ def test_a_light_off_and_on_again_is_neither_computed_nor_weighed_again() -> Non
 
 
 def test_an_exponent_computes_only_the_shares_that_its_surface_is_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("autocolor.seen.PIXELS_AT_ONCE", 37)
+    monkeypatch.setattr("autocolor.visibility.visible_points.PIXELS_AT_ONCE", 37)
     before = rendering(two_surfaces(), 24, 32)
     shaded = []
 
@@ -163,7 +163,7 @@ def test_a_picture_in_many_shares_is_kept_and_computed_as_in_one(
     edit: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     in_one = edited(two_surfaces(), edit)[1].picture
-    monkeypatch.setattr("autocolor.seen.PIXELS_AT_ONCE", 37)
+    monkeypatch.setattr("autocolor.visibility.visible_points.PIXELS_AT_ONCE", 37)
     _, after = edited(two_surfaces(), edit)
     assert len(after.seen.shares) > 3
     assert after.picture.intensity.tobytes() == render(edit(two_surfaces()), 24, 32).intensity.tobytes()

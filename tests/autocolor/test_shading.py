@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Reflectance, Scene, View, render
 from autocolor.rays import placed
-from autocolor.seen import Seen
 from autocolor.shading import shade
-from autocolor.visible_surfaces import visible_surfaces
+from autocolor.visibility.visible_points import Seen
+from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import sphere, wall, wall_scene
 from tests.autocolor.reference import Lit, light_at, minus, plus, ray, times, unit
 from tests.autocolor.strategies import flaps, lights, numbers, reflectances

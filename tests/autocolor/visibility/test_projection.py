@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View, render, scene_of
-from autocolor.camera_space import camera_space
-from autocolor.projection import focal_length, projection
+from autocolor.visibility.camera_space import camera_space
+from autocolor.visibility.projection import focal_length, projection
 from tests.autocolor.meshes import cube, grid
 from tests.autocolor.reference import ray
 from tests.autocolor.strategies import Vector, directions, meshes, rasters, vectors, views

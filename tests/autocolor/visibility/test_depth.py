@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.depth import DepthScale, depth_scale
-from autocolor.projection import projection
+from autocolor.visibility.depth import DepthScale, depth_scale
+from autocolor.visibility.projection import projection
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
 
 depths = st.floats(1e-9, 1.0)

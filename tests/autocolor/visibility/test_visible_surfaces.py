@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.visible_surfaces import visible_surfaces
+from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.strategies import outside_views, rasters, soups, views

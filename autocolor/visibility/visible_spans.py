@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from autocolor.arrays import Bytes, Floats, Integers, Numbers, Singles, chunks
-from autocolor.edges import DOWN_SIDE, UP_SIDE, Side, edges, other_end
-from autocolor.projection import Projection, focal_length
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
+from autocolor.visibility.edges import DOWN_SIDE, UP_SIDE, Side, edges, other_end
+from autocolor.visibility.projection import Projection, focal_length
 
 # Rows of what is stepped along a segment: the point, the normal, the inverse depth, the ray.
 POINTS: Final = slice(0, 3)

@@ -14,7 +14,7 @@ from typing import Final, Literal
 import numpy as np
 
 from autocolor.arrays import Floats, Numbers
-from autocolor.projection import Projection, least_of_four
+from autocolor.visibility.projection import Projection, least_of_four
 
 Side = Literal[1, -1]
 

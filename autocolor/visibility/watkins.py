@@ -13,13 +13,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from autocolor.depth import DepthScale, depth_scale
-from autocolor.edges import edges
-from autocolor.interpolation import seen_of_spans
-from autocolor.projection import Projection, least_of_four, projection
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
-from autocolor.seen import Seen
+from autocolor.visibility.depth import DepthScale, depth_scale
+from autocolor.visibility.edges import edges
+from autocolor.visibility.interpolation import seen_of_spans
+from autocolor.visibility.projection import Projection, least_of_four, projection
+from autocolor.visibility.visible_points import Seen
 
 
 @dataclass

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.visible_surfaces import visible_surfaces
-from autocolor.watkins import watkins
+from autocolor.visibility.visible_surfaces import visible_surfaces
+from autocolor.visibility.watkins import watkins
 from tests.autocolor.strategies import numbers
 
 tenths = st.integers(-20, 20).map(lambda number: number / 10)

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, Integers
-from autocolor.projection import Projection
+from autocolor.visibility.projection import Projection
 
 KEY_BITS: Final = 62
 """Of the 63 of a positive number; one is room for what rounding adds to the nearest."""

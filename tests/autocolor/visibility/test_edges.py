@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View
-from autocolor.edges import DOWN_SIDE, UP_SIDE, Edges, Side, edges_of_sides, other_end
-from autocolor.projection import Projection, projection
+from autocolor.visibility.edges import DOWN_SIDE, UP_SIDE, Edges, Side, edges_of_sides, other_end
+from autocolor.visibility.projection import Projection, projection
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
 
 SIDES: tuple[Side, ...] = (DOWN_SIDE, UP_SIDE)

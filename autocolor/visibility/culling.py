@@ -14,8 +14,8 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Integers, Numbers
-from autocolor.depth import DepthScale
-from autocolor.projection import Projection, least_of_four, most_of_four
+from autocolor.visibility.depth import DepthScale
+from autocolor.visibility.projection import Projection, least_of_four, most_of_four
 
 FITTING: Final = 0.9
 """How many of the polygons are to be no larger than a tile."""

@@ -8,11 +8,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from autocolor.arrays import Integers, Singles, chunks_of_runs, dot, runs
-from autocolor.projection import Projection, focal_length
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
-from autocolor.seen import MIRROR, NORMAL, POINT, ROW_COUNT, Seen, keep_products, surface_slices
-from autocolor.segments import DEPTH, NORMALS, POINTS, RAY, Segments, along_segments, visible_segments
+from autocolor.visibility.projection import Projection, focal_length
+from autocolor.visibility.visible_points import (
+    MIRROR,
+    NORMAL,
+    POINT,
+    ROW_COUNT,
+    Seen,
+    keep_products,
+    surface_slices,
+)
+from autocolor.visibility.visible_spans import (
+    DEPTH,
+    NORMALS,
+    POINTS,
+    RAY,
+    Segments,
+    along_segments,
+    visible_segments,
+)
 
 PIXELS_AT_ONCE: Final = 1 << 14
 

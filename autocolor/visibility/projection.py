@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from autocolor.arrays import Flags, Floats, Numbers, Singles, chunks
-from autocolor.camera_space import CameraPolygons, camera_space
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
+from autocolor.visibility.camera_space import CameraPolygons, camera_space
 
 ROUNDING: Final = 1e-6
 """In pixels, far above what the cut of an edge is rounded by."""

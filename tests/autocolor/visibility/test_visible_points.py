@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.seen import (
+from autocolor.visibility.visible_points import (
     MIRROR,
     NORMAL,
     POINT,
@@ -19,7 +19,7 @@ from autocolor.seen import (
     shares,
     surface_slices,
 )
-from autocolor.visible_surfaces import visible_surfaces
+from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.reference import ray
 from tests.autocolor.strategies import Vector, directions, meshes, numbers, rasters, vectors, views
@@ -159,7 +159,7 @@ def test_from_within_a_sphere_the_normals_point_inward_unless_it_is_one_sided(
 @given(st.lists(st.integers(1, 40), max_size=6), st.integers(1, 50))
 def test_shares_have_every_pixel_of_every_surface_once(counts: list[int], at_once: int) -> None:
     slices = surface_slices(np.array([0, *counts]))
-    with mock.patch("autocolor.seen.PIXELS_AT_ONCE", at_once):
+    with mock.patch("autocolor.visibility.visible_points.PIXELS_AT_ONCE", at_once):
         every = shares(slices)
     numbers = np.zeros(sum(counts), int)
     for share in every:

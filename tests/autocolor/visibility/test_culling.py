@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View
-from autocolor.depth import depth_scale
-from autocolor.hidden import not_hidden
-from autocolor.projection import projection
-from autocolor.visible_surfaces import keep_front_most
+from autocolor.visibility.culling import not_hidden
+from autocolor.visibility.depth import depth_scale
+from autocolor.visibility.projection import projection
+from autocolor.visibility.visible_surfaces import keep_front_most
 from tests.autocolor.meshes import sphere
 from tests.autocolor.strategies import meshes, outside_views, views
 

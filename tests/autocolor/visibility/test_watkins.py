@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.seen import Seen
-from autocolor.visible_surfaces import visible_surfaces
-from autocolor.watkins import watkins
+from autocolor.visibility.visible_points import Seen
+from autocolor.visibility.visible_surfaces import visible_surfaces
+from autocolor.visibility.watkins import watkins
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import meshes, outside_views, rasters, soups, views
 

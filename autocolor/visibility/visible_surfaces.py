@@ -19,14 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from autocolor.arrays import Floats, Integers, Numbers, chunks, chunks_of_runs, runs
-from autocolor.depth import DepthScale, depth_scale
-from autocolor.edges import Edges, edges_of_sides
-from autocolor.hidden import not_hidden
-from autocolor.interpolation import seen_of_spans
-from autocolor.projection import Projection, projection
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
-from autocolor.seen import Seen
+from autocolor.visibility.culling import not_hidden
+from autocolor.visibility.depth import DepthScale, depth_scale
+from autocolor.visibility.edges import Edges, edges_of_sides
+from autocolor.visibility.interpolation import seen_of_spans
+from autocolor.visibility.projection import Projection, projection
+from autocolor.visibility.visible_points import Seen
 
 POLYGONS_AT_ONCE: Final = 1 << 15
 FRAGMENTS_AT_ONCE: Final = 1 << 16
