@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from autocolor.files.picture_file import read_picture as read_picture
     from autocolor.files.picture_file import write_picture as write_picture
     from autocolor.level_ranges import LevelRange as LevelRange
-    from autocolor.picture import Picture as Picture
+    from autocolor.lighting.picture import Picture as Picture
     from autocolor.rendering import render as render
     from autocolor.scene.lights import Flap as Flap
     from autocolor.scene.lights import Flaps as Flaps
@@ -51,7 +51,7 @@ _HOME = {
     "OutputError": "errors",
     "Paint": "scene.surfaces",
     "Part": "scene.surfaces",
-    "Picture": "picture",
+    "Picture": "lighting.picture",
     "Reflectance": "scene.surfaces",
     "Scene": "scene.scene",
     "Studio": "studio",

@@ -20,8 +20,8 @@ import numpy as np
 
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
-from autocolor.lighting import Lender, lit
-from autocolor.picture import Picture
+from autocolor.lighting.illumination import Lender, lit
+from autocolor.lighting.picture import Picture
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import Seen
 from autocolor.visibility.visible_surfaces import visible_surfaces

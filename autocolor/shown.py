@@ -13,7 +13,7 @@ from autocolor.arrays import Bytes, Words
 from autocolor.color_blending import entries_of
 from autocolor.intensity_mapping import words_of
 from autocolor.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
-from autocolor.picture import Picture
+from autocolor.lighting.picture import Picture
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Surface
 

@@ -21,7 +21,7 @@ from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.level_ranges import WORDS, LevelRange
-from autocolor.picture import Picture
+from autocolor.lighting.picture import Picture
 from autocolor.rendering import rendering
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import PAINT_CHECKS, Surface

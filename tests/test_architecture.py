@@ -32,7 +32,7 @@ PUBLIC_NAMES = {
 }  # fmt: skip
 
 KNOWING_THE_DISPLAY = (
-    "autocolor.studio", "autocolor.picture", "autocolor.__main__", "autocolor.files.writing",
+    "autocolor.studio", "autocolor.lighting.picture", "autocolor.__main__", "autocolor.files.writing",
 )  # fmt: skip
 ROOMS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
 DOORS_OF_THE_DISPLAY = {

@@ -6,11 +6,12 @@ from tests.fidelity_ledger import KINDS, ROOT, document, lines_of_packages, line
 
 BEARING_FORMULAS = [
     "autocolor.color_blending", "autocolor.intensity_mapping", "autocolor.level_ranges",
-    "autocolor.light_controls", "autocolor.picture", "autocolor.scene.defaults", "autocolor.scene.lights",
+    "autocolor.lighting.light_controls", "autocolor.lighting.light_mix", "autocolor.lighting.picture",
+    "autocolor.lighting.shading", "autocolor.scene.defaults", "autocolor.scene.lights",
     "autocolor.scene.node_normals", "autocolor.scene.reflection_models", "autocolor.scene.scene",
-    "autocolor.scene.surfaces", "autocolor.scene.view", "autocolor.shading",
-    "autocolor.visibility.camera_space", "autocolor.visibility.visible_spans",
-    "autocolor.visibility.visible_surfaces", "autocolor.visibility.watkins", "autocolor.weights",
+    "autocolor.scene.surfaces", "autocolor.scene.view", "autocolor.visibility.camera_space",
+    "autocolor.visibility.visible_spans", "autocolor.visibility.visible_surfaces",
+    "autocolor.visibility.watkins",
     "ramtek_emu.character_rom", "ramtek_emu.configuration", "ramtek_emu.decoder", "ramtek_emu.vectors",
     "ramtek_emu.curves", "ramtek_emu.timing", "ramtek_emu.frame_buffer", "ramtek_emu.host_port",
     "ramtek_emu.lookup_table", "ramtek_emu.parameters", "ramtek_emu.processor", "ramtek_emu.scan_out",

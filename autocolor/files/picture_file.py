@@ -27,7 +27,7 @@ from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes, shown
 from autocolor.files.scene_values import scene_of_values, values_of_scene
 from autocolor.files.writing import write_atomically
-from autocolor.picture import Picture
+from autocolor.lighting.picture import Picture
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import surface_slices
 

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, UsageError, View, render, scene_of
+from autocolor.lighting.shading import shade
 from autocolor.rendering import Rendering, rendering
-from autocolor.shading import shade
 from autocolor.visibility.visible_points import Share
 from tests.autocolor.meshes import cube, sphere
 from tests.autocolor.strategies import scenes
@@ -118,7 +118,7 @@ def test_an_exponent_computes_only_the_shares_that_its_surface_is_in(monkeypatch
         shaded.append(share.pixels)
         shade(planes, light, seen, share, exponents)
 
-    monkeypatch.setattr("autocolor.lighting.shade", noting)
+    monkeypatch.setattr("autocolor.lighting.illumination.shade", noting)
     rendering(before.scene.with_surface("cube", exponent=3), 24, 32, before)
     having = [
         share.pixels for share in before.seen.shares if 2 in [each.surface_number for each in share.slices]

@@ -27,12 +27,14 @@ def test_every_step_stands_below_one_that_is_there() -> None:
 
 
 def test_a_step_that_is_gone_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(steps, "STEPS", (steps.Step("autocolor.picture", "decomposed", steps.FRAME),))
+    monkeypatch.setattr(
+        steps, "STEPS", (steps.Step("autocolor.lighting.picture", "decomposed", steps.FRAME),)
+    )
     with pytest.raises(SystemExit) as left:
         steps.functions()
     assert str(left.value) == (
-        "benchmarks/steps.py: autocolor.picture must have the step decomposed, and has not; name in STEPS the"
-        " function that does its work now"
+        "benchmarks/steps.py: autocolor.lighting.picture must have the step decomposed, and has not; name in STEPS"
+        " the function that does its work now"
     )
 
 

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Numbers, Singles
-from autocolor.light_controls import Controls, controls
+from autocolor.lighting.light_controls import Controls, controls
 from autocolor.scene.lights import Light
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, Seen, keep_products
 

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Singles
+from autocolor.lighting.light_mix import SurfaceWeights
 from autocolor.visibility.visible_points import Share
-from autocolor.weights import SurfaceWeights
 
 DIFFUSE: Final = 0
 SPECULAR: Final = 1

@@ -20,9 +20,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Flags, Numbers, Singles
-from autocolor.light_controls import concentrated, inside_cone, inside_flaps
-from autocolor.light_planes import DIFFUSE, SPECULAR
-from autocolor.rays import Placed, rays_to
+from autocolor.lighting.light_controls import concentrated, inside_cone, inside_flaps
+from autocolor.lighting.light_planes import DIFFUSE, SPECULAR
+from autocolor.lighting.rays import Placed, rays_to
 from autocolor.scene.reflection_models import phong_diffuse, phong_specular
 from autocolor.visibility.visible_points import MIRROR, NORMAL, Seen, Share
 

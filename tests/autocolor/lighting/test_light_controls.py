@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, View
-from autocolor.light_controls import concentrated, controls, inside_cone, inside_flaps
+from autocolor.lighting.light_controls import concentrated, controls, inside_cone, inside_flaps
 from autocolor.visibility.visible_points import Seen
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import wall

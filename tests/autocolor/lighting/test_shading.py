@@ -11,8 +11,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Reflectance, Scene, View, render
-from autocolor.rays import placed
-from autocolor.shading import shade
+from autocolor.lighting.rays import placed
+from autocolor.lighting.shading import shade
 from autocolor.visibility.visible_points import Seen
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import sphere, wall, wall_scene

@@ -12,14 +12,14 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Singles
-from autocolor.light_planes import LightPlanes, weigh
-from autocolor.picture import Picture
-from autocolor.rays import Placed, placed
+from autocolor.lighting.light_mix import SurfaceWeights, weights_of
+from autocolor.lighting.light_planes import LightPlanes, weigh
+from autocolor.lighting.picture import Picture
+from autocolor.lighting.rays import Placed, placed
+from autocolor.lighting.shading import shade
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
-from autocolor.shading import shade
 from autocolor.visibility.visible_points import Seen
-from autocolor.weights import SurfaceWeights, weights_of
 
 SHAPING: Final = tuple(
     field.name for field in dataclasses.fields(Light) if field.name not in ("intensity", "on")

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from autocolor.arrays import Bytes, Numbers, Singles
-from autocolor.light_planes import DIFFUSE, SPECULAR, LightPlanes
+from autocolor.lighting.light_planes import DIFFUSE, SPECULAR, LightPlanes
 from autocolor.visibility.visible_points import SurfaceSlice
 
 
