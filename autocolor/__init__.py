@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from autocolor.files import read_scene as read_scene
     from autocolor.files.picture_file import read_picture as read_picture
     from autocolor.files.picture_file import write_picture as write_picture
-    from autocolor.level_ranges import LevelRange as LevelRange
     from autocolor.lighting.picture import Picture as Picture
+    from autocolor.mapping.level_ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
     from autocolor.scene.lights import Flap as Flap
     from autocolor.scene.lights import Flaps as Flaps
@@ -44,7 +44,7 @@ _HOME = {
     "Flap": "scene.lights",
     "Flaps": "scene.lights",
     "InputError": "errors",
-    "LevelRange": "level_ranges",
+    "LevelRange": "mapping.level_ranges",
     "Light": "scene.lights",
     "Mesh": "scene.mesh",
     "MissingInputError": "errors",

@@ -20,12 +20,12 @@ import numpy as np
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
-from autocolor.level_ranges import WORDS, LevelRange
 from autocolor.lighting.picture import Picture
+from autocolor.mapping.display_image import Shown, shown
+from autocolor.mapping.level_ranges import WORDS, LevelRange
 from autocolor.rendering import rendering
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import PAINT_CHECKS, Surface
-from autocolor.shown import Shown, shown
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
 
 if TYPE_CHECKING:

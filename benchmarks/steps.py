@@ -46,7 +46,7 @@ STEPS = (
     Step("autocolor.lighting.shading", "shade", "lit"),
     Step("autocolor.lighting.light_planes", "weigh", "lit"),
     Step("autocolor.studio", "shown", FRAME),
-    Step("autocolor.intensity_mapping", "words_of", "shown"),
+    Step("autocolor.mapping.intensity_mapping", "words_of", "shown"),
     Step("autocolor.studio", "_send", FRAME),
 )
 """The steps of a frame in their order."""

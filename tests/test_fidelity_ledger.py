@@ -5,9 +5,9 @@ import pytest
 from tests.fidelity_ledger import KINDS, ROOT, document, lines_of_packages, lines_of_source
 
 BEARING_FORMULAS = [
-    "autocolor.color_blending", "autocolor.intensity_mapping", "autocolor.level_ranges",
     "autocolor.lighting.light_controls", "autocolor.lighting.light_mix", "autocolor.lighting.picture",
-    "autocolor.lighting.shading", "autocolor.scene.defaults", "autocolor.scene.lights",
+    "autocolor.lighting.shading", "autocolor.mapping.color_blending", "autocolor.mapping.intensity_mapping",
+    "autocolor.mapping.level_ranges", "autocolor.scene.defaults", "autocolor.scene.lights",
     "autocolor.scene.node_normals", "autocolor.scene.reflection_models", "autocolor.scene.scene",
     "autocolor.scene.surfaces", "autocolor.scene.view", "autocolor.visibility.camera_space",
     "autocolor.visibility.visible_spans", "autocolor.visibility.visible_surfaces",

@@ -39,8 +39,8 @@ def info(context: click.Context, scene: str, as_json: bool, up: str, strict: boo
 def facts_of(report: SceneReport) -> dict[str, Any]:
     """The facts of a scene as values that JSON can hold."""
     from autocolor.files.quad_shapes import quad_shapes
+    from autocolor.mapping.display_image import shown
     from autocolor.rendering import render
-    from autocolor.shown import shown
 
     scene = report.scene
     mesh = scene.mesh

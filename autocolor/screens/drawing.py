@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from autocolor.level_ranges import SCREENS
+from autocolor.mapping.level_ranges import SCREENS
 from ramtek_emu import HostPort, instructions
 
 WIDTH: Final = 640

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Words
-from autocolor.level_ranges import BACKGROUND, SCREENS, WORDS, LevelRange
+from autocolor.mapping.level_ranges import BACKGROUND, SCREENS, WORDS, LevelRange
 from autocolor.screens.drawing import HEIGHT, WIDTH, YELLOW
 from ramtek_emu import HostPort, instructions
 

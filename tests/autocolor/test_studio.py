@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, InputError, Light, Mesh, Scene, Studio, Surface, UsageError, View, scene_of
-from autocolor.level_ranges import SCREENS
+from autocolor.mapping.level_ranges import SCREENS
 from autocolor.studio import send_picture
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, Ramtek9300
 from tests.autocolor.meshes import cube, grid, sphere, wall_scene

@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, Light, Scene, read_picture, read_scene, render, write_picture
 from autocolor.errors import InputError, MissingInputError, OutputError, WriteError
 from autocolor.files.picture_file import MEMBERS, SavedPicture
-from autocolor.shown import shown
+from autocolor.mapping.display_image import shown
 from tests.autocolor.meshes import cube, wall_scene
 from tests.autocolor.strategies import scenes
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from autocolor.level_ranges import BACKGROUND, SCREENS, LevelRange
+from autocolor.mapping.level_ranges import BACKGROUND, SCREENS, LevelRange
 from autocolor.screens.drawing import YELLOW
 from autocolor.screens.entries_screen import ACROSS, DOWN, SIDE, cell_words, draw_entries
 from ramtek_emu import Ramtek9300

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, LevelRange, Picture, Scene, render
-from autocolor.intensity_mapping import curve_of, equalized, fraction_of, levels_of, words_of
-from autocolor.level_ranges import level_ranges
 from autocolor.lighting.picture import IntensityRange
+from autocolor.mapping.intensity_mapping import curve_of, equalized, fraction_of, levels_of, words_of
+from autocolor.mapping.level_ranges import level_ranges
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor.meshes import ramp
 from tests.autocolor.reference import level_of

@@ -10,10 +10,10 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Bytes, Words
-from autocolor.color_blending import entries_of
-from autocolor.intensity_mapping import words_of
-from autocolor.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.lighting.picture import Picture
+from autocolor.mapping.color_blending import entries_of
+from autocolor.mapping.intensity_mapping import words_of
+from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Surface
 

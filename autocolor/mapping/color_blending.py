@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Bytes, Floats
-from autocolor.rounding import HALF, half_up
+from autocolor.mapping.rounding import HALF, half_up
 from autocolor.scene.surfaces import Paint
 
 HALVES_UP: Final = (HALF + 1e-9,) * 3

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.rounding import half_up, halves_up
+from autocolor.mapping.rounding import half_up, halves_up
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, Surface
-from autocolor.level_ranges import BACKGROUND, SCREENS, LevelRange, level_ranges
+from autocolor.mapping.level_ranges import BACKGROUND, SCREENS, LevelRange, level_ranges
 from tests.autocolor.reference import divided
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Paint
-from autocolor.color_blending import blend_level, entries_of
+from autocolor.mapping.color_blending import blend_level, entries_of
 from tests.autocolor.reference import entry_of
 from tests.autocolor.strategies import numbers, paints
 

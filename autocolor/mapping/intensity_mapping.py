@@ -14,9 +14,9 @@ import numpy as np
 
 from autocolor.arrays import Singles, Words
 from autocolor.errors import InputError
-from autocolor.level_ranges import BACKGROUND, LevelRange
 from autocolor.lighting.picture import IntensityRange, Picture
-from autocolor.rounding import halves_up
+from autocolor.mapping.level_ranges import BACKGROUND, LevelRange
+from autocolor.mapping.rounding import halves_up
 from autocolor.scene.scene import Curve
 from autocolor.visibility.visible_points import shares
 
