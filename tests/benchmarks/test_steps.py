@@ -33,8 +33,8 @@ def test_a_step_that_is_gone_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(SystemExit) as left:
         steps.functions()
     assert str(left.value) == (
-        "benchmarks/steps.py: autocolor.lighting.picture must have the step decomposed, and has not; name in STEPS"
-        " the function that does its work now"
+        "benchmarks/steps.py: autocolor.lighting.picture must have the step decomposed, and has not; name in"
+        " STEPS the function that does its work now"
     )
 
 
