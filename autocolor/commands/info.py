@@ -12,7 +12,7 @@ import click
 from autocolor.commands.scenes import ended, read, scene_options
 
 if TYPE_CHECKING:
-    from autocolor.files.scene_report import SceneReport
+    from autocolor.files.scenes.scene_report import SceneReport
 
 EXAMPLES: Final = """\b
 Examples:
@@ -38,7 +38,7 @@ def info(context: click.Context, scene: str, as_json: bool, up: str, strict: boo
 
 def facts_of(report: SceneReport) -> dict[str, Any]:
     """The facts of a scene as values that JSON can hold."""
-    from autocolor.files.quad_shapes import quad_shapes
+    from autocolor.files.repair.quad_shapes import quad_shapes
     from autocolor.mapping.display_image import shown
     from autocolor.rendering import render
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 import click
 
 if TYPE_CHECKING:
-    from autocolor.files.scene_report import SceneReport
+    from autocolor.files.scenes.scene_report import SceneReport
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 

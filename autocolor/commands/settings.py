@@ -58,7 +58,7 @@ def value_of(text: str) -> Any:
     >>> value_of("2.5"), value_of("[1, 2]"), value_of("true"), value_of("#b01020")
     (2.5, [1, 2], True, '#b01020')
     """
-    from autocolor.files.toml_text import parsed_toml
+    from autocolor.files.scenes.toml_text import parsed_toml
 
     # A color begins as a comment does, and a line break would begin another key.
     if not text or text.startswith("#") or not text.isprintable():

@@ -11,7 +11,7 @@ import click
 from autocolor.commands.scenes import ended, read, scene_options
 
 if TYPE_CHECKING:
-    from autocolor.files.scene_report import SceneReport
+    from autocolor.files.scenes.scene_report import SceneReport
 
 EXAMPLES: Final = """\b
 Examples:
@@ -35,7 +35,7 @@ def tables(
         path = written(report, Path(scene), force)
         click.echo(f"wrote {path}", err=True)
     elif as_json:
-        from autocolor.files.scene_values import values_of_scene
+        from autocolor.files.scenes.scene_values import values_of_scene
 
         click.echo(json.dumps(values_of_scene(report.scene), indent=2))
     else:
@@ -45,7 +45,7 @@ def tables(
 
 def text_of(report: SceneReport) -> str:
     """The scene as a scene file; for a picture file, whose mesh is in it, without the mesh."""
-    from autocolor.files.scene_text import scene_text
+    from autocolor.files.scenes.scene_text import scene_text
 
     return scene_text(report.scene, report.mesh_files)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from autocolor.files.scene_report import SceneReport
+    from autocolor.files.scenes.scene_report import SceneReport
     from autocolor.scene.scene import Scene
 
 __all__ = ["read_scene", "read_scene_with_report"]
@@ -37,9 +37,9 @@ def read_scene(path: PathLike, *, strict: bool = False, up: str = "z", outside: 
 def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = False) -> SceneReport:
     """As `read_scene`, with sentences for what was repaired, skipped and created."""
     from autocolor.errors import InputError, UsageError
-    from autocolor.files.meshes import MESH_SUFFIXES, read_mesh, read_tables
-    from autocolor.files.polygons import UPS
+    from autocolor.files.meshes.formats import MESH_SUFFIXES, read_mesh, read_tables
     from autocolor.files.reading import unnameable, unreadable
+    from autocolor.files.repair.polygons import UPS
 
     if up not in UPS:
         raise UsageError(f"up must be 'x', 'y' or 'z', not {up!r}")
@@ -56,7 +56,7 @@ def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = Fal
         if (path / "scene.toml").exists():
             path, suffix = path / "scene.toml", ".toml"
         elif (path / "nodes.csv").exists() and (path / "polygons.csv").exists():
-            from autocolor.files.scene_report import scene_report
+            from autocolor.files.scenes.scene_report import scene_report
 
             tables = read_tables(path / "nodes.csv", path / "polygons.csv", up=up)
             entry = {"nodes": "nodes.csv", "polygons": "polygons.csv", "up": up}
@@ -70,18 +70,18 @@ def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = Fal
     if up != "z" and suffix in (".toml", ".npz"):
         raise UsageError(f"up must go with a mesh, not with {path}, which says its own; leave it out")
     if suffix == ".toml":
-        from autocolor.files.scene_file import read_scene_file
+        from autocolor.files.scenes.scene_file import read_scene_file
 
         return read_scene_file(path, outside=outside)
     if suffix in MESH_SUFFIXES:
-        from autocolor.files.scene_report import scene_report
+        from autocolor.files.scenes.scene_report import scene_report
 
         read = read_mesh(path, up=up)
         entry = {"file": path.name, "up": up}
         return scene_report(read.mesh, repairs=read.repairs, mesh_files=(entry,), name=path.stem)
     if suffix == ".npz":
         from autocolor.files.picture_file import read_picture_scene
-        from autocolor.files.scene_report import SceneReport
+        from autocolor.files.scenes.scene_report import SceneReport
 
         return SceneReport(read_picture_scene(path))
     raise InputError(

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes, shown
-from autocolor.files.scene_values import scene_of_values, values_of_scene
+from autocolor.files.scenes.scene_values import scene_of_values, values_of_scene
 from autocolor.files.writing import write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.scene.scene import Scene

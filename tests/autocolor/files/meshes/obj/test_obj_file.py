@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError, MissingInputError
-from autocolor.files.obj_file import read_obj
-from autocolor.files.polygons import MeshReport
+from autocolor.files.meshes.obj.obj_file import read_obj
+from autocolor.files.repair.polygons import MeshReport
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 

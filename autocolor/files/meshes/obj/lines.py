@@ -13,10 +13,10 @@ import numpy as np
 
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.obj_statements import Statements
-from autocolor.files.obj_tables import LONGEST_LINE, ObjTables
-from autocolor.files.polygon_split import MOST_CORNERS
+from autocolor.files.meshes.obj.statements import Statements
+from autocolor.files.meshes.obj.tables import LONGEST_LINE, ObjTables
 from autocolor.files.reading import shown
+from autocolor.files.repair.polygon_split import MOST_CORNERS
 
 MOST_PROBLEMS: Final = 20
 """Assumed: sentences for one mesh file; a file with more faults has one that repeats."""

@@ -12,12 +12,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from autocolor.errors import InputError
-from autocolor.files.mesh_repair import mended
-from autocolor.files.obj_lines import read_obj_lines
-from autocolor.files.obj_plain import read_plain_obj
-from autocolor.files.obj_statements import Statements
-from autocolor.files.polygons import MeshReport, Polygons
+from autocolor.files.meshes.obj.lines import read_obj_lines
+from autocolor.files.meshes.obj.plain import read_plain_obj
+from autocolor.files.meshes.obj.statements import Statements
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
+from autocolor.files.repair.mesh_repair import mended
+from autocolor.files.repair.polygons import MeshReport, Polygons
 
 
 def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) -> MeshReport:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Scene
 from autocolor.files import read_scene_with_report
-from autocolor.files.scene_text import scene_text
+from autocolor.files.scenes.scene_text import scene_text
 from tests.autocolor.strategies import scenes
 
 MESH = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\no {}\nf 1 2 3 4\no {}\nf 1 2 3\n"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from autocolor import Mesh
-from autocolor.files.quad_shapes import QuadShapes, quad_shapes
+from autocolor.files.repair.quad_shapes import QuadShapes, quad_shapes
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError, MissingInputError
-from autocolor.files.scene_file import read_scene_file
-from autocolor.files.scene_report import SceneReport
+from autocolor.files.scenes.scene_file import read_scene_file
+from autocolor.files.scenes.scene_report import SceneReport
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng hood\nf 1 2 3 4\ng roof\nf 1 2 3\n"
 MESH = '[[mesh]]\nfile = "car.obj"\n'

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError
-from autocolor.files.polygons import MeshReport
+from autocolor.files.repair.polygons import MeshReport
 
 MESH_SUFFIXES: Final = (".obj",)
 
@@ -19,7 +19,7 @@ def read_mesh(path: Path, *, up: str = "z", crease_angle: float | None = None) -
             f"{path.name}: a mesh file must end in {' or '.join(MESH_SUFFIXES)}, not in {path.suffix!r};"
             " export it as OBJ"
         )
-    from autocolor.files.obj_file import read_obj
+    from autocolor.files.meshes.obj.obj_file import read_obj
 
     return read_obj(path, up=up, crease_angle=crease_angle)
 
@@ -28,7 +28,7 @@ def read_tables(
     nodes: Path, polygons: Path, *, up: str = "z", crease_angle: float | None = None
 ) -> MeshReport:
     """The mesh of a node table and a polygon table, and what was repaired. Raises InputError."""
-    from autocolor.files.csv_tables import read_csv_tables
+    from autocolor.files.meshes.csv_tables import read_csv_tables
 
     return read_csv_tables(nodes, polygons, up=up, crease_angle=crease_angle)
 

@@ -15,9 +15,9 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Flags, Floats, Integers
 from autocolor.checks import LARGEST_COORDINATE
-from autocolor.files.obj_statements import Statements
-from autocolor.files.obj_tables import LONGEST_LINE, ObjTables
-from autocolor.files.polygon_split import MOST_CORNERS
+from autocolor.files.meshes.obj.statements import Statements
+from autocolor.files.meshes.obj.tables import LONGEST_LINE, ObjTables
+from autocolor.files.repair.polygon_split import MOST_CORNERS
 
 BLOCK: Final = 1 << 21
 """Bytes read at a time: large enough for arrays, small enough to stay out of the way of memory."""

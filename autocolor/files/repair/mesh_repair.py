@@ -15,8 +15,8 @@ import numpy as np
 
 from autocolor.arrays import Flags, Floats, Numbers, cross, lengths
 from autocolor.errors import InputError
-from autocolor.files.polygon_split import split_polygons
-from autocolor.files.polygons import MeshReport, Polygons, standing
+from autocolor.files.repair.polygon_split import split_polygons
+from autocolor.files.repair.polygons import MeshReport, Polygons, standing
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.node_normals import CREASE_ANGLE
 

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.mesh_repair import mended
-from autocolor.files.polygons import MeshReport, Polygons, standing
+from autocolor.files.repair.mesh_repair import mended
+from autocolor.files.repair.polygons import MeshReport, Polygons, standing
 
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [0, 0, 1]]
 

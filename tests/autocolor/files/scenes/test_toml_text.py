@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.toml_text import key_lines, parsed_toml
+from autocolor.files.scenes.toml_text import key_lines, parsed_toml
 
 
 def refusal(data: bytes | str) -> str:

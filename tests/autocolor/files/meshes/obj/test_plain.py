@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files import obj_plain
-from autocolor.files.obj_lines import read_obj_lines
-from autocolor.files.obj_plain import read_plain_obj
-from autocolor.files.obj_statements import Statements
-from autocolor.files.obj_tables import ObjTables
+from autocolor.files.meshes.obj import plain as plain_reader
+from autocolor.files.meshes.obj.lines import read_obj_lines
+from autocolor.files.meshes.obj.plain import read_plain_obj
+from autocolor.files.meshes.obj.statements import Statements
+from autocolor.files.meshes.obj.tables import ObjTables
 
 numbers = st.sampled_from(
     ["0", "1", "-1.5", "+.5", "5.", "1e3", "1E-3", "nan", "1e31", "1_0", "e", "1-2", "x"]
@@ -79,7 +79,7 @@ def same(plain: ObjTables, lines: ObjTables) -> bool:
 def test_the_fast_reader_gives_what_the_patient_one_gives_or_nothing(block: int, text: bytes) -> None:
     fast, patient = Statements("car"), Statements("car")
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(obj_plain, "BLOCK", block)
+        patched.setattr(plain_reader, "BLOCK", block)
         plain = read_plain_obj(text, fast)
     if plain is None or (plain.rows < 0).any():
         return

@@ -25,12 +25,12 @@ import numpy as np
 
 from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes
-from autocolor.files.scene_meshes import mesh_file, meshes_of
-from autocolor.files.scene_models import PartKeys, SceneKeys
-from autocolor.files.scene_problems import SceneProblems
-from autocolor.files.scene_report import SceneReport, scene_report
-from autocolor.files.scene_tables import lights_of, surfaces_of, view_of
-from autocolor.files.toml_text import LARGEST_TEXT, parsed_toml
+from autocolor.files.scenes.problems import SceneProblems
+from autocolor.files.scenes.scene_meshes import mesh_file, meshes_of
+from autocolor.files.scenes.scene_models import PartKeys, SceneKeys
+from autocolor.files.scenes.scene_report import SceneReport, scene_report
+from autocolor.files.scenes.scene_tables import lights_of, surfaces_of, view_of
+from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View

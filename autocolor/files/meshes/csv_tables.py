@@ -25,9 +25,9 @@ import numpy as np
 
 from autocolor.checks import LARGEST_COORDINATE, nearest
 from autocolor.errors import InputError
-from autocolor.files.mesh_repair import mended
-from autocolor.files.polygons import MeshReport, Polygons
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
+from autocolor.files.repair.mesh_repair import mended
+from autocolor.files.repair.polygons import MeshReport, Polygons
 
 MOST_PROBLEMS: Final = 20
 

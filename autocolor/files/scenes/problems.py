@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 
 from autocolor.checks import nearest
 from autocolor.errors import InputError, MissingInputError
-from autocolor.files.toml_text import KeyPath, key_lines
+from autocolor.files.scenes.toml_text import KeyPath, key_lines
 
 MOST_PROBLEMS: Final = 100
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from autocolor.errors import InputError
-from autocolor.files.scene_models import FlapKeys, FlapsKeys, LightKeys, SurfaceKeys, ViewKeys
-from autocolor.files.scene_problems import SceneProblems
-from autocolor.files.toml_text import KeyPath
+from autocolor.files.scenes.problems import SceneProblems
+from autocolor.files.scenes.scene_models import FlapKeys, FlapsKeys, LightKeys, SurfaceKeys, ViewKeys
+from autocolor.files.scenes.toml_text import KeyPath
 from autocolor.scene.defaults import default_surface
 from autocolor.scene.lights import Flap, Light
 from autocolor.scene.surfaces import MOST_SURFACES, Surface

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError, MissingInputError
-from autocolor.files.csv_tables import read_csv_tables
-from autocolor.files.polygons import MeshReport
+from autocolor.files.meshes.csv_tables import read_csv_tables
+from autocolor.files.repair.polygons import MeshReport
 
 NODES = "node,x,y,z\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n"
 POLYGONS = "polygon,part,node1,node2,node3,node4\n1,hood,1,2,3,4\n2,roof,1,2,3,\n"

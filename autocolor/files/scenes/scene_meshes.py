@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any, Final
 
 from autocolor.errors import InputError
-from autocolor.files.meshes import read_entry
+from autocolor.files.meshes.formats import read_entry
 from autocolor.files.paths import path_within
-from autocolor.files.polygons import MeshReport
 from autocolor.files.reading import LARGEST_MESH_FILE
-from autocolor.files.scene_models import MeshKeys
-from autocolor.files.scene_problems import SceneProblems
-from autocolor.files.toml_text import KeyPath
+from autocolor.files.repair.polygons import MeshReport
+from autocolor.files.scenes.problems import SceneProblems
+from autocolor.files.scenes.scene_models import MeshKeys
+from autocolor.files.scenes.toml_text import KeyPath
 
 MOST_MESHES: Final = 1000
 

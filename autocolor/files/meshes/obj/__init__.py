@@ -1,0 +1,1 @@
+"""Meshes in OBJ files (Wavefront): the plain files fast, the others line by line."""
