@@ -28,6 +28,30 @@ LARGEST_PLACE: Final = 1e36
 """Assumed: an eye and lights have room around the largest object."""
 
 
+def shown(value: object, most: int = 60) -> str:
+    """The value for the end of a sentence: true and false as in a file, and cut where it is long.
+
+    >>> shown(True), shown("body"), shown((1, 2)), shown("x" * 100, most=3)
+    ('true', "'body'", '(1, 2)', "'xxx'...")
+    """
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return repr(value) if len(value) <= most else f"{value[:most]!r}..."
+    text = repr(value)
+    return text if len(text) <= most else f"{text[:most]}..."
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names as a list in a sentence.
+
+    >>> listed(["x", "y", "z"])
+    'x, y and z'
+    """
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
+
+
 def nearest(name: str, names: Iterable[str]) -> str:
     """A clause that names the nearest right name, or all of them when few, or nothing."""
     names = list(names)

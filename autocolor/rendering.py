@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from numbers import Integral
 from typing import Final
 
@@ -22,15 +23,11 @@ from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Lender, lit
 from autocolor.lighting.picture import Picture
+from autocolor.scene.columns import Tier, is_same
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import Seen
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
-
-# glibc gives large arrays back to the system and fetches them again, page by page, for every frame; once it
-# has seen one of this size go, it keeps them. Measured: 4 to 15 ms a frame.
-_ = np.empty(30 << 20, np.uint8)
-del _
 
 LARGEST_RASTER: Final = 16384
 """Assumed: a picture of this size on both sides takes tens of gigabytes."""
@@ -75,11 +72,12 @@ def rendering(
     if before is not None and (before.picture.lines, before.picture.elements) != (lines, elements):
         before = None
     if before is not None and _sees_the_same(before.scene, scene):
-        if _composes_the_same(before.scene, scene):
+        if is_same(before.scene, scene, Tier.MIX):
             return Rendering(scene, before.seen, before.picture)
         seen = before.seen
     else:
         before = None
+        _keep_large_arrays()
         one_sided = frozenset(row + 1 for row, surface in enumerate(scene.surfaces) if not surface.two_sided)
         seen = ALGORITHMS[algorithm](
             scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided
@@ -89,25 +87,15 @@ def rendering(
 
 
 def _sees_the_same(old: Scene, new: Scene) -> bool:
-    return (
-        old.mesh is new.mesh
-        and old.view == new.view
-        and old.surface_number_of_part == new.surface_number_of_part
-        and (
-            old.surfaces is new.surfaces
-            or [surface.two_sided for surface in old.surfaces]
-            == [surface.two_sided for surface in new.surfaces]
-        )
-    )
+    """Whether the visible points are the same; what is kept of a point includes the number of its surface."""
+    return is_same(old, new, Tier.FRAME) and old.surface_number_of_part == new.surface_number_of_part
 
 
-def _composes_the_same(old: Scene, new: Scene) -> bool:
-    return (
-        old.ambient == new.ambient
-        and old.lights == new.lights
-        and (
-            old.surfaces is new.surfaces
-            or [(surface.name, surface.reflectance) for surface in old.surfaces]
-            == [(surface.name, surface.reflectance) for surface in new.surfaces]
-        )
-    )
+@cache
+def _keep_large_arrays() -> None:
+    """Have glibc keep large arrays for the next frame.
+
+    It gives them back to the system and fetches them again, page by page, for every frame; once it has seen
+    one of this size go, it keeps them. Measured: 4 to 15 ms a frame.
+    """
+    _ = np.empty(30 << 20, np.uint8)

@@ -13,19 +13,19 @@ memories. Each edit makes a new scene; comparing it with the one before tells wh
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import Shown, shown
+from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.level_ranges import WORDS, LevelRange
 from autocolor.rendering import rendering
+from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges, ViewChanges
+from autocolor.scene.columns import fields_of
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import PAINT_CHECKS, Surface
+from autocolor.scene.surfaces import Paint
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
     """Reset a display and show a picture in the colors of a scene on it; nothing is rendered."""
     display.send(instructions.reset())
-    _send(None, shown(scene, picture), display)
+    _send(None, display_image(scene, picture), display)
 
 
 def configuration_of(display: HostPort) -> Configuration:
@@ -54,28 +54,11 @@ def configuration_of(display: HostPort) -> Configuration:
     return configuration
 
 
-def repainted(before: Scene, now: Scene) -> list[Surface] | None:
-    """The surfaces in another paint, where nothing else of them differs; None where something does."""
-    if len(before.surfaces) != len(now.surfaces):
-        return None
-    surfaces = []
-    for old, new in zip(before.surfaces, now.surfaces, strict=True):
-        if new is not old:
-            if not new.is_but_for_paint(old):
-                return None
-            surfaces.append(new)
-    return surfaces
-
-
-def _send(before: Shown | None, now: Shown, display: HostPort) -> None:
-    """Send the entries and the words that differ."""
-    if before is None:
-        display.send(encoder_of_entries(display)(0, now.entries))
-    elif not now.has_entries_of(before):
-        changed = np.flatnonzero((before.entries != now.entries).any(axis=1))
-        if len(changed):
-            first, last = int(changed[0]), int(changed[-1])
-            display.send(encoder_of_entries(display)(first, now.entries[first : last + 1]))
+def _send(before: DisplayImage | None, now: DisplayImage, display: HostPort) -> None:
+    """Send the entries and the words that differ, or all."""
+    encoder = encoder_of_entries(display)
+    for first, entries in [(0, now.entries)] if before is None else now.loads_after(before):
+        display.send(encoder(first, entries))
     if before is None or before.words is not now.words:
         display.send(instructions.write_image(now.words))
 
@@ -96,9 +79,8 @@ class Studio:
     def __init__(self, scene: Scene, display: HostPort) -> None:
         configuration = configuration_of(display)
         self._display = display
-        self._load_entries = encoder_of_entries(display)
         self._rendering = rendering(scene, configuration.shown_lines, configuration.shown_elements)
-        self._shown = shown(scene, self._rendering.picture)
+        self._shown = display_image(scene, self._rendering.picture)
         self._done: list[Scene] = []
         self._undone: list[Scene] = []
         self._kept = scene
@@ -129,33 +111,27 @@ class Studio:
         """The entries of the lookup table, (1024, 3) uint8; read-only."""
         return self._shown.entries
 
-    def recolor(self, surface: str, **changes: Any) -> None:
+    def recolor(self, surface: str, **changes: Unpack[PaintChanges]) -> None:
         """Change the colors of a surface; entries are sent, and no word.
 
         `changes` are fields of its Paint: object_color, light_color ("#rrggbb" or three numbers), blend,
         light_percentage.
         """
+        known = fields_of(Paint)
         for name in changes:
-            if name not in PAINT_CHECKS:
-                guess = nearest(name, PAINT_CHECKS)
-                raise UsageError(f"recolor takes {', '.join(PAINT_CHECKS)}, not {name!r}{guess}")
-        before = self.scene
-        scene = before.with_surface(surface, **changes)
-        now = scene.surface(surface)
-        # Known by name, what differs need not be looked for.
-        if now != before.surface(surface):
-            self._repaint(scene, [now])
-            self._note_step(before)
+            if name not in known:
+                raise UsageError(f"recolor takes {', '.join(known)}, not {name!r}{nearest(name, known)}")
+        self.edit(self.scene.with_surface(surface, **changes))
 
-    def surface(self, name: str, /, **changes: Any) -> None:
+    def surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> None:
         """Change any field of a surface, of its reflectance or of its paint."""
         self.edit(self.scene.with_surface(name, **changes))
 
-    def light(self, name: str, /, **changes: Any) -> None:
+    def light(self, name: str, /, **changes: Unpack[LightChanges]) -> None:
         """Change any field of a light."""
         self.edit(self.scene.with_light(name, **changes))
 
-    def view(self, **changes: Any) -> None:
+    def view(self, **changes: Unpack[ViewChanges]) -> None:
         """Change any field of the view; everything is computed again."""
         self.edit(self.scene.with_view(**changes))
 
@@ -165,11 +141,12 @@ class Studio:
         A drag is many edits and one step. A scene that equals the current one is no step.
         """
         before = self.scene
-        differing = scene.differing_fields(before)
-        if not differing:
+        if scene.equals(before):
             return
-        self._show(scene, differing)
-        self._note_step(before, same_step)
+        self._show(scene)
+        if not (same_step and self._done):
+            self._done.append(before)
+        self._undone.clear()
 
     def undo(self) -> bool:
         """Go back one step; False where there is none."""
@@ -200,43 +177,22 @@ class Studio:
         self._display.send(instructions.reset())
         _send(None, self._shown, self._display)
 
-    def _note_step(self, before: Scene, same_step: bool = False) -> None:
-        """Keep the scene before an edit to go back to."""
-        if not (same_step and self._done):
-            self._done.append(before)
-        self._undone.clear()
-
     def _step(self, source: list[Scene], target: list[Scene]) -> bool:
         if not source:
             return False
         before = self.scene
-        self._show(source[-1], source[-1].differing_fields(before))
+        self._show(source[-1])
         source.pop()
         target.append(before)
         return True
 
-    def _show(self, scene: Scene, differing: list[str]) -> None:
+    def _show(self, scene: Scene) -> None:
         """Compute what changed and send it; nothing is kept of a scene that is refused."""
-        before = self._shown
-        surfaces = repainted(before.scene, scene) if differing == ["surfaces"] else None
-        if surfaces is not None:
-            self._repaint(scene, surfaces)
-            return
-        picture = before.picture
+        picture, before = self.picture, self._shown
         rendered = rendering(scene, picture.lines, picture.elements, self._rendering)
-        now = shown(scene, rendered.picture, before)
+        now = display_image(scene, rendered.picture, before)
         _send(before, now, self._display)
         self._rendering, self._shown = rendered, now
-
-    def _repaint(self, scene: Scene, surfaces: list[Surface]) -> None:
-        """Send the entries of some surfaces: another color is no other intensity, picture and words stay."""
-        before = self._shown
-        now = Shown(scene, before.picture, before.ranges, before.words)
-        for surface in surfaces:
-            if surface.name in now.ranges:
-                first = now.ranges[surface.name].first
-                self._display.send(self._load_entries(first, now.entries_of(surface)))
-        self._shown = now
 
     def _repr_png_(self) -> bytes:
         from ramtek_emu.png import png_bytes

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import autocolor
 from scenes.figures import Sheet, open_studio, read_scene
 
@@ -17,7 +19,7 @@ def main() -> None:
     side = autocolor.Light("flapped", (-4.0, -6.0, 2.0), aim=(0.0, 0.0, 0.6), concentration=4)
     view = coupe.view.replace(eye=(-4.9, -8.9, 1.8), target=(0.0, 0.0, 0.52))
     # The floor keeps what only the ambient light reaches from going black.
-    shown = {"ambient": 0.12, "scaling": "object", "mapping": "gamma", "contrast": "floor"}
+    shown: dict[str, Any] = {"ambient": 0.12, "scaling": "object", "mapping": "gamma", "contrast": "floor"}
     studio, display = open_studio(coupe.replace(lights=(side,), view=view, **shown))
     sheet = Sheet("09")
     sheet.add(display.field(), "A. No Flaps", "a")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import autocolor
 from scenes.figures import Sheet, open_scene
 
@@ -16,7 +18,7 @@ def main() -> None:
     """Render once; each panel changes the cone of the one light."""
     studio, display = open_scene("coupe")
     spot = autocolor.Light("spot", (-5.0, -4.0, 5.0), aim=(-0.9, -0.3, 0.8), concentration=6)
-    shown = {"ambient": 0.12, "scaling": "object", "mapping": "gamma", "contrast": "floor"}
+    shown: dict[str, Any] = {"ambient": 0.12, "scaling": "object", "mapping": "gamma", "contrast": "floor"}
     studio.edit(studio.scene.replace(lights=(spot,), **shown))
     sheet = Sheet("10")
     for panel, angle, caption in PANELS:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any, Final
+
 from scenes.figures import Sheet, open_scene
 
-COLORS = {"object_color": "#960c1c", "light_color": "#ffdccc"}
+COLORS: Final[dict[str, Any]] = {"object_color": "#960c1c", "light_color": "#ffdccc"}
 """The same two colors in all three: a deep red, and a lamp's warm white."""
 
 PANELS = (

@@ -39,13 +39,13 @@ def info(context: click.Context, scene: str, as_json: bool, up: str, strict: boo
 def facts_of(report: SceneReport) -> dict[str, Any]:
     """The facts of a scene as values that JSON can hold."""
     from autocolor.files.repair.quad_shapes import quad_shapes
-    from autocolor.mapping.display_image import shown
+    from autocolor.mapping.display_image import display_image
     from autocolor.rendering import render
 
     scene = report.scene
     mesh = scene.mesh
     picture = render(scene)
-    ranges = shown(scene, picture).ranges
+    ranges = display_image(scene, picture).ranges
     low, high = mesh.bounds
     return {
         "name": scene.name,

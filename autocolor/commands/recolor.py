@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import click
 
@@ -64,7 +64,7 @@ def recolor(
     from ramtek_emu import GMR_9300, Ramtek9300
 
     saved = read_picture(picture)
-    changes = {
+    changes: dict[str, Any] = {
         "object_color": object_color,
         "light_color": light_color,
         "blend": blend,

@@ -11,13 +11,15 @@ from autocolor.errors import InputError, UsageError
 if TYPE_CHECKING:
     from autocolor.scene.scene import Scene
 
-PLAIN: Final = ("ambient", "scaling", "mapping", "contrast", "background")
 EXAMPLES: Final = {
     "view": "view.angle=10",
     "lights": "lights.key.intensity=2",
     "surfaces": "surfaces.body.blend=0.3",
     "parts": "parts.hood.surface=body",
 }
+
+MOST_PARTS: Final = 4
+"""More parts than the path of any field has in its row."""
 
 Changes = dict[str, Any]
 
@@ -37,19 +39,23 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
                 f"--set must be KEY=VALUE, not {setting!r}; write it as in {EXAMPLES['lights']}"
             )
         table, name, path = _place(scene, key.strip())
-        _put(changes.setdefault((table, name), {}), path, value_of(text.strip()), key.strip())
+        _put(changes.setdefault((table, name), {}), path, value_of(text.strip()))
     for (table, name), fields in changes.items():
-        if table == "":
-            scene = scene.replace(**fields)
-        elif table == "view":
-            scene = scene.with_view(**fields)
-        elif table == "lights":
-            scene = scene.with_light(name, **fields)
-        elif table == "surfaces":
-            scene = scene.with_surface(name, **fields)
-        else:
-            scene = scene.with_part(name, **fields)
+        scene = _changed(scene, table, name, fields)
     return scene
+
+
+def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
+    """The scene with some fields of one row changed, or of the scene itself."""
+    if table == "":
+        return scene.replace(**fields)
+    if table == "lights":
+        return scene.with_light(name, **fields)
+    if table == "surfaces":
+        return scene.with_surface(name, **fields)
+    if table == "parts":
+        return scene.with_part(name, **fields)
+    return scene.with_view(**fields)
 
 
 def value_of(text: str) -> Any:
@@ -72,36 +78,42 @@ def value_of(text: str) -> Any:
 def _place(scene: Scene, key: str) -> tuple[str, str, list[str]]:
     """The table of a key ("" for none), the name of a row there ("" for none), and the path in it."""
     from autocolor.checks import nearest
+    from autocolor.scene.column_kinds import Instance, Nested, Rows
+    from autocolor.scene.columns import fields_of
+    from autocolor.scene.scene import Scene
 
+    kinds = {name: field.column.kind for name, field in fields_of(Scene).items() if name != "name"}
+    kinds = {name: kind for name, kind in kinds.items() if not isinstance(kind, Instance)}
     table, _, rest = key.partition(".")
-    if table in PLAIN and not rest:
+    kind = kinds.get(table)
+    if kind is None or (rest and not isinstance(kind, (Nested, Rows))):
+        raise UsageError(f"--set {key}: there is nothing of this name to set{nearest(table, kinds)}")
+    if not isinstance(kind, (Nested, Rows)):
         return "", "", [table]
-    if table not in EXAMPLES:
-        known = (*PLAIN, *EXAMPLES)
-        raise UsageError(f"--set {key}: there is nothing of this name to set{nearest(table, known)}")
-    if table == "view" and rest:
-        return table, "", [rest]
-    # A name may itself hold points, or stand in quotes: take the longest that the table has.
-    rows = [row.name for row in getattr(scene, table)] if table != "view" else []
-    names = {written: row for row in rows for written in (row, f'"{row}"', f"'{row}'")}
-    start = max((name for name in names if f"{rest}.".startswith(f"{name}.")), key=len, default=None)
-    if start is None and "." in rest:
-        wrong = rest.partition(".")[0]
-        raise UsageError(f"--set {key}: there is no {table[:-1]} {wrong!r}{nearest(wrong, rows)}")
-    field = "" if start is None else rest[len(start) + 1 :]
-    if start is None or not field:
+    names = {"": ""}
+    if isinstance(kind, Rows):
+        # A name may itself hold points, or stand in quotes: take the longest that the table has.
+        rows = [row.name for row in vars(scene)[table]]
+        names = {written: row for row in rows for written in (row, f'"{row}"', f"'{row}'")}
+        start = max((name for name in names if f"{rest}.".startswith(f"{name}.")), key=len, default=None)
+        if start is None and "." in rest:
+            wrong = rest.partition(".")[0]
+            raise UsageError(f"--set {key}: there is no {table[:-1]} {wrong!r}{nearest(wrong, rows)}")
+        name, field = (None, "") if start is None else (names[start], rest[len(start) + 1 :])
+    else:
+        name, field = "", rest
+    if name is None or not field:
         raise UsageError(f"--set {key}: it must name one field; write it as in {EXAMPLES[table]}")
-    return table, names[start], field.split(".") if table == "lights" else [field]
-
-
-def _put(fields: Changes, path: list[str], value: Any, key: str) -> None:
-    """Put a value where the path leads: a field, or a flap of a light, or a field of that."""
-    if path == ["name"]:
+    if field == "name":
         raise UsageError(f"--set {key}: a name stays; rename it in the scene file")
-    if len(path) > (3 if path[0] == "flaps" else 1):
-        raise UsageError(
-            f"--set {key}: there is no such field; flaps alone have some, as in flaps.z.maximum=1"
-        )
+    path = field.split(".")
+    if len(path) > MOST_PARTS:
+        raise UsageError(f"--set {key}: there is no such field; write it as in {EXAMPLES[table]}")
+    return table, name, path
+
+
+def _put(fields: Changes, path: list[str], value: Any) -> None:
+    """Put a value where the path leads: in a field, or in a field of a row inside."""
     for name in path[:-1]:
         if not isinstance(fields.get(name), dict):
             fields[name] = {}

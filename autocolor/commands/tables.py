@@ -35,9 +35,9 @@ def tables(
         path = written(report, Path(scene), force)
         click.echo(f"wrote {path}", err=True)
     elif as_json:
-        from autocolor.files.scenes.scene_values import values_of_scene
+        from autocolor.files.scenes.plain_scene import plain_scene
 
-        click.echo(json.dumps(values_of_scene(report.scene), indent=2))
+        click.echo(json.dumps(plain_scene(report.scene), indent=2))
     else:
         click.echo(text_of(report), nl=False)
     context.exit(ended(report, strict))

@@ -25,13 +25,16 @@ from numpy.typing import NDArray
 
 from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes, shown
-from autocolor.files.scenes.scene_values import scene_of_values, values_of_scene
+from autocolor.files.scenes.plain_scene import plain_scene, scene_of_plain
 from autocolor.files.writing import write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import surface_slices
 
-FORMAT: Final = "autocolor picture 1"
+FORMAT: Final = "autocolor picture 2"
+FORMATS_READ: Final = (FORMAT, "autocolor picture 1")
+"""In the first one, reflectance and paint were tables of their own within a surface."""
+
 LARGEST_PICTURE_FILE: Final = 4 << 30
 LARGEST_HEADER: Final = 16 << 20
 MOST_VALUES: Final = 1_000_000
@@ -71,7 +74,7 @@ def write_picture(
         "format": FORMAT,
         "scale": picture.scale,
         "surfaces": list(picture.surfaces),
-        "scene": values_of_scene(scene),
+        "scene": plain_scene(scene),
     }
     relative = np.zeros(picture.lines * picture.elements, np.float32)
     relative[picture.pixels] = picture.relative
@@ -105,7 +108,7 @@ def read_picture(path: str | PathLike[str]) -> SavedPicture:
     header = _header(source, arrays["header"])
     try:
         mesh = (arrays["coordinates"], arrays["node_numbers"], arrays["part_numbers"])
-        scene = scene_of_values(header["scene"], *mesh)
+        scene = scene_of_plain(header["scene"], *mesh)
         picture = _picture(header, scene, arrays["relative_intensity"], arrays["surface_number"])
     except InputError as error:
         raise InputError(
@@ -180,7 +183,7 @@ def _header(source: Path, data: NDArray[Any]) -> dict[str, Any]:
             f" {error}; save the picture again"
         ) from None
     keys = {"format", "scale", "surfaces", "scene"}
-    if not isinstance(header, dict) or set(header) != keys or header["format"] != FORMAT:
+    if not isinstance(header, dict) or set(header) != keys or header["format"] not in FORMATS_READ:
         raise InputError(f"{place}: its format must be {FORMAT!r}, not another; save the picture again")
     return header
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
 
 import numpy as np
 
@@ -14,15 +13,13 @@ from autocolor.lighting.picture import Picture
 from autocolor.mapping.color_blending import entries_of
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
+from autocolor.scene.columns import Tier, is_same
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Surface
 
-DIVIDING: Final = ("mesh", "parts", "surfaces")
-"""The fields of a scene that divide the words among its surfaces."""
-
 
 @dataclass(frozen=True, eq=False)
-class Shown:
+class DisplayImage:
     """The words and the entries of a scene with its picture, and the range of each surface."""
 
     scene: Scene
@@ -46,35 +43,57 @@ class Shown:
         floor = _floor(self.scene, self.picture, surface.name) if self.scene.contrast == "floor" else 0.0
         return entries_of(surface.paint, self.ranges[surface.name].levels, floor)
 
-    def has_entries_of(self, other: Shown) -> bool:
-        """Whether the entries are those of another for sure, as can be told without making them."""
-        mine, others = self.scene, other.scene
-        return (
-            self.ranges is other.ranges
-            and mine.surfaces is others.surfaces
+    def loads_after(self, before: DisplayImage) -> Iterator[tuple[int, Bytes]]:
+        """The runs of entries that make a table of this one that holds those of another: first entry, colors.
+
+        Where paints alone may differ, the table is not made: the ranges of the surfaces in another paint are
+        given.
+        """
+        mine, others = self.scene, before.scene
+        if (
+            self.ranges is before.ranges
             and mine.background == others.background
-            and mine.contrast == others.contrast == "stretch"
+            and self._has_floors_of(before)
+        ):
+            for new, old in zip(mine.surfaces, others.surfaces, strict=True):
+                if new is not old and new.paint != old.paint and new.name in self.ranges:
+                    yield self.ranges[new.name].first, self.entries_of(new)
+            return
+        differing = np.flatnonzero((before.entries != self.entries).any(axis=1))
+        if len(differing):
+            first, last = int(differing[0]), int(differing[-1])
+            yield first, self.entries[first : last + 1]
+
+    def _has_floors_of(self, other: DisplayImage) -> bool:
+        """Whether the lowest levels are as bright as those of another image with the same ranges."""
+        mine, others = self.scene, other.scene
+        if mine.contrast != others.contrast:
+            return False
+        return mine.contrast == "stretch" or (
+            self.picture is other.picture and mine.scaling == others.scaling
         )
 
 
-def shown(scene: Scene, picture: Picture, before: Shown | None = None) -> Shown:
-    """What a display holds of a scene with its picture; `before` lends the words if they did not change."""
-    if before is not None and all(getattr(before.scene, name) is getattr(scene, name) for name in DIVIDING):
+def display_image(scene: Scene, picture: Picture, before: DisplayImage | None = None) -> DisplayImage:
+    """What the display holds of a scene with its picture; what did not change is that of `before`."""
+    if before is not None and is_same(before.scene, scene, Tier.LEVELS):
         ranges = before.ranges
     else:
         in_use = {scene.parts[number].surface for number in scene.mesh.parts_in_use}
         ranges = level_ranges(scene.surfaces, in_use)
+        if before is not None and before.ranges == ranges:
+            ranges = before.ranges
     if (
         before is not None
         and before.picture is picture
-        and before.ranges == ranges
+        and before.ranges is ranges
         and before.scene.scaling == scene.scaling
         and before.scene.mapping == scene.mapping
     ):
         words = before.words
     else:
         words = words_of(picture, ranges, scene.scaling, scene.mapping)
-    return Shown(scene, picture, ranges, words)
+    return DisplayImage(scene, picture, ranges, words)
 
 
 def _floor(scene: Scene, picture: Picture, name: str) -> float:

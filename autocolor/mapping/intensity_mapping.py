@@ -8,7 +8,6 @@ Blending", Figure 11: a word is the first of its surface's range plus the level.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Final
 
 import numpy as np
 
@@ -17,21 +16,15 @@ from autocolor.errors import InputError
 from autocolor.lighting.picture import IntensityRange, Picture
 from autocolor.mapping.level_ranges import BACKGROUND, LevelRange
 from autocolor.mapping.rounding import halves_up
-from autocolor.scene.scene import Curve
+from autocolor.scene.curves import CurvePoints, mapping_curve
 from autocolor.visibility.visible_points import shares
-
-GAMMA: Final = 2.2
-"""Assumed: the exponent of a television monitor."""
-
-LOGARITHM: Final = 15.0
-"""Assumed: the logarithm of 1 to 16, four doublings, over the range."""
 
 
 def words_of(
     picture: Picture,
     ranges: Mapping[str, LevelRange],
     scaling: str = "surface",
-    mapping: str | Curve = "linear",
+    mapping: str | CurvePoints = "linear",
 ) -> Words:
     """The words of a picture, (lines, elements) uint16; the background's where nothing is seen.
 
@@ -62,70 +55,23 @@ def words_of(
         for surface in share.slices:
             first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
             fractions = fractions_of[surface.surface_number](intensities[surface.pixels])
-            np.copyto(here[surface.pixels], levels_of(fractions, levels), casting="unsafe")
+            np.copyto(here[surface.pixels], levels_of(fractions, levels, out=fractions), casting="unsafe")
             here[surface.pixels] += np.uint16(first)
         words[pixels] = here
     words.flags.writeable = False
     return words.reshape(picture.lines, picture.elements)
 
 
-def levels_of(shown: Singles, levels: int) -> Singles:
-    """The levels, 0 to levels - 1, of fractions from 0 to 1, in the array of the fractions."""
-    shown *= np.float32(levels - 1)
-    return halves_up(shown)
+def levels_of(fractions: Singles, levels: int, out: Singles | None = None) -> Singles:
+    """The levels, 0 to levels - 1, of fractions from 0 to 1, as float32; `out` may be the fractions."""
+    scaled = np.multiply(fractions, np.float32(levels - 1), out=out)
+    return halves_up(scaled, out=scaled)
 
 
 def fraction_of(
-    extent: IntensityRange, mapping: str | Curve, everything: Singles
+    extent: IntensityRange, mapping: str | CurvePoints, everything: Singles
 ) -> Callable[[Singles], Singles]:
-    """How far along its range an intensity is shown, 0 to 1; `everything` is what "equalize" counts."""
+    """How far along its range an intensity is shown, 0 to 1; `everything` are all the intensities of it."""
     if extent.maximum == extent.minimum:
         return np.ones_like
-    if mapping == "equalize":
-        return equalized(everything)
-    curve = curve_of(mapping)
-    minimum, width = np.float32(extent.minimum), np.float32(extent.maximum) - np.float32(extent.minimum)
-
-    def fraction(intensities: Singles) -> Singles:
-        shown = intensities - minimum
-        # Divide, for the maximum must come to exactly 1.
-        shown /= width
-        return curve(shown)
-
-    return fraction
-
-
-def curve_of(mapping: str | Curve) -> Callable[[Singles], Singles]:
-    """A mapping as a function of fractions that never falls."""
-    if isinstance(mapping, str):
-        return CURVES[mapping]
-    across, up = zip(*mapping, strict=True)
-    return lambda shown: np.interp(shown, across, up).astype(np.float32)
-
-
-def equalized(everything: Singles) -> Callable[[Singles], Singles]:
-    """The share of all intensities above the least that each reaches, so that all levels are as frequent."""
-    values, counts = np.unique(everything, return_counts=True)
-    below = np.cumsum(counts) - counts[0]
-    shares: Singles = (below / max(below[-1], 1)).astype(np.float32)
-    return lambda intensities: shares[np.searchsorted(values, intensities)]
-
-
-def _linear(shown: Singles) -> Singles:
-    return shown
-
-
-def _gamma(shown: Singles) -> Singles:
-    return np.power(shown, np.float32(1 / GAMMA))
-
-
-def _logarithm(shown: Singles) -> Singles:
-    mapped: Singles = np.log1p(shown * np.float32(LOGARITHM)) / np.float32(np.log1p(LOGARITHM))
-    return mapped
-
-
-CURVES: Final[Mapping[str, Callable[[Singles], Singles]]] = {
-    "linear": _linear,
-    "gamma": _gamma,
-    "logarithm": _logarithm,
-}
+    return mapping_curve(mapping)(np.float32(extent.minimum), np.float32(extent.maximum), everything)

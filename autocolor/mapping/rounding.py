@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
+
+from autocolor.arrays import Singles
 
 HALF: Final = 0.5
 """What is added to a number before the next lower whole number is taken."""
@@ -21,8 +22,7 @@ def half_up(value: float) -> int:
     return math.floor(value + HALF)
 
 
-def halves_up(values: NDArray[Any]) -> NDArray[Any]:
-    """The whole numbers nearest to an array's numbers, in the array itself."""
-    values += values.dtype.type(HALF)
-    np.floor(values, out=values)
-    return values
+def halves_up(values: Singles, out: Singles | None = None) -> Singles:
+    """The whole numbers nearest to an array's numbers, halves up; `out` may be the array itself."""
+    rounded = np.add(values, np.float32(HALF), out=out)
+    return np.floor(rounded, out=rounded)

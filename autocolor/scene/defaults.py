@@ -7,6 +7,7 @@ created automatically by the system as they are needed. Assumed: everything abou
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
@@ -36,7 +37,7 @@ OBJECT_COLORS: Final = (
 """Assumed: paints that can be told apart on one screen, given to the surfaces in turn."""
 
 
-def default_parts(mesh: Mesh, surface_of_part: dict[str, str]) -> tuple[Part, ...]:
+def default_parts(mesh: Mesh, surface_of_part: Mapping[str, str]) -> tuple[Part, ...]:
     """A part for each group of the mesh, with the surface that is named for it, else the one of its name."""
     return tuple(Part(name, surface_of_part.get(name, name)) for name in mesh.part_names)
 

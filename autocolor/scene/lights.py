@@ -2,150 +2,131 @@
 
 Paper: "Light Controls". A light has a position and an intensity; a direction makes it a directed light,
 whose concentration, cone and flaps restrict and shape what it gives. What these numbers do to the light at
-a point is computed in `light_controls`.
+a point is computed in `lighting/light_controls`.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, ClassVar, Unpack
 
-from autocolor.checks import Vector, finite, known_fields, switch, text, vector
-from autocolor.errors import InputError
+from autocolor.checks import Vector
+from autocolor.scene.changes import FlapChanges, FlapsChanges, LightChanges
+from autocolor.scene.column_kinds import Nested, Number, Switch, Text, VectorKind
+from autocolor.scene.columns import Column, Problem, Row, Tier, changed
 
 
 @dataclass(frozen=True)
-class Flap:
+class Flap(Row):
     """A minimum and a maximum of one object coordinate, with a switch that keeps both.
 
     Paper: "Light Flaps and Cones", Figure 9. A point outside gets nothing from the light; a point at the
     minimum or the maximum is lit.
     """
 
-    minimum: float = -math.inf
-    maximum: float = math.inf
-    on: bool = True
+    noun: ClassVar[str] = "flap"
 
-    def __post_init__(self) -> None:
-        problems: list[str] = []
-        for name in ("minimum", "maximum"):
-            value = getattr(self, name)
-            open_end = -math.inf if name == "minimum" else math.inf
-            if not (isinstance(value, float) and value == open_end):
-                value = finite(problems, f"a flap's {name}", value)
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "on", switch(problems, "a flap's switch", self.on))
-        if not problems and self.minimum > self.maximum:
-            problems.append(
-                f"a flap's minimum must not be above its maximum, not {self.minimum:g} to {self.maximum:g}"
-            )
-        if problems:
-            raise InputError(problems)
+    minimum: Annotated[
+        float, Column(Number(endless=-math.inf), Tier.LIGHT, "The least coordinate that is lit.", "units")
+    ] = -math.inf
+    maximum: Annotated[
+        float, Column(Number(endless=math.inf), Tier.LIGHT, "The largest coordinate that is lit.", "units")
+    ] = math.inf
+    on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether the flap cuts the light.")] = True
 
-    def replace(self, **changes: Any) -> Flap:
+    def rules(self) -> Iterator[Problem]:
+        """The minimum must not be above the maximum."""
+        if self.minimum > self.maximum:
+            ends = f"{self.minimum:g} to {self.maximum:g}"
+            yield Problem((), f"the minimum must not be above the maximum, not {ends}; exchange them")
+
+    def replace(self, **changes: Unpack[FlapChanges]) -> Flap:
         """The flap with some fields changed."""
-        return dataclasses.replace(self, **known_fields(Flap, changes, "flap"))
+        return changed(self, changes)
 
 
 @dataclass(frozen=True)
-class Flaps:
+class Flaps(Row):
     """The flaps of one light in the X, Y and Z directions; None where there is no flap."""
 
-    x: Flap | None = None
-    y: Flap | None = None
-    z: Flap | None = None
+    noun: ClassVar[str] = "flaps"
 
-    def __post_init__(self) -> None:
-        for axis in "xyz":
-            flap = getattr(self, axis)
-            if isinstance(flap, Mapping):
-                object.__setattr__(self, axis, Flap(**known_fields(Flap, flap, f"flap {axis}")))
-            elif flap is not None and not isinstance(flap, Flap):
-                raise InputError(
-                    f"flap {axis} must be a Flap or a table of minimum, maximum and on, not {flap!r}"
-                )
+    x: Annotated[
+        Flap | None, Column(Nested(Flap), Tier.LIGHT, "A range of X, outside of which it is dark.")
+    ] = None
+    y: Annotated[
+        Flap | None, Column(Nested(Flap), Tier.LIGHT, "A range of Y, outside of which it is dark.")
+    ] = None
+    z: Annotated[
+        Flap | None, Column(Nested(Flap), Tier.LIGHT, "A range of Z, outside of which it is dark.")
+    ] = None
 
-    def replace(self, **changes: Any) -> Flaps:
+    def replace(self, **changes: Unpack[FlapsChanges]) -> Flaps:
         """The flaps with some of them changed; a table of some fields of a flap leaves its others."""
-        changes = known_fields(Flaps, changes, "flaps")
-        for axis, change in changes.items():
-            flap = getattr(self, axis)
-            if isinstance(change, Mapping) and flap is not None:
-                changes[axis] = flap.replace(**change)
-        return dataclasses.replace(self, **changes)
+        return changed(self, changes)
 
 
 @dataclass(frozen=True)
-class Light:
+class Light(Row):
     """One light of the studio.
 
-    `position` and `aim` are points in world coordinates; `direction` is a vector of any length. A light has
-    a direction or an aim (the direction then follows the position) or neither: then it is a point source.
-    `concentration` is the exponent C >= 0, `cone_angle` the angle A in degrees, above 0 to 180, from the
-    direction; `intensity` is at least 0 and has no upper limit.
-    Paper: "Light Direction and Concentration", "Light Flaps and Cones".
+    A light has a direction or an aim (the direction then follows the position) or neither: then it is a point
+    source. Paper: "Light Direction and Concentration", "Light Flaps and Cones".
     """
 
-    name: str
-    position: Vector
-    intensity: float = 1.0
-    on: bool = True
-    direction: Vector | None = None
-    aim: Vector | None = None
-    concentration: float = 0.0
-    cone_angle: float | None = None
-    flaps: Flaps = field(default_factory=Flaps)
+    noun: ClassVar[str] = "light"
+    alternatives: ClassVar[tuple[str, ...]] = ("direction", "aim")
 
-    def __post_init__(self) -> None:
-        problems: list[str] = []
-        text(problems, "a light's name", self.name)
-        place = f"light {self.name!r}"
+    name: Annotated[str, Column(Text(), Tier.LIGHT, "What the light is called; names differ.")]
+    position: Annotated[Vector, Column(VectorKind(), Tier.LIGHT, "Where the light is.", "world units")]
+    intensity: Annotated[
+        float, Column(Number(at_least=0), Tier.MIX, "How much light it gives; there is no upper limit.")
+    ] = 1.0
+    on: Annotated[bool, Column(Switch(), Tier.MIX, "Whether the light shines.")] = True
+    direction: Annotated[
+        Vector | None,
+        Column(
+            VectorKind(has_length=True), Tier.LIGHT, "Where it points, a vector of any length; or an aim."
+        ),
+    ] = None
+    aim: Annotated[
+        Vector | None, Column(VectorKind(), Tier.LIGHT, "The point that it is aimed at.", "world units")
+    ] = None
+    concentration: Annotated[
+        float,
+        Column(
+            Number(at_least=0), Tier.LIGHT, "C: it falls off from its direction as the cosine to this power."
+        ),
+    ] = 0.0
+    cone_angle: Annotated[
+        float | None,
+        Column(
+            Number(at_least=0, at_most=180, above=True),
+            Tier.LIGHT,
+            "A: nothing is lit farther from the direction than this; absent for no cone.",
+            "degrees",
+        ),
+    ] = None
+    flaps: Annotated[
+        Flaps, Column(Nested(Flaps), Tier.LIGHT, "Ranges of object coordinates, outside of which it is dark.")
+    ] = field(default_factory=Flaps)
 
-        def keep(name: str, value: object) -> None:
-            object.__setattr__(self, name, value)
-
-        keep("position", vector(problems, f"{place}: position", self.position))
-        keep("intensity", finite(problems, f"{place}: intensity", self.intensity, at_least=0.0))
-        keep("concentration", finite(problems, f"{place}: concentration", self.concentration, at_least=0.0))
-        keep("on", switch(problems, f"{place}: on", self.on))
-        if self.direction is not None:
-            keep("direction", vector(problems, f"{place}: direction", self.direction, not_zero=True))
-        if self.aim is not None:
-            keep("aim", vector(problems, f"{place}: aim", self.aim))
-        if self.cone_angle is not None:
-            angle = finite(problems, f"{place}: cone_angle", self.cone_angle, at_least=0.0, at_most=180.0)
-            if angle == self.cone_angle == 0:
-                problems.append(f"{place}: cone_angle must be above 0, not 0; leave it out for no cone")
-            keep("cone_angle", angle)
-        if isinstance(self.flaps, Mapping):
-            try:
-                keep("flaps", Flaps(**known_fields(Flaps, self.flaps, "flaps")))
-            except InputError as error:
-                problems.extend(f"{place}: {problem}" for problem in error.problems)
-        elif not isinstance(self.flaps, Flaps):
-            problems.append(f"{place}: flaps must be a table of x, y and z, not {self.flaps!r}")
-        if not problems:
-            problems.extend(self._direction_problems(place))
-        if problems:
-            raise InputError(problems)
-
-    def _direction_problems(self, place: str) -> list[str]:
+    def rules(self) -> Iterator[Problem]:
+        """A direction or an aim, or neither, and then no control that needs one."""
         if self.direction is not None and self.aim is not None:
-            return [f"{place}: it must have a direction or an aim, not both; leave one out"]
+            yield Problem((), "it must have a direction or an aim, not both; leave one out")
         if self.aim is not None and self.aim == self.position:
-            return [f"{place}: the aim must not be the position, not both {self.aim}; move one of them"]
+            yield Problem((), f"the aim must not be the position, not both {self.aim}; move one of them")
         if self.direction is None and self.aim is None:
-            controls = ["concentration"] * (self.concentration > 0) + ["cone_angle"] * (
-                self.cone_angle is not None
-            )
-            return [
-                f"{place}: {name} must come with a direction or an aim, not with a point source; add an aim"
-                for name in controls
-            ]
-        return []
+            for name, is_given in (
+                ("concentration", self.concentration > 0),
+                ("cone_angle", self.cone_angle is not None),
+            ):
+                if is_given:
+                    rule = "must come with a direction or an aim, not with a point source; add an aim"
+                    yield Problem((name,), rule)
 
     @property
     def shines(self) -> bool:
@@ -167,16 +148,9 @@ class Light:
         length = math.hypot(*scaled)
         return (scaled[0] / length, scaled[1] / length, scaled[2] / length)
 
-    def replace(self, **changes: Any) -> Light:
+    def replace(self, **changes: Unpack[LightChanges]) -> Light:
         """The light with some fields changed; giving a direction drops the aim, and the other way round.
 
         Raises InputError for an unknown field or a value that breaks a rule.
         """
-        changes = known_fields(Light, changes, f"light {self.name!r}")
-        if changes.get("direction") is not None and "aim" not in changes:
-            changes["aim"] = None
-        if changes.get("aim") is not None and "direction" not in changes:
-            changes["direction"] = None
-        if isinstance(changes.get("flaps"), Mapping):
-            changes["flaps"] = self.flaps.replace(**changes["flaps"])
-        return dataclasses.replace(self, **changes)
+        return changed(self, changes)

@@ -6,126 +6,139 @@ tables of two scenes tells what must be computed again.
 
 from __future__ import annotations
 
-import dataclasses
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
-from typing import Any, Final, TypeVar
+from itertools import islice
+from typing import Annotated, Any, Final, TypeVar, Unpack
 
-from autocolor.checks import Color, color, field_names, finite, known_fields, nearest, with_checked
+from autocolor.checks import Color, nearest, shown
 from autocolor.errors import InputError, UsageError
+from autocolor.scene.changes import (
+    LightChanges,
+    PartChanges,
+    SceneChanges,
+    SceneFields,
+    SurfaceChanges,
+    ViewChanges,
+)
+from autocolor.scene.column_kinds import (
+    Choice,
+    ColorKind,
+    CurveKind,
+    Instance,
+    Nested,
+    Number,
+    Referring,
+    Rows,
+    Text,
+    references_of,
+)
+from autocolor.scene.columns import (
+    REFUSED,
+    Column,
+    Problem,
+    Row,
+    Tier,
+    changed,
+    fields_of,
+    is_same,
+    row_label,
+)
+from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import default_lights, default_parts, default_surface, default_view
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
 
+SomeTableRow = TypeVar("SomeTableRow", Part, Surface, Light)
+
 SCALINGS: Final = ("surface", "object")
-MAPPINGS: Final = ("linear", "gamma", "logarithm", "equalize")
 CONTRASTS: Final = ("stretch", "floor")
 
-Curve = tuple[tuple[float, float], ...]
-Row = TypeVar("Row", Part, Surface, Light)
+MOST_PROBLEMS: Final = 100
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(Row):
     """Everything that makes a picture, and everything that colors it; `scene_of` creates what is missing.
 
     There is one part for each of the mesh's part names, in their order, and a surface for each name that a
-    part has. `ambient` is an intensity of at least 0. `scaling` says whose minimum and maximum are mapped:
-    each "surface" its own, or the whole "object". `mapping` is "linear", "gamma", "logarithm", "equalize" or
-    points (x, y) of a rising curve from x = 0 to x = 1. `contrast` is "stretch" (the lowest level is black)
-    or "floor" (the lowest level is as bright as its intensity). `background` is the color of word 0.
-
-    Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
+    part has. Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
     """
 
-    mesh: Mesh
-    parts: tuple[Part, ...]
-    surfaces: tuple[Surface, ...]
-    lights: tuple[Light, ...]
-    view: View
-    ambient: float = 0.1
-    scaling: str = "surface"
-    mapping: str | Curve = "linear"
-    contrast: str = "stretch"
-    background: Color = (0, 0, 0)
-    name: str = "scene"
+    mesh: Annotated[Mesh, Column(Instance(Mesh), Tier.FRAME, "The node table and the polygon table.")]
+    parts: Annotated[
+        tuple[Part, ...], Column(Rows(Part, by_name=True), Tier.FRAME, "The groups of polygons.")
+    ]
+    surfaces: Annotated[
+        tuple[Surface, ...], Column(Rows(Surface, by_name=True), Tier.FRAME, "The kinds of finish.")
+    ]
+    lights: Annotated[tuple[Light, ...], Column(Rows(Light), Tier.MIX, "The lights of the studio.")]
+    view: Annotated[View, Column(Nested(View), Tier.FRAME, "The eye and where it looks.")]
+    ambient: Annotated[
+        float, Column(Number(at_least=0), Tier.MIX, "The intensity that every point has without any light.")
+    ] = 0.1
+    scaling: Annotated[
+        str,
+        Column(
+            Choice(SCALINGS), Tier.LEVELS, "Whose minimum and maximum are mapped: each surface's, or all."
+        ),
+    ] = "surface"
+    mapping: Annotated[
+        str | CurvePoints,
+        Column(CurveKind(CURVES), Tier.LEVELS, "How intensities are mapped to levels."),
+    ] = "linear"
+    contrast: Annotated[
+        str,
+        Column(
+            Choice(CONTRASTS),
+            Tier.ENTRIES,
+            "Whether the lowest level is black, or as bright as its intensity beside the highest.",
+        ),
+    ] = "stretch"
+    background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is seen.")] = (
+        0,
+        0,
+        0,
+    )
+    name: Annotated[
+        str, Column(Text(may_be_empty=True), Tier.NOTHING, "What the scene is called: its folder or file.")
+    ] = "scene"
 
-    def __post_init__(self) -> None:
-        problems = self._kind_problems()
-        if problems:
-            raise InputError(problems)
-        for table in ("parts", "surfaces", "lights"):
-            object.__setattr__(self, table, tuple(getattr(self, table)))
-            problems.extend(_repeated(table, [row.name for row in getattr(self, table)]))
-        object.__setattr__(self, "ambient", finite(problems, "ambient", self.ambient, at_least=0.0))
-        object.__setattr__(self, "background", color(problems, "background", self.background))
-        for what, value, known in (
-            ("scaling", self.scaling, SCALINGS),
-            ("contrast", self.contrast, CONTRASTS),
-        ):
-            if value not in known:
-                problems.append(f"{what} must be {' or '.join(map(repr, known))}, not {value!r}")
-        object.__setattr__(self, "mapping", _mapping(problems, self.mapping))
-        problems.extend(self._table_problems())
-        if problems:
-            raise InputError(problems)
-
-    def _kind_problems(self) -> list[str]:
-        problems = [
-            f"{name} must be a {kind.__name__}, not {value!r}"
-            for name, kind, value in (("mesh", Mesh, self.mesh), ("view", View, self.view))
-            if not isinstance(value, kind)
-        ]
-        for table, kind in (("parts", Part), ("surfaces", Surface), ("lights", Light)):
-            rows = getattr(self, table)
-            if not isinstance(rows, (list, tuple)) or not all(isinstance(row, kind) for row in rows):
-                problems.append(f"{table} must be a tuple of {kind.__name__}, not {rows!r}")
-        return problems
-
-    def _table_problems(self) -> list[str]:
-        problems = []
-        part_names = [part.name for part in self.parts]
-        if part_names != list(self.mesh.part_names):
-            problems.append(
-                f"the part table must have the mesh's parts in their order {list(self.mesh.part_names)}, not"
-                f" {part_names}"
+    def rules(self) -> Iterator[Problem]:
+        """The parts are those of the mesh, names lead to rows, and every surface has a number."""
+        if self.mesh is not REFUSED and self.parts is not REFUSED:
+            names = [part.name for part in self.parts]
+            if names != list(self.mesh.part_names):
+                rule = "the part table must have the mesh's parts in their order"
+                yield Problem((), f"{rule} {list(self.mesh.part_names)}, not {names}")
+        # The nearest right name takes its time; a file may have very many wrong ones.
+        yield from islice(self._reference_problems(), MOST_PROBLEMS)
+        if self.surfaces is not REFUSED and len(self.surfaces) > MOST_SURFACES:
+            yield Problem(
+                ("surfaces",),
+                f"must be at most {MOST_SURFACES}, not {len(self.surfaces)}; let parts share a surface",
             )
-        surface_names = [surface.name for surface in self.surfaces]
-        known = set(surface_names)
-        for part in self.parts:
-            if part.surface not in known:
-                problems.append(
-                    f"part {part.name!r}: surface {part.surface!r} is not in the surface table"
-                    f"{nearest(part.surface, surface_names)}"
-                )
-        if len(self.surfaces) > MOST_SURFACES:
-            problems.append(
-                f"a scene must have at most {MOST_SURFACES} surfaces, not {len(self.surfaces)}; let"
-                " parts share a surface"
-            )
-        return problems
 
-    def replace(self, **changes: Any) -> Scene:
+    def _reference_problems(self) -> Iterator[Problem]:
+        """The names of rows of other tables that are not there."""
+        for table, field in fields_of(Scene).items():
+            kind, rows = field.column.kind, vars(self)[table]
+            if isinstance(kind, Rows) and rows is not REFUSED:
+                for name, referring in references_of(kind.row_class).items():
+                    others = vars(self)[referring.table]
+                    if others is not REFUSED:
+                        yield from _missing_names(rows, name, referring, [row.name for row in others])
+
+    def replace(self, **changes: Unpack[SceneChanges]) -> Scene:
         """The scene with some fields changed."""
-        return dataclasses.replace(self, **known_fields(Scene, changes, "scene"))
+        return changed(self, changes)
 
     def equals(self, other: Scene) -> bool:
-        """Whether every field is equal; meshes are compared by identity."""
-        return not self.differing_fields(other)
-
-    def differing_fields(self, other: Scene) -> list[str]:
-        """The names of the fields that are not equal; meshes are compared by identity."""
-        mine, others = vars(self), vars(other)
-        return [
-            name
-            for name in field_names(Scene)
-            if mine[name] is not others[name] and (name == "mesh" or mine[name] != others[name])
-        ]
+        """Whether every column is equal; meshes are compared by identity."""
+        return is_same(self, other, Tier.NOTHING)
 
     def light(self, name: str) -> Light:
         """The light of that name; UsageError with the nearest right name when there is none."""
@@ -139,34 +152,45 @@ class Scene:
         """The part of that name; UsageError with the nearest right name when there is none."""
         return self.parts[_place("part", self.parts, name)]
 
-    def with_light(self, name: str, /, **changes: Any) -> Scene:
+    def with_light(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
         """The scene with some fields of one light changed."""
         return self._with_row("lights", _place("light", self.lights, name), changes)
 
-    def with_surface(self, name: str, /, **changes: Any) -> Scene:
+    def with_surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> Scene:
         """The scene with some fields of one surface changed, its reflectance and paint among them."""
         return self._with_row("surfaces", _place("surface", self.surfaces, name), changes)
 
-    def with_part(self, name: str, /, **changes: Any) -> Scene:
+    def with_part(self, name: str, /, **changes: Unpack[PartChanges]) -> Scene:
         """The scene with some fields of one part changed."""
         return self._with_row("parts", _place("part", self.parts, name), changes)
 
-    def with_view(self, **changes: Any) -> Scene:
+    def with_view(self, **changes: Unpack[ViewChanges]) -> Scene:
         """The scene with some fields of the view changed."""
-        return with_checked(self, {"view": self.view.replace(**changes)})
+        return self._with_checked({"view": self.view.replace(**changes)})
 
     def only_lights(self, *names: str) -> Scene:
         """The scene with the named lights on and all others off (Paper: Figure 8)."""
         wanted = [self.light(name).name for name in names]
         return self.replace(lights=tuple(light.replace(on=light.name in wanted) for light in self.lights))
 
-    def _with_row(self, table: str, place: int, changes: dict[str, Any]) -> Scene:
-        rows = getattr(self, table)
-        rows = (*rows[:place], rows[place].replace(**changes), *rows[place + 1 :])
+    def _with_row(self, table: str, place: int, changes: Mapping[str, Any]) -> Scene:
+        rows = vars(self)[table]
+        row = rows[place]
+        rows = (*rows[:place], changed(row, changes), *rows[place + 1 :])
         # Only names lead from table to table: without a new one there is nothing to check again.
-        if "name" in changes or "surface" in changes:
-            return self.replace(**{table: rows})
-        return with_checked(self, {table: rows})
+        if "name" in changes or not references_of(type(row)).keys().isdisjoint(changes):
+            return changed(self, {table: rows})
+        return self._with_checked({table: rows})
+
+    def _with_checked(self, values: Mapping[str, object]) -> Scene:
+        """The scene with other values of some fields, which were checked and lead to no other rows.
+
+        What the scene computed of itself and keeps goes along: it depends on names only.
+        """
+        copy = object.__new__(Scene)
+        vars(copy).update(vars(self))
+        vars(copy).update(values)
+        return copy
 
     @cached_property
     def surface_number_of_part(self) -> tuple[int, ...]:
@@ -180,14 +204,21 @@ class Scene:
         )  # fmt: skip
 
 
+def _missing_names(
+    rows: Sequence[Row], name: str, referring: Referring, known: Sequence[str]
+) -> Iterator[Problem]:
+    """What rows name in a column and the other table has not."""
+    found = set(known)
+    for row in rows:
+        for wanted in referring.names_in(vars(row)[name]):
+            if wanted not in found:
+                table = f"the {referring.table.removesuffix('s')} table"
+                text = f"{row_label(row)}: {name} {shown(wanted)} is not in {table}{nearest(wanted, known)}"
+                yield Problem((), text)
+
+
 def scene_of(
-    mesh: Mesh,
-    *,
-    surface_of_part: dict[str, str] | None = None,
-    surfaces: Sequence[Surface] | None = None,
-    lights: Sequence[Light] | None = None,
-    view: View | None = None,
-    **fields: Any,
+    mesh: Mesh, *, surface_of_part: Mapping[str, str] | None = None, **fields: Unpack[SceneFields]
 ) -> Scene:
     """A scene of a mesh, with every table that is not given created.
 
@@ -198,59 +229,45 @@ def scene_of(
     missing = [name for name in surface_of_part or {} if name not in mesh.part_names]
     if missing:
         raise InputError(
-            f"there is no part {name!r} to take a surface{nearest(name, mesh.part_names)}" for name in missing
+            f"there is no part {shown(name)} to take a surface{nearest(name, mesh.part_names)}"
+            for name in missing
         )
-    given = list(surfaces or ())
-    parts = list(default_parts(mesh, surface_of_part or {}))
+    tables: dict[str, Any] = dict(fields)
+    given, view, lights = (tables.pop(name, None) for name in ("surfaces", "view", "lights"))
+    parts, surfaces = _with_default_surfaces(mesh, surface_of_part or {}, tuple(given or ()))
+    if view is None:
+        view = default_view(mesh)
+    if lights is None:
+        lights = default_lights(mesh, view)
+    return Scene(mesh, parts, surfaces, lights, view, **tables)
+
+
+def _with_default_surfaces(
+    mesh: Mesh, surface_of_part: Mapping[str, str], given: tuple[Surface, ...]
+) -> tuple[tuple[Part, ...], tuple[Surface, ...]]:
+    """The parts, and the given surfaces with those that are created for parts, while there are numbers."""
+    parts = default_parts(mesh, surface_of_part)
     names = {surface.name: None for surface in given} | {part.surface: None for part in parts}
     kept = list(names)[:MOST_SURFACES]
     if len(names) > MOST_SURFACES and len(given) < MOST_SURFACES:
-        shown = set(kept)
-        parts = [part if part.surface in shown else Part(part.name, kept[-1]) for part in parts]
+        shared = set(kept)
+        parts = tuple(part if part.surface in shared else Part(part.name, kept[-1]) for part in parts)
     table = {surface.name: surface for surface in given}
+    if len(table) < len(given):
+        # Names that are repeated are refused where the scene is made.
+        return parts, given
     # A part that names a surface of another name than its own must name one that is given.
-    named = set((surface_of_part or {}).values())
+    named = set(surface_of_part.values())
+    own = set(mesh.part_names)
     for number, name in enumerate(kept):
-        if name not in table and (name not in named or name in mesh.part_names):
+        if name not in table and (name not in named or name in own):
             table[name] = default_surface(name, number)
-    view = default_view(mesh) if view is None else view
-    return Scene(
-        mesh,
-        tuple(parts),
-        tuple(table.values()) if len(given) == len({surface.name for surface in given}) else tuple(given),
-        default_lights(mesh, view) if lights is None else tuple(lights),
-        view,
-        **known_fields(Scene, fields, "scene"),
-    )
+    return parts, tuple(table.values())
 
 
-def _place(kind: str, rows: Sequence[Row], name: str) -> int:
+def _place(kind: str, rows: Sequence[SomeTableRow], name: str) -> int:
     """Where the row of that name is."""
     for place, row in enumerate(rows):
         if row.name == name:
             return place
     raise UsageError(f"there is no {kind} {name!r}{nearest(str(name), [row.name for row in rows])}")
-
-
-def _repeated(table: str, names: list[str]) -> list[str]:
-    repeated = [name for name, count in Counter(names).items() if count > 1]
-    return [f"{table}: a name must stand once, not repeated: {name!r}; rename one" for name in repeated]
-
-
-def _mapping(problems: list[str], mapping: object) -> str | Curve:
-    """The mapping, when it is a known name or points of a curve that never falls."""
-    rule = f"mapping must be {', '.join(map(repr, MAPPINGS))}, or rising points [x, y] from x = 0 to x = 1"
-    if isinstance(mapping, str):
-        if mapping not in MAPPINGS:
-            problems.append(f"{rule}, not {mapping!r}{nearest(mapping, MAPPINGS)}")
-        return mapping
-    try:
-        points = tuple((float(x), float(y)) for x, y in mapping)  # type: ignore[attr-defined]
-    except (TypeError, ValueError, OverflowError):
-        points = ()
-    across, up = [x for x, _ in points], [y for _, y in points]
-    rising = all(a < b for a, b in pairwise(across)) and up == sorted(up)
-    if len(points) < 2 or across[0] != 0 or across[-1] != 1 or not rising or not 0 <= up[0] <= up[-1] <= 1:
-        problems.append(f"{rule}, not {mapping!r}")
-        return "linear"
-    return points

@@ -5,56 +5,51 @@ Paper: "Light Direction and Concentration", Figure 5 (eye, view direction, RESCA
 
 from __future__ import annotations
 
-import dataclasses
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, ClassVar, Unpack
 
 import numpy as np
 
 from autocolor.arrays import Floats
-from autocolor.checks import Vector, finite, known_fields, vector
-from autocolor.errors import InputError
+from autocolor.checks import Vector
+from autocolor.scene.changes import ViewChanges
+from autocolor.scene.column_kinds import Number, VectorKind
+from autocolor.scene.columns import Column, Problem, Row, Tier, changed
 
 
 @dataclass(frozen=True)
-class View:
-    """An eye and a view direction.
+class View(Row):
+    """An eye, and a view direction or a target that it looks at. The world's z axis points up."""
 
-    `eye` and `target` are points in world coordinates, z up; a view has a `direction` (of any length) or a
-    `target`. `angle` turns the horizontal axis of the picture plane, in degrees; `field_of_view` is the
-    vertical one, in degrees, above 0 and below 180.
-    """
+    noun: ClassVar[str] = "view"
+    alternatives: ClassVar[tuple[str, ...]] = ("direction", "target")
 
-    eye: Vector
-    direction: Vector | None = None
-    target: Vector | None = None
-    angle: float = 0.0
-    field_of_view: float = 30.0
+    eye: Annotated[Vector, Column(VectorKind(), Tier.FRAME, "Where the eye is.", "world units")]
+    direction: Annotated[
+        Vector | None,
+        Column(
+            VectorKind(has_length=True), Tier.FRAME, "Where it looks, a vector of any length; or a target."
+        ),
+    ] = None
+    target: Annotated[
+        Vector | None, Column(VectorKind(), Tier.FRAME, "The point that it looks at.", "world units")
+    ] = None
+    angle: Annotated[
+        float, Column(Number(), Tier.FRAME, "Turns the horizontal axis of the picture plane.", "degrees")
+    ] = 0.0
+    field_of_view: Annotated[
+        float, Column(Number(at_least=0.01, at_most=179), Tier.FRAME, "The vertical one.", "degrees")
+    ] = 30.0
 
-    def __post_init__(self) -> None:
-        problems: list[str] = []
-
-        def keep(name: str, value: object) -> None:
-            object.__setattr__(self, name, value)
-
-        keep("eye", vector(problems, "view: eye", self.eye))
-        keep("angle", finite(problems, "view: angle", self.angle))
-        keep(
-            "field_of_view",
-            finite(problems, "view: field_of_view", self.field_of_view, at_least=0.01, at_most=179),
-        )
-        if self.direction is not None:
-            keep("direction", vector(problems, "view: direction", self.direction, not_zero=True))
-        if self.target is not None:
-            keep("target", vector(problems, "view: target", self.target))
+    def rules(self) -> Iterator[Problem]:
+        """A direction or a target, and a target that is not the eye."""
         if (self.direction is None) == (self.target is None):
-            problems.append("view: it must have a direction or a target, and not both; leave one out")
+            yield Problem((), "it must have a direction or a target, and not both; leave one out")
         elif self.target is not None and self.target == self.eye:
-            problems.append(f"view: the target must not be the eye, not both {self.eye}; move one of them")
-        if problems:
-            raise InputError(problems)
+            yield Problem((), f"the target must not be the eye, not both {self.eye}; move one of them")
 
     @cached_property
     def axes(self) -> Floats:
@@ -91,11 +86,6 @@ class View:
         axes.flags.writeable = False
         return axes
 
-    def replace(self, **changes: Any) -> View:
+    def replace(self, **changes: Unpack[ViewChanges]) -> View:
         """The view with some fields changed; giving a direction drops the target, and the other way round."""
-        changes = known_fields(View, changes, "view")
-        if changes.get("direction") is not None and "target" not in changes:
-            changes["target"] = None
-        if changes.get("target") is not None and "direction" not in changes:
-            changes["direction"] = None
-        return dataclasses.replace(self, **changes)
+        return changed(self, changes)

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Unpack
 
 from autocolor.errors import AutocolorError
 from autocolor.files import read_scene
 from autocolor.files.file_stem import file_stem
+from autocolor.scene.changes import PaintChanges
 from autocolor.scene.defaults import OBJECT_COLORS, framed
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
@@ -122,7 +124,7 @@ class Viewer:
         if view != self.studio.scene.view:
             self._edit(self.studio.scene.replace(view=view))
 
-    def _paint(self, **changes: object) -> None:
+    def _paint(self, **changes: Unpack[PaintChanges]) -> None:
         """Change the paint of the chosen surface; the same paint again is no step."""
         scene = self.studio.scene
         changed = scene.with_surface(self.surface_name, **changes)

@@ -286,7 +286,7 @@ def test_a_surface_that_no_part_has_is_recolored_without_sending_anything() -> N
 
 
 @pytest.mark.parametrize("contrast", ["stretch", "floor"])
-def test_a_light_sends_entries_only_where_the_floor_of_a_surface_moves(contrast: str) -> None:
+def test_a_light_sends_entries_only_where_the_floor_of_a_surface_moves(contrast: Any) -> None:
     studio, display = opened(car().replace(contrast=contrast))
     written = display.lookup_table.written
     studio.light("key", intensity=2.5)
@@ -307,7 +307,7 @@ def test_an_edit_that_is_refused_changes_nothing() -> None:
     )
     refused: list[tuple[Any, type[Exception]]] = [
         (lambda: studio.recolor("body", object_color="red"), InputError),
-        (lambda: studio.recolor("body", diffuse=1), UsageError),
+        (lambda: studio.recolor("body", diffuse=1), UsageError),  # type: ignore[call-arg]
         (lambda: studio.recolor("boddy", blend=0.5), UsageError),
         (lambda: studio.light("key", intensity=-1), InputError),
         (lambda: studio.light("key", intensity=1e39), InputError),
@@ -330,7 +330,7 @@ def test_an_edit_that_is_refused_changes_nothing() -> None:
 
 def test_recolor_takes_only_what_colors() -> None:
     with pytest.raises(UsageError) as refusal:
-        opened()[0].recolor("body", blent=0.5)
+        opened()[0].recolor("body", blent=0.5)  # type: ignore[call-arg]
     assert str(refusal.value) == (
         "recolor takes object_color, light_color, blend, light_percentage, not 'blent'; did you mean 'blend'?"
     )
@@ -371,7 +371,7 @@ def test_three_blends_of_the_body_change_body_pixels_only() -> None:
     # Figure 15: A the object color alone, B and C with the light color from lower and lower levels.
     studio, display = opened()
     body = studio.picture.surface_number == studio.picture.surfaces.index("body") + 1
-    colors_of_c = {"object_color": "#802020", "light_color": "#ffffff"}
+    colors_of_c: dict[str, Any] = {"object_color": "#802020", "light_color": "#ffffff"}
     fields = []
     for blend in (1.0, 0.6, 0.0):
         studio.recolor("body", blend=blend, **colors_of_c)

@@ -1,39 +1,36 @@
 """Scene files: `scene.toml` and the mesh files beside it, read to a Scene.
 
-    ambient = 0.1            scaling = "surface"       contrast = "stretch"      background = "#000000"
-    mapping = "linear", or points [[0, 0], [0.3, 0.6], [1, 1]]
-    [view]           eye, direction or target, angle, field_of_view
-    [[mesh]]         file, or nodes and polygons; up = "z"; crease_angle = 40
-    [parts.NAME]     surface
-    [surfaces.NAME]  diffuse, specular, exponent, object_color, light_color, blend, light_percentage,
-                     two_sided, levels
-    [[lights]]       name, position, intensity, on, direction or aim, concentration, cone_angle,
-                     flaps.x, flaps.y, flaps.z = { minimum, maximum, on }
-
-All but a mesh may be left out and is then created; `lights = []` is a scene without lights. Parts of the same
-name in several meshes become one. Every problem of the file is in one report; rows of `lights` and `mesh`
-are counted from 1 there.
+The keys are the columns of the tables, which docs/COLUMNS.md lists; `[[mesh]]` names the mesh files. All but
+a mesh may be left out and is then created; `lights = []` is a scene without lights. Parts of the same name in
+several meshes become one. Every problem of the file is in one report; rows of `lights` and `mesh` are counted
+from 1 there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-import numpy as np
-
+from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes
 from autocolor.files.scenes.problems import SceneProblems
 from autocolor.files.scenes.scene_meshes import mesh_file, meshes_of
-from autocolor.files.scenes.scene_models import PartKeys, SceneKeys
 from autocolor.files.scenes.scene_report import SceneReport, scene_report
-from autocolor.files.scenes.scene_tables import lights_of, surfaces_of, view_of
 from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
+from autocolor.scene.columns import REFUSED, Problem, RowError, SomeRow, changed, keys_of, made, unknown
+from autocolor.scene.defaults import default_surface
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
-from autocolor.scene.view import View
+from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
+
+FILE_KEYS: Final = tuple(key for key in keys_of(Scene) if key != "name")
+"""The keys of a scene file; the scene's name is that of its folder or file."""
+
+TABLES: Final = ("mesh", "parts", "surfaces")
+"""Those of the keys that are read with regard to each other."""
 
 
 def read_scene_file(path: Path, *, outside: bool = False) -> SceneReport:
@@ -45,32 +42,29 @@ def read_scene_file(path: Path, *, outside: bool = False) -> SceneReport:
     data = read_bytes(path, LARGEST_TEXT)
     document = parsed_toml(data, path.name)
     problems = SceneProblems(path.name, data, document)
-    keys, wrong = problems.checked((), SceneKeys, document)
 
-    fields = _scene_fields(problems, keys)
-    view = view_of(problems, keys["view"]) if "view" in keys else None
-    lights = None if keys.get("lights") is None else lights_of(problems, keys["lights"])
-    surfaces = surfaces_of(problems, keys.get("surfaces", {}))
-    reports = meshes_of(problems, keys.get("mesh", []), path.parent, outside=outside)
-    if not keys.get("mesh") and "mesh" not in wrong:
+    fields = _fields(problems, document)
+    surfaces = _surfaces(problems, document)
+    entries = document.get("mesh", [])
+    if not isinstance(entries, list):
+        problems.note(("mesh",), f"must be tables, each written [[mesh]], not {shown(entries)}")
+        entries = []
+    elif not entries:
         problems.note((), 'there must be a [[mesh]] with file = "NAME.obj", not none; add one')
+    reports = meshes_of(problems, entries, path.parent, outside=outside)
     part_names = tuple(dict.fromkeys(name for report in reports for name in report.mesh.part_names))
-    complete = len(reports) == len(keys.get("mesh", []))
-    surface_names = (*keys.get("surfaces", {}), *part_names)
-    surface_of_part = _parts(problems, keys.get("parts", {}), part_names if complete else None, surface_names)
+    are_known = len(reports) == len(entries)
+    surface_of_part = _parts(problems, document, part_names if are_known else None, tuple(surfaces))
     problems.raise_any()
 
-    mesh = Mesh.joined([report.mesh for report in reports])
     name = path.resolve().parent.name if path.name == "scene.toml" else path.stem
     try:
         return scene_report(
-            mesh,
+            Mesh.joined([report.mesh for report in reports]),
             repairs=tuple(repair for report in reports for repair in report.repairs),
-            mesh_files=tuple(mesh_file(table) for table in keys["mesh"]),
+            mesh_files=tuple(mesh_file(table) for table in entries),
             surface_of_part=surface_of_part,
-            surfaces=surfaces,
-            lights=lights,
-            view=view,
+            surfaces=tuple(surface for surface in surfaces.values() if surface is not None),
             name=name or "scene",
             **fields,
         )
@@ -78,42 +72,90 @@ def read_scene_file(path: Path, *, outside: bool = False) -> SceneReport:
         raise InputError([f"{path.name}, {problem}" for problem in error.problems]) from None
 
 
-def _scene_fields(problems: SceneProblems, keys: Mapping[str, Any]) -> dict[str, Any]:
-    """The fields of a scene that are no tables, checked by an empty scene that has them."""
-    names = ("ambient", "scaling", "mapping", "contrast", "background")
-    fields = {name: keys[name] for name in names if name in keys}
-    empty = Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ())
-    try:
-        Scene(empty, (), (), (), View((0, 0, 0), direction=(0, 1, 0)), **fields)
-    except InputError as error:
-        problems.note_all((), error)
-    return fields
+def _fields(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, Any]:
+    """The columns of the scene but its tables, as far as they are right."""
+    fields = {}
+    found: list[Problem] = []
+    for key, value in document.items():
+        if key not in FILE_KEYS:
+            found.append(unknown(key, FILE_KEYS))
+        elif key not in TABLES:
+            fields[key] = keys_of(Scene)[key].column.kind.held(value, (key,), found)
+    problems.note_all(found)
+    return {key: value for key, value in fields.items() if value is not REFUSED}
+
+
+def _surfaces(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, Surface | None]:
+    """The given surfaces, None for one with problems; a key that is left out is as if it were created."""
+    tables = _named_tables(problems, document, "surfaces")
+    if len(tables) > MOST_SURFACES:
+        problems.note(
+            ("surfaces",), f"must be at most {MOST_SURFACES}, not {len(tables):,}; let parts share a surface"
+        )
+        return {}
+    return {
+        name: _row(problems, ("surfaces", name), table, partial(_surface, name, number))
+        for number, (name, table) in enumerate(tables.items())
+    }
+
+
+def _surface(name: str, number: int, table: Mapping[str, Any]) -> Surface:
+    return changed(default_surface(name, number), table)
+
+
+def _part(name: str, table: Mapping[str, Any]) -> Part:
+    return made(Part, {"name": name, **table})
 
 
 def _parts(
     problems: SceneProblems,
-    tables: Mapping[str, Any],
+    document: Mapping[str, Any],
     part_names: tuple[str, ...] | None,
     surface_names: tuple[str, ...],
 ) -> dict[str, str]:
     """The surface of each part that names one; no names are checked where a mesh could not be read."""
     surface_of_part: dict[str, str] = {}
-    known_parts, known_surfaces = set(part_names or ()), set(surface_names)
-    for name, table in tables.items():
+    known_parts = dict.fromkeys(part_names or ())
+    known_surfaces = dict.fromkeys((*surface_names, *known_parts))
+    for name, table in _named_tables(problems, document, "parts").items():
         if problems.full:
             break
-        keys, _ = problems.checked(("parts", name), PartKeys, table)
+        path = ("parts", name)
+        part = _row(problems, path, table, partial(_part, name))
         if part_names is None:
             continue
         if name not in known_parts:
-            problems.note(("parts", name), "no mesh has a part of this name", (name, part_names))
-        surface = keys.get("surface")
-        if surface is not None and surface not in known_surfaces:
-            problems.note(
-                ("parts", name, "surface"),
-                f"surface must be a surface or a part of the scene, not {surface[:60]!r}",
-                (surface, tuple(dict.fromkeys(surface_names))),
-            )
-        elif surface is not None:
-            surface_of_part[name] = surface
+            problems.note(path, "no mesh has a part of this name", (name, known_parts))
+        if part is not None and part.surface not in known_surfaces:
+            rule = f"must be a surface or a part of the scene, not {shown(part.surface)}"
+            problems.note((*path, "surface"), rule, (part.surface, known_surfaces))
+        elif part is not None:
+            surface_of_part[name] = part.surface
     return surface_of_part
+
+
+def _named_tables(problems: SceneProblems, document: Mapping[str, Any], key: str) -> dict[str, Any]:
+    """The tables of a key that are written [key.NAME]."""
+    tables = document.get(key, {})
+    if not isinstance(tables, dict):
+        problems.note((key,), f"must be tables written [{key}.NAME], not {shown(tables)}")
+        return {}
+    return tables
+
+
+def _row(
+    problems: SceneProblems, path: tuple[str, str], table: Any, make: Callable[[Mapping[str, Any]], SomeRow]
+) -> SomeRow | None:
+    """The row of a table that has its name in its header, or None after its problems were noted."""
+    if not isinstance(table, dict):
+        problems.note(path, f"it must be a table, not {shown(table)}; write keys and values")
+        return None
+    try:
+        row = make(table)
+    except RowError as error:
+        problems.note_all(error.found, path)
+        return None
+    if "name" in table:
+        known = [key for key in keys_of(type(row)) if key != "name"]
+        problems.note_all([unknown("name", known)], path)
+    return row

@@ -3,95 +3,134 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, ClassVar, Final
 
 from autocolor.errors import InputError
 from autocolor.files.meshes.formats import read_entry
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
-from autocolor.files.repair.polygons import MeshReport
+from autocolor.files.repair.polygons import UPS, MeshReport
 from autocolor.files.scenes.problems import SceneProblems
-from autocolor.files.scenes.scene_models import MeshKeys
 from autocolor.files.scenes.toml_text import KeyPath
+from autocolor.scene.column_kinds import Choice, Number, Text
+from autocolor.scene.columns import Column, Problem, Row, RowError, Tier, made
 
 MOST_MESHES: Final = 1000
 
+FILE_KEYS: Final = (("file",), ("nodes", "polygons"))
+"""The keys that name the files of a mesh: one file, or a node table and a polygon table."""
+
 
 @dataclass(frozen=True)
-class MeshEntry:
-    """One `[[mesh]]` whose keys are right: its files by their keys, and the up axis."""
+class MeshEntry(Row):
+    """One `[[mesh]]` of a scene file: which files, how they stand, and where edges are sharp."""
+
+    noun: ClassVar[str] = "mesh"
+
+    file: Annotated[str | None, Column(Text(), Tier.FRAME, "A mesh file in the scene's folder.")] = None
+    nodes: Annotated[str | None, Column(Text(), Tier.FRAME, "A node table, with a polygon table.")] = None
+    polygons: Annotated[str | None, Column(Text(), Tier.FRAME, "The polygon table.")] = None
+    up: Annotated[str, Column(Choice(UPS), Tier.FRAME, "The file's up axis; the world's is z.")] = "z"
+    crease_angle: Annotated[
+        float | None,
+        Column(
+            Number(at_least=0, at_most=180),
+            Tier.FRAME,
+            "Polygons that meet at more keep a sharp edge; the same for all meshes.",
+            "degrees",
+        ),
+    ] = None
+
+    def rules(self) -> Iterator[Problem]:
+        """The files are named by one of the sets of keys."""
+        given = tuple(key for keys in FILE_KEYS for key in keys if vars(self)[key] is not None)
+        if given not in FILE_KEYS:
+            listed = " and ".join(given) or "none of them"
+            yield Problem((), f"it must have a file, or nodes and polygons, not {listed}; correct it")
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a mesh comes from: the place of its `[[mesh]]`, its files by their keys, and the entry."""
 
     path: KeyPath
     files: Mapping[str, Path]
-    up: str
-    crease_angle: float | None
+    entry: MeshEntry
 
 
 def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside: bool) -> list[MeshReport]:
     """The meshes of a scene, as many as could be read, all with the same crease angle."""
     if len(rows) > MOST_MESHES:
-        problems.note(
-            ("mesh",), f"mesh must be there at most {MOST_MESHES:,} times, not {len(rows):,}; join some"
-        )
+        problems.note(("mesh",), f"must be there at most {MOST_MESHES:,} times, not {len(rows):,}; join some")
         return []
-    entries = [
-        entry
+    sources = [
+        source
         for row, table in enumerate(rows)
         if not problems.full
-        and (entry := _entry(problems, ("mesh", row), table, folder, outside)) is not None
+        and (source := _source(problems, ("mesh", row), table, folder, outside)) is not None
     ]
-    crease_angle = _crease_angle(problems, entries)
-    size = sum(_size(file) for entry in entries for file in entry.files.values())
+    crease_angle = _crease_angle(problems, sources)
+    size = sum(_size(file) for source in sources for file in source.files.values())
     if size > LARGEST_MESH_FILE:
         problems.note(
-            ("mesh",), f"the mesh files must have at most {LARGEST_MESH_FILE:,} bytes together, not {size:,}"
+            ("mesh",),
+            f"the mesh files must have at most {LARGEST_MESH_FILE:,} bytes together, not {size:,}",
         )
         return []
     reports = []
-    for entry in entries:
+    for source in sources:
         try:
-            reports.append(read_entry(entry.files, up=entry.up, crease_angle=crease_angle))
+            reports.append(read_entry(source.files, up=source.entry.up, crease_angle=crease_angle))
         except InputError as error:
-            problems.note_file((*entry.path, next(iter(entry.files))), error)
+            problems.note_file((*source.path, next(iter(source.files))), error)
     return reports
 
 
-def _entry(
+def _source(
     problems: SceneProblems, path: KeyPath, table: object, folder: Path, outside: bool
-) -> MeshEntry | None:
-    keys, wrong = problems.checked(path, MeshKeys, table)
-    if not isinstance(table, dict):
-        return None
-    names = [key for key in ("file", "nodes", "polygons") if key in table]
-    if names not in (["file"], ["nodes", "polygons"]):
-        listed = " and ".join(names) or "none of them"
-        problems.note(path, f"it must have a file, or nodes and polygons, not {listed}; mend it")
+) -> Source | None:
+    """The files of one `[[mesh]]`, or None after its problems were noted."""
+    entry = _entry(problems, path, table)
+    if entry is None:
         return None
     files = {}
-    for key in names:
+    for key in [key for keys in FILE_KEYS for key in keys if vars(entry)[key] is not None]:
         reasons: list[str] = []
-        file = path_within(reasons, folder, keys[key], outside=outside) if key in keys else None
-        for reason in reasons:
-            problems.note((*path, key), f"{key} {reason}")
+        file = path_within(reasons, folder, vars(entry)[key], outside=outside)
+        problems.note_all([Problem((key,), reason) for reason in reasons], path)
         if file is not None:
             files[key] = file
-    if len(files) < len(names) or "up" in wrong:
+    return Source(path, files, entry) if tuple(files) in FILE_KEYS else None
+
+
+def _entry(problems: SceneProblems, path: KeyPath, table: object) -> MeshEntry | None:
+    """One `[[mesh]]`; where keys are wrong they are noted and left out, so that its files are still read."""
+    try:
+        return made(MeshEntry, table)
+    except RowError as error:
+        problems.note_all(error.found, path)
+        wrong = {problem.path[0] for problem in error.found if problem.path}
+    if not wrong or not isinstance(table, Mapping):
         return None
-    return MeshEntry(path, files, keys.get("up", "z"), keys.get("crease_angle"))
+    try:
+        return made(MeshEntry, {key: value for key, value in table.items() if key not in wrong})
+    except RowError:
+        return None
 
 
-def _crease_angle(problems: SceneProblems, entries: list[MeshEntry]) -> float | None:
+def _crease_angle(problems: SceneProblems, sources: list[Source]) -> float | None:
     """The crease angle that the entries give, None where none does."""
-    given = [(entry.crease_angle, entry) for entry in entries if entry.crease_angle is not None]
-    for angle, entry in given[1:]:
+    given = [
+        (source.entry.crease_angle, source) for source in sources if source.entry.crease_angle is not None
+    ]
+    for angle, source in given[1:]:
         if angle != given[0][0]:
             problems.note(
-                (*entry.path, "crease_angle"),
-                f"crease_angle must be the same in all meshes, {given[0][0]:g} as before, not {angle:g};"
-                " give one of them",
+                (*source.path, "crease_angle"),
+                f"must be the same in all meshes, {given[0][0]:g} as before, not {angle:g}; give one of them",
             )
     return given[0][0] if given else None
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 import re
-from collections.abc import Mapping, Sequence
-from typing import Final
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final
 
-from autocolor.scene.lights import Flap, Light
+from autocolor.scene.column_kinds import Nested, Rows
+from autocolor.scene.columns import fields_of, plain
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import Surface
 
 BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 
@@ -20,67 +19,41 @@ def scene_text(scene: Scene, mesh_files: Sequence[Mapping[str, str]]) -> str:
 
     The name of the scene is not written: it is that of the folder or the file that the text is saved to.
     """
-    table = {
-        "ambient": scene.ambient,
-        "scaling": scene.scaling,
-        "mapping": scene.mapping,
-        "contrast": scene.contrast,
-        "background": _color(scene.background),
+    tables = plain(scene)
+    kinds = {name: field.column.kind for name, field in fields_of(Scene).items()}
+    keys = {
+        key: value
+        for key, value in tables.items()
+        if key != "name" and (not isinstance(kinds[key], (Nested, Rows)) or (key, value) == ("lights", []))
     }
-    if not scene.lights:
-        table["lights"] = ()
-    view = {key: getattr(scene.view, key) for key in ("eye", "direction", "target", "angle", "field_of_view")}
-    blocks = [_table("", table), _table("[view]", view)]
+    blocks = [_table("", keys), _table("[view]", tables["view"])]
     for row, files in enumerate(mesh_files):
         angle = {} if row else {"crease_angle": scene.mesh.crease_angle}
         blocks.append(_table("[[mesh]]", {**files, **angle}))
-    blocks += [_table(f"[parts.{_key(part.name)}]", {"surface": part.surface}) for part in scene.parts]
-    blocks += [_table(f"[surfaces.{_key(surface.name)}]", _surface(surface)) for surface in scene.surfaces]
-    blocks += [_table("[[lights]]", _light(light)) for light in scene.lights]
+    for name, kind in kinds.items():
+        if isinstance(kind, Rows):
+            blocks.extend(_rows(name, kind, tables[name]))
     return "\n".join(blocks)
 
 
-def _surface(surface: Surface) -> dict[str, object]:
-    reflectance, paint = surface.reflectance, surface.paint
-    return {
-        "diffuse": reflectance.diffuse,
-        "specular": reflectance.specular,
-        "exponent": reflectance.exponent,
-        "object_color": _color(paint.object_color),
-        "light_color": _color(paint.light_color),
-        "blend": paint.blend,
-        "light_percentage": paint.light_percentage,
-        "two_sided": surface.two_sided,
-        "levels": surface.levels,
-    }
+def _rows(name: str, kind: Rows, rows: Any) -> Iterator[str]:
+    """The rows of a table, each under its name, or one after another."""
+    for keys in rows:
+        if kind.by_name:
+            others = {key: value for key, value in keys.items() if key != "name"}
+            yield _table(f"[{name}.{_key(keys['name'])}]", others)
+        else:
+            yield _table(f"[[{name}]]", keys)
 
 
-def _light(light: Light) -> dict[str, object]:
-    flaps = {
-        f"flaps.{axis}": _flap(flap) for axis in "xyz" if (flap := getattr(light.flaps, axis)) is not None
-    }
-    return {
-        "name": light.name,
-        "position": light.position,
-        "intensity": light.intensity,
-        "on": light.on,
-        "direction": light.direction,
-        "aim": light.aim,
-        "concentration": light.concentration,
-        "cone_angle": light.cone_angle,
-        **flaps,
-    }
-
-
-def _flap(flap: Flap) -> dict[str, object]:
-    """The keys of a flap; a minimum or maximum that is nowhere is left out."""
-    ends = {name: end for name in ("minimum", "maximum") if math.isfinite(end := getattr(flap, name))}
-    return {**ends, "on": flap.on}
-
-
-def _table(header: str, keys: Mapping[str, object]) -> str:
+def _table(header: str, keys: Any) -> str:
+    """A table with a line for each key; what a key holds in several tables has a line for each of them."""
     lines = [header] if header else []
-    lines += [f"{key} = {_value(value)}" for key, value in keys.items() if value is not None]
+    for key, value in keys.items():
+        if isinstance(value, Mapping) and all(isinstance(inner, Mapping) for inner in value.values()):
+            lines += [f"{key}.{_key(name)} = {_value(inner)}" for name, inner in value.items()]
+        else:
+            lines.append(f"{key} = {_value(value)}")
     return "\n".join(lines) + "\n"
 
 
@@ -97,7 +70,3 @@ def _value(value: object) -> str:
         # TOML escapes what JSON escapes, and one more.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     return repr(value)
-
-
-def _color(color: tuple[int, int, int]) -> str:
-    return "#{:02x}{:02x}{:02x}".format(*color)

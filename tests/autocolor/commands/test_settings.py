@@ -121,8 +121,8 @@ def test_of_two_names_the_longer_is_meant(scene: Scene) -> None:
         ("lights.key.name=a", "--set lights.key.name: a name stays; rename it in the scene file"),
         ("surfaces.side.name=a", "--set surfaces.side.name: a name stays; rename it in the scene file"),
         (
-            "lights.key.a.x=1",
-            "--set lights.key.a.x: there is no such field; flaps alone have some, as in flaps.z.maximum=1",
+            "lights.key.a.b.c.d.e=1",
+            "--set lights.key.a.b.c.d.e: there is no such field; write it as in lights.key.intensity=2",
         ),
     ],
 )
@@ -137,6 +137,8 @@ def test_a_key_that_names_nothing_is_refused(scene: Scene, setting: str, sentenc
     [
         ("view.angel=1", "view: there is no 'angel'; did you mean 'angle'?"),
         ("lights.key.intesity=1", "light 'key': there is no 'intesity'; did you mean 'intensity'?"),
+        ("lights.key.a.x=1", "light 'key': there is no 'a'; did you mean 'aim'?"),
+        ("lights.key.on.x=1", "light 'key': on must be true or false, not {'x': 1}"),
         ("lights.key.flaps.z.min=1", "there is no 'min'; did you mean 'minimum'?"),
         ("lights.key.flaps.w.minimum=1", "there is no 'w'; known are 'x', 'y', 'z'"),
         ("surfaces.side.difuse=1", "surface 'side': there is no 'difuse'; did you mean 'diffuse'?"),

@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 
 from autocolor import InputError, LevelRange, Picture, Scene, render
 from autocolor.lighting.picture import IntensityRange
-from autocolor.mapping.intensity_mapping import curve_of, equalized, fraction_of, levels_of, words_of
+from autocolor.mapping.intensity_mapping import fraction_of, levels_of, words_of
 from autocolor.mapping.level_ranges import level_ranges
 from autocolor.visibility.visible_points import SurfaceSlice
-from tests.autocolor.meshes import ramp
 from tests.autocolor.reference import level_of
 from tests.autocolor.strategies import MAPPINGS, scenes
 
@@ -66,6 +65,14 @@ def test_every_level_is_the_one_of_the_slow_twin(steps: list[int], mapping: Any,
             assert level == level_of((exact - 0.5) / (levels - 1), levels)
 
 
+def test_levels_are_written_to_out_which_may_be_the_fractions_themselves() -> None:
+    fractions = np.array([0.0, 0.25, 0.5, 1.0], np.float32)
+    assert levels_of(fractions, 11).tolist() == [0, 3, 5, 10]
+    assert fractions.tolist() == [0.0, 0.25, 0.5, 1.0]
+    assert levels_of(fractions, 11, out=fractions) is fractions
+    assert fractions.tolist() == [0, 3, 5, 10]
+
+
 def test_each_surface_has_its_own_minimum_and_maximum() -> None:
     words = words_of(picture_of([1, 2, 3], [10, 20]), RANGES, "surface", "linear")
     assert words.tolist() == [[0, 1, 6, 11, 12, 112, 0]]
@@ -81,36 +88,6 @@ def test_the_whole_object_has_one_minimum_and_maximum() -> None:
 def test_a_surface_whose_minimum_is_its_maximum_takes_its_last_level(scaling: str, mapping: Any) -> None:
     words = words_of(picture_of([3.0, 3.0], [3.0]), RANGES, scaling, mapping)
     assert words.tolist() == [[0, 11, 11, 112, 0]]
-
-
-@pytest.mark.parametrize("mapping", [mapping for mapping in MAPPINGS if mapping != "equalize"], ids=str)
-def test_a_curve_never_falls_and_ends_at_1(mapping: Any) -> None:
-    shown = curve_of(mapping)(ramp(20_001))
-    assert shown[-1] == pytest.approx(1)
-    assert shown[0] == pytest.approx(0.1 if isinstance(mapping, tuple) else 0)
-    assert (np.diff(levels_of(shown, 1007)) >= 0).all()
-
-
-def test_gamma_and_logarithm_lift_the_dark() -> None:
-    for mapping in ("gamma", "logarithm"):
-        middle = curve_of(mapping)(np.array([0.1, 0.5], np.float32))
-        assert (middle > [0.3, 0.7]).all()
-
-
-@given(st.lists(st.integers(0, 100), min_size=2, max_size=60, unique=True))
-def test_equalize_shows_every_level_equally_often(steps: list[int]) -> None:
-    intensities = np.array(steps, np.float32) ** 3
-    shown = equalized(intensities)(intensities)
-    assert sorted(shown.tolist()) == pytest.approx(np.linspace(0, 1, len(steps)).tolist())
-    assert np.argsort(shown).tolist() == np.argsort(intensities).tolist()
-
-
-@given(st.lists(st.integers(0, 8), min_size=2, max_size=60).filter(lambda steps: min(steps) < max(steps)))
-def test_equalize_never_falls_and_spans_the_range(steps: list[int]) -> None:
-    intensities = np.array(sorted(steps), np.float32)
-    shown = equalized(intensities)(intensities)
-    assert (np.diff(shown) >= 0).all()
-    assert (shown[0], shown[-1]) == (0, 1)
 
 
 @given(scenes())

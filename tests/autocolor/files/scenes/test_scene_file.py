@@ -194,35 +194,37 @@ concentration = -1
 """
     place = "scene.toml, line"
     assert refusal(folder, text) == [
-        f"{place} 1, ambient must be a finite number, not true",
-        f"{place} 2, scaling must be 'surface' or 'object', not 'surfac'",
+        f"{place} 1, ambient must be a finite number of at least 0, not true",
+        f"{place} 2, scaling must be 'surface' or 'object', not 'surfac'; did you mean 'surface'?",
         f"{place} 3, mapping must be 'linear', 'gamma', 'logarithm', 'equalize', or rising points [x, y] from"
         " x = 0 to x = 1, not 'linea'; did you mean 'linear'?",
-        f"{place} 4, there is no key \"colour\"; known are 'ambient', 'scaling', 'mapping', 'contrast',"
-        " 'background', 'view', 'mesh', 'lights', 'parts', 'surfaces'",
+        f"{place} 4, there is no 'colour'; known are 'mesh', 'parts', 'surfaces', 'lights', 'view',"
+        " 'ambient', 'scaling', 'mapping', 'contrast', 'background'",
         f"{place} 5, background must be \"#rrggbb\" or three whole numbers from 0 to 255, not '#12'",
-        f"{place} 7, [view]: eye must be three finite numbers [x, y, z], not [0, 0]",
+        f"{place} 7, [view]: eye must be three finite numbers of at most 1e36, not [0, 0]",
         f"{place} 8, [view]: direction must not be zero, not [0.0, 0, 0]; give it a length",
-        f"{place} 9, [view]: there is no key \"angl\"; did you mean 'angle'?",
+        f"{place} 9, [view]: there is no 'angl'; did you mean 'angle'?",
         "bad.obj, line 9: a corner must be a node number from 1 to 4 or from -4 to -1, not 9; correct it",
         "bad.obj, line 10: a corner must be a node number, alone or with texture and normal numbers as in"
         " 7/1/3, not 'x'; correct it",
         f"{place} 13, mesh[2]: file must be the name of a file in the scene's folder, not '../car.obj';"
         " copy the file there",
         f"{place} 15, mesh[3]: {folder / 'none.obj'}: there is no such file or folder; check the name",
-        f"{place} 16, mesh[3]: crease_angle must be a number of degrees from 0 to 180, not 200",
+        f"{place} 16, mesh[3]: crease_angle must be a number from 0 to 180, not 200",
         "car.stl: a mesh file must end in .obj, not in '.stl'; export it as OBJ",
-        f"{place} 20, mesh[5]: it must have a file, or nodes and polygons, not nodes; mend it",
+        f"{place} 20, mesh[5]: it must have a file, or nodes and polygons, not nodes; correct it",
         f"{place} 23, [surfaces.body]: exponent must be a finite number of at least 0, not -1",
-        f'{place} 24, [surfaces.body]: diffuse must be a finite number, not "1.0"',
-        f"{place} 25, [surfaces.body]: there is no key \"two_side\"; did you mean 'two_sided'?",
-        f"{place} 26, lights[1] 'key': position must be three finite numbers [x, y, z], not missing; add it",
-        f"{place} 28, lights[1] 'key': there is no key \"positon\"; did you mean 'position'?",
-        f"{place} 29, lights[1] 'key': intensity must be a finite number, not Infinity",
+        f"{place} 24, [surfaces.body]: diffuse must be a finite number of at least 0, not '1.0'",
+        f"{place} 25, [surfaces.body]: there is no 'two_side'; did you mean 'two_sided'?",
+        f"{place} 26, lights[1] 'key': position must be three finite numbers of at most 1e36, not missing;"
+        " add it",
+        f"{place} 28, lights[1] 'key': there is no 'positon'; did you mean 'position'?",
+        f"{place} 29, lights[1] 'key': intensity must be a finite number of at least 0, not inf",
         f"{place} 31, lights[2] 'key': name must differ from all others, not repeat lights[1]; rename it",
         f"{place} 33, lights[2] 'key': direction must not be zero, not [0, 0, 0]; give it a length",
-        f"{place} 34, lights[2] 'key': a flap's minimum must not be above its maximum, not 3 to 2",
-        f"{place} 36, lights[3] '': name must be a text of at least one letter, not \"\"",
+        f"{place} 34, lights[2] 'key': flaps.z: the minimum must not be above the maximum, not 3 to 2;"
+        " exchange them",
+        f"{place} 36, lights[3] '': name must be a text of at least one letter, not ''",
         f"{place} 38, lights[3] '': concentration must be a finite number of at least 0, not -1",
     ]
 
@@ -332,7 +334,7 @@ def test_a_scene_file_of_more_than_a_mebibyte_is_refused(folder: Path) -> None:
 def test_windows_line_ends_and_a_byte_order_mark_are_no_matter(folder: Path) -> None:
     assert read(folder, b"\xef\xbb\xbf" + MESH.replace("\n", "\r\n").encode()).repairs == ()
     assert refusal(folder, b"\xef\xbb\xbf" + MESH.replace("\n", "\r\n").encode() + b"uq = 1\r\n") == [
-        "scene.toml, line 3, mesh[1]: there is no key \"uq\"; known are 'file', 'nodes', 'polygons', 'up',"
+        "scene.toml, line 3, mesh[1]: there is no 'uq'; known are 'file', 'nodes', 'polygons', 'up',"
         " 'crease_angle'"
     ]
 

@@ -1,0 +1,38 @@
+"""A scene but the arrays of its mesh as plain values, dictionaries and lists, and back, for picture files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from numpy.typing import NDArray
+
+from autocolor.checks import shown
+from autocolor.errors import InputError
+from autocolor.scene.columns import made, plain
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import Scene
+
+
+def plain_scene(scene: Scene) -> dict[str, Any]:
+    """The scene's tables but the mesh's arrays as values that JSON can hold; None and infinities left out."""
+    mesh = {"part_names": scene.mesh.part_names, "crease_angle": scene.mesh.crease_angle}
+    return {"mesh": mesh, **plain(scene)}
+
+
+def scene_of_plain(
+    values: object, coordinates: NDArray[Any], node_numbers: NDArray[Any], part_numbers: NDArray[Any]
+) -> Scene:
+    """The scene of such values and the mesh's arrays; InputError where they break a rule."""
+    if not isinstance(values, Mapping) or not isinstance(values.get("mesh"), Mapping):
+        raise InputError(f"scene: it must be tables, its mesh among them, not {shown(values)}")
+    described = values["mesh"]
+    mesh = Mesh(
+        coordinates,
+        node_numbers,
+        part_numbers,
+        described.get("part_names", ()),
+        described.get("crease_angle", math.nan),
+    )
+    return made(Scene, {**values, "mesh": mesh})

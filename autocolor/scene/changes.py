@@ -1,0 +1,113 @@
+"""What a change of a row may say: its keys and their types, for editors and type checkers.
+
+Written by `python -m tests.typed_changes` from the columns; do not edit it by hand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, TypedDict
+
+from autocolor.scene.columns import Row
+
+
+class FlapChanges(TypedDict, total=False):
+    """Changes of a Flap."""
+
+    minimum: float
+    maximum: float
+    on: bool
+
+
+class FlapsChanges(TypedDict, total=False):
+    """Changes of a Flaps."""
+
+    x: Row | FlapChanges | None
+    y: Row | FlapChanges | None
+    z: Row | FlapChanges | None
+
+
+class LightChanges(TypedDict, total=False):
+    """Changes of a Light."""
+
+    name: str
+    position: Sequence[float]
+    intensity: float
+    on: bool
+    direction: Sequence[float] | None
+    aim: Sequence[float] | None
+    concentration: float
+    cone_angle: float | None
+    flaps: Row | FlapsChanges
+
+
+class PartChanges(TypedDict, total=False):
+    """Changes of a Part."""
+
+    name: str
+    surface: str
+
+
+class ReflectanceChanges(TypedDict, total=False):
+    """Changes of a Reflectance."""
+
+    diffuse: float
+    specular: float
+    exponent: float
+
+
+class PaintChanges(TypedDict, total=False):
+    """Changes of a Paint."""
+
+    object_color: str | Sequence[int]
+    light_color: str | Sequence[int]
+    blend: float
+    light_percentage: float
+
+
+class SurfaceChanges(TypedDict, total=False):
+    """Changes of a Surface."""
+
+    name: str
+    reflectance: Row | ReflectanceChanges
+    paint: Row | PaintChanges
+    two_sided: bool
+    levels: int | None
+    diffuse: float
+    specular: float
+    exponent: float
+    object_color: str | Sequence[int]
+    light_color: str | Sequence[int]
+    blend: float
+    light_percentage: float
+
+
+class ViewChanges(TypedDict, total=False):
+    """Changes of a View."""
+
+    eye: Sequence[float]
+    direction: Sequence[float] | None
+    target: Sequence[float] | None
+    angle: float
+    field_of_view: float
+
+
+class SceneFields(TypedDict, total=False):
+    """Fields of a Scene that no mesh determines."""
+
+    surfaces: Sequence[Row]
+    lights: Sequence[Row]
+    view: Row | ViewChanges
+    ambient: float
+    scaling: Literal["surface", "object"]
+    mapping: str | Sequence[Sequence[float]]
+    contrast: Literal["stretch", "floor"]
+    background: str | Sequence[int]
+    name: str
+
+
+class SceneChanges(SceneFields, total=False):
+    """Changes of a Scene."""
+
+    mesh: object
+    parts: Sequence[Row]

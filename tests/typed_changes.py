@@ -1,0 +1,72 @@
+"""The types of changes: for each class of rows, which keys a change may have, and of which type each is.
+
+They derive from the columns, and type checkers want them written out:
+`python -m tests.typed_changes > autocolor/scene/changes.py` writes them.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from autocolor.scene.columns import Row, fields_of, keys_of
+from autocolor.scene.lights import Flap, Flaps, Light
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
+from autocolor.scene.view import View
+
+CLASSES: tuple[type[Row], ...] = (Flap, Flaps, Light, Part, Reflectance, Paint, Surface, View)
+
+HEAD = '''"""What a change of a row may say: its keys and their types, for editors and type checkers.
+
+Written by `python -m tests.typed_changes` from the columns; do not edit it by hand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, TypedDict
+
+from autocolor.scene.columns import Row
+'''
+
+MADE_FROM_THE_MESH = ("mesh", "parts")
+"""The columns of a scene that `scene_of` makes from the mesh that it is given."""
+
+
+def source() -> str:
+    """The module of all types."""
+    return HEAD + "".join(map(class_of_changes, CLASSES)) + classes_of_a_scene()
+
+
+def class_of_changes(cls: type[Row]) -> str:
+    """The type of the changes of one class of rows."""
+    return written(f"{cls.__name__}Changes(TypedDict", f"Changes of a {cls.__name__}.", types_of(cls))
+
+
+def classes_of_a_scene() -> str:
+    """The type of what `scene_of` takes, and of the changes of a scene."""
+    types = types_of(Scene)
+    mesh = {name: types.pop(name) for name in MADE_FROM_THE_MESH}
+    fields = written("SceneFields(TypedDict", "Fields of a Scene that no mesh determines.", types)
+    return fields + written("SceneChanges(SceneFields", "Changes of a Scene.", mesh)
+
+
+def types_of(cls: type[Row]) -> dict[str, str]:
+    """The type of each field and key."""
+    fields, keys = fields_of(cls), keys_of(cls)
+    columns = {name: field.column for name, field in fields.items()}
+    columns |= {key: each.column for key, each in keys.items()}
+    return {
+        name: column.kind.accepts() + (" | None" if name in fields and fields[name].is_optional else "")
+        for name, column in columns.items()
+    }
+
+
+def written(name: str, text: str, types: dict[str, str]) -> str:
+    """A class of the module."""
+    lines = [f"\n\nclass {name}, total=False):", f'    """{text}"""', ""]
+    return "\n".join(lines + [f"    {key}: {each}" for key, each in types.items()]) + "\n"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(source())
