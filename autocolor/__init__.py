@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from autocolor.errors import UnavailableError as UnavailableError
     from autocolor.errors import UsageError as UsageError
     from autocolor.errors import WriteError as WriteError
-    from autocolor.files import read_scene as read_scene
     from autocolor.files.picture_file import read_picture as read_picture
     from autocolor.files.picture_file import write_picture as write_picture
+    from autocolor.files.scene_sources import read_scene as read_scene
     from autocolor.lighting.picture import Picture as Picture
     from autocolor.mapping.level_ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
@@ -61,7 +61,7 @@ _HOME = {
     "View": "scene.view",
     "WriteError": "errors",
     "read_picture": "files.picture_file",
-    "read_scene": "files",
+    "read_scene": "files.scene_sources",
     "render": "rendering",
     "scene_of": "scene.scene",
     "write_picture": "files.picture_file",

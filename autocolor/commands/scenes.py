@@ -37,7 +37,7 @@ def scene_options(command: Command) -> Command:
 
 def read(path: str, up: str) -> SceneReport:
     """The scene of a path, with a line on stderr for each thing that was repaired."""
-    from autocolor.files import read_scene_with_report
+    from autocolor.files.scene_sources import read_scene_with_report
 
     report = read_scene_with_report(path, up=up)
     for repair in report.repairs:

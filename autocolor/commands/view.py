@@ -34,7 +34,7 @@ def view(context: click.Context, scene: str, up: str, strict: bool, full_screen:
 def show_demo() -> None:
     """Show the built-in demo in the window."""
     from autocolor.commands.demo import demo_folder
-    from autocolor.files import read_scene
+    from autocolor.files.scene_sources import read_scene
 
     show(read_scene(demo_folder()))
 

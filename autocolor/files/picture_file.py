@@ -118,11 +118,6 @@ def read_picture(path: str | PathLike[str]) -> SavedPicture:
     return SavedPicture(picture, scene)
 
 
-def read_picture_scene(path: str | PathLike[str]) -> Scene:
-    """The scene of a picture file."""
-    return read_picture(path).scene
-
-
 def _damaged(source: Path, found: str) -> InputError:
     return InputError(
         f"{source.name}: a picture file must be whole and as autocolor wrote it, not {found};"

@@ -16,6 +16,9 @@ LARGEST_MESH_FILE: Final = 256 * 1024 * 1024
 LEAST_READ: Final = 1 << 20
 """Bytes asked for even of a file that says it has less."""
 
+HEAD: Final = 4096
+"""Bytes that tell what a file is."""
+
 UTF_8_MARK: Final = b"\xef\xbb\xbf"
 
 
@@ -47,6 +50,16 @@ def read_bytes(path: Path, largest: int) -> bytes:
             f"{path.name}: a file must have at most {largest:,} bytes, not more; divide it or thin it out"
         )
     return data.removeprefix(UTF_8_MARK)
+
+
+def read_head(path: Path) -> bytes:
+    """The first bytes of a regular file, to tell what it is; none where it cannot be read."""
+    try:
+        refuse_irregular(path, os.stat(path))
+        with open(path, "rb") as file:
+            return file.read(HEAD)
+    except (OSError, ValueError, InputError):
+        return b""
 
 
 def refuse_irregular(path: Path, status: os.stat_result) -> None:

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Unpack
 
 from autocolor.errors import AutocolorError
-from autocolor.files import read_scene
 from autocolor.files.file_stem import file_stem
+from autocolor.files.scene_sources import read_scene
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.defaults import OBJECT_COLORS, framed
 from autocolor.scene.scene import Scene

@@ -25,6 +25,7 @@ import numpy as np
 
 from autocolor.checks import LARGEST_COORDINATE, nearest
 from autocolor.errors import InputError
+from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
 from autocolor.files.repair.mesh_repair import mended
 from autocolor.files.repair.polygons import MeshReport, Polygons
@@ -203,3 +204,8 @@ def _header(
     if problems:
         raise InputError(problems)
     return [cells.index(column) if column in cells else None for column in columns]
+
+
+CSV_TABLES: Final = register(
+    MeshFormat("CSV", read_csv_tables, keys=("nodes", "polygons"), in_folder=("nodes.csv", "polygons.csv"))
+)

@@ -60,7 +60,7 @@ class SceneProblems:
         """Note what the reader of a mesh file says; its sentences have their own places."""
         if isinstance(error, MissingInputError):
             for sentence in error.problems:
-                self._note(Problem((*path, ""), sentence, names_key=True))
+                self._note(Problem(path, sentence, names_key=True))
             return
         self.all_missing = False
         self.count += len(error.problems)

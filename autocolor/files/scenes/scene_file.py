@@ -16,6 +16,7 @@ from typing import Any, Final
 from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes
+from autocolor.files.scenes.formats import SceneFormat, register
 from autocolor.files.scenes.problems import SceneProblems
 from autocolor.files.scenes.scene_meshes import mesh_file, meshes_of
 from autocolor.files.scenes.scene_report import SceneReport, scene_report
@@ -159,3 +160,6 @@ def _row(
         known = [key for key in keys_of(type(row)) if key != "name"]
         problems.note_all([unknown("name", known)], path)
     return row
+
+
+SCENE_FILE: Final = register(SceneFormat("scene file", read_scene_file, (".toml",), in_folder="scene.toml"))

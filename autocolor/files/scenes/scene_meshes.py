@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import read_entry
+from autocolor.files.meshes.formats import read_mesh
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
 from autocolor.files.repair.polygons import UPS, MeshReport
@@ -83,7 +83,7 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
     reports = []
     for source in sources:
         try:
-            reports.append(read_entry(source.files, up=source.entry.up, crease_angle=crease_angle))
+            reports.append(read_mesh(source.files, up=source.entry.up, crease_angle=crease_angle))
         except InputError as error:
             problems.note_file((*source.path, next(iter(source.files))), error)
     return reports

@@ -1,1 +1,3 @@
-"""Meshes in OBJ files (Wavefront): the plain files fast, the others line by line."""
+"""Meshes in OBJ files (Wavefront): plain files are read fast, others line by line."""
+
+from autocolor.files.meshes.obj import obj_file as obj_file

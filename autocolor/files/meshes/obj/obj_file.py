@@ -9,15 +9,21 @@ end in any of the three ways, continue after a backslash, and start with spaces 
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+from typing import Final
 
 from autocolor.errors import InputError
+from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.obj.lines import read_obj_lines
 from autocolor.files.meshes.obj.plain import read_plain_obj
 from autocolor.files.meshes.obj.statements import Statements
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
 from autocolor.files.repair.mesh_repair import mended
 from autocolor.files.repair.polygons import MeshReport, Polygons
+
+NODE_LINE: Final = re.compile(rb"^[ \t]*v([ \t]+[-+.0-9][^\s]*){3}", re.MULTILINE)
+"""A line of the node table."""
 
 
 def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) -> MeshReport:
@@ -45,3 +51,11 @@ def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) ->
         tuple(statements.numbers),
     )
     return mended(polygons, path.name, up=up, crease_angle=crease_angle, skipped=statements.sentences)
+
+
+def _begins(head: bytes) -> bool:
+    """Whether a file begins with lines of a node table, after comments and names."""
+    return NODE_LINE.search(head) is not None and b"\0" not in head
+
+
+OBJ: Final = register(MeshFormat("OBJ", read_obj, (".obj",), begins=_begins))

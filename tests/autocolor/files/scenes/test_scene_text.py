@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Scene
-from autocolor.files import read_scene_with_report
+from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.files.scenes.scene_text import scene_text
 from tests.autocolor.strategies import scenes
 

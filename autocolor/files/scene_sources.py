@@ -1,0 +1,97 @@
+"""Reading a scene from whatever it comes in: a folder, a scene file, a mesh file, a picture file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from autocolor.errors import InputError, UsageError
+from autocolor.files.meshes.formats import (
+    MeshFormat,
+    format_of,
+    format_of_folder,
+    mesh_suffixes,
+    read_mesh,
+)
+from autocolor.files.reading import unnameable, unreadable
+from autocolor.files.repair.polygons import UPS
+from autocolor.files.scenes.formats import (
+    SceneFormat,
+    scene_format_named,
+    scene_format_within,
+    scene_formats,
+    scene_suffixes,
+)
+from autocolor.files.scenes.scene_report import SceneReport, scene_report
+from autocolor.scene.scene import Scene
+
+PathLike = str | os.PathLike[str]
+
+
+def read_scene(path: PathLike, *, strict: bool = False, up: str = "z", outside: bool = False) -> Scene:
+    """The scene of a folder, a scene file (.toml), a mesh file (.obj) or a picture file (.npz).
+
+    A folder has a `scene.toml`, or `nodes.csv` and `polygons.csv`. What is missing is created. `up` is the up
+    axis of a mesh that is read without a scene file; `outside` allows a scene file to name files outside its
+    folder; `strict` refuses what would otherwise be repaired.
+    Raises InputError with every problem, MissingInputError where there is no such file.
+    """
+    report = read_scene_with_report(path, up=up, outside=outside)
+    if strict and report.repairs:
+        raise InputError([f"{repair}; strict reading repairs nothing" for repair in report.repairs])
+    return report.scene
+
+
+def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = False) -> SceneReport:
+    """As `read_scene`, with sentences for what was repaired, skipped and created."""
+    if up not in UPS:
+        raise UsageError(f"up must be 'x', 'y' or 'z', not {up!r}")
+    path = Path(path)
+    try:
+        os.stat(path)
+    except OSError as error:
+        raise unreadable(path, error) from None
+    except ValueError:
+        raise unnameable(path) from None
+
+    path, found = _format(path)
+    if isinstance(found, SceneFormat):
+        if up != "z":
+            raise UsageError(f"up must go with a mesh, not with {path}, which says its own; leave it out")
+        return found.read(path, outside=outside)
+    if path.is_dir():
+        names = dict(zip(found.keys, found.in_folder, strict=True))
+        return _bare_mesh({key: path / name for key, name in names.items()}, path.resolve().name, up)
+    return _bare_mesh({"file": path}, path.stem, up)
+
+
+def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
+    """What a folder or a file is, and the file to read for a folder that has a scene file."""
+    found: SceneFormat | MeshFormat | None
+    if path.is_dir():
+        for each in scene_formats():
+            if each.in_folder is not None and (path / each.in_folder).exists():
+                return path / each.in_folder, each
+        found = format_of_folder(path)
+        rule = (
+            "a scene's folder must have a scene.toml, or nodes.csv and polygons.csv, not neither; name the"
+            " mesh file to read that alone"
+        )
+    else:
+        found = scene_format_named(path) or format_of(path) or scene_format_within(path)
+        *others, last = *scene_suffixes(), *mesh_suffixes()
+        rule = (
+            f"a scene must be a folder, or a file that ends in {', '.join(others)} or {last}, not in"
+            f" {path.suffix!r}; name one of these"
+        )
+    if found is None:
+        raise InputError(f"{path}: {rule}")
+    return path, found
+
+
+def _bare_mesh(files: Mapping[str, Path], name: str, up: str) -> SceneReport:
+    """The scene of a mesh, with everything else created."""
+    read = read_mesh(files, up=up)
+    entry = {**{key: file.name for key, file in files.items()}, "up": up}
+    return scene_report(read.mesh, repairs=read.repairs, mesh_files=(entry,), name=name or "scene")

@@ -1,0 +1,21 @@
+"""The scene of a picture file, as a format that scenes come in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from autocolor.files.picture_file import read_picture
+from autocolor.files.scenes.formats import SceneFormat, register
+from autocolor.files.scenes.scene_report import SceneReport
+
+
+def read_picture_scene(path: Path, *, outside: bool = False) -> SceneReport:
+    """The scene of a picture file, which names no other files. Raises InputError."""
+    return SceneReport(read_picture(path).scene)
+
+
+PICTURE_FILE = register(
+    SceneFormat(
+        "picture file", read_picture_scene, (".npz",), begins=lambda head: head.startswith(b"PK\x03\x04")
+    )
+)
