@@ -7,12 +7,15 @@ They derive from the columns, and type checkers want them written out:
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 from autocolor.scene.columns import Row, fields_of, keys_of
 from autocolor.scene.lights import Flap, Flaps, Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
 from autocolor.scene.view import View
+
+ROOT = Path(__file__).resolve().parents[1]
 
 CLASSES: tuple[type[Row], ...] = (Flap, Flaps, Light, Part, Reflectance, Paint, Surface, View)
 

@@ -2,12 +2,56 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final, Protocol
 
 from autocolor.screens.keys import Binding, Chord
 
-if TYPE_CHECKING:
-    from autocolor.screens.viewer import Viewer
+
+class Actions(Protocol):
+    """What the keys make a viewer do."""
+
+    def show_help(self) -> object:
+        """Show the help page, or go back."""
+
+    def show_entries(self) -> object:
+        """Show the entries, or go back."""
+
+    def turn(self, right: float, up: float) -> object:
+        """Go around the object by degrees."""
+
+    def move(self, ratio: float) -> object:
+        """Move closer or farther."""
+
+    def tilt(self, degrees: float) -> object:
+        """Turn the picture plane."""
+
+    def rescale(self) -> object:
+        """Fill the picture with the object."""
+
+    def switch_light(self, number: int) -> object:
+        """Switch a light on or off."""
+
+    def choose_surface(self, step: int) -> object:
+        """Choose another surface."""
+
+    def blend(self, step: float) -> object:
+        """Move the blend."""
+
+    def repaint(self, step: int) -> object:
+        """Give another object color."""
+
+    def undo(self) -> object:
+        """Undo a step."""
+
+    def redo(self) -> object:
+        """Do a step again."""
+
+    def save(self) -> object:
+        """Save."""
+
+    def escape(self) -> object:
+        """Go back one step."""
+
 
 TURN: Final = 5.0
 """Degrees that one press of an arrow goes around the object."""
@@ -15,7 +59,7 @@ TURN: Final = 5.0
 CLOSER: Final = 0.9
 BLEND: Final = 0.05
 
-BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
+BINDINGS: Final[tuple[Binding[Actions], ...]] = (
     Binding((Chord("f1"),), "this help, and back", lambda viewer, _: viewer.show_help()),
     Binding(
         (Chord("f4"),), "the 1024 entries of the table, and back", lambda viewer, _: viewer.show_entries()

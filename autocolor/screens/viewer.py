@@ -17,7 +17,7 @@ from autocolor.scene.changes import PaintChanges
 from autocolor.scene.defaults import OBJECT_COLORS, framed
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
-from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS
+from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS, Actions
 from autocolor.screens.entries_screen import draw_entries
 from autocolor.screens.help_screen import draw_help
 from autocolor.screens.keys import Binding
@@ -35,7 +35,7 @@ class Viewer:
         self.page = "picture"
         self.message = ""
         self._warned = False
-        self._edited_by: tuple[Binding[Viewer], int] | None = None
+        self._edited_by: tuple[Binding[Actions], int] | None = None
         self._same_step = False
         self._open(scene)
 
@@ -78,7 +78,7 @@ class Viewer:
             return self._run(binding, number, repeated)
         return False
 
-    def _run(self, binding: Binding[Viewer], number: int, repeated: bool) -> bool:
+    def _run(self, binding: Binding[Actions], number: int, repeated: bool) -> bool:
         warned, self.message = self._warned, ""
         before, last = self.studio.scene, self._edited_by
         self._same_step = repeated and binding.held and last == (binding, number)
