@@ -23,8 +23,8 @@ from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Lender, lit
 from autocolor.lighting.picture import Picture
-from autocolor.scene.columns import Tier, is_same
-from autocolor.scene.scene import Scene
+from autocolor.scene.columns import Tier
+from autocolor.scene.scene import Scene, costs_at_least
 from autocolor.visibility.visible_points import Seen
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
@@ -72,7 +72,7 @@ def rendering(
     if before is not None and (before.picture.lines, before.picture.elements) != (lines, elements):
         before = None
     if before is not None and _sees_the_same(before.scene, scene):
-        if is_same(before.scene, scene, Tier.MIX):
+        if not costs_at_least(before.scene, scene, Tier.MIX):
             return Rendering(scene, before.seen, before.picture)
         seen = before.seen
     else:
@@ -88,7 +88,8 @@ def rendering(
 
 def _sees_the_same(old: Scene, new: Scene) -> bool:
     """Whether the visible points are the same; what is kept of a point includes the number of its surface."""
-    return is_same(old, new, Tier.FRAME) and old.surface_number_of_part == new.surface_number_of_part
+    is_other = costs_at_least(old, new, Tier.FRAME)
+    return not is_other and old.surface_number_of_part == new.surface_number_of_part
 
 
 @cache

@@ -13,8 +13,8 @@ from autocolor.lighting.picture import Picture
 from autocolor.mapping.color_blending import entries_of
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
-from autocolor.scene.columns import Tier, is_same
-from autocolor.scene.scene import Scene
+from autocolor.scene.columns import Tier
+from autocolor.scene.scene import Scene, costs_at_least
 from autocolor.scene.surfaces import Surface
 
 
@@ -76,7 +76,7 @@ class DisplayImage:
 
 def display_image(scene: Scene, picture: Picture, before: DisplayImage | None = None) -> DisplayImage:
     """What the display holds of a scene with its picture; what did not change is that of `before`."""
-    if before is not None and is_same(before.scene, scene, Tier.LEVELS):
+    if before is not None and not costs_at_least(before.scene, scene, Tier.LEVELS):
         ranges = before.ranges
     else:
         in_use = {scene.parts[number].surface for number in scene.mesh.parts_in_use}

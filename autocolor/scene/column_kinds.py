@@ -22,8 +22,8 @@ from autocolor.scene.columns import (
     RowError,
     Tier,
     changed,
+    cost,
     fields_of,
-    is_same,
     keys_of,
     made,
     plain,
@@ -318,8 +318,14 @@ class PointOrName(Referring):
 
 def references_of(cls: type[Row]) -> Mapping[str, Referring]:
     """The fields of a row class that refer to rows of other tables."""
-    kinds = {name: field.column.kind for name, field in fields_of(cls).items()}
-    return {name: kind for name, kind in kinds.items() if isinstance(kind, Referring)}
+    found = _REFERENCES.get(cls)
+    if found is None:
+        kinds = {name: field.column.kind for name, field in fields_of(cls).items()}
+        found = _REFERENCES[cls] = {name: kind for name, kind in kinds.items() if isinstance(kind, Referring)}
+    return found
+
+
+_REFERENCES: Final[dict[type[Row], Mapping[str, Referring]]] = {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -341,8 +347,8 @@ class Instance(Leaf):
     def written(self, name: str, value: Any) -> Mapping[str, object]:
         return {}
 
-    def is_same(self, one: Any, other: Any, tier: Tier, own: Tier) -> bool:
-        return own < tier or one is other
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
+        return own
 
 
 @dataclass(frozen=True)
@@ -384,10 +390,8 @@ class Nested(Kind):
     def written(self, name: str, value: Any) -> Mapping[str, object]:
         return plain(value) if self.inline else {name: plain(value)}
 
-    def is_same(self, one: Any, other: Any, tier: Tier, own: Tier) -> bool:
-        if one is None or other is None:
-            return own < tier
-        return is_same(one, other, tier)
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
+        return own if one is None or other is None else cost(one, other)
 
     def _path(self, path: Path) -> Path:
         return path[:-1] if self.inline else path
@@ -447,8 +451,8 @@ class Variant(Kind):
     def written(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: self.name_of(value), **plain(value)}
 
-    def is_same(self, one: Any, other: Any, tier: Tier, own: Tier) -> bool:
-        return is_same(one, other, tier) if type(one) is type(other) else own < tier
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
+        return cost(one, other, own)
 
 
 @dataclass(frozen=True)
@@ -484,10 +488,12 @@ class Rows(Kind):
     def written(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: [plain(row) for row in value]}
 
-    def is_same(self, one: Any, other: Any, tier: Tier, own: Tier) -> bool:
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         if len(one) != len(other):
-            return own < tier
-        return all(a is b or is_same(a, b, tier) for a, b in zip(one, other, strict=True))
+            return own
+        pairs = zip(one, other, strict=True)
+        costs = [cost(a, b) for a, b in pairs if a is not b]
+        return max((each for each in costs if each is not None), default=None)
 
 
 def _attempted(make: Callable[[], object], path: Path, problems: list[Problem]) -> Any:

@@ -4,7 +4,7 @@
 
 A row of a table is a frozen dataclass that derives from `Row`. From its columns derive the checks at
 construction (`Row`), changes of some fields (`changed`), reading a row from plain values such as a scene file
-has (`made`), writing one (`plain`), and what an edit costs (`same_at`). The kinds of columns are in
+has (`made`), writing one (`plain`), and what an edit costs (`cost`). The kinds of columns are in
 `column_kinds`.
 
 A key is the name that a column has in a file: that of the field. The columns of a row that is `inline` stand
@@ -135,9 +135,9 @@ class Kind:
         """The keys and plain values of a field of this name; a key whose value is None is not written."""
         return {name: value}
 
-    def is_same(self, one: Any, other: Any, tier: Tier, own: Tier) -> bool:
-        """Whether two values differ in nothing that costs a tier or more; `own` is the column's tier."""
-        return own < tier or one is other or bool(one == other)
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
+        """What a change from one value to another costs, None for no change; `own` is the column's tier."""
+        return None if one == other else own
 
 
 @dataclasses.dataclass(frozen=True)
@@ -249,7 +249,8 @@ def check(row: Row, fields: Mapping[str, Field]) -> None:
         if value is not REFUSED and not (is_optional and value is None):
             values[name] = value = column.kind.held(value, (name,), problems)
         is_refused |= value is REFUSED
-    problems.extend(row.rules())
+    if type(row).rules is not Row.rules:
+        problems.extend(row.rules())
     if problems or is_refused:
         raise RowError(problems, row_label(row))
 
@@ -264,7 +265,8 @@ def changed(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
     values = _values_by_field(row, changes, problems)
     # Only the columns are copied: what a row computed of itself and keeps may depend on them.
     copy = object.__new__(type(row))
-    vars(copy).update((name, vars(row)[name]) for name in fields)
+    present = vars(row)
+    vars(copy).update(present if len(present) == len(fields) else {name: present[name] for name in fields})
     vars(copy).update(values)
     try:
         check(copy, {name: fields[name] for name in values})
@@ -292,7 +294,7 @@ def _values_by_field(row: Row, changes: Mapping[str, Any], problems: list[Proble
     for name, table in inside.items():
         present = values.get(name, vars(row)[name])
         values[name] = fields[name].column.kind.changed(present, table, (name,), problems)
-    if any(values.get(name) is not None for name in row.alternatives):
+    if row.alternatives and any(values.get(name) is not None for name in row.alternatives):
         values = {**dict.fromkeys(row.alternatives), **values}
     return values
 
@@ -340,17 +342,21 @@ def plain(row: Row) -> dict[str, object]:
     }
 
 
-def is_same(one: Row, other: Row, tier: Tier) -> bool:
-    """Whether two rows differ in nothing that costs an edit of a tier or more."""
-    if one is other:
-        return True
+def cost(one: Row, other: Row, own: Tier = Tier.FRAME) -> Tier | None:
+    """What an edit costs that changes one row to another: the most of its columns, None where all are equal.
+
+    Rows of different classes cost `own`.
+    """
     if type(one) is not type(other):
-        return False
+        return own
     ones, others = vars(one), vars(other)
-    return all(
-        ones[name] is others[name] or column.kind.is_same(ones[name], others[name], tier, column.tier)
-        for name, (column, _, _) in fields_of(type(one)).items()
-    )
+    most: Tier | None = None
+    for name, (column, _, _) in fields_of(type(one)).items():
+        if ones[name] is not others[name]:
+            costs = column.kind.cost(ones[name], others[name], column.tier)
+            if costs is not None and (most is None or costs > most):
+                most = costs
+    return most
 
 
 def unknown(name: object, known: Iterable[str]) -> Problem:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import islice
 from typing import Annotated, Any, Final, TypeVar, Unpack
 
@@ -41,8 +41,8 @@ from autocolor.scene.columns import (
     Row,
     Tier,
     changed,
+    cost,
     fields_of,
-    is_same,
     row_label,
 )
 from autocolor.scene.curves import CURVES, CurvePoints
@@ -138,7 +138,7 @@ class Scene(Row):
 
     def equals(self, other: Scene) -> bool:
         """Whether every column is equal; meshes are compared by identity."""
-        return is_same(self, other, Tier.NOTHING)
+        return cost_of_edit(other, self) is None
 
     def light(self, name: str) -> Light:
         """The light of that name; UsageError with the nearest right name when there is none."""
@@ -215,6 +215,21 @@ def _missing_names(
                 table = f"the {referring.table.removesuffix('s')} table"
                 text = f"{row_label(row)}: {name} {shown(wanted)} is not in {table}{nearest(wanted, known)}"
                 yield Problem((), text)
+
+
+@lru_cache(maxsize=1)
+def cost_of_edit(old: Scene, new: Scene) -> Tier | None:
+    """What an edit costs that changes one scene to another, None where they are equal.
+
+    The answer is kept, for whoever takes part in an edit asks for it: the studio, the renderer, the mapping.
+    """
+    return cost(old, new)
+
+
+def costs_at_least(old: Scene, new: Scene, tier: Tier) -> bool:
+    """Whether an edit that changes one scene to another costs a tier or more."""
+    costs = cost_of_edit(old, new)
+    return costs is not None and costs >= tier
 
 
 def scene_of(

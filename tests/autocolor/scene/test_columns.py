@@ -19,8 +19,8 @@ from autocolor.scene.columns import (
     RowError,
     Tier,
     changed,
+    cost,
     fields_of,
-    is_same,
     keys_of,
     made,
     plain,
@@ -168,15 +168,13 @@ def test_plain_values_are_texts_numbers_switches_lists_and_tables(scene: Scene) 
     check(plain(scene))
 
 
-def test_rows_are_the_same_at_a_tier_where_nothing_that_costs_as_much_differs() -> None:
+def test_an_edit_costs_the_most_of_what_it_changes() -> None:
     span = Span("a", 1)
-    assert is_same(span, Span("b", 1), Tier.ENTRIES)
-    assert not is_same(span, Span("b", 1), Tier.NOTHING)
-    longer = Span("a", 1, length=3)
-    assert is_same(span, longer, Tier.LIGHT)
-    assert not is_same(span, longer, Tier.MIX)
-    assert not is_same(span, Span("a", 2), Tier.LIGHT)
-    assert is_same(span, Span("a", 2), Tier.FRAME)
+    assert cost(span, Span("a", 1)) is None
+    assert cost(span, Span("b", 1)) == Tier.NOTHING
+    assert cost(span, Span("a", 1, length=3)) == Tier.MIX
+    assert cost(span, Span("b", 2, length=3)) == Tier.LIGHT
+    assert cost(span, Surface("a"), Tier.LEVELS) == Tier.LEVELS
 
 
 @pytest.mark.parametrize(
@@ -189,19 +187,17 @@ def test_rows_are_the_same_at_a_tier_where_nothing_that_costs_as_much_differs() 
         ({"object_color": "#102030"}, Tier.ENTRIES),
         ({"two_sided": False}, Tier.FRAME),
         ({"levels": 7}, Tier.LEVELS),
+        ({"blend": 0.1, "diffuse": 0.1}, Tier.MIX),
     ],
 )
-def test_a_change_costs_the_tier_of_its_column_and_no_more(change: dict[str, Any], tier: Tier) -> None:
-    surface = Surface("body")
-    other = changed(surface, change)
-    for least in Tier:
-        assert is_same(surface, other, least) == (least > tier)
+def test_a_change_of_a_surface_costs_the_tier_of_its_column(change: dict[str, Any], tier: Tier) -> None:
+    assert cost(Surface("body"), changed(Surface("body"), change)) == tier
 
 
 @given(surfaces("body"), surfaces("body"))
-def test_at_the_lowest_tier_rows_are_the_same_where_they_are_equal(one: Surface, other: Surface) -> None:
-    assert is_same(one, other, Tier.NOTHING) == (one == other)
-    assert is_same(one, dataclasses.replace(one), Tier.NOTHING)
+def test_an_edit_costs_nothing_at_all_where_rows_are_equal(one: Surface, other: Surface) -> None:
+    assert (cost(one, other) is None) == (one == other)
+    assert cost(one, dataclasses.replace(one)) is None
 
 
 @pytest.mark.parametrize("cls", [Flap, Light, Surface, View, Scene])
