@@ -23,8 +23,8 @@ from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.level_ranges import WORDS, LevelRange
 from autocolor.rendering import rendering
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges, ViewChanges
-from autocolor.scene.columns import fields_of
-from autocolor.scene.scene import Scene
+from autocolor.scene.columns import Tier, fields_of
+from autocolor.scene.scene import Scene, costs_at_least
 from autocolor.scene.surfaces import Paint
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
 
@@ -188,8 +188,10 @@ class Studio:
 
     def _show(self, scene: Scene) -> None:
         """Compute what changed and send it; nothing is kept of a scene that is refused."""
-        picture, before = self.picture, self._shown
-        rendered = rendering(scene, picture.lines, picture.elements, self._rendering)
+        before, rendered = self._shown, self._rendering
+        if costs_at_least(before.scene, scene, Tier.MIX):
+            lines, elements = before.picture.lines, before.picture.elements
+            rendered = rendering(scene, lines, elements, rendered)
         now = display_image(scene, rendered.picture, before)
         _send(before, now, self._display)
         self._rendering, self._shown = rendered, now

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
@@ -89,12 +89,12 @@ class Number(Leaf):
         )
 
     def accepted(self, value: Any) -> float:
-        _require(not isinstance(value, NO_NUMBERS))
+        if isinstance(value, NO_NUMBERS):
+            raise TypeError
         number = float(value)
-        if number == self.endless:
-            return number
-        _require(math.isfinite(number) and self.at_least <= number <= self.at_most)
-        _require(not (self.above and number == self.at_least))
+        is_within = self.at_least <= number <= self.at_most and not (self.above and number == self.at_least)
+        if number != self.endless and not (is_within and math.isfinite(number)):
+            raise ValueError
         return number
 
     def written(self, name: str, value: float) -> Mapping[str, object]:
@@ -376,14 +376,20 @@ class Nested(Kind):
         if isinstance(value, self.row_class):
             return value
         if isinstance(value, Mapping):
-            return _attempted(lambda: made(self.row_class, value), self._path(path), problems)
+            try:
+                return made(self.row_class, value)
+            except RowError as error:
+                return _refused(error, self._path(path), problems)
         rule = f"must be a {self.row_class.__name__}" if self.inline else self.rule()
         problems.append(Problem(path, f"{rule}, not {shown(value)}"))
         return REFUSED
 
     def changed(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
         if isinstance(present, self.row_class):
-            return _attempted(lambda: changed(present, table), self._path(path), problems)
+            try:
+                return changed(present, table)
+            except RowError as error:
+                return _refused(error, self._path(path), problems)
         # What was refused or is not there yet is made; something else is refused where it is held.
         return self.held(table, path, problems) if present in (None, REFUSED) else present
 
@@ -446,7 +452,10 @@ class Variant(Kind):
                 )
             )
             del keys[key]
-        return _attempted(lambda: changed(value, keys), path[:-1], problems) if keys else value
+        try:
+            return changed(value, keys) if keys else value
+        except RowError as error:
+            return _refused(error, path[:-1], problems)
 
     def written(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: self.name_of(value), **plain(value)}
@@ -496,10 +505,7 @@ class Rows(Kind):
         return max((each for each in costs if each is not None), default=None)
 
 
-def _attempted(make: Callable[[], object], path: Path, problems: list[Problem]) -> Any:
-    """What is made, or REFUSED after its problems were noted under a path."""
-    try:
-        return make()
-    except RowError as error:
-        problems.extend(problem.under(path) for problem in error.found)
-        return REFUSED
+def _refused(error: RowError, path: Path, problems: list[Problem]) -> Any:
+    """REFUSED, after the problems of a row inside were noted under a path."""
+    problems.extend(problem.under(path) for problem in error.found)
+    return REFUSED
