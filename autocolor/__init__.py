@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from autocolor.files.picture_file import read_picture as read_picture
     from autocolor.files.picture_file import write_picture as write_picture
     from autocolor.files.scene_sources import read_scene as read_scene
+    from autocolor.images import image as image
+    from autocolor.images import save_image as save_image
     from autocolor.lighting.picture import Picture as Picture
     from autocolor.mapping.level_ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
@@ -60,9 +62,11 @@ _HOME = {
     "UsageError": "errors",
     "View": "scene.view",
     "WriteError": "errors",
+    "image": "images",
     "read_picture": "files.picture_file",
     "read_scene": "files.scene_sources",
     "render": "rendering",
+    "save_image": "images",
     "scene_of": "scene.scene",
     "write_picture": "files.picture_file",
 }

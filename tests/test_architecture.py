@@ -19,8 +19,8 @@ PUBLIC_NAMES = {
     "autocolor": [
         "AutocolorError", "Flap", "Flaps", "InputError", "LevelRange", "Light", "Mesh", "MissingInputError",
         "OutputError", "Paint", "Part", "Picture", "Reflectance", "Scene", "Studio", "Surface",
-        "UnavailableError", "UsageError", "View", "WriteError", "read_picture", "read_scene", "render",
-        "scene_of", "write_picture",
+        "UnavailableError", "UsageError", "View", "WriteError", "image", "read_picture", "read_scene",
+        "render", "save_image", "scene_of", "write_picture",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
@@ -32,7 +32,8 @@ PUBLIC_NAMES = {
 }  # fmt: skip
 
 KNOWING_THE_DISPLAY = (
-    "autocolor.studio", "autocolor.lighting.picture", "autocolor.__main__", "autocolor.files.writing",
+    "autocolor.__main__", "autocolor.files.writing", "autocolor.images", "autocolor.lighting.picture",
+    "autocolor.studio",
 )  # fmt: skip
 ROOMS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
 DOORS_OF_THE_DISPLAY = {
@@ -202,6 +203,12 @@ def test_what_type_checkers_see_is_what_can_be_imported(package: str) -> None:
         for alias in statement.names
     }
     assert seen == set(PUBLIC_NAMES[package])
+
+
+@pytest.mark.parametrize("package", PUBLIC_NAMES)
+def test_no_public_name_is_hidden_by_a_module_of_the_same_name(package: str) -> None:
+    modules = {name.removeprefix(f"{package}.").split(".")[0] for name in MODULES if name != package}
+    assert modules.isdisjoint(PUBLIC_NAMES[package])
 
 
 def test_a_scene_is_rendered_and_shown_without_a_screen() -> None:

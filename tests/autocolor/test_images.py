@@ -1,0 +1,42 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from PIL import Image
+
+from autocolor import OutputError, Scene, Studio, image, render, save_image, scene_of
+from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import cube
+from tests.autocolor.strategies import scenes
+
+
+@given(scenes())
+def test_the_colors_are_those_of_the_field_of_a_display(scene: Scene) -> None:
+    display = Ramtek9300()
+    studio = Studio(scene, display)
+    assert (image(scene, studio.picture) == display.field()).all()
+
+
+def test_a_picture_is_colored_by_any_scene_that_has_its_surfaces() -> None:
+    scene = scene_of(cube())
+    picture = render(scene, 48, 64)
+    blue = scene.with_surface("cube", object_color="#0000ff", light_color="#0000ff")
+    assert image(scene, picture).shape == (48, 64, 3)
+    colors = image(blue, picture)
+    assert not colors[..., :2].any()
+    assert colors[..., 2].max() == 255
+    assert (colors[picture.surface_number == 0] == scene.background).all()
+
+
+def test_an_image_is_written_as_a_png_and_never_over_a_file_unasked(tmp_path: Path) -> None:
+    scene = scene_of(cube())
+    picture = render(scene, 48, 64)
+    path = tmp_path / "cube.png"
+    save_image(path, scene, picture)
+    assert (np.asarray(Image.open(path)) == image(scene, picture)).all()
+    with pytest.raises(OutputError, match="exists"):
+        save_image(path, scene, picture)
+    save_image(path, scene, picture, overwrite=True)
