@@ -212,7 +212,8 @@ class Choice(Leaf):
     names: tuple[str, ...]
 
     def rule(self) -> str:
-        return f"must be {' or '.join(map(repr, self.names))}"
+        *others, last = map(repr, self.names)
+        return f"must be {', '.join(others)} or {last}" if others else f"must be {last}"
 
     def accepts(self) -> str:
         return f"Literal[{', '.join(map(json.dumps, self.names))}]"

@@ -41,7 +41,13 @@ class View(Row):
         float, Column(Number(), Tier.FRAME, "Turns the horizontal axis of the picture plane.", "degrees")
     ] = 0.0
     field_of_view: Annotated[
-        float, Column(Number(at_least=0.01, at_most=179), Tier.FRAME, "The vertical one.", "degrees")
+        float,
+        Column(
+            Number(at_least=0.01, at_most=179),
+            Tier.FRAME,
+            "How much it takes in, from top to bottom.",
+            "degrees",
+        ),
     ] = 30.0
 
     def rules(self) -> Iterator[Problem]:

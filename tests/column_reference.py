@@ -1,0 +1,95 @@
+"""The reference of scene files: every table and key, as the columns describe them.
+
+`python -m tests.column_reference > docs/COLUMNS.md` writes it.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from autocolor.files.scenes.scene_meshes import MeshEntry
+from autocolor.scene.columns import Column, Row, Tier, fields_of, keys_of
+from autocolor.scene.lights import Flap, Light
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Part, Surface
+from autocolor.scene.view import View
+
+ROOT = Path(__file__).resolve().parents[1]
+
+HEAD = """# The columns
+
+Every table of a scene and every key, as `scene.toml`, `--set`, Python and picture files have them. The page is
+written from the columns in `autocolor/scene` by `python -m tests.column_reference > docs/COLUMNS.md`.
+
+A key that has no default must be given; one whose default is "absent" may be left out. The last column says
+what an edit of it costs:
+
+| an edit costs | what is computed again |
+|---|---|
+| nothing | nothing |
+| entries | entries of the lookup table; no word is written |
+| levels | the levels, and so the words |
+| mix | the weighted sum of the lights |
+| light | one light, or all lights on one surface |
+| frame | everything |
+"""
+
+TABLES: tuple[tuple[str, str, type[Row]], ...] = (
+    ("Keys outside of all tables", "", Scene),
+    ("`[view]`", "", View),
+    ("`[[mesh]]`", "One for each mesh: a `file`, or `nodes` and `polygons`.", MeshEntry),
+    ("`[parts.NAME]`", "", Part),
+    ("`[surfaces.NAME]`", "", Surface),
+    ("`[[lights]]`", "", Light),
+    ("`flaps.x`, `flaps.y`, `flaps.z` of a light", "", Flap),
+)
+
+LEFT_OUT = {
+    Scene: ("mesh", "parts", "surfaces", "lights", "view", "name"),
+    Part: ("name",),
+    Surface: ("name",),
+}
+"""What stands in a header, or has a table of its own."""
+
+
+def document() -> str:
+    """The whole reference."""
+    return "\n".join([HEAD, *(line for table in TABLES for line in lines_of(*table))]) + "\n"
+
+
+def lines_of(title: str, text: str, cls: type[Row]) -> Iterator[str]:
+    """The lines of one table."""
+    yield f"## {title}\n"
+    if text:
+        yield f"{text}\n"
+    yield "| key | what it is | unit | value | default | an edit costs |\n|---|---|---|---|---|---|"
+    for key, (column, field) in keys_of(cls).items():
+        if key not in LEFT_OUT.get(cls, ()):
+            rule = column.kind.rule().removeprefix("must be ")
+            cells = (f"`{key}`", column.help, column.unit, rule, default(cls, key, field), tier(column))
+            yield f"| {' | '.join(cells)} |"
+    yield ""
+
+
+def tier(column: Column) -> str:
+    """What an edit costs, in small letters."""
+    return Tier(column.tier).name.lower()
+
+
+def default(cls: type[Row], key: str, field: str) -> str:
+    """The default of a key, or nothing."""
+    described = fields_of(cls)[field]
+    if described.default is None:
+        return ""
+    value = described.default()
+    if value is None:
+        return "absent"
+    written = described.column.kind.written(field, value)
+    return f"`{json.dumps(written[key])}`" if written.get(key) not in (None, {}) else "absent"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(document())

@@ -1,0 +1,18 @@
+from __future__ import annotations
+
+import pytest
+
+from autocolor.scene.columns import Row, keys_of
+from tests.column_reference import LEFT_OUT, ROOT, TABLES, document, lines_of
+
+
+def test_the_document_is_up_to_date() -> None:
+    is_up_to_date = (ROOT / "docs" / "COLUMNS.md").read_text("utf-8") == document()
+    assert is_up_to_date, "run: python -m tests.column_reference > docs/COLUMNS.md"
+
+
+@pytest.mark.parametrize(("title", "text", "cls"), TABLES)
+def test_every_key_of_a_table_has_a_line_with_what_it_is(title: str, text: str, cls: type[Row]) -> None:
+    lines = "\n".join(lines_of(title, text, cls))
+    for key, (column, _) in keys_of(cls).items():
+        assert (f"| `{key}` | {column.help} |" in lines) == (key not in LEFT_OUT.get(cls, ()))
