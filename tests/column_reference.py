@@ -21,8 +21,8 @@ ROOT = Path(__file__).resolve().parents[1]
 
 HEAD = """# The columns
 
-Every table of a scene and every key, as `scene.toml`, `--set`, Python and picture files have them. The page is
-written from the columns in `autocolor/scene` by `python -m tests.column_reference > docs/COLUMNS.md`.
+Every table of a scene and every key, as `scene.toml`, `--set`, Python and picture files have them. The page
+is written from the columns in `autocolor/scene` by `python -m tests.column_reference > docs/COLUMNS.md`.
 
 A key that has no default must be given; one whose default is "absent" may be left out. The last column says
 what an edit of it costs:

@@ -57,6 +57,12 @@ def test_what_takes_long_is_left_out_of_a_quick_run() -> None:
     assert row(target, SECONDS, {}, quick=False)["verdict"] == "met"
 
 
+def test_what_is_not_built_yet_has_its_bound_and_is_never_met() -> None:
+    measured = row(Target("a row", "ms", 33), SECONDS, {}, quick=False)
+    assert (measured["measured"], measured["verdict"]) == (None, "skipped")
+    assert (measured["bound"], measured["reason"]) == (33, "it is not built yet")
+
+
 def test_a_peer_that_is_not_installed_is_named_with_what_to_install(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -27,7 +27,7 @@ from autocolor.checks import LARGEST_COORDINATE, nearest
 from autocolor.errors import InputError
 from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
-from autocolor.files.repair.mesh_repair import mended
+from autocolor.files.repair.mesh_repair import repaired
 from autocolor.files.repair.polygons import MeshReport, Polygons
 
 MOST_PROBLEMS: Final = 20
@@ -71,7 +71,7 @@ def read_csv_tables(
         np.array(parts, np.intp),
         tuple(names),
     )
-    return mended(table, polygons.name, up=up, crease_angle=crease_angle)
+    return repaired(table, polygons.name, up=up, crease_angle=crease_angle)
 
 
 def _nodes(problems: Problems, path: Path) -> tuple[list[float], dict[int, int]]:

@@ -16,7 +16,7 @@ import numpy as np
 from autocolor.arrays import Flags, Floats, Numbers, cross, lengths
 from autocolor.errors import InputError
 from autocolor.files.repair.polygon_split import split_polygons
-from autocolor.files.repair.polygons import MeshReport, Polygons, standing
+from autocolor.files.repair.polygons import MeshReport, Polygons, upright
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.node_normals import CREASE_ANGLE
 
@@ -27,7 +27,7 @@ FLAT: Final = 1e-12
 """Assumed: twice the area of a triangle over the square of the polygon's size, below which it has none."""
 
 
-def mended(
+def repaired(
     polygons: Polygons,
     place: str,
     *,
@@ -39,7 +39,7 @@ def mended(
 
     Raises InputError where no polygon is left.
     """
-    coordinates = standing(polygons.coordinates, up)
+    coordinates = upright(polygons.coordinates, up)
     repairs = list(skipped)
     corners, counts, shortened = _without_repeats(polygons.corners, polygons.corner_counts)
     few = counts < 3
@@ -60,7 +60,7 @@ def mended(
     left = np.zeros(len(counts), np.bool_)
     left[owners] = True
     noted = (
-        (shortened & ~few & left, "{} with repeated corners {} mended"),
+        (shortened & ~few & left, "{} with repeated corners {} repaired"),
         (few, "{} with fewer than three different corners {} dropped"),
         (~few & ~left, "{} without area {} dropped"),
         ((counts > 4) & left, "{} with more than four corners {} split"),

@@ -1,4 +1,4 @@
-"""Polygons as a file has them, before they are mended: any number of corners, repeated ones among them."""
+"""Polygons as a file has them, before they are repaired: any number of corners, repeated ones among them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class MeshReport:
     repairs: tuple[str, ...] = ()
 
 
-def standing(coordinates: Floats, up: str) -> Floats:
+def upright(coordinates: Floats, up: str) -> Floats:
     """The coordinates with the file's up axis as the world's z.
 
     Each is an even permutation, so that polygons keep their winding: y up makes (x, y, z) to (x, -z, y),

@@ -19,7 +19,7 @@ from autocolor.files.meshes.obj.lines import read_obj_lines
 from autocolor.files.meshes.obj.plain import read_plain_obj
 from autocolor.files.meshes.obj.statements import Statements
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
-from autocolor.files.repair.mesh_repair import mended
+from autocolor.files.repair.mesh_repair import repaired
 from autocolor.files.repair.polygons import MeshReport, Polygons
 
 NODE_LINE: Final = re.compile(rb"^[ \t]*v([ \t]+[-+.0-9][^\s]*){3}", re.MULTILINE)
@@ -50,7 +50,7 @@ def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) ->
         tables.part_numbers,
         tuple(statements.numbers),
     )
-    return mended(polygons, path.name, up=up, crease_angle=crease_angle, skipped=statements.sentences)
+    return repaired(polygons, path.name, up=up, crease_angle=crease_angle, skipped=statements.sentences)
 
 
 def _begins(head: bytes) -> bool:

@@ -8,14 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.repair.mesh_repair import mended
-from autocolor.files.repair.polygons import MeshReport, Polygons, standing
+from autocolor.files.repair.mesh_repair import repaired
+from autocolor.files.repair.polygons import MeshReport, Polygons, upright
 
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [0, 0, 1]]
 
 
 def mesh_of(*polygons: list[int], coordinates: Any = SQUARE, up: str = "z") -> MeshReport:
-    return mended(
+    return repaired(
         Polygons(
             np.array(coordinates, np.float64),
             np.array([corner for polygon in polygons for corner in polygon], np.intp),
@@ -38,7 +38,7 @@ def test_a_sound_mesh_is_left_alone() -> None:
 def test_a_repeated_corner_makes_a_quad_a_triangle(quad: list[int]) -> None:
     report = mesh_of(quad)
     assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 2]]
-    assert report.repairs == ("a.obj: 1 polygon with repeated corners was mended",)
+    assert report.repairs == ("a.obj: 1 polygon with repeated corners was repaired",)
 
 
 @pytest.mark.parametrize("polygon", [[], [0], [0, 1], [0, 0, 1], [0, 1, 0], [0, 0, 0, 0], [0, 1, 1, 0]])
@@ -91,15 +91,15 @@ def test_size_does_not_matter(scale: float) -> None:
 
 def test_the_up_axis_becomes_z_and_windings_stay() -> None:
     axes = np.eye(3)
-    assert standing(axes, "z").tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-    assert standing(axes, "y").tolist() == [[1, 0, 0], [0, 0, 1], [0, -1, 0]]
-    assert standing(axes, "x").tolist() == [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
+    assert upright(axes, "z").tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    assert upright(axes, "y").tolist() == [[1, 0, 0], [0, 0, 1], [0, -1, 0]]
+    assert upright(axes, "x").tolist() == [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
     for up in "xyz":
-        assert np.linalg.det(standing(axes, up)) == 1
+        assert np.linalg.det(upright(axes, up)) == 1
 
 
 def test_turning_makes_no_negative_zero() -> None:
-    assert not np.signbit(standing(np.zeros((1, 3)), "y")).any()
+    assert not np.signbit(upright(np.zeros((1, 3)), "y")).any()
 
 
 @given(st.lists(st.lists(st.integers(0, 5), max_size=9), max_size=6))
