@@ -45,8 +45,8 @@ STEPS = (
     Step("autocolor.lighting.illumination", "lit", "rendering"),
     Step("autocolor.lighting.shading", "shade", "lit"),
     Step("autocolor.lighting.light_planes", "weigh", "lit"),
-    Step("autocolor.studio", "shown", FRAME),
-    Step("autocolor.mapping.intensity_mapping", "words_of", "shown"),
+    Step("autocolor.studio", "display_image", FRAME),
+    Step("autocolor.mapping.intensity_mapping", "words_of", "display_image"),
     Step("autocolor.studio", "_send", FRAME),
 )
 """The steps of a frame in their order."""
