@@ -57,11 +57,11 @@ def camera_space(mesh: Mesh, view: View) -> CameraPolygons:
     polygons = CameraPolygons(
         unit,
         max(NEAR * float(box[:, 2].max()) / unit, LEAST_NEAR),
-        rotated(axes / unit, mesh.coordinate_rows, view.eye),
-        rotated(axes, mesh.normal_rows),
-        mesh.columns,
-        mesh.normal_columns,
-        np.arange(mesh.columns.shape[1]),
+        rotated(axes / unit, mesh.coordinates.T, view.eye),
+        rotated(axes, mesh.normals.vectors.T),
+        mesh.node_numbers.T,
+        mesh.normals.numbers.T,
+        np.arange(len(mesh.node_numbers)),
     )
     reaches_through = polygons.places[2].min(initial=polygons.near) < polygons.near
     return cut_at_near_plane(polygons) if reaches_through else polygons
