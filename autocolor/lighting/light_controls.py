@@ -1,7 +1,7 @@
 """The light controls: direction and concentration, cone, and flaps, as a multiplier in [0, 1].
 
 Paper: "Light Controls". They modify what a reflection model gives at a point and know nothing of it, so they
-work with any. Points are columns of `Seen.rows`, in camera space.
+work with any. Points are columns of `VisiblePoints.rows`, in camera space.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from autocolor.arrays import Flags, Floats, Singles, power
 from autocolor.scene.lights import Light
-from autocolor.visibility.visible_points import POINT, Seen
+from autocolor.visibility.visible_points import POINT, VisiblePoints
 
 ROUNDING: Final = float(np.finfo(np.float32).eps)
 FAR_FLAP: Final = 1e30
@@ -36,8 +36,8 @@ class Controls:
     flaps: Singles
 
 
-def controls(light: Light, seen: Seen) -> Controls:
-    """The controls of a light for what is seen.
+def controls(light: Light, points: VisiblePoints) -> Controls:
+    """The controls of a light for the visible points of a view.
 
     Paper: cos^C(L) for cos(L) > 0; with C = 0 the light is a point source. A point is in the cone where
     L <= A. Departs: the paper prints the test as cos(L) <= cos(A), which would light the outside; the rim
@@ -46,16 +46,16 @@ def controls(light: Light, seen: Seen) -> Controls:
     """
     toward, least = None, None
     if light.axis is not None and (light.concentration > 0 or light.cone_angle is not None):
-        toward = seen.camera_direction(light.axis)
+        toward = points.camera_direction(light.axis)
         if light.cone_angle is not None:
             # A float32 rounding of the rim keeps a cone that ends on a line of pixels from fraying.
             least = math.cos(math.radians(light.cone_angle)) - ROUNDING
         if light.concentration > 0:
             least = max(least if least is not None else 0.0, 0.0)
-    return Controls(toward, light.concentration, least, _flap_sides(light, seen))
+    return Controls(toward, light.concentration, least, _flap_sides(light, points))
 
 
-def _flap_sides(light: Light, seen: Seen) -> Singles:
+def _flap_sides(light: Light, points: VisiblePoints) -> Singles:
     """A row for each side of each flap that is on; a point of the side itself is inside.
 
     Paper: "Light Flaps and Cones": a flap is a range of an object coordinate, a box and no shadow.
@@ -64,12 +64,12 @@ def _flap_sides(light: Light, seen: Seen) -> Singles:
     for axis, flap in enumerate((light.flaps.x, light.flaps.y, light.flaps.z)):
         if flap is None or not flap.on:
             continue
-        coordinate = seen.world_coordinate(axis)
+        coordinate = points.world_coordinate(axis)
         # A surface that lies on the flap is lit: allow what float32 rounds a point by.
-        slack = 4 * ROUNDING * seen.reach
+        slack = 4 * ROUNDING * points.radius
         for sign, limit in ((1.0, flap.minimum), (-1.0, flap.maximum)):
             if math.isfinite(limit):
-                beyond = min(max(sign * limit / seen.unit, -FAR_FLAP), FAR_FLAP)
+                beyond = min(max(sign * limit / points.unit, -FAR_FLAP), FAR_FLAP)
                 rows.append(sign * coordinate - np.array([0, 0, 0, beyond - slack]))
     return np.array(rows, np.float32).reshape(-1, 4)
 

@@ -1,9 +1,8 @@
-"""What lights and ambient weigh in the sum that is a picture's intensity.
+"""The weights of lights and ambient in the sum that is a picture's intensity.
 
-Paper: "The Lighting Model": a light gives its intensity times (D cos(I) + S cos^N(E)), and the ambient term
-is added. The weights are in proportion to the strongest of them, and only the sum is multiplied by that: so
-the same lights k times as strong give the same proportions, and the levels that are made from these do not
-change by rounding.
+Paper: "The Lighting Model": a light contributes its intensity times (D cos(I) + S cos^N(E)), and the ambient
+term is added. The weights are relative to the largest of them, the scale, and only the sum is multiplied by
+it: so lights k times as strong give the same relative sum, and levels that do not change by rounding.
 """
 
 from __future__ import annotations
@@ -21,25 +20,21 @@ from autocolor.scene.surfaces import Surface
 LARGEST: Final = float(np.finfo(np.float32).max)
 
 SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
-"""Weights of a light's diffuse and of its specular plane, by surface number."""
+"""The weights of a light's diffuse and specular planes, by surface number."""
 
 
-class Weights(NamedTuple):
-    """What the ambient and the lights that shine weigh in the sum, in proportion to `scale`.
-
-    `lights` has by a light's name, and then by surface number, the weights of its diffuse and of its specular
-    plane.
-    """
+class LightMix(NamedTuple):
+    """The weights of the ambient term and of the planes of each light that shines, relative to `scale`."""
 
     scale: float
     ambient: np.float32
     lights: Mapping[str, SurfaceWeights]
 
 
-def weights_of(
+def light_mix(
     surface_numbers: Iterable[int], surfaces: Sequence[Surface], lights: Sequence[Light], ambient: float
-) -> Weights:
-    """The weights of the lights that shine, on the surfaces that are seen.
+) -> LightMix:
+    """The mix of the lights that shine on the visible surfaces.
 
     Raises InputError where the sum would leave the range of float32: such an intensity is refused by name,
     never clipped into a level.
@@ -47,18 +42,18 @@ def weights_of(
     if not ambient < LARGEST:
         raise InputError(f"ambient must stay below {LARGEST:.3g}, not {ambient:g}; lower it")
     shining = [light for light in lights if light.shines]
-    seen = {number: surfaces[number - 1] for number in surface_numbers}
+    visible = {number: surfaces[number - 1] for number in surface_numbers}
     strengths = {
         light.name: {
             number: (
                 light.intensity * surface.reflectance.diffuse,
                 light.intensity * surface.reflectance.specular,
             )
-            for number, surface in seen.items()
+            for number, surface in visible.items()
         }
         for light in shining
     }
-    for number, surface in seen.items():
+    for number, surface in visible.items():
         _refuse_overflow(surface.name, {name: rows[number] for name, rows in strengths.items()}, ambient)
     all_strengths = [each for rows in strengths.values() for pair in rows.values() for each in pair]
     scale = max([ambient, *all_strengths]) or 1.0
@@ -69,11 +64,11 @@ def weights_of(
         }
         for name, rows in strengths.items()
     }
-    return Weights(scale, np.float32(ambient / scale), weights)
+    return LightMix(scale, np.float32(ambient / scale), weights)
 
 
 def _refuse_overflow(surface: str, strengths: Mapping[str, tuple[float, float]], ambient: float) -> None:
-    """Refuse what float32 can't hold the sum of, naming the light that does most to it."""
+    """Refuse strengths whose sum float32 can't hold, naming the light that contributes most."""
     total = ambient + sum(diffuse + specular for diffuse, specular in strengths.values())
     if math.isfinite(total) and total < LARGEST:
         return

@@ -1,7 +1,7 @@
-"""One light on what is seen: its diffuse and its specular plane, without D, S and the light's intensity.
+"""One light at the visible points: its two planes, without D, S and the light's intensity.
 
 Paper: "The Lighting Model" and "Light Controls". The sum over the lights with their strengths is made in
-`lighting`; here is what takes the time, and what stays when only strengths change.
+`illumination`; here is what takes the time, and what stays when only strengths change.
 
 Measured and rejected: one surface after another (a tenth longer on the coupe, whose smaller surfaces are
 hardly worth the calls); fewer pixels at once than 131,072 (a tenth more at a quarter of that); two threads,
@@ -22,21 +22,27 @@ import numpy as np
 from autocolor.arrays import Flags, Numbers, Singles
 from autocolor.lighting.light_controls import concentrated, inside_cone, inside_flaps
 from autocolor.lighting.light_planes import DIFFUSE, SPECULAR
-from autocolor.lighting.rays import Placed, rays_to
+from autocolor.lighting.rays import CameraLight, rays_to
 from autocolor.scene.reflection_models import phong_diffuse, phong_specular
-from autocolor.visibility.visible_points import MIRROR, NORMAL, Seen, Share
+from autocolor.visibility.visible_points import NORMAL, REFLECTED_VIEW, PointChunk, VisiblePoints
 
 FEW: Final = 0.3
 """Below this fraction of lit pixels it takes less time to pick them than to compute them all."""
 
 
-def shade(planes: Singles, light: Placed, seen: Seen, share: Share, exponents: Mapping[int, float]) -> None:
-    """Fill the diffuse and the specular plane of a light where the pixels of a share are.
+def shade(
+    planes: Singles,
+    light: CameraLight,
+    points: VisiblePoints,
+    chunk: PointChunk,
+    exponents: Mapping[int, float],
+) -> None:
+    """Fill in the diffuse and the specular plane of a light at a chunk of points.
 
-    `planes` is (2, n) float32, in the order of `Seen.pixels`; they become 0 where the light has no effect.
-    `exponents` has N for each surface number that is seen.
+    `planes` is (2, n) float32, in the order of the points; 0 where the light has no effect. `exponents` has N
+    for each visible surface number.
     """
-    out, rows = planes[:, share.pixels], seen.rows[:, share.pixels]
+    out, rows = planes[:, chunk.pixels], points.rows[:, chunk.pixels]
     is_lit = inside_flaps(light.controls, rows)
     if is_lit is not None and not is_lit.any():
         out[:] = 0
@@ -55,10 +61,10 @@ def shade(planes: Singles, light: Placed, seen: Seen, share: Share, exponents: M
         return
 
     # Reflect the light there; of few pixels take those alone.
-    cosines = _Cosines(cos_incidence, rays.cosines_with(MIRROR), rays.cos_light)
+    cosines = _Cosines(cos_incidence, rays.cosines_with(REFLECTED_VIEW), rays.cos_light)
     concentration = light.controls.concentration
-    ends = [each.stop for each in share.slices]
-    of_surfaces = [exponents[each.surface_number] for each in share.slices]
+    ends = [each.stop for each in chunk.slices]
+    of_surfaces = [exponents[each.surface_number] for each in chunk.slices]
     if count >= FEW * len(is_lit):
         _reflect(out, cosines, is_lit if count < len(is_lit) else None, concentration, ends, of_surfaces)
         return

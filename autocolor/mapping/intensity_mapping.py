@@ -18,7 +18,7 @@ from autocolor.lighting.picture import IntensityRange, Picture
 from autocolor.mapping.level_ranges import BACKGROUND, LevelRange
 from autocolor.mapping.rounding import halves_up
 from autocolor.scene.scene import Curve
-from autocolor.visibility.visible_points import shares
+from autocolor.visibility.visible_points import point_chunks
 
 GAMMA: Final = 2.2
 """Assumed: the exponent of a television monitor."""
@@ -56,10 +56,10 @@ def words_of(
             )
             for surface in picture.slices
         }
-    for share in shares(picture.slices):
-        intensities, pixels = picture.relative[share.pixels], picture.pixels[share.pixels]
+    for chunk in point_chunks(picture.slices):
+        intensities, pixels = picture.relative[chunk.pixels], picture.pixels[chunk.pixels]
         here = np.empty(len(pixels), np.uint16)
-        for surface in share.slices:
+        for surface in chunk.slices:
             first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
             fractions = fractions_of[surface.surface_number](intensities[surface.pixels])
             np.copyto(here[surface.pixels], levels_of(fractions, levels), casting="unsafe")

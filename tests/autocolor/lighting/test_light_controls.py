@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, View
 from autocolor.lighting.light_controls import concentrated, controls, inside_cone, inside_flaps
-from autocolor.visibility.visible_points import Seen
+from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import wall
 from tests.autocolor.strategies import lights, numbers
 
 
-def seen_wall() -> Seen:
+def wall_points() -> VisiblePoints:
     return visible_surfaces(wall(), View((1, -4, 1), target=(0, 0, 0)), (1,), 12, 12)
 
 
@@ -40,20 +40,20 @@ def test_the_multiplier_never_leaves_0_to_1(cosines: list[float], concentration:
 
 
 def test_a_point_source_without_flaps_needs_no_test() -> None:
-    ready = controls(Light("light", (0, -1, 0)), seen_wall())
+    ready = controls(Light("light", (0, -1, 0)), wall_points())
     assert ready.toward is None
-    assert inside_flaps(ready, seen_wall().rows) is None
+    assert inside_flaps(ready, wall_points().rows) is None
 
 
 @given(lights())
 def test_the_light_direction_is_turned_to_the_eyes_axes_and_stays_a_unit(light: Light) -> None:
-    ready = controls(light, seen_wall())
+    ready = controls(light, wall_points())
     if light.axis is None or (light.concentration == 0 and light.cone_angle is None):
         assert ready.toward is None
     else:
         assert ready.toward is not None
         assert np.linalg.norm(ready.toward) == pytest.approx(1)
-        back = seen_wall().view.axes.T @ ready.toward
+        back = wall_points().view.axes.T @ ready.toward
         assert back == pytest.approx(np.array(light.axis), abs=1e-12)
 
 
@@ -78,16 +78,16 @@ def test_a_point_is_in_the_cone_up_to_its_rim_and_before_a_concentrated_light(
     light = Light(
         "light", (0, -1, 0), direction=(0, 1, 0), cone_angle=cone_angle, concentration=concentration
     )
-    seen = seen_wall()
-    assert inside_cone(controls(light, seen), np.array([cosine], np.float32)).tolist() == [lit]
+    points = wall_points()
+    assert inside_cone(controls(light, points), np.array([cosine], np.float32)).tolist() == [lit]
 
 
 @given(numbers(-1, 1), numbers(0, 1), st.sampled_from("xz"))
 def test_a_point_is_within_a_flap_up_to_both_its_ends(least: float, extent: float, axis: str) -> None:
-    seen = seen_wall()
+    points = wall_points()
     flap = Flap(least, least + extent)
-    at = inside_flaps(controls(Light("light", (0, -1, 0), flaps=Flaps(**{axis: flap})), seen), seen.rows)
-    coordinate = seen.points[:, "xyz".index(axis)]
+    at = inside_flaps(controls(Light("light", (0, -1, 0), flaps=Flaps(**{axis: flap})), points), points.rows)
+    coordinate = points.world_points[:, "xyz".index(axis)]
     clear = np.minimum(np.abs(coordinate - flap.minimum), np.abs(coordinate - flap.maximum)) > 1e-5
     expected = (flap.minimum <= coordinate) & (coordinate <= flap.maximum)
     assert at is not None

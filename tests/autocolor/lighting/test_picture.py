@@ -20,12 +20,12 @@ def close_to(expected: object, largest: float) -> object:
 def test_minimum_and_maximum_are_those_of_the_arrays(scene: Scene) -> None:
     picture = render(scene, 12, 16)
     on_object = picture.surface_number > 0
-    seen = {picture.surfaces[number - 1] for number in np.unique(picture.surface_number[on_object])}
-    assert set(picture.ranges.surfaces) == seen
+    points = {picture.surfaces[number - 1] for number in np.unique(picture.surface_number[on_object])}
+    assert set(picture.ranges.surfaces) == points
     for name, extent in picture.ranges.surfaces.items():
         of_surface = picture.intensity[picture.surface_number == picture.surfaces.index(name) + 1]
         assert extent == (of_surface.min(), of_surface.max())
-    if seen:
+    if points:
         assert picture.ranges.whole == (
             picture.intensity[on_object].min(),
             picture.intensity[on_object].max(),

@@ -11,9 +11,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Reflectance, Scene, View, render
-from autocolor.lighting.rays import placed
+from autocolor.lighting.rays import camera_light
 from autocolor.lighting.shading import shade
-from autocolor.visibility.visible_points import Seen
+from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import sphere, wall, wall_scene
 from tests.autocolor.reference import Lit, light_at, minus, plus, ray, times, unit
@@ -23,11 +23,11 @@ LINES, ELEMENTS = 12, 16
 WALLS = [wall(), wall(7, 5)]
 
 
-def planes_of(light: Light, seen: Seen, exponent: float) -> npt.NDArray[np.float32]:
+def planes_of(light: Light, points: VisiblePoints, exponent: float) -> npt.NDArray[np.float32]:
     """The planes of one light on the one surface there is."""
-    planes = np.empty((2, len(seen.pixels)), np.float32)
-    for share in seen.shares:
-        shade(planes, placed(light, seen), seen, share, {1: exponent})
+    planes = np.empty((2, len(points.pixels)), np.float32)
+    for chunk in points.chunks:
+        shade(planes, camera_light(light, points), points, chunk, {1: exponent})
     return planes
 
 
@@ -60,7 +60,7 @@ def assert_as_the_paper(scene: Scene) -> None:
     picture = render(scene, LINES, ELEMENTS)
     expected = expected_on_wall(scene, LINES, ELEMENTS)
     largest = max((lit.intensity for lit in expected.values()), default=0.0)
-    # Where less than a hundredth of the light is seen, float32 rounds in proportion to the whole.
+    # Where less than a hundredth of the light is visible, float32 rounds in proportion to the whole.
     reflectance = scene.surfaces[0].reflectance
     peak = sum(light.intensity for light in scene.lights) * (reflectance.diffuse + reflectance.specular)
     largest = max(largest, peak / 100)
@@ -219,10 +219,10 @@ def test_half_of_a_directed_light_is_left_at_the_angle_of_its_concentration(
     concentration: float, half: float
 ) -> None:
     light = Light("light", (0.0, -0.5, 0.0), direction=(0.0, 1.0, 0.0))
-    seen = visible_surfaces(wall(), View((0, -4, 0), target=(0, 0, 0), field_of_view=25), (1,), 401, 401)
-    whole = planes_of(light, seen, 20.0)[0]
-    directed = planes_of(light.replace(concentration=concentration), seen, 20.0)[0]
-    angles = np.degrees(np.arctan2(np.hypot(seen.points[:, 0], seen.points[:, 2]), 0.5))
+    points = visible_surfaces(wall(), View((0, -4, 0), target=(0, 0, 0), field_of_view=25), (1,), 401, 401)
+    whole = planes_of(light, points, 20.0)[0]
+    directed = planes_of(light.replace(concentration=concentration), points, 20.0)[0]
+    angles = np.degrees(np.arctan2(np.hypot(points.world_points[:, 0], points.world_points[:, 2]), 0.5))
     order = np.argsort(angles)
     falling = (directed / whole)[order]
     assert np.interp(-0.5, -falling, angles[order]) == pytest.approx(half, abs=0.1)
