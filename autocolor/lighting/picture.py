@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from autocolor.arrays import Bytes, Numbers, Singles
 from autocolor.lighting.light_planes import DIFFUSE, SPECULAR, LightPlanes
-from autocolor.visibility.visible_points import SurfaceSlice
+from autocolor.visibility.visible_points import SurfaceSlice, surface_slices
 
 
 class IntensityRange(NamedTuple):
@@ -63,6 +63,19 @@ class Picture:
     relative: Singles
     scale: float
     light_planes: Mapping[str, LightPlanes] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def from_rasters(
+        cls, relative: Singles, surface_number: Bytes, surfaces: tuple[str, ...], scale: float
+    ) -> Picture:
+        """A picture of relative intensities and surface numbers, both (lines, elements), without planes."""
+        lines, elements = relative.shape
+        numbers = surface_number.ravel()
+        pixels = np.flatnonzero(numbers)
+        pixels = pixels[np.argsort(numbers[pixels], kind="stable")]
+        slices = surface_slices(np.bincount(numbers[pixels], minlength=1))
+        intensities = relative.ravel()[pixels].astype(np.float32)
+        return cls(lines, elements, surfaces, pixels, slices, intensities, scale)
 
     @cached_property
     def intensity(self) -> Singles:
