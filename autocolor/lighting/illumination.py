@@ -15,10 +15,11 @@ from autocolor.arrays import Singles
 from autocolor.lighting.light_mix import SurfaceWeights, light_mix
 from autocolor.lighting.light_planes import LightPlanes, mix
 from autocolor.lighting.picture import Picture
-from autocolor.lighting.rays import CameraLight, camera_light
-from autocolor.lighting.shading import shade
+from autocolor.lighting.shading import ControlledLight, controlled_light, shade
 from autocolor.scene.lights import Light
+from autocolor.scene.reflection_models import Phong, ReflectionModel
 from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Surface
 from autocolor.visibility.visible_points import VisiblePoints
 
 PLANE_FIELDS: Final = tuple(
@@ -39,16 +40,16 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
 
     Raises InputError for intensities that float32 can't hold.
     """
-    exponents = {
-        surface.surface_number: scene.surfaces[surface.surface_number - 1].reflectance.exponent
+    models = {
+        surface.surface_number: model_of(scene.surfaces[surface.surface_number - 1])
         for surface in points.slices
     }
-    weights = light_mix(exponents.keys(), scene.surfaces, scene.lights, scene.ambient)
-    reusable = {light.name: _reusable_planes(light, exponents, previous) for light in scene.lights}
+    weights = light_mix(models, scene.surfaces, scene.lights, scene.ambient)
+    changed = _changed_surfaces(models, previous)
+    reusable = _reusable_planes(scene, previous)
     updates = {
-        light.name: _plane_update(light, reusable[light.name], weights.lights[light.name], points)
-        for light in scene.lights
-        if light.name in weights.lights
+        name: _plane_update(scene.light(name), reusable.get(name), changed, surface_weights, points)
+        for name, surface_weights in weights.lights.items()
     }
 
     # Finish a chunk before the next, so that its rows and planes are fetched from memory only once.
@@ -60,14 +61,14 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
         numbers = {surface.surface_number for surface in chunk.slices}
         for update in updates.values():
             if update.light is not None and not numbers.isdisjoint(update.changed_surfaces):
-                shade(update.planes.values, update.light, points, chunk, exponents)
+                shade(update.planes.values, update.light, points, chunk, models)
             mixed = scratch if update.planes.mixed is None else update.planes.mixed[chunk.pixels]
             if update.to_mix:
                 mix(update.planes, chunk, out=mixed)
             sums += mixed
 
     # A light that does not shine keeps its planes for as long as they are right.
-    kept = {name: old.planes for name, old in reusable.items() if old.planes and not old.changed_surfaces}
+    kept = {} if changed else reusable
     kept |= {name: update.planes for name, update in updates.items()}
     planes = {light.name: kept[light.name] for light in scene.lights if light.name in kept}
     for each in planes.values():
@@ -79,23 +80,29 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
     )
 
 
-class _ReusablePlanes(NamedTuple):
-    """The planes of a light in the previous picture, if any, and the surfaces on which they are outdated."""
-
-    planes: LightPlanes | None
-    changed_surfaces: Set[int]
+def model_of(surface: Surface) -> ReflectionModel:
+    """The reflection model of a surface."""
+    return Phong(surface.reflectance.exponent)
 
 
-def _reusable_planes(
-    light: Light, exponents: Mapping[int, float], previous: Previous | None
-) -> _ReusablePlanes:
-    """What can be reused of a light's planes; `exponents` has N for each visible surface number."""
-    planes = None if previous is None else previous.picture.light_planes.get(light.name)
-    if previous is None or planes is None or not _has_same_planes(previous.scene.light(light.name), light):
-        return _ReusablePlanes(None, exponents.keys())
+def _changed_surfaces(models: Mapping[int, ReflectionModel], previous: Previous | None) -> Set[int]:
+    """The visible surface numbers whose reflection model is not that of the previous picture."""
+    if previous is None:
+        return set()
     old = previous.scene.surfaces
-    changed = {number for number in exponents if old[number - 1].reflectance.exponent != exponents[number]}
-    return _ReusablePlanes(planes, changed)
+    return {number for number, model in models.items() if model_of(old[number - 1]) != model}
+
+
+def _reusable_planes(scene: Scene, previous: Previous | None) -> dict[str, LightPlanes]:
+    """The planes of the previous picture that still belong to a light, on surfaces that have not changed."""
+    if previous is None:
+        return {}
+    planes = previous.picture.light_planes
+    return {
+        light.name: planes[light.name]
+        for light in scene.lights
+        if light.name in planes and _has_same_planes(previous.scene.light(light.name), light)
+    }
 
 
 class _PlaneUpdate(NamedTuple):
@@ -106,17 +113,24 @@ class _PlaneUpdate(NamedTuple):
     """
 
     planes: LightPlanes
-    light: CameraLight | None
+    light: ControlledLight | None
     changed_surfaces: Set[int]
     to_mix: bool
 
 
 def _plane_update(
-    light: Light, reusable: _ReusablePlanes, weights: SurfaceWeights, points: VisiblePoints
+    light: Light,
+    old: LightPlanes | None,
+    changed: Set[int],
+    weights: SurfaceWeights,
+    points: VisiblePoints,
 ) -> _PlaneUpdate:
-    """What is to be computed for a light that shines."""
-    old, changed = reusable
-    if old is not None and not changed:
+    """What is to be computed for a light that shines, given its reusable planes and the changed surfaces."""
+    if old is None:
+        values = np.empty((2, len(points.pixels)), np.float32)
+        planes = LightPlanes(values, weights)
+        return _PlaneUpdate(planes, controlled_light(light, points), weights.keys(), to_mix=True)
+    if not changed:
         if old.weights != weights:
             return _PlaneUpdate(LightPlanes(old.values, weights), None, changed, to_mix=True)
         if old.mixed is not None:
@@ -124,8 +138,8 @@ def _plane_update(
         # This light stays while another is edited: keep its mix for the edits to come.
         kept = dataclasses.replace(old, mixed=np.empty(len(points.pixels), np.float32))
         return _PlaneUpdate(kept, None, changed, to_mix=True)
-    values = np.empty((2, len(points.pixels)), np.float32) if old is None else old.values.copy()
-    return _PlaneUpdate(LightPlanes(values, weights), camera_light(light, points), changed, to_mix=True)
+    planes = LightPlanes(old.values.copy(), weights)
+    return _PlaneUpdate(planes, controlled_light(light, points), changed, to_mix=True)
 
 
 def _has_same_planes(old: Light, new: Light) -> bool:

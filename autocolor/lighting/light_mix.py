@@ -8,13 +8,14 @@ it: so lights k times as strong give the same relative sum, and levels that do n
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from autocolor.errors import InputError
 from autocolor.scene.lights import Light
+from autocolor.scene.reflection_models import ReflectionModel
 from autocolor.scene.surfaces import Surface
 
 LARGEST: Final = float(np.finfo(np.float32).max)
@@ -32,9 +33,12 @@ class LightMix(NamedTuple):
 
 
 def light_mix(
-    surface_numbers: Iterable[int], surfaces: Sequence[Surface], lights: Sequence[Light], ambient: float
+    models: Mapping[int, ReflectionModel],
+    surfaces: Sequence[Surface],
+    lights: Sequence[Light],
+    ambient: float,
 ) -> LightMix:
-    """The mix of the lights that shine on the visible surfaces.
+    """The mix of the lights that shine; `models` has the reflection model of each visible surface number.
 
     Raises InputError where the sum would leave the range of float32: such an intensity is refused by name,
     never clipped into a level.
@@ -42,7 +46,7 @@ def light_mix(
     if not ambient < LARGEST:
         raise InputError(f"ambient must stay below {LARGEST:.3g}, not {ambient:g}; lower it")
     shining = [light for light in lights if light.shines]
-    visible = {number: surfaces[number - 1] for number in surface_numbers}
+    visible = {number: surfaces[number - 1] for number in models}
     strengths = {
         light.name: {
             number: (
@@ -54,7 +58,11 @@ def light_mix(
         for light in shining
     }
     for number, surface in visible.items():
-        _refuse_overflow(surface.name, {name: rows[number] for name, rows in strengths.items()}, ambient)
+        peaks = {
+            name: rows[number][0] + rows[number][1] * models[number].largest
+            for name, rows in strengths.items()
+        }
+        _refuse_overflow(surface.name, peaks, ambient)
     all_strengths = [each for rows in strengths.values() for pair in rows.values() for each in pair]
     scale = max([ambient, *all_strengths]) or 1.0
     weights = {
@@ -67,12 +75,12 @@ def light_mix(
     return LightMix(scale, np.float32(ambient / scale), weights)
 
 
-def _refuse_overflow(surface: str, strengths: Mapping[str, tuple[float, float]], ambient: float) -> None:
-    """Refuse strengths whose sum float32 can't hold, naming the light that contributes most."""
-    total = ambient + sum(diffuse + specular for diffuse, specular in strengths.values())
+def _refuse_overflow(surface: str, peaks: Mapping[str, float], ambient: float) -> None:
+    """Refuse lights whose peaks have a sum float32 can't hold, naming the light that contributes most."""
+    total = ambient + sum(peaks.values())
     if math.isfinite(total) and total < LARGEST:
         return
-    light = max(strengths, key=lambda name: sum(strengths[name]))
+    light = max(peaks, key=lambda name: peaks[name])
     raise InputError(
         f"surface {surface!r} under light {light!r}: intensities must stay below {LARGEST:.3g}, not reach"
         f" {total:g}; lower the light's intensity or the surface's diffuse and specular"

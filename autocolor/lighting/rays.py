@@ -10,7 +10,6 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Numbers, Singles
-from autocolor.lighting.light_controls import Controls, controls
 from autocolor.scene.lights import Light
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints, fill_point_products
 
@@ -29,20 +28,21 @@ class CameraLight(NamedTuple):
     """A light in camera space, ready for the visible points of one view.
 
     `position` is relative to the middle of the object. Points at a squared distance of at most `close` are
-    close to the light.
+    close to the light. `direction` is the unit vector of its direction, None where nobody asks for cos(L).
     """
 
     position: Floats
     close: float
-    controls: Controls
+    direction: Floats | None
 
 
-def camera_light(light: Light, points: VisiblePoints) -> CameraLight:
-    """A light in the camera space of some visible points."""
+def camera_light(light: Light, points: VisiblePoints, directed: bool) -> CameraLight:
+    """A light in the camera space of some visible points, with its direction if it is `directed`."""
     position = points.camera_point(light.position)
     position *= min(FARTHEST / max(float(np.abs(position).max()), 1.0), 1.0)
     close = CLOSE * max(float(position @ position), points.radius**2)
-    return CameraLight(position, close, controls(light, points))
+    direction = points.camera_direction(light.axis) if directed and light.axis is not None else None
+    return CameraLight(position, close, direction)
 
 
 class Rays(NamedTuple):
@@ -74,7 +74,7 @@ class Rays(NamedTuple):
 
 def rays_to(light: CameraLight, rows: Singles) -> Rays:
     """The rays to a light from the points in some rows."""
-    direction = light.controls.toward
+    direction = light.direction
     squares, ahead = _squares_and_ahead(rows, light.position, direction)
     close, close_rows = np.empty(0, np.intp), rows[:, :0]
     if squares.min() <= light.close:

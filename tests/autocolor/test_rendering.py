@@ -114,9 +114,9 @@ def test_an_exponent_computes_only_the_chunks_that_its_surface_is_in(monkeypatch
     before = rendering(two_surfaces(), 24, 32)
     shaded = []
 
-    def noting(planes: Any, light: Any, points: Any, chunk: PointChunk, exponents: Any) -> None:
+    def noting(planes: Any, light: Any, points: Any, chunk: PointChunk, models: Any) -> None:
         shaded.append(chunk.pixels)
-        shade(planes, light, points, chunk, exponents)
+        shade(planes, light, points, chunk, models)
 
     monkeypatch.setattr("autocolor.lighting.illumination.shade", noting)
     rendering(before.scene.with_surface("cube", exponent=3), 24, 32, before)
