@@ -1,6 +1,6 @@
 """Array types, each with one meaning, and the array operations that several rooms share.
 
-Runs are series of whole numbers one after another: the lines of an edge, the pixels of a span, its depths.
+Runs are series of whole numbers one after another: the lines of an edge, the pixels of a segment, its keys.
 Vectors stand in three rows, one for each axis, so that numpy works on long rows.
 """
 
@@ -20,6 +20,9 @@ Floats = NDArray[np.float64]
 
 Numbers = NDArray[np.intp]
 """Row numbers of tables, counts of rows, and places in a raster: what numpy indexes with."""
+
+ShortNumbers = NDArray[np.int32]
+"""Row numbers in tables that are too large for `Numbers`."""
 
 Integers = NDArray[np.int64]
 """Whole numbers to calculate with: depth keys, runs."""

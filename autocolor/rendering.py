@@ -4,7 +4,7 @@
 |---|---|
 | mesh, view, the surface of a part | everything |
 | a light's place, aim, concentration, flaps, cone | that light's two planes, the sum |
-| a surface's exponent | every light on the shares of pixels that it is in, the sum |
+| a surface's exponent | every light on the chunks of points that it is in, the sum |
 | a light's intensity or switch, ambient, D, S | the sum |
 | anything else | nothing |
 """
@@ -21,26 +21,26 @@ import numpy as np
 
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
-from autocolor.lighting.illumination import Lender, lit
+from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.scene.columns import Tier
 from autocolor.scene.scene import Scene, costs_at_least
-from autocolor.visibility.visible_points import Seen
+from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
 
 LARGEST_RASTER: Final = 16384
 """Assumed: a picture of this size on both sides takes tens of gigabytes."""
 
-ALGORITHMS: Final[dict[str, Callable[..., Seen]]] = {"batch": visible_surfaces, "watkins": watkins}
+ALGORITHMS: Final[dict[str, Callable[..., VisiblePoints]]] = {"batch": visible_surfaces, "watkins": watkins}
 
 
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """A scene, what is seen of it, and its picture."""
+    """A scene, its visible points, and its picture."""
 
     scene: Scene
-    seen: Seen
+    points: VisiblePoints
     picture: Picture
 
 
@@ -68,22 +68,22 @@ def rendering(
     before: Rendering | None = None,
     algorithm: str = "batch",
 ) -> Rendering:
-    """The picture of a scene with what it was made from; `before` lends what did not change."""
+    """The picture of a scene with what it was made from; what did not change is reused from `before`."""
     if before is not None and (before.picture.lines, before.picture.elements) != (lines, elements):
         before = None
     if before is not None and _sees_the_same(before.scene, scene):
         if not costs_at_least(before.scene, scene, Tier.MIX):
-            return Rendering(scene, before.seen, before.picture)
-        seen = before.seen
+            return Rendering(scene, before.points, before.picture)
+        points = before.points
     else:
         before = None
         _keep_large_arrays()
         one_sided = frozenset(row + 1 for row, surface in enumerate(scene.surfaces) if not surface.two_sided)
-        seen = ALGORITHMS[algorithm](
+        points = ALGORITHMS[algorithm](
             scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided
         )
-    lender = None if before is None else Lender(before.scene, before.picture)
-    return Rendering(scene, seen, lit(scene, seen, lender))
+    previous = None if before is None else Previous(before.scene, before.picture)
+    return Rendering(scene, points, illuminate(scene, points, previous))
 
 
 def _sees_the_same(old: Scene, new: Scene) -> bool:

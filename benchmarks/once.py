@@ -85,9 +85,9 @@ def differing_pixels() -> int:
     scene = autocolor.read_scene(COUPE)
     rasters = []
     for algorithm in ("batch", "watkins"):
-        seen = rendering(scene, algorithm=algorithm).seen
-        raster = np.full(seen.lines * seen.elements, -1)
-        raster[seen.pixels] = seen.polygon_numbers
+        points = rendering(scene, algorithm=algorithm).points
+        raster = np.full(points.lines * points.elements, -1)
+        raster[points.pixels] = points.polygon_numbers
         rasters.append(raster)
     return int((rasters[0] != rasters[1]).sum())
 

@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from autocolor.files.scenes.scene_meshes import MeshEntry
-from autocolor.scene.columns import Column, Row, Tier, fields_of, keys_of
+from autocolor.scene.column_kinds import Nested, Variant
+from autocolor.scene.columns import Column, Kind, Row, Tier, fields_of, keys_of, plain
 from autocolor.scene.lights import Flap, Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
@@ -87,8 +88,16 @@ def default(cls: type[Row], key: str, field: str) -> str:
     value = described.default()
     if value is None:
         return "absent"
-    written = described.column.kind.written(field, value)
+    written = {**parameters(described.column.kind), **described.column.kind.written(field, value)}
     return f"`{json.dumps(written[key])}`" if written.get(key) not in (None, {}) else "absent"
+
+
+def parameters(kind: Kind) -> dict[str, object]:
+    """The keys of each variant with their defaults, those of variants inside inline rows too."""
+    if isinstance(kind, Variant):
+        return {key: value for cls in kind.classes.values() for key, value in plain(cls()).items()}
+    inner = fields_of(kind.row_class).values() if isinstance(kind, Nested) and kind.inline else ()
+    return {key: value for each in inner for key, value in parameters(each.column.kind).items()}
 
 
 if __name__ == "__main__":

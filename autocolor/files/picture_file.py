@@ -29,7 +29,6 @@ from autocolor.files.scenes.plain_scene import plain_scene, scene_of_plain
 from autocolor.files.writing import write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.scene.scene import Scene
-from autocolor.visibility.visible_points import surface_slices
 
 FORMAT: Final = "autocolor picture 2"
 FORMATS_READ: Final = (FORMAT, "autocolor picture 1")
@@ -199,15 +198,10 @@ def _picture(header: dict[str, Any], scene: Scene, relative: NDArray[Any], numbe
         raise InputError(
             f"intensities must stay below {LARGEST_SINGLE:.3g}, not reach {scale:g} times their own"
         )
-    flat = numbers.ravel()
     in_use = set(scene.mesh.parts_in_use)
     owned = {number for part, number in enumerate(scene.surface_number_of_part) if part in in_use}
-    pixels = np.flatnonzero(flat)
-    pixels = pixels[np.argsort(flat[pixels], kind="stable")]
-    slices = surface_slices(np.bincount(flat[pixels], minlength=1))
-    strange = {each.surface_number for each in slices} - owned
+    picture = Picture.from_rasters(relative, numbers, tuple(names), float(scale))
+    strange = {each.surface_number for each in picture.slices} - owned
     if strange:
         raise InputError(f"a surface number must be that of a surface with polygons, not {min(strange)}")
-    lines, elements = relative.shape
-    intensities = relative.ravel()[pixels].astype(np.float32)
-    return Picture(lines, elements, tuple(names), pixels, slices, intensities, float(scale))
+    return picture

@@ -1,4 +1,4 @@
-"""The lights on what is seen: what each gives is computed or lent, weighed and added up to the picture.
+"""The visible points under all lights: the planes of each light are computed or reused, mixed and added up.
 
 Paper: "The Lighting Model": light(j) of all lights and the ambient term are summed at each point.
 """
@@ -7,129 +7,139 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Set
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import Singles
-from autocolor.lighting.light_mix import SurfaceWeights, weights_of
-from autocolor.lighting.light_planes import LightPlanes, weigh
+from autocolor.lighting.light_mix import SurfaceWeights, light_mix
+from autocolor.lighting.light_planes import LightPlanes, mix
 from autocolor.lighting.picture import Picture
-from autocolor.lighting.rays import Placed, placed
-from autocolor.lighting.shading import shade
+from autocolor.lighting.shading import ControlledLight, controlled_light, shade
+from autocolor.scene.columns import Tier, cost
 from autocolor.scene.lights import Light
+from autocolor.scene.reflection_models import ReflectionModel
 from autocolor.scene.scene import Scene
-from autocolor.visibility.visible_points import Seen
-
-SHAPING: Final = tuple(
-    field.name for field in dataclasses.fields(Light) if field.name not in ("intensity", "on")
-)
-"""The fields of a light that its planes depend on; the others only weigh them."""
+from autocolor.visibility.visible_points import VisiblePoints
 
 
-class Lender(NamedTuple):
-    """A scene with its picture of the very same that is seen; it lends the planes of lights that stay."""
+class Previous(NamedTuple):
+    """A scene and its picture of the same visible points, whose planes can be reused."""
 
     scene: Scene
     picture: Picture
 
 
-def lit(scene: Scene, seen: Seen, lender: Lender | None = None) -> Picture:
-    """The picture of what is seen in the light of a scene.
+def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = None) -> Picture:
+    """The picture of the visible points in the light of a scene.
 
     Raises InputError for intensities that float32 can't hold.
     """
-    exponents = {
-        surface.surface_number: scene.surfaces[surface.surface_number - 1].reflectance.exponent
-        for surface in seen.slices
+    models = {
+        surface.surface_number: scene.surfaces[surface.surface_number - 1].reflectance.model
+        for surface in points.slices
     }
-    weights = weights_of(exponents.keys(), scene.surfaces, scene.lights, scene.ambient)
-    loans = {light.name: _loan(light, exponents, lender) for light in scene.lights}
-    works = {
-        light.name: _work(light, loans[light.name], weights.lights[light.name], seen)
-        for light in scene.lights
-        if light.name in weights.lights
+    weights = light_mix(models, scene.surfaces, scene.lights, scene.ambient)
+    changed = _changed_surfaces(models, previous)
+    reusable = _reusable_planes(scene, previous)
+    updates = {
+        name: _plane_update(scene.light(name), reusable.get(name), changed, surface_weights, points)
+        for name, surface_weights in weights.lights.items()
     }
 
-    # Do all there is to a share before the next, whose rows and planes are then fetched from memory once.
-    relative = np.empty(len(seen.pixels), np.float32)
-    for share in seen.shares:
-        sums = relative[share.pixels]
+    # Finish a chunk before the next, so that its rows and planes are fetched from memory only once.
+    relative = np.empty(len(points.pixels), np.float32)
+    for chunk in points.chunks:
+        sums = relative[chunk.pixels]
         sums[:] = weights.ambient
-        passing = np.empty_like(sums)
-        numbers = {surface.surface_number for surface in share.slices}
-        for work in works.values():
-            if work.light is not None and not numbers.isdisjoint(work.changed_surfaces):
-                shade(work.planes.values, work.light, seen, share, exponents)
-            weighed = passing if work.planes.weighed is None else work.planes.weighed[share.pixels]
-            if work.to_weigh:
-                weigh(work.planes, share, weighed)
-            sums += weighed
+        scratch = np.empty_like(sums)
+        numbers = {surface.surface_number for surface in chunk.slices}
+        for update in updates.values():
+            if update.light is not None and not numbers.isdisjoint(update.changed_surfaces):
+                shade(update.planes.values, update.light, points, chunk, models)
+            mixed = scratch if update.planes.mixed is None else update.planes.mixed[chunk.pixels]
+            if update.to_mix:
+                mix(update.planes, chunk, out=mixed)
+            sums += mixed
 
-    # A light that rests keeps what it has until that would change.
-    made = {name: loan.planes for name, loan in loans.items() if loan.planes and not loan.changed_surfaces}
-    made |= {name: work.planes for name, work in works.items()}
-    planes = {light.name: made[light.name] for light in scene.lights if light.name in made}
+    # A light that does not shine keeps its planes for as long as they are right.
+    kept = {} if changed else reusable
+    kept |= {name: update.planes for name, update in updates.items()}
+    planes = {light.name: kept[light.name] for light in scene.lights if light.name in kept}
     for each in planes.values():
-        _freeze(each.values, each.weighed)
+        _freeze(each.values, each.mixed)
     _freeze(relative)
     names = tuple(surface.name for surface in scene.surfaces)
     return Picture(
-        seen.lines, seen.elements, names, seen.pixels, seen.slices, relative, weights.scale, planes
+        points.lines, points.elements, names, points.pixels, points.slices, relative, weights.scale, planes
     )
 
 
-class _Loan(NamedTuple):
-    """The planes that a light had before, if any, and the numbers of the surfaces where they are wrong."""
-
-    planes: LightPlanes | None
-    changed_surfaces: Set[int]
-
-
-def _loan(light: Light, exponents: Mapping[int, float], lender: Lender | None) -> _Loan:
-    """What can be lent of a light's planes; `exponents` has N for each surface number that is seen."""
-    lent = None if lender is None else lender.picture.light_planes.get(light.name)
-    if lender is None or lent is None or not _only_weighs_another(lender.scene.light(light.name), light):
-        return _Loan(None, exponents.keys())
-    old = lender.scene.surfaces
-    changed = {number for number in exponents if old[number - 1].reflectance.exponent != exponents[number]}
-    return _Loan(lent, changed)
+def _changed_surfaces(models: Mapping[int, ReflectionModel], previous: Previous | None) -> Set[int]:
+    """The visible surface numbers whose reflection model is not that of the previous picture."""
+    if previous is None:
+        return set()
+    old = previous.scene.surfaces
+    return {number for number, model in models.items() if old[number - 1].reflectance.model != model}
 
 
-class _Work(NamedTuple):
-    """The planes of a light that shines, and what of them is still to be computed.
+def _reusable_planes(scene: Scene, previous: Previous | None) -> dict[str, LightPlanes]:
+    """The planes of the previous picture that still belong to a light, on surfaces that have not changed."""
+    if previous is None:
+        return {}
+    planes = previous.picture.light_planes
+    return {
+        light.name: planes[light.name]
+        for light in scene.lights
+        if light.name in planes and _has_same_planes(previous.scene.light(light.name), light)
+    }
 
-    The values are on the surfaces with the numbers `changed_surfaces`, in the light `light`; the sum of both
-    planes is everywhere, if it is `to_weigh`.
+
+class _PlaneUpdate(NamedTuple):
+    """The planes of a light that shines, and what is to be computed of them.
+
+    Where `light` is given, its values are computed on the surfaces `changed_surfaces`. The weighted sum of
+    both planes is computed everywhere if it is `to_mix`.
     """
 
     planes: LightPlanes
-    light: Placed | None
+    light: ControlledLight | None
     changed_surfaces: Set[int]
-    to_weigh: bool
+    to_mix: bool
 
 
-def _work(light: Light, loan: _Loan, weights: SurfaceWeights, seen: Seen) -> _Work:
-    """What there is to do for a light that shines."""
-    lent, changed = loan
-    if lent is not None and not changed:
-        if lent.weights != weights:
-            return _Work(LightPlanes(lent.values, weights), None, changed, to_weigh=True)
-        if lent.weighed is not None:
-            return _Work(lent, None, changed, to_weigh=False)
-        # It stays while something else is edited, and will while that goes on.
-        kept = dataclasses.replace(lent, weighed=np.empty(len(seen.pixels), np.float32))
-        return _Work(kept, None, changed, to_weigh=True)
-    values = np.empty((2, len(seen.pixels)), np.float32) if lent is None else lent.values.copy()
-    return _Work(LightPlanes(values, weights), placed(light, seen), changed, to_weigh=True)
+def _plane_update(
+    light: Light,
+    old: LightPlanes | None,
+    changed: Set[int],
+    weights: SurfaceWeights,
+    points: VisiblePoints,
+) -> _PlaneUpdate:
+    """What is to be computed for a light that shines, given its reusable planes and the changed surfaces."""
+    if old is None:
+        values = np.empty((2, len(points.pixels)), np.float32)
+        planes = LightPlanes(values, weights)
+        return _PlaneUpdate(planes, controlled_light(light, points), weights.keys(), to_mix=True)
+    if not changed:
+        if old.weights != weights:
+            return _PlaneUpdate(LightPlanes(old.values, weights), None, changed, to_mix=True)
+        if old.mixed is not None:
+            return _PlaneUpdate(old, None, changed, to_mix=False)
+        # This light stays while another is edited: keep its mix for the edits to come.
+        kept = dataclasses.replace(old, mixed=np.empty(len(points.pixels), np.float32))
+        return _PlaneUpdate(kept, None, changed, to_mix=True)
+    planes = LightPlanes(old.values.copy(), weights)
+    return _PlaneUpdate(planes, controlled_light(light, points), changed, to_mix=True)
 
 
-def _only_weighs_another(old: Light, new: Light) -> bool:
-    """Whether two lights have the same planes."""
-    return old is new or all(getattr(old, name) == getattr(new, name) for name in SHAPING)
+def _has_same_planes(old: Light, new: Light) -> bool:
+    """Whether two lights differ in nothing but what weighs their planes."""
+    costs = None if old is new else cost(old, new)
+    return costs is None or costs < Tier.LIGHT
 
 
 def _freeze(*arrays: Singles | None) -> None:
+    """Make arrays read-only."""
     for array in arrays:
         if array is not None:
             array.flags.writeable = False

@@ -1,99 +1,165 @@
-"""The light controls: direction and concentration, cone, and flaps, as a multiplier in [0, 1].
+"""The light controls: what they leave of a light at a point, from nothing to all of it.
 
 Paper: "Light Controls". They modify what a reflection model gives at a point and know nothing of it, so they
-work with any. Points are columns of `Seen.rows`, in camera space.
+work with any.
+
+Each control is one class here, registered where it is defined, and nothing else names it: `shading` asks
+every control of a light the same three questions, each with a default that leaves the light as it is.
+
+- `lit_points`: which points may be lit, judged by the points alone. Asked first: where it leaves a chunk of
+  points dark, no ray is computed.
+- `least_cosine`: the least cos(L) that is lit. Of several controls the largest counts.
+- `factor`: what is left of the light elsewhere, 0 to 1, as a function of cos(L); factors are multiplied.
+
+To add one, give `Light` a field and write its class. A soft cone has the cosine of its outer angle as
+`least_cosine` and a ramp up to the inner angle as its `factor`. A flap at any plane has the one row of
+`FlapSides` for that plane.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 
 from autocolor.arrays import Flags, Floats, Singles, power
 from autocolor.scene.lights import Light
-from autocolor.visibility.visible_points import POINT, Seen
+from autocolor.visibility.visible_points import POINT, VisiblePoints
 
 ROUNDING: Final = float(np.finfo(np.float32).eps)
+
 FAR_FLAP: Final = 1e30
 """In units; farther than any point, and float32 can hold it."""
 
+ABOVE_ZERO: Final = float(np.finfo(np.float32).smallest_subnormal)
+"""The least positive float32."""
 
+
+class LightControl:
+    """One control of one light, ready for the visible points of one view.
+
+    A control with a `least_cosine` or a `factor` is `directed`: the light must have a direction.
+    """
+
+    directed: bool = False
+    least_cosine: float = -math.inf
+
+    @classmethod
+    def of(cls, light: Light, points: VisiblePoints) -> LightControl | None:
+        """The control of a light, or None where the light does not use it."""
+        raise NotImplementedError
+
+    def lit_points(self, rows: Singles) -> Flags | None:
+        """Whether the points in some columns of `VisiblePoints.rows` may be lit; None for all of them."""
+        return None
+
+    def factor(self, cos_light: Singles, out: Singles) -> Singles | None:
+        """What is left of the light at points that are lit, 0 to 1, written to `out`; None for all of it.
+
+        It must be finite wherever else it is computed. `out` may be the array of the cosines.
+        """
+        return None
+
+
+Control = TypeVar("Control", bound=type[LightControl])
+
+CONTROLS: Final[list[type[LightControl]]] = []
+"""Every kind of control."""
+
+
+def registered(control: Control) -> Control:
+    """Add a class to `CONTROLS`."""
+    CONTROLS.append(control)
+    return control
+
+
+def controls_of(light: Light, points: VisiblePoints) -> tuple[LightControl, ...]:
+    """The controls that a light uses, ready for some visible points."""
+    ready = (control.of(light, points) for control in CONTROLS)
+    return tuple(control for control in ready if control is not None)
+
+
+@registered
 @dataclass(frozen=True, eq=False)
-class Controls:
-    """One light's controls, made ready for the points of one view.
+class FlapSides(LightControl):
+    """The sides of all flaps that are on.
 
-    `toward` is the unit vector of the light direction in camera space, or None where the light is the same
-    all around; `least_cosine` is what cos(L) must reach, None with it. `flaps` is (sides, 4): a point
-    is inside where every row's product with (P, 1) is at least 0.
+    Paper: "Light Flaps and Cones": a flap is a range of an object coordinate, a box and no shadow. A point on
+    a side is inside. `sides` is (sides, 4): a point is inside where each product with (P, 1) is at least 0.
     """
 
-    toward: Floats | None
-    concentration: float
-    least_cosine: float | None
-    flaps: Singles
+    sides: Singles
+
+    @classmethod
+    def of(cls, light: Light, points: VisiblePoints) -> FlapSides | None:
+        """The sides that are not at infinity."""
+        sides: list[Floats] = []
+        # A surface that lies on a side is lit: allow for the rounding of its points to float32.
+        slack = 4 * ROUNDING * points.radius
+        for axis, flap in enumerate((light.flaps.x, light.flaps.y, light.flaps.z)):
+            if flap is None or not flap.on:
+                continue
+            coordinate = points.world_coordinate(axis)
+            for sign, limit in ((1.0, flap.minimum), (-1.0, flap.maximum)):
+                if math.isfinite(limit):
+                    in_units = min(max(sign * limit / points.unit, -FAR_FLAP), FAR_FLAP)
+                    sides.append(sign * coordinate - np.array([0, 0, 0, in_units - slack]))
+        return cls(np.array(sides, np.float32)) if sides else None
+
+    def lit_points(self, rows: Singles) -> Flags:
+        """Whether each point is inside all flaps."""
+        lit = self._inside(self.sides[0], rows)
+        for side in self.sides[1:]:
+            np.logical_and(lit, self._inside(side, rows), out=lit)
+        return lit
+
+    @staticmethod
+    def _inside(side: Singles, rows: Singles) -> Flags:
+        inside: Flags = side[:3] @ rows[POINT] >= -side[3]
+        return inside
 
 
-def controls(light: Light, seen: Seen) -> Controls:
-    """The controls of a light for what is seen.
+@registered
+@dataclass(frozen=True, eq=False)
+class Cone(LightControl):
+    """The cone: a point is lit where L <= A.
 
-    Paper: cos^C(L) for cos(L) > 0; with C = 0 the light is a point source. A point is in the cone where
-    L <= A. Departs: the paper prints the test as cos(L) <= cos(A), which would light the outside; the rim
-    itself is lit. With C = 0 nothing is cut behind the light, so a cone of more than 90 degrees lights
-    there too; with C > 0 the hemisphere ends at 90.
+    Departs: the paper prints the test as cos(L) <= cos(A), which would light the outside; the rim itself is
+    lit. With C = 0 nothing is dark behind the light, so a cone of more than 90 degrees lights there too; with
+    C > 0 the hemisphere ends at 90.
     """
-    toward, least = None, None
-    if light.axis is not None and (light.concentration > 0 or light.cone_angle is not None):
-        toward = seen.camera_direction(light.axis)
-        if light.cone_angle is not None:
-            # A float32 rounding of the rim keeps a cone that ends on a line of pixels from fraying.
-            least = math.cos(math.radians(light.cone_angle)) - ROUNDING
-        if light.concentration > 0:
-            least = max(least if least is not None else 0.0, 0.0)
-    return Controls(toward, light.concentration, least, _flap_sides(light, seen))
+
+    least_cosine: float
+    directed = True
+
+    @classmethod
+    def of(cls, light: Light, points: VisiblePoints) -> Cone | None:
+        """The cone, widened by a rounding of float32: a rim along a line of pixels does not fray."""
+        if light.cone_angle is None:
+            return None
+        return cls(math.cos(math.radians(light.cone_angle)) - ROUNDING)
 
 
-def _flap_sides(light: Light, seen: Seen) -> Singles:
-    """A row for each side of each flap that is on; a point of the side itself is inside.
-
-    Paper: "Light Flaps and Cones": a flap is a range of an object coordinate, a box and no shadow.
-    """
-    rows: list[Floats] = []
-    for axis, flap in enumerate((light.flaps.x, light.flaps.y, light.flaps.z)):
-        if flap is None or not flap.on:
-            continue
-        coordinate = seen.world_coordinate(axis)
-        # A surface that lies on the flap is lit: allow what float32 rounds a point by.
-        slack = 4 * ROUNDING * seen.reach
-        for sign, limit in ((1.0, flap.minimum), (-1.0, flap.maximum)):
-            if math.isfinite(limit):
-                beyond = min(max(sign * limit / seen.unit, -FAR_FLAP), FAR_FLAP)
-                rows.append(sign * coordinate - np.array([0, 0, 0, beyond - slack]))
-    return np.array(rows, np.float32).reshape(-1, 4)
-
-
-def inside_flaps(ready: Controls, rows: Singles) -> Flags | None:
-    """Whether each point is within the flaps; None where there are none."""
-    within: Flags | None = None
-    for side in ready.flaps:
-        inside = side[:3] @ rows[POINT] >= -side[3]
-        within = inside if within is None else np.logical_and(within, inside, out=within)
-    return within
-
-
-def inside_cone(ready: Controls, cos_light: Singles) -> Flags:
-    """Whether each point is in the cone and before the light; `ready` has a direction."""
-    assert ready.least_cosine is not None
-    inside: Flags = cos_light > 0 if ready.least_cosine == 0 else cos_light >= np.float32(ready.least_cosine)
-    return inside
-
-
-def concentrated(cos_light: Singles, concentration: float) -> Singles:
-    """cos^C(L), the light's concentration around its direction. The array of the cosines is worked in.
+@registered
+@dataclass(frozen=True, eq=False)
+class Concentration(LightControl):
+    """Concentration: cos^C(L) where cos(L) > 0.
 
     Paper: "Light Direction and Concentration". Half is left at 60 degrees for C = 1, at 21.1 for C = 10 and
-    at 10.6 for C = 40.
+    at 10.6 for C = 40. With C = 0 the light is a point source, and nothing is dark behind it.
     """
-    return power(cos_light, concentration, out=cos_light)
+
+    exponent: float
+    directed = True
+    least_cosine = ABOVE_ZERO
+
+    @classmethod
+    def of(cls, light: Light, points: VisiblePoints) -> Concentration | None:
+        """The concentration, if the light has any."""
+        return cls(light.concentration) if light.concentration > 0 else None
+
+    def factor(self, cos_light: Singles, out: Singles) -> Singles:
+        """cos^C(L)."""
+        return power(cos_light, self.exponent, out=out)

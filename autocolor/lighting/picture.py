@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from autocolor.arrays import Bytes, Numbers, Singles
 from autocolor.lighting.light_planes import DIFFUSE, SPECULAR, LightPlanes
-from autocolor.visibility.visible_points import SurfaceSlice
+from autocolor.visibility.visible_points import SurfaceSlice, surface_slices
 
 
 class IntensityRange(NamedTuple):
@@ -29,9 +29,9 @@ class IntensityRange(NamedTuple):
 
 @dataclass(frozen=True)
 class PictureRanges:
-    """Minimum and maximum intensity of the whole picture and, by surface name, of each surface seen.
+    """Minimum and maximum intensity of the whole picture and, by surface name, of each visible surface.
 
-    Both are 0 for a picture in which nothing is seen.
+    Both are 0 for a picture in which nothing is visible.
     """
 
     whole: IntensityRange
@@ -40,7 +40,7 @@ class PictureRanges:
 
 @dataclass(frozen=True, eq=False)
 class LightPlane:
-    """What one light gives, (lines, elements) float32 each: without D, S and the light's intensity."""
+    """The contribution of one light, (lines, elements) float32 each: without D, S and its intensity."""
 
     diffuse: Singles
     specular: Singles
@@ -48,11 +48,11 @@ class LightPlane:
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """The picture as the lighting model leaves it: it knows intensities and surfaces, and no color.
+    """The picture that the lighting model computes: intensities and surfaces, no colors.
 
-    The visible pixels are held surface by surface: `pixels` are their flat places, `relative` the
-    intensities in proportion to `scale`, both (n,); `slices` says which are whose. `light_planes` has the
-    planes of each light that was computed.
+    The visible pixels are sorted by surface, as `slices` tells: `pixels` are their flat places in the raster,
+    `relative` the intensities in proportion to `scale`, both (n,). `light_planes` has the planes of each
+    light that was computed.
     """
 
     lines: int
@@ -64,9 +64,22 @@ class Picture:
     scale: float
     light_planes: Mapping[str, LightPlanes] = field(default_factory=dict, repr=False)
 
+    @classmethod
+    def from_rasters(
+        cls, relative: Singles, surface_number: Bytes, surfaces: tuple[str, ...], scale: float
+    ) -> Picture:
+        """A picture of relative intensities and surface numbers, both (lines, elements), without planes."""
+        lines, elements = relative.shape
+        numbers = surface_number.ravel()
+        pixels = np.flatnonzero(numbers)
+        pixels = pixels[np.argsort(numbers[pixels], kind="stable")]
+        slices = surface_slices(np.bincount(numbers[pixels], minlength=1))
+        intensities = relative.ravel()[pixels].astype(np.float32)
+        return cls(lines, elements, surfaces, pixels, slices, intensities, scale)
+
     @cached_property
     def intensity(self) -> Singles:
-        """Unscaled intensities, (lines, elements) float32, 0 where nothing is seen; read-only."""
+        """Unscaled intensities, (lines, elements) float32, 0 where nothing is visible; read-only."""
         return self._raster(self.relative * np.float32(self.scale))
 
     @cached_property
@@ -88,7 +101,7 @@ class Picture:
 
     @property
     def ranges(self) -> PictureRanges:
-        """Minimum and maximum intensity of the whole picture and of each surface seen."""
+        """Minimum and maximum intensity of the whole picture and of each visible surface."""
         scale = np.float32(self.scale)
         scaled = {
             number: IntensityRange(*(float(np.float32(relative) * scale) for relative in each))
@@ -100,14 +113,14 @@ class Picture:
 
     @property
     def planes(self) -> Mapping[str, LightPlane]:
-        """The two planes of each light, by its name, spread over the raster."""
+        """The two planes of each light by its name, as rasters."""
         return {
             name: LightPlane(self._raster(planes.values[DIFFUSE]), self._raster(planes.values[SPECULAR]))
             for name, planes in self.light_planes.items()
         }
 
     def _raster(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Values of the visible pixels in their places, 0 elsewhere; read-only."""
+        """A raster with the values at the visible pixels and 0 elsewhere; read-only."""
         flat = np.zeros(self.lines * self.elements, values.dtype)
         flat[self.pixels] = values
         flat.flags.writeable = False

@@ -1,6 +1,6 @@
-"""The rays from what is seen to a light: how long they are, and the cosines between them and what is there.
+"""The rays from the visible points to a light: lengths, and cosines with normal and reflected view.
 
-Paper: Figures 1 and 3. All are products with rows of `Seen.rows`, in camera space.
+Paper: Figures 1 and 3. All are products with `VisiblePoints.rows`, in camera space.
 """
 
 from __future__ import annotations
@@ -10,47 +10,47 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Numbers, Singles
-from autocolor.lighting.light_controls import Controls, controls
 from autocolor.scene.lights import Light
-from autocolor.visibility.visible_points import POINT, POINT_SQUARED, Seen, keep_products
+from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints, fill_point_products
 
 CLOSE: Final = 0.02
-"""A point is close to a light where the square of its distance is at most this fraction of the squares that
-it is the difference of: there the two are subtracted before they are squared."""
+"""A point is close to a light where its squared distance is at most this fraction of the squares that it is
+the difference of; there the positions are subtracted before they are squared."""
 
 LEAST_SQUARE: Final = 1e-37
-"""The least square of a distance; what is nearer to the light is taken to be as far, so that none is 0."""
+"""The least squared distance; a point that is nearer to the light gets this one, so that none is 0."""
 
 FARTHEST: Final = 1e15
-"""In units; the rays of a light that is farther are parallel, and float32 can hold the square of this."""
+"""In units; the rays to a farther light are parallel, and float32 can hold the square of this."""
 
 
-class Placed(NamedTuple):
-    """A light made ready for the points of one view.
+class CameraLight(NamedTuple):
+    """A light in camera space, ready for the visible points of one view.
 
-    `position` is in camera space, around the middle of the object. Points at a squared distance of at most
-    `close` are close to it.
+    `position` is relative to the middle of the object. Points at a squared distance of at most `close` are
+    close to the light. `direction` is the unit vector of its direction, None where nobody asks for cos(L).
     """
 
     position: Floats
     close: float
-    controls: Controls
+    direction: Floats | None
 
 
-def placed(light: Light, seen: Seen) -> Placed:
-    """A light made ready for what is seen."""
-    position = seen.camera_point(light.position)
+def camera_light(light: Light, points: VisiblePoints, directed: bool) -> CameraLight:
+    """A light in the camera space of some visible points, with its direction if it is `directed`."""
+    position = points.camera_point(light.position)
     position *= min(FARTHEST / max(float(np.abs(position).max()), 1.0), 1.0)
-    close = CLOSE * max(float(position @ position), seen.reach**2)
-    return Placed(position, close, controls(light, seen))
+    close = CLOSE * max(float(position @ position), points.radius**2)
+    direction = points.camera_direction(light.axis) if directed and light.axis is not None else None
+    return CameraLight(position, close, direction)
 
 
 class Rays(NamedTuple):
     """The rays p - P from points to a light.
 
-    `length` is that of each ray, never 0, and `cos_light` the cosine L between it and the light's direction,
-    None where the light has none. `rows` are those of the points; `close` are the places of the points that
-    are close to the light, and `close_rows` their rows with the light in the middle.
+    `length` is never 0. `cos_light` is the cosine of L, between the light's direction and the ray from the
+    light to the point, or None for a light without a direction. `rows` are those of the points. `close` are
+    the places of the points close to the light, and `close_rows` their rows relative to the light.
     """
 
     length: Singles
@@ -61,9 +61,9 @@ class Rays(NamedTuple):
     close_rows: Singles
 
     def cosines_with(self, vector: slice) -> Singles:
-        """The cosine between each ray and the unit vector v in three of the rows, after which P.v stands."""
+        """The cosine between each ray and the unit vector v in three of the rows, which P.v follows."""
         factors = np.array([*self.position, -1], np.float32)
-        # p.v - P.v is how far the ray goes along v.
+        # p.v - P.v is the component of the ray along v.
         products: Singles = factors @ self.rows[vector.start : vector.stop + 1]
         if len(self.close):
             products[self.close] = -self.close_rows[vector.stop]
@@ -72,17 +72,17 @@ class Rays(NamedTuple):
         return products
 
 
-def rays_to(light: Placed, rows: Singles) -> Rays:
-    """The rays from the points in some rows of what is seen to a light."""
-    toward = light.controls.toward
-    squares, ahead = _squares_and_ahead(rows, light.position, toward)
+def rays_to(light: CameraLight, rows: Singles) -> Rays:
+    """The rays to a light from the points in some rows."""
+    direction = light.direction
+    squares, ahead = _squares_and_ahead(rows, light.position, direction)
     close, close_rows = np.empty(0, np.intp), rows[:, :0]
     if squares.min() <= light.close:
         close = np.flatnonzero(squares <= light.close)
         close_rows = rows.take(close, axis=1)
         close_rows[POINT] -= light.position.astype(np.float32)[:, None]
-        keep_products(close_rows)
-        close_squares, close_ahead = _squares_and_ahead(close_rows, np.zeros(3), toward)
+        fill_point_products(close_rows)
+        close_squares, close_ahead = _squares_and_ahead(close_rows, np.zeros(3), direction)
         squares[close] = np.maximum(close_squares, np.float32(LEAST_SQUARE))
         if ahead is not None:
             ahead[close] = close_ahead
@@ -92,20 +92,20 @@ def rays_to(light: Placed, rows: Singles) -> Rays:
 
 
 def _squares_and_ahead(
-    rows: Singles, position: Floats, toward: Floats | None
+    rows: Singles, position: Floats, direction: Floats | None
 ) -> tuple[Singles, Singles | None]:
-    """The square of each ray, and how far its point is ahead in the light's direction.
+    """The square of each ray, and how far its point is ahead of the light, along the light's direction.
 
     (p - P)^2 is P.P - 2 p.P + p.p, and both are linear in P and P.P. Measured: a product of two rows with
     these takes as long as that of one.
     """
-    factors = np.zeros((1 if toward is None else 2, 4), np.float32)
+    factors = np.zeros((1 if direction is None else 2, 4), np.float32)
     factors[0] = *(-2 * position), 1
-    if toward is not None:
-        factors[1, :3] = toward
+    if direction is not None:
+        factors[1, :3] = direction
     products = factors @ rows[POINT.start : POINT_SQUARED + 1]
     products[0] += np.float32(position @ position)
-    if toward is None:
+    if direction is None:
         return products[0], None
-    products[1] -= np.float32(toward @ position)
+    products[1] -= np.float32(direction @ position)
     return products[0], products[1]

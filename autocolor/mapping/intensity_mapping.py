@@ -17,7 +17,7 @@ from autocolor.lighting.picture import IntensityRange, Picture
 from autocolor.mapping.level_ranges import BACKGROUND, LevelRange
 from autocolor.mapping.rounding import halves_up
 from autocolor.scene.curves import CurvePoints, mapping_curve
-from autocolor.visibility.visible_points import shares
+from autocolor.visibility.visible_points import point_chunks
 
 
 def words_of(
@@ -49,10 +49,10 @@ def words_of(
             )
             for surface in picture.slices
         }
-    for share in shares(picture.slices):
-        intensities, pixels = picture.relative[share.pixels], picture.pixels[share.pixels]
+    for chunk in point_chunks(picture.slices):
+        intensities, pixels = picture.relative[chunk.pixels], picture.pixels[chunk.pixels]
         here = np.empty(len(pixels), np.uint16)
-        for surface in share.slices:
+        for surface in chunk.slices:
             first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
             fractions = fractions_of[surface.surface_number](intensities[surface.pixels])
             np.copyto(here[surface.pixels], levels_of(fractions, levels, out=fractions), casting="unsafe")

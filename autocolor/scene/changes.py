@@ -53,7 +53,10 @@ class ReflectanceChanges(TypedDict, total=False):
 
     diffuse: float
     specular: float
+    model: str | Row
     exponent: float
+    roughness: float
+    normal_reflectance: float
 
 
 class PaintChanges(TypedDict, total=False):
@@ -75,7 +78,10 @@ class SurfaceChanges(TypedDict, total=False):
     levels: int | None
     diffuse: float
     specular: float
+    model: str | Row
     exponent: float
+    roughness: float
+    normal_reflectance: float
     object_color: str | Sequence[int]
     light_color: str | Sequence[int]
     blend: float

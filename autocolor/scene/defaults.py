@@ -68,7 +68,7 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
     if _is_a_point(mesh):
         points = middle[:, None] + radius * np.array([[-0.5, 0.5]] * 3)
     else:
-        points = mesh.used_coordinate_rows
+        points = mesh.used_coordinates.T
 
     # A point is within the picture where |across - shift| <= slope (depth + distance). Both bounds together
     # give the shift and the least distance for each direction; the larger distance serves both.

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from autocolor.arrays import Floats, Numbers, Singles
+from autocolor.arrays import Floats, Numbers
 from autocolor.checks import LARGEST_COORDINATE, finite
 from autocolor.errors import InputError
 from autocolor.scene.node_normals import CREASE_ANGLE, NodeNormals, node_normals
@@ -28,7 +28,8 @@ class Mesh:
     `coordinates` is (nodes, 3) float64. `node_numbers` is (polygons, 4) intp, rows of the node table counted
     from 0; a triangle repeats its last node, and (polygons, 3) is accepted where all are triangles.
     `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0. Polygons that meet at more than
-    `crease_angle` degrees keep a sharp edge. The tables are copied, and stand in memory column by column.
+    `crease_angle` degrees keep a sharp edge. The tables are copied and stored by columns (Fortran order), so
+    that `.T` is the contiguous array that the renderer works on.
     """
 
     coordinates: Floats
@@ -39,10 +40,10 @@ class Mesh:
 
     def __post_init__(self) -> None:
         problems: list[str] = []
-        coordinate_rows = _columns(problems, "node table", self.coordinates, np.float64, (3,))
-        columns = _columns(problems, "polygon table", self.node_numbers, np.intp, (3, 4))
-        if len(columns) == 3:
-            columns = columns[[0, 1, 2, 2]]
+        coordinate_rows = _rows(problems, "node table", self.coordinates, np.float64, (3,))
+        node_rows = _rows(problems, "polygon table", self.node_numbers, np.intp, (3, 4))
+        if len(node_rows) == 3:
+            node_rows = node_rows[[0, 1, 2, 2]]
         part_numbers = np.array(np.atleast_1d(_numbers(problems, "part numbers", self.part_numbers, np.intp)))
         names = () if isinstance(self.part_names, str) else self.part_names
         names = tuple(names) if isinstance(names, Iterable) else ()
@@ -58,8 +59,8 @@ class Mesh:
                 f"node table: coordinates must be finite and at most 1e30 in size, not"
                 f" {coordinate_rows[:, row].tolist()} (row {row})"
             )
-        node_count, polygon_count = coordinate_rows.shape[1], columns.shape[1]
-        _check_rows(problems, "polygon table: a node number", columns, node_count, "node table")
+        node_count, polygon_count = coordinate_rows.shape[1], node_rows.shape[1]
+        _check_rows(problems, "polygon table: a node number", node_rows, node_count, "node table")
         _check_rows(problems, "polygon table: a part number", part_numbers, len(names), "part table")
         if part_numbers.shape != (polygon_count,):
             problems.append(
@@ -70,11 +71,11 @@ class Mesh:
             problems.append("part table: part names must differ, not repeat")
         if problems:
             raise InputError(problems)
-        for table in (coordinate_rows, columns, part_numbers):
+        for table in (coordinate_rows, node_rows, part_numbers):
             table.flags.writeable = False
         for name, value in (
             ("coordinates", coordinate_rows.T),
-            ("node_numbers", columns.T),
+            ("node_numbers", node_rows.T),
             ("part_numbers", part_numbers),
             ("part_names", names),
             ("crease_angle", angle),
@@ -83,42 +84,22 @@ class Mesh:
 
     @cached_property
     def normals(self) -> NodeNormals:
-        """Unit normals at the corners of the polygons, made from the adjoining polygons."""
+        """Unit normals at the corners of the polygons, computed from the adjoining polygons."""
         return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
 
     @property
-    def columns(self) -> Numbers:
-        """The node numbers with one row a corner, (4, polygons), as batches of polygons are worked on."""
-        return self.node_numbers.T
-
-    @property
-    def coordinate_rows(self) -> Floats:
-        """The coordinates with one row an axis, (3, nodes)."""
-        return self.coordinates.T
-
-    @cached_property
-    def normal_rows(self) -> Singles:
-        """The normals with one row an axis, (3, normals)."""
-        return self.normals.vectors.T.astype(np.float32, order="C")
-
-    @property
-    def normal_columns(self) -> Numbers:
-        """The numbers of the normals with one row a corner, (4, polygons)."""
-        return self.normals.numbers.T
-
-    @property
-    def used_coordinate_rows(self) -> Floats:
-        """The coordinates of the nodes that polygons use, with one row an axis."""
+    def used_coordinates(self) -> Floats:
+        """The coordinates of the nodes that polygons use, (nodes, 3), stored by columns."""
         used = np.zeros(len(self.coordinates), np.bool_)
-        used[self.columns] = True
-        return self.coordinate_rows if used.all() else self.coordinate_rows[:, used]
+        used[self.node_numbers.T] = True
+        return self.coordinates if used.all() else self.coordinates.T[:, used].T
 
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """The least and the largest coordinates of the nodes that polygons use; zeros for an empty mesh."""
         if not len(self.node_numbers):
             return np.zeros(3), np.zeros(3)
-        rows = self.used_coordinate_rows
+        rows = self.used_coordinates.T
         return rows.min(axis=1), rows.max(axis=1)
 
     @cached_property
@@ -130,7 +111,8 @@ class Mesh:
     @property
     def edge_count(self) -> int:
         """How many distinct edges the polygons have (the paper counts 17,940 for its car)."""
-        start, end = self.columns, np.roll(self.columns, -1, axis=0)
+        start = self.node_numbers.T
+        end = np.roll(start, -1, axis=0)
         keys = np.minimum(start, end) * len(self.coordinates) + np.maximum(start, end)
         sorted_keys = np.sort(keys[start != end])
         return int(np.count_nonzero(np.diff(sorted_keys, prepend=-1)))
@@ -138,7 +120,7 @@ class Mesh:
     @property
     def triangle_count(self) -> int:
         """How many polygons have three sides."""
-        return int(np.count_nonzero(self.columns[2] == self.columns[3]))
+        return int(np.count_nonzero(self.node_numbers[:, 2] == self.node_numbers[:, 3]))
 
     @staticmethod
     def joined(meshes: Sequence[Mesh]) -> Mesh:
@@ -149,9 +131,9 @@ class Mesh:
         first_nodes = np.cumsum([0] + [len(mesh.coordinates) for mesh in meshes[:-1]])
         rows = [np.array([names.index(name) for name in mesh.part_names], dtype=np.intp) for mesh in meshes]
         return Mesh(
-            np.concatenate([mesh.coordinate_rows for mesh in meshes], axis=1).T,
+            np.concatenate([mesh.coordinates.T for mesh in meshes], axis=1).T,
             np.concatenate(
-                [mesh.columns + first for mesh, first in zip(meshes, first_nodes, strict=True)], axis=1
+                [mesh.node_numbers.T + first for mesh, first in zip(meshes, first_nodes, strict=True)], axis=1
             ).T,
             np.concatenate([row[mesh.part_numbers] for mesh, row in zip(meshes, rows, strict=True)]),
             names,
@@ -176,10 +158,10 @@ def _numbers(problems: list[str], what: str, value: object, dtype: type) -> NDAr
     return array.astype(dtype, copy=False)
 
 
-def _columns(
+def _rows(
     problems: list[str], what: str, value: object, dtype: type, widths: tuple[int, ...]
 ) -> NDArray[Any]:
-    """A copy of the value, (rows, width), as (width, rows) of the type; empty after a problem was noted."""
+    """A copy of the value, (rows, width), as contiguous (width, rows); empty after a problem was noted."""
     array = _numbers(problems, what, value, dtype)
     if array.size == 0:
         array = array.reshape(0, widths[-1])
@@ -191,7 +173,7 @@ def _columns(
 
 
 def _check_rows(problems: list[str], what: str, numbers: Numbers, count: int, table: str) -> None:
-    """Note the first number, or column of numbers, that is no row of a table."""
+    """Note the first number, or group of numbers in a column, that is no row of a table."""
     if not numbers.size or (numbers.min() >= 0 and numbers.max() < count):
         return
     missing = (numbers < 0) | (numbers >= count)

@@ -2,9 +2,9 @@
 
 Paper: "The Lighting Model" interpolates the normal between node normals; how they are made is not said.
 Assumed: the mean of the normals of the adjoining polygons, each weighted by its angle at the node, so that
-it does not depend on how a flat side was cut into polygons. A normal is not shared across parts, nor across
-an edge where the polygons meet at more than the crease angle. Nodes at the same place count as one, so that
-a file that repeats its nodes is as smooth as one that shares them.
+it does not depend on how a flat side was divided into polygons. A normal is not shared across parts, nor
+across an edge where the polygons meet at more than the crease angle. Nodes at the same place count as one, so
+that a file that repeats its nodes is as smooth as one that shares them.
 """
 
 from __future__ import annotations
@@ -14,25 +14,26 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Numbers, chunks, cross, lengths
+from autocolor.arrays import Floats, Numbers, Singles, chunks, cross, lengths
 from autocolor.scene.fans import fans_of_corners, places_of_corners
-from autocolor.scene.union_find import group_numbers, join
+from autocolor.scene.union_find import group_numbers, unite
 
 CREASE_ANGLE: Final = 40.0
 """Assumed: degrees; edges of boxes stay sharp, and a cylinder of ten sides or more is smooth."""
 
 POLYGONS_AT_ONCE: Final = 1 << 13
-"""So many that their corners stay near the processor."""
+"""Few enough for their corners to stay in the processor's cache."""
 
 
 @dataclass(frozen=True, eq=False)
 class NodeNormals:
-    """`vectors` is (normals, 3) float64, unit; `numbers` is (polygons, 4) intp: the row for each corner.
+    """Unit normals, and which of them stands at each corner of a polygon.
 
-    In memory both lie column by column, as the renderer takes them.
+    `vectors` is (normals, 3) float32, `numbers` (polygons, 4) intp: rows of `vectors`. Both are stored by
+    columns, so that `.T` is the contiguous array that the renderer works on.
     """
 
-    vectors: Floats
+    vectors: Singles
     numbers: Numbers
 
 
@@ -40,38 +41,39 @@ def node_normals(
     coordinates: Floats, node_numbers: Numbers, part_numbers: Numbers, crease_angle: float = CREASE_ANGLE
 ) -> NodeNormals:
     """The normals at the corners of the polygons; a polygon without area adds nothing to any."""
-    rows, columns = np.ascontiguousarray(coordinates.T), np.ascontiguousarray(node_numbers.T)
-    normals, angles = _normals_and_angles(rows, columns)
-    fans, against = fans_of_corners(places_of_corners(rows, columns), part_numbers, normals, crease_angle)
+    coordinate_rows, node_rows = np.ascontiguousarray(coordinates.T), np.ascontiguousarray(node_numbers.T)
+    normals, angles = _normals_and_angles(coordinate_rows, node_rows)
+    places = places_of_corners(coordinate_rows, node_rows)
+    fans, opposite = fans_of_corners(places, part_numbers, normals, crease_angle)
 
-    # Add up the normals of each fan, weighted by the angles.
+    # Sum the normals of each fan, weighted by the angles.
     vectors, numbers = _weighted_sums(fans, normals, angles)
-    if against:
-        vectors, together = _with_other_sides(vectors, against)
-        numbers = together[numbers]
+    if opposite:
+        vectors, united = _united_with_opposite(vectors, opposite)
+        numbers = united[numbers]
 
-    # Give a fan whose normals cancel the normal of one of its polygons.
+    # Give a fan whose normals cancel out the normal of one of its polygons.
     sizes = lengths(vectors)
-    lost = np.flatnonzero(sizes < 1e-9)
-    if len(lost):
+    canceled = np.flatnonzero(sizes < 1e-9)
+    if len(canceled):
         polygon_of_fan = np.zeros(vectors.shape[1], np.intp)
-        # Row by row: `maximum.at` of numpy 2.4 reads beyond values that it has to repeat.
+        # Row by row: `maximum.at` of numpy 2.4 reads past the end of values that it broadcasts.
         for row in numbers:
             np.maximum.at(polygon_of_fan, row, np.arange(len(row)))
-        vectors[:, lost] = normals[:, polygon_of_fan[lost]]
-        vectors[2, lost[~vectors[:, lost].any(axis=0)]] = 1.0
-        sizes[lost] = 1.0
+        vectors[:, canceled] = normals[:, polygon_of_fan[canceled]]
+        vectors[2, canceled[~vectors[:, canceled].any(axis=0)]] = 1.0
+        sizes[canceled] = 1.0
     vectors /= sizes
-    return NodeNormals(vectors.T, numbers.T)
+    return NodeNormals(vectors.astype(np.float32).T, numbers.T)
 
 
-def _normals_and_angles(rows: Floats, columns: Numbers) -> tuple[Floats, Floats]:
+def _normals_and_angles(coordinate_rows: Floats, node_rows: Numbers) -> tuple[Floats, Floats]:
     """The normals of the polygons, (3, polygons), and the angles at their corners, (4, polygons)."""
-    normals, angles = np.empty((3, columns.shape[1])), np.empty(columns.shape)
-    for some in chunks(columns.shape[1], POLYGONS_AT_ONCE):
-        corners = np.take(rows, columns[:, some], axis=1)
-        normals[:, some] = polygon_normals(corners)
-        angles[:, some] = _corner_angles(corners)
+    normals, angles = np.empty((3, node_rows.shape[1])), np.empty(node_rows.shape)
+    for chunk in chunks(node_rows.shape[1], POLYGONS_AT_ONCE):
+        corners = np.take(coordinate_rows, node_rows[:, chunk], axis=1)
+        normals[:, chunk] = polygon_normals(corners)
+        angles[:, chunk] = _corner_angles(corners)
     return normals, angles
 
 
@@ -79,25 +81,25 @@ def _weighted_sums(fans: Numbers, normals: Floats, angles: Floats) -> tuple[Floa
     """The sums of the weighted normals of each fan, (3, fans), and the fan of each corner, (4, polygons)."""
     sums = np.zeros((3, int(fans.max(initial=-1)) + 1))
     numbers = np.empty(angles.shape, np.intp)
-    for some in chunks(angles.shape[1], POLYGONS_AT_ONCE):
-        fan = fans[4 * some.start : 4 * some.stop]
-        numbers[:, some] = fan.reshape(-1, 4).T
+    for chunk in chunks(angles.shape[1], POLYGONS_AT_ONCE):
+        fan = fans[4 * chunk.start : 4 * chunk.stop]
+        numbers[:, chunk] = fan.reshape(-1, 4).T
         for sum_row, normal_row in zip(sums, normals, strict=True):
-            np.add.at(sum_row, fan, (angles[:, some] * normal_row[some]).T.ravel())
+            np.add.at(sum_row, fan, (angles[:, chunk] * normal_row[chunk]).T.ravel())
     return sums, numbers
 
 
-def _with_other_sides(sums: Floats, against: list[Numbers]) -> tuple[Floats, Numbers]:
-    """The sums of fans, (3, fans), with those of the fans that are wound against them, and each fan's column.
+def _united_with_opposite(sums: Floats, opposite: list[Numbers]) -> tuple[Floats, Numbers]:
+    """The sums of fans, (3, fans), united with the fans of opposite winding next to them; each fan's column.
 
-    Every fan stands twice, once for each of its sides; what is wound against each other joins crosswise. So
-    a normal is never added to its own opposite.
+    Every fan has two sides, numbered `fan` and `fan + count`. The front of one is united with the back of a
+    fan of opposite winding, so that a normal is never added to its own reverse.
     """
     count = sums.shape[1]
     sides = np.arange(2 * count)
-    for one, other in against:
-        join(sides, np.concatenate([one, one + count]), np.concatenate([other + count, other]))
-    # The groups in which a fan shows its own side come first.
+    for one, other in opposite:
+        unite(sides, np.concatenate([one, one + count]), np.concatenate([other + count, other]))
+    # Groups are numbered by their lowest side, so those with the front of a fan come first.
     groups = group_numbers(sides)
     used = int(groups[:count].max()) + 1
     both = np.concatenate([sums, -sums], axis=1)
@@ -107,7 +109,7 @@ def _with_other_sides(sums: Floats, against: list[Numbers]) -> tuple[Floats, Num
 def polygon_normals(corners: Floats) -> Floats:
     """Unit normals, (3, polygons), of corners (3, 4, polygons); zero for a polygon without area.
 
-    The cross product of the diagonals serves warped quads too, and triangles that repeat a node.
+    The cross product of the diagonals also suits warped quads, and triangles that repeat a node.
     """
     size = np.ptp(corners, axis=1).max(axis=0)
     size[size == 0] = 1.0
@@ -122,17 +124,17 @@ def polygon_normals(corners: Floats) -> Floats:
 
 
 def _corner_angles(corners: Floats) -> Floats:
-    """The angle of the polygon at each corner in radians, (4, polygons); a repeated corner has it once."""
-    onward = np.roll(corners, -1, axis=1) - corners
-    inward = np.roll(onward, 1, axis=1)
+    """The angle in radians at each corner, (4, polygons); 0 at the repeated corner of a triangle."""
+    outgoing = np.roll(corners, -1, axis=1) - corners
+    incoming = np.roll(outgoing, 1, axis=1)
     # A triangle repeats its last node.
-    triangle = ~onward[:, 2].any(axis=0)
-    onward[:, 2, triangle] = onward[:, 3, triangle]
-    size = np.maximum(np.abs(onward).max(axis=0), np.abs(inward).max(axis=0))
+    triangle = ~outgoing[:, 2].any(axis=0)
+    outgoing[:, 2, triangle] = outgoing[:, 3, triangle]
+    size = np.maximum(np.abs(outgoing).max(axis=0), np.abs(incoming).max(axis=0))
     size[size == 0] = 1.0
-    onward /= size
-    inward /= size
-    # Subtract from 0: a negated 0 would make of an edge without length an angle of 180 degrees.
-    angles: Floats = np.arctan2(lengths(cross(inward, onward)), 0.0 - (inward * onward).sum(axis=0))
+    outgoing /= size
+    incoming /= size
+    # Subtract from 0: -0.0 would give an edge without length an angle of 180 degrees.
+    angles: Floats = np.arctan2(lengths(cross(incoming, outgoing)), 0.0 - (incoming * outgoing).sum(axis=0))
     angles[3, triangle] = 0.0
     return angles

@@ -1,23 +1,202 @@
-"""Reflection models: what a surface sends to the eye of the light that arrives. Phong's is the one there is.
+"""Reflection models: the specular factor at a point, as a function of cosines between unit vectors.
 
-Paper: Figure 2. light(j) = intensity(j) (D cos(I) + S cos^N(E)). The two terms are kept apart and without
-their D and S, so that these can change without computing a cosine again.
+Paper: Figure 2. light(j) = intensity(j) (D cos(I) + S cos^N(E)). The diffuse term is cos(I) under every
+model. The specular factor stands in the place of cos^N(E), without S, and each model is 1 where light and eye
+are both in the direction of the normal, so that S means the same to all of them.
+
+A model is a row with its parameters and one function of cosines. To add one, write its class here and
+register it under its name.
+
+With the normal N, the direction to the light L and to the eye V, all other cosines follow from the three
+given, as cos(E) = L . R of the reflected view R = 2 (N.V) N - V:
+
+    L.V = 2 (N.V) (N.L) - cos(E)
+    N.H = (N.L + N.V) / |L + V| and V.H = |L + V| / 2, where H halves the angle, |L + V|^2 = 2 + 2 L.V
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Annotated, Final, NamedTuple, TypeVar
+
+import numpy as np
+
 from autocolor.arrays import Singles, power
+from autocolor.scene.column_kinds import Number
+from autocolor.scene.columns import Column, Row, Tier
+
+LEAST_FACING: Final = 0.3
+"""Assumed: the least N.V to divide by, so that no silhouette outshines its surface by far.
+
+Measured on a sphere and on the coupe, roughness 0.3: with light from the front and from the side the largest
+factor is 1.0 and 2.8, at N.V above 0.5 whatever the bound. With light from behind to one side it is 47 at N.V
+0.1 without a bound, 21 with this one, and 19 among points with N.V above 0.3; from straight behind 1005, 59
+and 18.
+"""
+
+LEAST_SQUARE: Final = np.float32(1e-6)
+"""The least |L + V|^2, just above the rounding of float32; less only where L and V are opposite."""
 
 
-def phong_diffuse(cos_incidence: Singles) -> Singles:
-    """cos(I), Lambert's law; `cos_incidence` is above 0."""
-    return cos_incidence
+class Cosines(NamedTuple):
+    """The cosines at some points, (points,) float32 each, -1 to 1 up to rounding.
+
+    `incidence` is N.L, `eye` is cos(E). `view()` computes N.V, which not every model needs.
+    """
+
+    incidence: Singles
+    eye: Singles
+    view: Callable[[], Singles]
 
 
-def phong_specular(cos_eye: Singles, exponent: float) -> Singles:
-    """cos^N(E); a negative cosine counts as 0. The array of the cosines is worked in."""
-    # Most surfaces mirror some of the lights away from the eye.
-    if exponent > 0 and cos_eye.max(initial=0.0) <= 0:
-        cos_eye[:] = 0
-        return cos_eye
-    return power(cos_eye, exponent, out=cos_eye)
+class ReflectionModel(Row):
+    """A reflection model with its parameters; equal values give equal pictures."""
+
+    @property
+    def largest(self) -> float:
+        """A bound of the specular factor from above."""
+        return 1.0
+
+    def specular(self, cosines: Cosines, out: Singles) -> Singles:
+        """The specular factor, written to `out`, which may be one of the arrays of cosines.
+
+        It is finite and at least 0 for any cosines, and counts where N.L > 0.
+        """
+        raise NotImplementedError
+
+
+Model = TypeVar("Model", bound=type[ReflectionModel])
+
+MODELS: Final[dict[str, type[ReflectionModel]]] = {}
+"""Every reflection model by the name that a scene gives it."""
+
+
+def registered(name: str) -> Callable[[Model], Model]:
+    """Add a class to `MODELS` under a name."""
+
+    def register(model: Model) -> Model:
+        MODELS[name] = model
+        return model
+
+    return register
+
+
+@registered("phong")
+@dataclass(frozen=True)
+class Phong(ReflectionModel):
+    """cos^N(E). Paper: Figure 2."""
+
+    exponent: Annotated[float, Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.")] = (
+        20.0
+    )
+
+    def specular(self, cosines: Cosines, out: Singles) -> Singles:
+        """cos^N(E); a negative cosine counts as 0."""
+        # Most surfaces reflect some of the lights away from the eye.
+        if self.exponent > 0 and cosines.eye.max(initial=0.0) <= 0:
+            out[:] = 0
+            return out
+        return power(cosines.eye, self.exponent, out=out)
+
+
+@registered("blinn")
+@dataclass(frozen=True)
+class BlinnPhong(ReflectionModel):
+    """cos^N of the angle between normal and half vector. Departs: J. Blinn, SIGGRAPH 1977, not Figure 2."""
+
+    exponent: Annotated[float, Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.")] = (
+        20.0
+    )
+
+    def specular(self, cosines: Cosines, out: Singles) -> Singles:
+        """(N.H)^N; a negative cosine counts as 0."""
+        half = _half_vector(cosines.incidence, cosines.view(), cosines.eye)
+        return power(half.normal, self.exponent, out=out)
+
+
+@registered("cook-torrance")
+@dataclass(frozen=True)
+class CookTorrance(ReflectionModel):
+    """F D G / (N.V) over its value at normal incidence and view.
+
+    Departs: R. Cook and K. Torrance, SIGGRAPH 1981, not Figure 2: Beckmann's distribution D, whose slope m is
+    `roughness`; their geometric attenuation G; and their Fresnel term F for the index of refraction that
+    reflects `normal_reflectance`, F0, at normal incidence.
+    """
+
+    roughness: Annotated[
+        float, Column(Number(0.01, 1), Tier.LIGHT, "How rough it is: m, the slope of the microfacets.")
+    ] = 0.3
+    normal_reflectance: Annotated[
+        float, Column(Number(0.001, 1), Tier.LIGHT, "F0: what is reflected at normal incidence.")
+    ] = 0.05
+
+    @property
+    def largest(self) -> float:
+        """Where F is 1, G is 1, and D is largest: 4 / e for a roughness of 1."""
+        return 4 / math.e / self.normal_reflectance / LEAST_FACING
+
+    def specular(self, cosines: Cosines, out: Singles) -> Singles:
+        """The factor."""
+        view = cosines.view()
+        half = _half_vector(cosines.incidence, view, cosines.eye)
+        np.multiply(self._distribution(half.normal), self._fresnel(half.view), out=out)
+        out *= _attenuation(cosines.incidence, view, half)
+        out /= np.maximum(view, np.float32(LEAST_FACING))
+        return out
+
+    def _distribution(self, cos_half: Singles) -> Singles:
+        """Beckmann's D over its value at cos 1: exp(-(tan / m)^2) / cos^4."""
+        square = np.maximum(cos_half * cos_half, np.float32(1e-4))
+        tangent = (1 - square) / square
+        tangent /= np.float32(-self.roughness * self.roughness)
+        with np.errstate(under="ignore"):
+            distribution: Singles = np.exp(tangent, out=tangent)
+            distribution /= square * square
+        return distribution
+
+    def _fresnel(self, cosine: Singles) -> Singles:
+        """F over F0, for unpolarized light at a cosine of incidence on a half vector."""
+        root = math.sqrt(self.normal_reflectance)
+        if root == 1:
+            return np.ones_like(cosine)
+        index = np.float32((1 + root) / (1 - root))
+        g = np.sqrt(cosine * cosine + (index * index - 1))
+        first = (g - cosine) / (g + cosine)
+        second = (cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1)
+        fresnel: Singles = first * first * (1 + second * second)
+        fresnel *= np.float32(0.5 / self.normal_reflectance)
+        return fresnel
+
+
+class _HalfVector(NamedTuple):
+    """The cosines of the half vector with the normal and with the direction to the eye."""
+
+    normal: Singles
+    view: Singles
+
+
+def _half_vector(incidence: Singles, view: Singles, eye: Singles) -> _HalfVector:
+    """N.H and V.H, given N.L, N.V and cos(E); both 0 to 1."""
+    square = view * incidence
+    square *= 4
+    square -= 2 * eye
+    square += 2
+    np.clip(square, LEAST_SQUARE, np.float32(4), out=square)
+    length = np.sqrt(square, out=square)
+    normal = incidence + view
+    normal /= length
+    np.clip(normal, np.float32(0), np.float32(1), out=normal)
+    length *= np.float32(0.5)
+    return _HalfVector(normal, length)
+
+
+def _attenuation(incidence: Singles, view: Singles, half: _HalfVector) -> Singles:
+    """G, what microfacets do not shadow or mask of each other: min(1, 2 N.H N.V / V.H, 2 N.H N.L / V.H)."""
+    attenuation: Singles = np.minimum(incidence, view)
+    attenuation *= half.normal
+    attenuation *= 2
+    attenuation /= half.view
+    return np.clip(attenuation, np.float32(0), np.float32(1), out=attenuation)

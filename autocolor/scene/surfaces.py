@@ -11,11 +11,15 @@ from typing import Annotated, ClassVar, Final, Unpack
 
 from autocolor.checks import Color
 from autocolor.scene.changes import PaintChanges, PartChanges, ReflectanceChanges, SurfaceChanges
-from autocolor.scene.column_kinds import ColorKind, Nested, Number, Reference, Switch, Text, Whole
+from autocolor.scene.column_kinds import ColorKind, Nested, Number, Reference, Switch, Text, Variant, Whole
 from autocolor.scene.columns import Column, Row, Tier, changed
+from autocolor.scene.reflection_models import MODELS, Phong, ReflectionModel
 
 MOST_SURFACES: Final = 255
 """Surface numbers are held in 8 bits, and 0 means that nothing is seen."""
+
+PHONG: Final = Phong()
+"""The model of a reflectance that is given none."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +36,9 @@ class Part(Row):
         return changed(self, changes)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Reflectance(Row):
-    """The reflectance properties of a surface: D, S and N, all at least 0 and with no upper limit.
+    """The reflectance properties of a surface: D, S, and a reflection model with its own parameters.
 
     Paper: Figure 2.
     """
@@ -45,12 +49,37 @@ class Reflectance(Row):
     specular: Annotated[
         float, Column(Number(at_least=0), Tier.MIX, "S: how much is reflected around the mirror direction.")
     ] = 0.5
-    exponent: Annotated[float, Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.")] = (
-        20.0
-    )
+    model: Annotated[
+        ReflectionModel, Column(Variant(MODELS), Tier.LIGHT, "The reflection model of the highlight.")
+    ] = PHONG
+
+    def __init__(
+        self,
+        diffuse: float = 0.7,
+        specular: float = 0.5,
+        model: ReflectionModel | str | float = PHONG,
+        *,
+        exponent: float | None = None,
+    ) -> None:
+        """D, S, and a model or its name; a number or `exponent` is N of Phong's model. Raises InputError."""
+        if isinstance(model, (float, int)):
+            exponent, model = model, PHONG
+        vars(self).update(diffuse=diffuse, specular=specular, model=model)
+        self.__post_init__()
+        if exponent is not None:
+            vars(self).update(vars(changed(self, {"exponent": exponent})))
+
+    @property
+    def exponent(self) -> float:
+        """N of the reflection model; AttributeError where the model has none."""
+        values = vars(self.model)
+        if "exponent" not in values:
+            raise AttributeError(f"the model of a reflectance must have an exponent, not {self.model!r}")
+        exponent: float = values["exponent"]
+        return exponent
 
     def replace(self, **changes: Unpack[ReflectanceChanges]) -> Reflectance:
-        """The reflectance with some fields changed."""
+        """The reflectance with some fields changed; another model begins with its own defaults."""
         return changed(self, changes)
 
 

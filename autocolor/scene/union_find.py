@@ -1,7 +1,7 @@
-"""Things that are joined in pairs, and so in groups: directly, or one through the other.
+"""Union-find: items that are united in pairs, and the groups that come of it.
 
-The groups grow in an array that leads from each thing to a lower one of its group, and from the lowest to
-itself. At first every thing is alone, as in `np.arange`.
+Every item has a parent, a lower item of its group; the root of a group is its lowest item and its own parent.
+At first every item is a root, as in `np.arange`. All functions work on many items at once.
 """
 
 from __future__ import annotations
@@ -15,34 +15,34 @@ from autocolor.arrays import Numbers, chunks
 AT_ONCE: Final = 1 << 15
 
 
-def join(leads: Numbers, one: Numbers, other: Numbers) -> None:
-    """Join each of some things to another; `leads` is changed in place."""
+def unite(parents: Numbers, one: Numbers, other: Numbers) -> None:
+    """Unite the groups of each pair of items; `parents` is changed in place."""
     while len(one):
-        # Leave out the pairs whose groups are joined by now.
-        one, other = _lowest(leads, np.concatenate([one, other])).reshape(2, -1)
+        # Drop the pairs that are in one group by now.
+        one, other = _roots(parents, np.concatenate([one, other])).reshape(2, -1)
         apart = np.flatnonzero(one != other)
         one, other = np.take(one, apart), np.take(other, apart)
-        # Lead from the lowest of one group to that of the other. Where several pairs lead from the same
-        # thing the lowest goal is taken, and the others try again.
-        np.minimum.at(leads, np.maximum(one, other), np.minimum(one, other))
+        # Make the lower root the parent of the higher one. Where several pairs share the higher root, the
+        # lowest parent is taken and the other pairs try again.
+        np.minimum.at(parents, np.maximum(one, other), np.minimum(one, other))
 
 
-def group_numbers(leads: Numbers) -> Numbers:
-    """The number of each thing's group, counted from 0 in the order of their lowest."""
-    numbers = np.cumsum(leads == np.arange(len(leads)))
+def group_numbers(parents: Numbers) -> Numbers:
+    """The group of each item; groups are numbered from 0 in the order of their roots."""
+    numbers = np.cumsum(parents == np.arange(len(parents)))
     numbers -= 1
-    groups = np.empty_like(leads)
-    for part in chunks(len(leads), AT_ONCE):
-        some = np.arange(part.start, part.stop)
-        groups[some] = numbers[_lowest(leads, some)]
+    groups = np.empty_like(parents)
+    for chunk in chunks(len(parents), AT_ONCE):
+        items = np.arange(chunk.start, chunk.stop)
+        groups[items] = numbers[_roots(parents, items)]
     return groups
 
 
-def _lowest(leads: Numbers, things: Numbers) -> Numbers:
-    """The lowest of the groups of some things; from now on `leads` takes them there directly."""
-    lower = np.take(leads, things)
+def _roots(parents: Numbers, items: Numbers) -> Numbers:
+    """The root of each item, which becomes its parent (path compression)."""
+    ancestors = np.take(parents, items)
     while True:
-        lowest = np.take(leads, lower)
-        if (lowest == lower).all():
-            return lowest
-        leads[things] = lower = lowest
+        higher = np.take(parents, ancestors)
+        if (higher == ancestors).all():
+            return higher
+        parents[items] = ancestors = higher

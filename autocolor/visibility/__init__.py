@@ -1,4 +1,4 @@
-"""Which polygon is seen at each pixel, and the point, normal and reflected view there.
+"""Which polygon is visible at each pixel, and the point, normal and reflected view there.
 
 Uses `scene` and the ground.
 """

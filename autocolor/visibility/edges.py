@@ -1,8 +1,8 @@
-"""Edges of polygons, cut by the lines of the raster.
+"""Edges of polygons, and how they step from scan line to scan line.
 
-An edge is known by two numbers in the flat corners of a projection, its top and its bottom: number
-c * polygons + p is corner c of polygon p. It is always followed from its top to its bottom, whichever way the
-polygon runs, so that polygons which share an edge are cut at the very same places and leave no crack.
+An edge is known by the corners at its top and its bottom, numbers in the flat corners of a projection: number
+c * polygons + p is corner c of polygon p. It is always followed from top to bottom, whichever way the polygon
+runs, so that polygons that share an edge have the same crossings and leave no crack.
 """
 
 from __future__ import annotations
@@ -19,29 +19,29 @@ from autocolor.visibility.projection import Projection, least_of_four
 Side = Literal[1, -1]
 
 DOWN_SIDE: Final[Side] = 1
-"""The edges along which a polygon, followed as it runs, goes down the raster."""
+"""The edges that lead down the raster as the polygon runs."""
 
 UP_SIDE: Final[Side] = -1
-"""The edges along which it comes back up."""
+"""The edges that lead back up."""
 
 
 @dataclass(frozen=True, eq=False)
 class Edges:
     """Edges and how to step them from line to line; every array is (edges,).
 
-    An edge crosses the `count` lines from `first_line`; `across` (pixels) and `inverse_depth` are its values
-    at the center of the first, and the steps what each further line adds. `top` and `bottom` are numbers of
-    its ends in the flat corners of the projection, `upper` and `lower` their nodes.
+    An edge crosses the `count` lines from `first_line`; `x` (pixels) and `inverse_depth` are its values at
+    the center of the first, and the steps are what each further line adds. `top` and `bottom` are corners,
+    `top_node` and `bottom_node` the nodes there.
     """
 
     top: Numbers
     bottom: Numbers
-    upper: Numbers
-    lower: Numbers
+    top_node: Numbers
+    bottom_node: Numbers
     first_line: Numbers
     count: Numbers
-    across: Floats
-    across_step: Floats
+    x: Floats
+    x_step: Floats
     inverse_depth: Floats
     inverse_depth_step: Floats
 
@@ -49,17 +49,15 @@ class Edges:
 def edges(projected: Projection, top: Numbers, bottom: Numbers) -> Edges:
     """The edges between corners; each must cross a line.
 
-    Measured, here and wherever much is picked: `take` has two thirds of the time of an index.
+    Measured, here and wherever many elements are picked: `take` takes two thirds of the time of an index.
     """
     corners = projected.corners.ravel()
     a, b = corners.take(top), corners.take(bottom)
     first_line = projected.first_line.take(a)
-    down, across, inverse_depth = (
-        table.take(a) for table in (projected.down, projected.across, projected.inverse_depth)
-    )
-    height = projected.down.take(b) - down
-    below_top = first_line + 0.5 - down
-    across_step = (projected.across.take(b) - across) / height
+    x, y, inverse_depth = (table.take(a) for table in (projected.x, projected.y, projected.inverse_depth))
+    height = projected.y.take(b) - y
+    below_top = first_line + 0.5 - y
+    x_step = (projected.x.take(b) - x) / height
     inverse_depth_step = (projected.inverse_depth.take(b) - inverse_depth) / height
     return Edges(
         top,
@@ -68,22 +66,22 @@ def edges(projected: Projection, top: Numbers, bottom: Numbers) -> Edges:
         b,
         first_line,
         projected.first_line.take(b) - first_line,
-        across + below_top * across_step,
-        across_step,
+        x + below_top * x_step,
+        x_step,
         inverse_depth + below_top * inverse_depth_step,
         inverse_depth_step,
     )
 
 
-def edges_of_sides(projected: Projection, columns: Numbers) -> tuple[Edges, Edges]:
-    """The edges of the down side and of the up side of the polygons in some columns of the projection.
+def edges_of_sides(projected: Projection, polygons: Numbers) -> tuple[Edges, Edges]:
+    """The edges of the down side and of the up side of some polygons of the projection.
 
-    They are in the order of the polygons, and those of one polygon from its top to its bottom, so that their
-    lines follow each other without a gap. Edges that cross no line are left out.
+    They are in the order of the polygons, and those of one polygon from top to bottom, so that each side has
+    every line of the polygon once and in order. Edges that cross no line are left out.
     """
-    lines = projected.first_line.take(projected.corners.take(columns, axis=1))
-    count, polygons = len(columns), projected.corners.shape[1]
-    # Walk round each polygon from its highest corner, as it runs.
+    lines = projected.first_line.take(projected.corners.take(polygons, axis=1))
+    count, all_polygons = len(polygons), projected.corners.shape[1]
+    # Walk around each polygon from its highest corner, the way it runs.
     highest = least_of_four((lines << 2) + np.arange(4)[:, None]) & 3
     walk = (highest + np.arange(4)[:, None]) & 3
     walk *= count
@@ -91,19 +89,19 @@ def edges_of_sides(projected: Projection, columns: Numbers) -> tuple[Edges, Edge
     line = np.take(lines, walk)
 
     def side(turn: Side, corners: list[int]) -> Edges:
-        falls = np.zeros((count, 4), np.bool_)
+        descends = np.zeros((count, 4), np.bool_)
         for step, (upper, lower) in enumerate(pairwise(corners)):
-            np.less(line[upper], line[lower], out=falls[:, step])
-        found = np.flatnonzero(falls)
-        polygon = found >> 2
-        top, column = (highest[polygon] + turn * (found & 3)) & 3, columns[polygon]
-        return edges(projected, top * polygons + column, ((top + turn) & 3) * polygons + column)
+            np.less(line[upper], line[lower], out=descends[:, step])
+        found = np.flatnonzero(descends)
+        row = found >> 2
+        top, polygon = (highest[row] + turn * (found & 3)) & 3, polygons[row]
+        return edges(projected, top * all_polygons + polygon, ((top + turn) & 3) * all_polygons + polygon)
 
     return side(DOWN_SIDE, [0, 1, 2, 3]), side(UP_SIDE, [0, 3, 2, 1])
 
 
-def other_end(projected: Projection, top: Numbers, side: Side) -> Numbers:
-    """The bottom of each edge of a side whose top is given."""
-    corner, column = np.divmod(top, projected.corners.shape[1])
-    bottom: Numbers = ((corner + side) & 3) * projected.corners.shape[1] + column
+def bottom_of_edge(projected: Projection, top: Numbers, side: Side) -> Numbers:
+    """The bottom corner of each edge of a side, given the top corner."""
+    corner, polygon = np.divmod(top, projected.corners.shape[1])
+    bottom: Numbers = ((corner + side) & 3) * projected.corners.shape[1] + polygon
     return bottom

@@ -1,23 +1,20 @@
-"""What is seen at each pixel, stepped along the visible segments: point, normal, mirrored ray."""
+"""Point, normal and reflected view at each visible pixel, stepped along the visible spans."""
 
 from __future__ import annotations
 
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from autocolor.arrays import Integers, Singles, chunks_of_runs, dot, runs
-from autocolor.scene.mesh import Mesh
-from autocolor.scene.view import View
-from autocolor.visibility.projection import Projection, focal_length
+from autocolor.arrays import Integers, ShortNumbers, Singles, chunks_of_runs, dot, runs
+from autocolor.visibility.projection import Projection
 from autocolor.visibility.visible_points import (
-    MIRROR,
     NORMAL,
     POINT,
+    REFLECTED_VIEW,
     ROW_COUNT,
-    Seen,
-    keep_products,
+    VisiblePoints,
+    fill_point_products,
     surface_slices,
 )
 from autocolor.visibility.visible_spans import (
@@ -25,94 +22,90 @@ from autocolor.visibility.visible_spans import (
     NORMALS,
     POINTS,
     RAY,
-    Segments,
-    along_segments,
-    visible_segments,
+    VisibleSpans,
+    along_spans,
+    visible_spans,
 )
 
 PIXELS_AT_ONCE: Final = 1 << 14
 
 
-def seen_of_spans(
-    span_at_pixel: Integers,
-    tops: NDArray[np.int32],
+def interpolated_points(
     projected: Projection,
-    mesh: Mesh,
-    view: View,
+    segment_at_pixel: Integers,
+    segment_edges: ShortNumbers,
     surface_numbers: tuple[int, ...],
     one_sided: frozenset[int],
-) -> Seen:
-    """What is seen, computed for the visible pixels only.
+) -> VisiblePoints:
+    """What is visible at each pixel, given the segment there as in `visible_spans`.
 
-    `span_at_pixel` and `tops` are those of `visible_segments`.
+    `surface_numbers` and `one_sided` are those of `visible_surfaces`.
     """
-    segments = visible_segments(span_at_pixel, tops, projected, mesh, surface_numbers)
-    low, high = mesh.bounds
-    middle = view.axes @ ((low + high) / 2 - np.array(view.eye)) / projected.unit
-    start, step = along_segments(segments, projected, view, middle)
-    # Turn to the eye the normals of polygons that are seen from behind.
-    behind = projected.from_behind[segments.column]
-    turned = np.flatnonzero(behind & ~np.isin(segments.surface, list(one_sided)))
+    spans = visible_spans(projected, segment_at_pixel, segment_edges, surface_numbers)
+    start, step = along_spans(projected, spans)
+    # Turn the normals of polygons seen from behind to the eye.
+    behind = projected.from_behind[spans.polygon]
+    turned = np.flatnonzero(behind & ~np.isin(spans.surface, list(one_sided)))
     start[NORMALS, turned] *= -1
     step[NORMALS, turned] *= -1
 
-    # Step along the segments.
-    count = segments.count
-    pixels = runs(segments.first_pixel, count)
+    # Step along the spans.
+    count = spans.count
+    pixels = runs(spans.first_pixel, count)
     rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
-    ray_step = np.float32(1 / focal_length(projected.lines, view.field_of_view))
-    for part, some in chunks_of_runs(count, PIXELS_AT_ONCE):
+    ray_step = np.float32(1 / projected.focal_length)
+    for part, chunk in chunks_of_runs(count, PIXELS_AT_ONCE):
         start_here, step_here = (np.repeat(table[:, part], count[part], axis=1) for table in (start, step))
-        along = pixels[some] - np.repeat(segments.first_pixel[part], count[part])
-        _fill(rows[:, some], start_here, step_here, along.astype(np.float32), ray_step)
+        along = pixels[chunk] - np.repeat(spans.first_pixel[part], count[part])
+        _fill(rows[:, chunk], start_here, step_here, along.astype(np.float32), ray_step)
 
     for table in (rows, pixels):
         table.flags.writeable = False
-    return Seen(
+    return VisiblePoints(
+        projected.view,
         projected.lines,
         projected.elements,
+        projected.unit,
+        projected.middle,
         pixels,
-        surface_slices(_pixels_of_surfaces(segments)),
-        segments.polygon,
+        surface_slices(_pixels_of_surfaces(spans)),
+        spans.polygon_number,
         count,
         rows,
-        view,
-        projected.unit,
-        middle,
     )
 
 
-def _pixels_of_surfaces(segments: Segments) -> Integers:
-    """How many pixels each surface number has, from 0 on; the segments are sorted by it."""
-    # One number more, for the last surface ends where the next one would begin.
-    numbers = np.arange(int(segments.surface.max(initial=0)) + 2)
-    beyond = np.append(0, np.cumsum(segments.count))
-    return np.diff(beyond[np.searchsorted(segments.surface, numbers)])
+def _pixels_of_surfaces(spans: VisibleSpans) -> Integers:
+    """How many pixels each surface number has, from 0 on; the spans are sorted by surface."""
+    # One number more than there are, as the last surface ends where the next one would begin.
+    numbers = np.arange(int(spans.surface.max(initial=0)) + 2)
+    ends = np.append(0, np.cumsum(spans.count))
+    return np.diff(ends[np.searchsorted(spans.surface, numbers)])
 
 
 def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step: np.float32) -> None:
-    """Fill the rows of some pixels from what is linear along their segments."""
-    # Place the point and the normal: they go along the segment as `along` over the inverse depth does.
+    """Fill in the rows of some pixels, each `along` pixels from the start of its span."""
+    # Interpolate point and normal, which change in proportion to `along` over the inverse depth.
     inverse_depth = step[DEPTH] * along
     inverse_depth += start[DEPTH]
-    way = np.divide(along, inverse_depth, out=inverse_depth)
+    distance = np.divide(along, inverse_depth, out=inverse_depth)
     normal = rows[NORMAL]
     for out, linear in ((rows[POINT], POINTS), (normal, NORMALS)):
-        step[linear] *= way
+        step[linear] *= distance
         np.add(start[linear], step[linear], out=out)
-    # Make the normal a unit vector.
+    # Normalize the normal.
     length = np.sqrt(dot(normal, normal))
     # A polygon without area has a normal of 0, and keeps it.
     length += np.float32(1e-30)
     normal /= length
-    # Make the ray a unit vector.
+    # Normalize the ray.
     ray = start[RAY]
     ray[0] += along * ray_step
     np.sqrt(dot(ray, ray), out=length)
     ray /= length
-    # Mirror the ray to the eye: M = 2 (N.V) N - V, where V is the ray the other way round.
+    # Reflect the view direction at the normal: R = 2 (N.V) N - V, where V is the reversed ray.
     facing = dot(normal, ray)
     facing *= np.float32(-2)
-    np.multiply(normal, facing, out=rows[MIRROR])
-    rows[MIRROR] += ray
-    keep_products(rows)
+    np.multiply(normal, facing, out=rows[REFLECTED_VIEW])
+    rows[REFLECTED_VIEW] += ray
+    fill_point_products(rows)

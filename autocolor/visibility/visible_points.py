@@ -1,4 +1,4 @@
-"""What is seen: for each pixel the polygon, the point and the normal, in camera space, surface by surface."""
+"""The visible points: the polygon, the point and the normal at each pixel, in camera space, by surface."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ PIXELS_AT_ONCE: Final = 1 << 17
 """As many as the caches hold of the arrays that one step needs."""
 
 
-# Rows of `Seen.rows`: the point P, the normal N and the eye's mirrored ray M, each before its product with P.
+# Rows of `VisiblePoints.rows`: point P, normal N and reflected view R, each before its dot product with P.
 POINT: Final = slice(0, 3)
 NORMAL: Final = slice(4, 7)
-MIRROR: Final = slice(8, 11)
+REFLECTED_VIEW: Final = slice(8, 11)
 POINT_SQUARED: Final = POINT.stop
 ROW_COUNT: Final = 12
 
 
-def keep_products(rows: Singles) -> None:
-    """Write the products with the point into rows whose vectors are there, each after its vector."""
+def fill_point_products(rows: Singles) -> None:
+    """Fill in the dot product of each vector in the rows with the point: the row after the vector."""
     vectors = rows.reshape(3, 4, -1)
     np.einsum("kij,ij->kj", vectors[:, :3], rows[POINT], out=vectors[:, 3])
 
@@ -46,15 +46,15 @@ class SurfaceSlice:
 
 
 @dataclass(frozen=True, eq=False)
-class Share:
-    """Pixels of what is seen that are worked on at once, and those of each surface, counted in the share."""
+class PointChunk:
+    """Visible points that are worked on at once; `slices` are counted from the start of the chunk."""
 
     pixels: slice
     slices: tuple[SurfaceSlice, ...]
 
 
 def surface_slices(counts: Integers) -> tuple[SurfaceSlice, ...]:
-    """The slices of pixels sorted by surface; `counts` has how many are of each surface number."""
+    """The slices of pixels sorted by surface; `counts` has the number of pixels of each surface number."""
     stops = np.cumsum(counts)
     return tuple(
         SurfaceSlice(number, int(stops[number] - counts[number]), int(stops[number]))
@@ -62,22 +62,24 @@ def surface_slices(counts: Integers) -> tuple[SurfaceSlice, ...]:
     )
 
 
-def shares(slices: Sequence[SurfaceSlice]) -> tuple[Share, ...]:
-    """All pixels in shares of about the same size, cut between two surfaces where that does.
+def point_chunks(slices: Sequence[SurfaceSlice]) -> tuple[PointChunk, ...]:
+    """All pixels in chunks of about the same size, which end between two surfaces where that fits.
 
-    How they are cut depends on nothing but the slices: what is computed again is then computed in the same
-    steps, and comes to the same last bit.
+    The chunks depend only on the slices: so an edit computes a plane in the same steps as a fresh picture,
+    and to the same bits.
     """
     total = slices[-1].stop if slices else 0
     count = -(-total // PIXELS_AT_ONCE)
-    cuts = [total * number // count for number in range(1, count + 1)]
+    even_ends = [total * number // count for number in range(1, count + 1)]
     bounds = [0]
-    for cut, following in pairwise(cuts):
-        between = min((each.start for each in slices), key=lambda start: abs(start - cut))
+    for end, following in pairwise(even_ends):
+        between = min((each.start for each in slices), key=lambda start: abs(start - end))
         fits = all(0 < size <= PIXELS_AT_ONCE for size in (between - bounds[-1], following - between))
-        bounds.append(between if fits else cut)
-    bounds.extend(cuts[-1:])
-    return tuple(Share(slice(start, stop), _within(slices, start, stop)) for start, stop in pairwise(bounds))
+        bounds.append(between if fits else end)
+    bounds.extend(even_ends[-1:])
+    return tuple(
+        PointChunk(slice(start, stop), _within(slices, start, stop)) for start, stop in pairwise(bounds)
+    )
 
 
 def _within(slices: Sequence[SurfaceSlice], start: int, stop: int) -> tuple[SurfaceSlice, ...]:
@@ -90,68 +92,69 @@ def _within(slices: Sequence[SurfaceSlice], start: int, stop: int) -> tuple[Surf
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
-    """The visible pixels, sorted by surface; within one, those of a polygon mostly stand together.
+class VisiblePoints:
+    """The visible points of a view, one for each pixel that sees a polygon, sorted by surface.
 
-    `pixels` are their flat places in the raster, (n,) intp. They come in segments, pixels beside each other
-    that see the same polygon: `segment_polygons` are rows of the polygon table, `segment_lengths` how many
-    pixels each has. `rows` is (12, n) float32 and has what the reflected light is computed from: a point in
-    camera space around `middle`, the unit normal, and the ray to the eye mirrored at the normal, each with
-    its product with the point, so that every cosine to a light is one matrix product. Lengths in camera
-    space, `middle` among them, are in `unit`.
+    `pixels`, (n,) intp, are their flat places in the raster. They come in spans of neighbors that see the
+    same polygon, and the spans of a polygon mostly follow each other: `span_polygons` are rows of the polygon
+    table, `span_lengths` counts of pixels.
+
+    `rows` is (12, n) float32: the point in camera space around `middle`, the unit normal, and the view
+    direction reflected at the normal, each with its dot product with the point, so that every cosine to a
+    light is one matrix product. Lengths in camera space, those of `middle` included, are in `unit`.
     """
 
+    view: View
     lines: int
     elements: int
-    pixels: Numbers
-    slices: tuple[SurfaceSlice, ...]
-    segment_polygons: Numbers
-    segment_lengths: Numbers
-    rows: Singles
-    view: View
     unit: float
     middle: Floats
+    pixels: Numbers
+    slices: tuple[SurfaceSlice, ...]
+    span_polygons: Numbers
+    span_lengths: Numbers
+    rows: Singles
 
     @cached_property
-    def shares(self) -> tuple[Share, ...]:
-        """All pixels, in shares to work on."""
-        return shares(self.slices)
+    def chunks(self) -> tuple[PointChunk, ...]:
+        """All points in chunks to work on."""
+        return point_chunks(self.slices)
 
     @cached_property
-    def reach(self) -> float:
+    def radius(self) -> float:
         """The largest distance of a point from the middle in units; the points' rounding is in proportion."""
         return float(np.sqrt(self.rows[POINT_SQUARED].max(initial=0.0)))
 
     def camera_point(self, point: tuple[float, float, float]) -> Floats:
-        """A point of the world as the rows of points are: in camera space, around the middle."""
-        away = np.array(point) - np.array(self.view.eye)
-        placed: Floats = self.view.axes @ away / self.unit - self.middle
-        return placed
+        """A point of the world in camera space, around the middle as in `rows`."""
+        relative = np.array(point) - np.array(self.view.eye)
+        in_camera: Floats = self.view.axes @ relative / self.unit - self.middle
+        return in_camera
 
     def camera_direction(self, direction: tuple[float, float, float]) -> Floats:
         """A direction of the world in camera space."""
-        turned: Floats = self.view.axes @ np.array(direction)
-        return turned
+        in_camera: Floats = self.view.axes @ np.array(direction)
+        return in_camera
 
     def world_coordinate(self, axis: int) -> Floats:
-        """The four numbers whose product with a point and 1 is the point's world coordinate in units."""
+        """The four numbers whose product with (P, 1) is the point's world coordinate in units."""
         along = self.view.axes[:, axis]
         return np.append(along, self.view.eye[axis] / self.unit + along @ self.middle)
 
     @property
     def polygon_numbers(self) -> Numbers:
         """Rows of the polygon table, (n,), in the order of `pixels`."""
-        return np.repeat(self.segment_polygons, self.segment_lengths)
+        return np.repeat(self.span_polygons, self.span_lengths)
 
     @property
-    def points(self) -> Floats:
+    def world_points(self) -> Floats:
         """The points in world coordinates, (n, 3), in the order of `pixels`."""
-        placed = (self.rows[POINT].T.astype(np.float64) + self.middle) * self.unit
-        points: Floats = placed @ self.view.axes + np.array(self.view.eye)
+        in_camera = (self.rows[POINT].T.astype(np.float64) + self.middle) * self.unit
+        points: Floats = in_camera @ self.view.axes + np.array(self.view.eye)
         return points
 
     @property
-    def normals(self) -> Floats:
+    def world_normals(self) -> Floats:
         """The unit normals in world axes, (n, 3), in the order of `pixels`."""
         normals: Floats = self.rows[NORMAL].T.astype(np.float64) @ self.view.axes
         return normals

@@ -1,9 +1,9 @@
-"""The visible segments of the lines, and what is linear along them.
+"""Visible spans: what remains of the segments, and what is interpolated along it.
 
 Paper: "The Lighting Model": the direction of the normal is computed from the node normals by bilinear
 interpolation, along the edges and then along the span. Departs: on the screens of 1983 that was linear in
-the picture; here it is right in perspective: halfway on the surface between two nodes, and not halfway in the
-picture, the normal is halfway between theirs.
+the picture; here it is perspective-correct: the normal is halfway between those of two nodes where the point
+is halfway between them on the surface, not in the picture.
 """
 
 from __future__ import annotations
@@ -12,142 +12,129 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from autocolor.arrays import Bytes, Floats, Integers, Numbers, Singles, chunks
-from autocolor.scene.mesh import Mesh
-from autocolor.scene.view import View
-from autocolor.visibility.edges import DOWN_SIDE, UP_SIDE, Side, edges, other_end
-from autocolor.visibility.projection import Projection, focal_length
+from autocolor.arrays import Bytes, Floats, Integers, Numbers, ShortNumbers, Singles, chunks
+from autocolor.visibility.edges import DOWN_SIDE, UP_SIDE, Side, bottom_of_edge, edges
+from autocolor.visibility.projection import Projection
 
-# Rows of what is stepped along a segment: the point, the normal, the inverse depth, the ray.
+# Rows of what is stepped along a visible span: the point, the normal, the inverse depth, the ray.
 POINTS: Final = slice(0, 3)
 NORMALS: Final = slice(3, 6)
 DEPTH: Final = 6
 RAY: Final = slice(7, 10)
 
-SEGMENTS_AT_ONCE: Final = 1 << 14
+SPANS_AT_ONCE: Final = 1 << 14
 
 
 @dataclass(frozen=True, eq=False)
-class Segments:
-    """Pixels beside each other that see the same polygon, sorted by surface.
+class VisibleSpans:
+    """Neighboring pixels of a line at which the same segment is visible, sorted by surface.
 
-    Within a surface they are in the order of the polygons, so that what is looked up for one lies near what
-    the next one needs; but where several see one span, all but the last of them stand at the end.
+    Within a surface they are in the order of the polygons, so that neighbors look up neighboring data. A
+    segment that is visible in several pieces has only the last of them there; the others follow at the end.
 
-    The pixels of a segment are `first_pixel`, flat in the raster, and those after it, `count` in all.
-    `polygon` are rows of the polygon table, `surface` numbers. `down_top` and `up_top` are the tops of the
-    edges between which the polygon is seen, `column` its column in the projection.
+    A span has `count` pixels from `first_pixel` on, a flat place in the raster. `polygon` is the polygon's
+    column in the projection, `polygon_number` its row in the mesh's polygon table, `surface` its surface
+    number. `down_edge` and `up_edge` are the edges that bound the segment, each known by its top corner.
     """
 
     first_pixel: Numbers
     count: Numbers
-    column: Numbers
     polygon: Numbers
+    polygon_number: Numbers
     surface: Bytes
-    down_top: Numbers
-    up_top: Numbers
+    down_edge: Numbers
+    up_edge: Numbers
 
 
-class Cut(NamedTuple):
-    """Where edges are cut, in pixels; with the inverse depth there, and the normal, (3, edges) float32."""
+class Crossing(NamedTuple):
+    """Where edges cross lines: screen x in pixels, inverse depth, and normal, (3, edges) float32."""
 
-    across: Floats
+    x: Floats
     inverse_depth: Floats
     normal: Singles
 
 
-def visible_segments(
-    span_at_pixel: Integers,
-    tops: NDArray[np.int32],
+def visible_spans(
     projected: Projection,
-    mesh: Mesh,
+    segment_at_pixel: Integers,
+    segment_edges: ShortNumbers,
     surface_numbers: tuple[int, ...],
-) -> Segments:
-    """The segments that are seen.
+) -> VisibleSpans:
+    """The visible spans of a projection.
 
-    `span_at_pixel` has the number of the span that is seen at each pixel, (lines * elements,), 0 for none.
-    `tops` has, by those numbers, the tops of the two edges that bound each span: (2, numbers).
+    `segment_at_pixel`, (lines * elements,), has the number of the segment that is visible at each pixel, 0
+    for none. `segment_edges`, (2, numbers), has the two edges that bound each segment.
     """
-    head = np.ones(len(span_at_pixel), np.bool_)
-    np.not_equal(span_at_pixel[1:], span_at_pixel[:-1], out=head[1:])
+    head = np.ones(len(segment_at_pixel), np.bool_)
+    np.not_equal(segment_at_pixel[1:], segment_at_pixel[:-1], out=head[1:])
     first_pixel = np.flatnonzero(head)
-    count = np.diff(first_pixel, append=len(span_at_pixel))
-    span = span_at_pixel.take(first_pixel)
-    by_span = _by_span(span, tops.shape[1])
-    first_pixel, count = first_pixel.take(by_span), count.take(by_span)
-    down_top, up_top = np.take(tops, span.take(by_span), axis=1).astype(np.intp)
+    count = np.diff(first_pixel, append=len(segment_at_pixel))
+    segment = segment_at_pixel.take(first_pixel)
+    by_segment = _by_segment(segment, segment_edges.shape[1])
+    first_pixel, count = first_pixel.take(by_segment), count.take(by_segment)
+    down_edge, up_edge = np.take(segment_edges, segment.take(by_segment), axis=1).astype(np.intp)
 
-    # Sort them by surface, so that each surface's D, S and N are numbers and not arrays.
-    column = down_top % max(projected.corners.shape[1], 1)
-    polygon = projected.polygon_numbers[column]
-    surface = np.array(surface_numbers, np.uint8)[mesh.part_numbers[polygon]]
+    # Sort by surface, so that reflectance is constant over a slice of the pixels.
+    polygon = down_edge % max(projected.corners.shape[1], 1)
+    polygon_number = projected.polygon_numbers[polygon]
+    surface = np.array(surface_numbers, np.uint8)[projected.mesh.part_numbers[polygon_number]]
     order = np.argsort(surface, kind="stable")
-    return Segments(
+    return VisibleSpans(
         first_pixel.take(order),
         count.take(order),
-        column.take(order),
         polygon.take(order),
+        polygon_number.take(order),
         surface.take(order),
-        down_top.take(order),
-        up_top.take(order),
+        down_edge.take(order),
+        up_edge.take(order),
     )
 
 
-def _by_span(span: Integers, span_limit: int) -> Numbers:
-    """The segments that see a span, in the order of the spans' numbers, which go polygon by polygon.
+def _by_segment(segment: Integers, segment_limit: int) -> Numbers:
+    """The spans at which a segment is visible, in the order of segment numbers, which go by polygon.
 
-    Measured: with a million polygons it saves half of the time of `along_segments`; of that a sort would take
-    back most.
+    Measured: with a million polygons it saves half of the time of `along_spans`, most of which a sort would
+    cost.
     """
-    # Number the segments from 1, for 0 is none; where several see one span its last one stays.
-    segment = np.arange(1, len(span) + 1, dtype=np.int32)
-    segment_of_span = np.zeros(span_limit, np.int32)
-    segment_of_span[span] = segment
-    segment_of_span[0] = 0
-    last_ones = segment_of_span.take(np.flatnonzero(segment_of_span != 0))
-    others = segment.compress((segment_of_span.take(span) != segment) & (span != 0))
-    return np.concatenate([last_ones, others]).astype(np.intp) - 1
+    # Number the spans from 1, since 0 is none; of several spans of a segment the last one is kept.
+    span = np.arange(1, len(segment) + 1, dtype=np.int32)
+    span_of_segment = np.zeros(segment_limit, np.int32)
+    span_of_segment[segment] = span
+    span_of_segment[0] = 0
+    last_spans = span_of_segment.take(np.flatnonzero(span_of_segment != 0))
+    others = span.compress((span_of_segment.take(segment) != span) & (segment != 0))
+    return np.concatenate([last_spans, others]).astype(np.intp) - 1
 
 
-def along_segments(
-    segments: Segments, projected: Projection, view: View, middle: Floats
-) -> tuple[Singles, Singles]:
-    """What is stepped along each segment: its value at the first pixel, and what each further pixel adds.
+def along_spans(projected: Projection, spans: VisibleSpans) -> tuple[Singles, Singles]:
+    """What is stepped along each span: the values at its first pixel, and the steps from pixel to pixel.
 
-    The values are (10, segments) float32: the point around the middle and the normal, whose steps count in
-    proportion to the depth; the inverse depth; and the ray, whose step is the same for all. The steps are
-    (7, segments). The differences are taken here in float64, so that a point is as exact from afar as from
-    near.
+    The values are (10, spans) float32: the point around the middle and the normal, whose steps are multiplied
+    by the depth; the inverse depth; and the ray, whose step is the same for all. The steps are (7, spans).
+    The differences are taken in float64, so that a point is as exact from afar as from near.
     """
-    count = len(segments.count)
+    count = len(spans.count)
     start, step = np.empty((10, count), np.float32), np.empty((7, count), np.float32)
-    focal = focal_length(projected.lines, view.field_of_view)
-    for part in chunks(count, SEGMENTS_AT_ONCE):
-        _fill_along(start[:, part], step[:, part], segments, part, projected, focal, middle)
+    for chunk in chunks(count, SPANS_AT_ONCE):
+        _fill_along(start[:, chunk], step[:, chunk], projected, spans, chunk)
     return start, step
 
 
 def _fill_along(
-    start: Singles,
-    step: Singles,
-    segments: Segments,
-    part: slice,
-    projected: Projection,
-    focal: float,
-    middle: Floats,
+    start: Singles, step: Singles, projected: Projection, spans: VisibleSpans, chunk: slice
 ) -> None:
-    """Fill the values and the steps of some of the segments."""
-    line, element = np.divmod(segments.first_pixel[part], projected.elements)
-    down = _cut(projected, segments.down_top[part], DOWN_SIDE, line)
-    up = _cut(projected, segments.up_top[part], UP_SIDE, line)
-    # The inverse depth is linear from the one cut to the other.
-    width, offset = up.across - down.across, element + 0.5 - down.across
+    """Fill in the values and the steps of a chunk of spans."""
+    focal, middle = projected.focal_length, projected.middle
+    line, element = np.divmod(spans.first_pixel[chunk], projected.elements)
+    down = _crossing(projected, spans.down_edge[chunk], DOWN_SIDE, line)
+    up = _crossing(projected, spans.up_edge[chunk], UP_SIDE, line)
+    # The inverse depth is linear from crossing to crossing.
+    width, offset = up.x - down.x, element + 0.5 - down.x
     depth_step = (up.inverse_depth - down.inverse_depth) / width
     inverse_depth = down.inverse_depth + depth_step * offset
     start[DEPTH], step[DEPTH] = inverse_depth, depth_step
-    # The normal is not: it goes from the one cut to the other as fast as the points of the surface do.
+    # The normal is not: it is interpolated as the points of the surface are.
     weight = offset / width * up.inverse_depth / inverse_depth
     rate = ((1 - weight) * up.inverse_depth + weight * down.inverse_depth) / width
     difference = up.normal - down.normal
@@ -155,34 +142,34 @@ def _fill_along(
     difference *= weight.astype(np.float32)
     np.add(down.normal, difference, out=start[NORMALS])
 
-    # The point is the ray over the inverse depth; one pixel further the ray is `ray_step` more.
+    # The point is the ray over the inverse depth; from pixel to pixel the ray changes by `ray_step`.
     ray = ((element + 0.5 - projected.elements / 2) / focal, (line + 0.5 - projected.lines / 2) / focal, 1.0)
     depth = 1 / inverse_depth
     for axis, ray_step in enumerate((1 / focal, 0.0, 0.0)):
-        place = ray[axis] * depth
-        start[axis] = place - middle[axis]
-        step[axis] = ray_step - place * depth_step
+        position = ray[axis] * depth
+        start[axis] = position - middle[axis]
+        step[axis] = ray_step - position * depth_step
         start[RAY.start + axis] = ray[axis]
 
 
-def _cut(projected: Projection, top: Numbers, side: Side, line: Numbers) -> Cut:
-    """Where each edge is cut by its line."""
-    bottom = other_end(projected, top, side)
+def _crossing(projected: Projection, top: Numbers, side: Side, line: Numbers) -> Crossing:
+    """Where each edge crosses its line."""
+    bottom = bottom_of_edge(projected, top, side)
     edge = edges(projected, top, bottom)
-    # The very numbers that the spans were made of: where a polygon is seen edge-on, others may not be a span.
+    # Same arithmetic as the segments, so that edge-on polygons stay segments.
     lines_below = line - edge.first_line
-    across = edge.across + lines_below * edge.across_step
+    x = edge.x + lines_below * edge.x_step
     inverse_depth = edge.inverse_depth + lines_below * edge.inverse_depth_step
-    # Interpolate the normal right in perspective: weighted by the inverse depths of the ends.
-    a, b, normals = edge.upper, edge.lower, projected.corner_normals.ravel()
-    upper_place = projected.down.take(a)
-    share = (line + 0.5 - upper_place) / (projected.down.take(b) - upper_place)
+    # Interpolate the normal perspective-correctly: weight both ends by their inverse depths.
+    a, b, normals = edge.top_node, edge.bottom_node, projected.corner_normals.ravel()
+    top_y = projected.y.take(a)
+    fraction = (line + 0.5 - top_y) / (projected.y.take(b) - top_y)
     top_weight, bottom_weight = (
-        (1 - share) * projected.inverse_depth.take(a),
-        share * projected.inverse_depth.take(b),
+        (1 - fraction) * projected.inverse_depth.take(a),
+        fraction * projected.inverse_depth.take(b),
     )
     weight = (bottom_weight / (top_weight + bottom_weight)).astype(np.float32)
-    # Measured: `take` along the second axis has a quarter of the time of an index there.
+    # Measured: `take` along the second axis takes a quarter of the time of an index there.
     normal = np.take(projected.normals, normals[top], axis=1)
     normal += weight * (np.take(projected.normals, normals[bottom], axis=1) - normal)
-    return Cut(across, inverse_depth, normal)
+    return Crossing(x, inverse_depth, normal)

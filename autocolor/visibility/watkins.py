@@ -1,7 +1,7 @@
-"""Watkins' scan-line algorithm as it is told: line by line, with an active-edge list.
+"""Watkins' scan-line algorithm as published: line by line, with an active-edge list.
 
-Paper: "Introduction", [3, 21]. It is written to be read, and stands beside `visible_surfaces`, which does the
-same for all lines at once: the two see the same polygon at every pixel.
+Paper: "Introduction", [3, 21]. It is written to be read. `visible_surfaces` finds the same polygon at every
+pixel, for all lines at once and with a depth buffer.
 """
 
 from __future__ import annotations
@@ -17,49 +17,49 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 from autocolor.visibility.depth import DepthScale, depth_scale
 from autocolor.visibility.edges import edges
-from autocolor.visibility.interpolation import seen_of_spans
+from autocolor.visibility.interpolation import interpolated_points
 from autocolor.visibility.projection import Projection, least_of_four, projection
-from autocolor.visibility.visible_points import Seen
+from autocolor.visibility.visible_points import VisiblePoints
 
 
 @dataclass
 class Edge:
-    """An edge while it is active: where it is cut by its first line, and what each line adds."""
+    """An active edge: its values at the first line that it crosses, and what each further line adds."""
 
     top: int
     polygon: int
-    falls: bool
+    descends: bool
     first_line: int
-    beyond_line: int
-    across: float
-    across_step: float
+    end_line: int
+    x: float
+    x_step: float
     inverse_depth: float
     inverse_depth_step: float
 
-    def cut(self, line: int) -> tuple[float, float]:
-        """The place across and the inverse depth on a line."""
-        down = line - self.first_line
-        return self.across + down * self.across_step, self.inverse_depth + down * self.inverse_depth_step
+    def crossing(self, line: int) -> tuple[float, float]:
+        """The screen x and the inverse depth where the edge crosses a line."""
+        lines_below = line - self.first_line
+        return self.x + lines_below * self.x_step, self.inverse_depth + lines_below * self.inverse_depth_step
 
 
 @dataclass
-class Span:
-    """What a line sees of one polygon: its pixels from `first` to before `beyond`.
+class Segment:
+    """The extent of a polygon on a line: its pixels from `first` to before `end`.
 
-    The depth key is `start` at the first pixel and `step` more at each further one. `down_top` and `up_top`
-    are the tops of its two edges.
+    The depth key is `start` at the first pixel and `step` more at each further one. `down_edge` and `up_edge`
+    are its two edges, each known by its top corner.
     """
 
     polygon: int
     first: int
-    beyond: int
+    end: int
     start: int
     step: int
-    down_top: int
-    up_top: int
+    down_edge: int
+    up_edge: int
 
     def key(self, element: int) -> tuple[int, int]:
-        """The depth key at a pixel, the nearer the larger; of equal ones the later polygon counts."""
+        """The depth key at a pixel, the nearer the larger; of equal keys that of the later polygon wins."""
         return self.start + (element - self.first) * self.step, self.polygon
 
 
@@ -70,34 +70,26 @@ def watkins(
     lines: int = 480,
     elements: int = 640,
     one_sided: frozenset[int] = frozenset(),
-) -> Seen:
-    """What is seen at each pixel; the arguments are those of `visible_surfaces`."""
+) -> VisiblePoints:
+    """What is visible at each pixel; the arguments are those of `visible_surfaces`."""
     projected = projection(mesh, view, lines, elements)
     scale = depth_scale(projected)
-    bucket = y_buckets(projected)
+    buckets = y_buckets(projected)
     active: list[Edge] = []
-    span_at_pixel = np.zeros(lines * elements, np.int64)
-    tops = np.zeros((2, int(projected.first_crossing[-1]) + 1), np.int32)
+    segment_at_pixel = np.zeros(lines * elements, np.int64)
+    segment_edges = np.zeros((2, int(projected.first_segment[-1]) + 1), np.int32)
     top_line = least_of_four(projected.first_line[projected.corners])
 
     for line in range(lines):
-        # Enter the edges that begin on this line, and drop those that ended above it.
-        active = [edge for edge in active if edge.beyond_line > line] + bucket.get(line, [])
+        # Add the edges that begin on this line, and drop those that ended above it.
+        active = [edge for edge in active if edge.end_line > line] + buckets.get(line, [])
         # Find the visible spans from left to right.
-        for span, first, beyond in visible_spans(spans_of_line(active, scale, line, elements)):
-            number = int(projected.first_crossing[span.polygon] + line - top_line[span.polygon]) + 1
-            tops[:, number] = span.down_top, span.up_top
-            span_at_pixel[line * elements + first : line * elements + beyond] = number
+        for segment, first, end in visible_spans(segments_of_line(active, scale, line, elements)):
+            number = int(projected.first_segment[segment.polygon] + line - top_line[segment.polygon]) + 1
+            segment_edges[:, number] = segment.down_edge, segment.up_edge
+            segment_at_pixel[line * elements + first : line * elements + end] = number
 
-    return seen_of_spans(
-        span_at_pixel,
-        tops,
-        projected,
-        mesh,
-        view,
-        surface_numbers,
-        one_sided,
-    )
+    return interpolated_points(projected, segment_at_pixel, segment_edges, surface_numbers, one_sided)
 
 
 def y_buckets(projected: Projection) -> dict[int, list[Edge]]:
@@ -106,70 +98,70 @@ def y_buckets(projected: Projection) -> dict[int, list[Edge]]:
     polygons = projected.corners.shape[1]
     starts = np.flatnonzero(first_lines != np.roll(first_lines, -1, axis=0))
     ends = (starts + polygons) % max(projected.corners.size, 1)
-    falls = first_lines.ravel()[starts] < first_lines.ravel()[ends]
-    cut = edges(projected, np.where(falls, starts, ends), np.where(falls, ends, starts))
+    descends = first_lines.ravel()[starts] < first_lines.ravel()[ends]
+    found = edges(projected, np.where(descends, starts, ends), np.where(descends, ends, starts))
     buckets: dict[int, list[Edge]] = {}
     for row in range(len(starts)):
-        first_line = int(cut.first_line[row])
+        first_line = int(found.first_line[row])
         edge = Edge(
-            int(cut.top[row]),
-            int(cut.top[row]) % polygons,
-            bool(falls[row]),
+            int(found.top[row]),
+            int(found.top[row]) % polygons,
+            bool(descends[row]),
             first_line,
-            first_line + int(cut.count[row]),
-            float(cut.across[row]),
-            float(cut.across_step[row]),
-            float(cut.inverse_depth[row]),
-            float(cut.inverse_depth_step[row]),
+            first_line + int(found.count[row]),
+            float(found.x[row]),
+            float(found.x_step[row]),
+            float(found.inverse_depth[row]),
+            float(found.inverse_depth_step[row]),
         )
         buckets.setdefault(first_line, []).append(edge)
     return buckets
 
 
-def spans_of_line(active: list[Edge], scale: DepthScale, line: int, elements: int) -> list[Span]:
-    """The spans of a line that hold a pixel's center, in the order of their left ends."""
+def segments_of_line(active: list[Edge], scale: DepthScale, line: int, elements: int) -> list[Segment]:
+    """The segments of a line that cover the center of a pixel, sorted by their left ends."""
     pairs: dict[int, list[Edge]] = {}
     for edge in active:
         pairs.setdefault(edge.polygon, []).append(edge)
-    spans = []
+    segments = []
     for polygon, pair in pairs.items():
-        # Pair the cuts of the polygon: the edge that it runs down, and the one that it runs up.
-        down, up = sorted(pair, key=lambda edge: not edge.falls)
-        left, right = sorted((down.cut(line), up.cut(line)), key=lambda cut: cut[0])
+        # Pair the crossings of the polygon: one edge leads down the raster, the other back up.
+        down, up = sorted(pair, key=lambda edge: not edge.descends)
+        left, right = sorted((down.crossing(line), up.crossing(line)), key=lambda crossing: crossing[0])
         first = min(max(math.ceil(left[0] - 0.5), 0), elements)
-        beyond = min(max(math.ceil(right[0] - 0.5), 0), elements)
-        if beyond > first:
+        end = min(max(math.ceil(right[0] - 0.5), 0), elements)
+        if end > first:
             step = (right[1] - left[1]) / (right[0] - left[0])
             start = left[1] + (first + 0.5 - left[0]) * step
-            spans.append(Span(polygon, first, beyond, scale.key(start), scale.key(step), down.top, up.top))
-    return sorted(spans, key=lambda span: span.first)
+            segments.append(Segment(polygon, first, end, scale.key(start), scale.key(step), down.top, up.top))
+    return sorted(segments, key=lambda segment: segment.first)
 
 
-def visible_spans(spans: list[Span]) -> Iterator[tuple[Span, int, int]]:
-    """The spans that are seen and the pixels where they are, from left to right.
+def visible_spans(segments: list[Segment]) -> Iterator[tuple[Segment, int, int]]:
+    """The visible spans of a line from left to right: the segment, and the pixels where it is visible.
 
-    The ends of the spans cut the line into intervals, within which none begins or ends.
+    The ends of the segments divide the line into intervals within which no segment begins or ends.
     """
-    ends = sorted({end for span in spans for end in (span.first, span.beyond)})
-    active: list[Span] = []
-    entering = iter(spans)
+    ends = sorted({end for segment in segments for end in (segment.first, segment.end)})
+    active: list[Segment] = []
+    entering = iter(segments)
     following = next(entering, None)
-    for first, beyond in pairwise(ends):
-        active = [span for span in active if span.beyond > first]
+    for first, end in pairwise(ends):
+        active = [segment for segment in active if segment.end > first]
         while following is not None and following.first == first:
             active.append(following)
             following = next(entering, None)
         if active:
-            yield from nearest_in_interval(active, first, beyond)
+            yield from nearest_in_interval(active, first, end)
 
 
-def nearest_in_interval(spans: list[Span], first: int, beyond: int) -> Iterator[tuple[Span, int, int]]:
-    """The nearest of the spans at the pixels of an interval, which is cut in two until it is one."""
-    nearest = max(spans, key=lambda span: span.key(first))
-    # Depths change evenly: what is nearest at both ends is nearest all the way.
-    if all(nearest.key(beyond - 1) >= span.key(beyond - 1) for span in spans):
-        yield nearest, first, beyond
+def nearest_in_interval(segments: list[Segment], first: int, end: int) -> Iterator[tuple[Segment, int, int]]:
+    """The nearest segment at the pixels of an interval, halved until one is nearest all over."""
+    nearest = max(segments, key=lambda segment: segment.key(first))
+    # Depth is linear: what is nearest at both ends is nearest in between.
+    if all(nearest.key(end - 1) >= segment.key(end - 1) for segment in segments):
+        yield nearest, first, end
         return
-    middle = (first + beyond) // 2
-    yield from nearest_in_interval(spans, first, middle)
-    yield from nearest_in_interval(spans, middle, beyond)
+    middle = (first + end) // 2
+    yield from nearest_in_interval(segments, first, middle)
+    yield from nearest_in_interval(segments, middle, end)

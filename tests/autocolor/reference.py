@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor import Light, Mesh, Paint, Reflectance, View
+from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
 
 Vector = Sequence[float]
 
@@ -73,6 +74,22 @@ def light_at(light: Light, point: Vector, normal: Vector, eye: Vector, reflectan
     """
     if not light.on:
         return Lit(0.0, math.inf)
+    left = controlled(light, point)
+    # Figure 1: the angle of incidence I.
+    to_light = unit(minus(light.position, point))
+    cos_i = dot(normal, to_light)
+    from_jump = min(left.from_jump, abs(cos_i))
+    if left.intensity == 0 or cos_i <= 0:
+        return Lit(0.0, from_jump)
+    # Figure 2: the angle E between the reflected ray and the ray to the eye.
+    reflected = minus(times(2 * cos_i, normal), to_light)
+    cos_e = max(dot(reflected, unit(minus(eye, point))), 0.0)
+    both = reflectance.diffuse * cos_i + reflectance.specular * cos_e**reflectance.exponent
+    return Lit(left.intensity * light.intensity * both, from_jump)
+
+
+def controlled(light: Light, point: Vector) -> Lit:
+    """What all controls leave of a light of intensity 1 at a point."""
     jumps = [math.inf]
     lit = True
     # Figure 9: the flaps that are on.
@@ -80,10 +97,7 @@ def light_at(light: Light, point: Vector, normal: Vector, eye: Vector, reflectan
         if flap is not None and flap.on:
             lit = lit and flap.minimum <= coordinate <= flap.maximum
             jumps += [abs(coordinate - flap.minimum), abs(coordinate - flap.maximum)]
-    # Figure 1: the angle of incidence I.
     to_light = unit(minus(light.position, point))
-    cos_i = dot(normal, to_light)
-    jumps.append(abs(cos_i))
     # Figure 3: the angle L between the light's direction and the ray from the light to the point.
     multiplier = 1.0
     toward = light.direction
@@ -100,13 +114,7 @@ def light_at(light: Light, point: Vector, normal: Vector, eye: Vector, reflectan
             lit = lit and cos_l >= math.cos(math.radians(light.cone_angle))
             if light.cone_angle < 180:
                 jumps.append(abs(cos_l - math.cos(math.radians(light.cone_angle))))
-    if not lit or cos_i <= 0:
-        return Lit(0.0, min(jumps))
-    # Figure 2: the angle E between the reflected ray and the ray to the eye.
-    reflected = minus(times(2 * cos_i, normal), to_light)
-    cos_e = max(dot(reflected, unit(minus(eye, point))), 0.0)
-    both = reflectance.diffuse * cos_i + reflectance.specular * cos_e**reflectance.exponent
-    return Lit(multiplier * light.intensity * both, min(jumps))
+    return Lit(multiplier if lit else 0.0, min(jumps))
 
 
 def level_of(fraction: float, levels: int) -> int:
@@ -181,3 +189,41 @@ def _meetings(
     before = depth > 0
     rows = (number[real][before], depth[before], inside[before])
     return list(zip(*(row.tolist() for row in rows), strict=True))
+
+
+def specular_factor(model: ReflectionModel, light: Vector, normal: Vector, eye: Vector) -> float:
+    """What stands in the place of cos^N(E) under a model, for unit vectors to the light and to the eye."""
+    n_l, n_v = dot(normal, light), dot(normal, eye)
+    half = unit(plus(light, eye))
+    n_h, v_h = dot(normal, half), dot(eye, half)
+    if isinstance(model, Phong):
+        reflected = minus(times(2 * n_v, normal), eye)
+        return math.pow(max(dot(reflected, light), 0.0), model.exponent)
+    if isinstance(model, BlinnPhong):
+        return math.pow(max(n_h, 0.0), model.exponent)
+    assert isinstance(model, CookTorrance)
+    m, f0 = model.roughness, model.normal_reflectance
+
+    def beckmann(cosine: float) -> float:
+        tangent = math.tan(math.acos(min(cosine, 1.0)))
+        return math.exp(-((tangent / m) ** 2)) / (m * m * cosine**4)
+
+    def fresnel(cosine: float) -> float:
+        if f0 == 1:
+            return 1.0
+        index = (1 + math.sqrt(f0)) / (1 - math.sqrt(f0))
+        # Fresnel's two equations, from the angles on both sides of the surface.
+        outside = math.acos(min(cosine, 1.0))
+        inside = math.asin(math.sin(outside) / index)
+        across = (math.cos(outside) - index * math.cos(inside)) / (
+            math.cos(outside) + index * math.cos(inside)
+        )
+        along = (math.cos(inside) - index * math.cos(outside)) / (
+            math.cos(inside) + index * math.cos(outside)
+        )
+        return (across * across + along * along) / 2
+
+    attenuation = min(1.0, 2 * n_h * n_v / v_h, 2 * n_h * n_l / v_h)
+    # No silhouette is divided by less than three tenths.
+    factor = fresnel(v_h) * beckmann(n_h) * attenuation / max(n_v, 0.3)
+    return factor / (fresnel(1.0) * beckmann(1.0))

@@ -12,6 +12,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Paint, Part, Reflectance, Scene, Surface, View
+from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong
 
 Vector = tuple[float, float, float]
 
@@ -114,9 +115,16 @@ def lights(draw: st.DrawFn, /, name: str = "light", **given: Any) -> Light:
     return Light(name, position, **{**fields, **given})
 
 
-reflectances = st.builds(
-    Reflectance, numbers(0, 2), numbers(0, 2), st.sampled_from([0.0, 1.0, 5.0, 20.0, 50.0])
+exponents = st.sampled_from([0.0, 1.0, 5.0, 20.0, 50.0])
+models = (
+    st.builds(Phong, exponents)
+    | st.builds(BlinnPhong, exponents)
+    | st.builds(CookTorrance, st.sampled_from([0.1, 0.3, 1.0]), st.sampled_from([0.04, 0.5, 1.0]))
 )
+reflectances = st.builds(Reflectance, numbers(0, 2), numbers(0, 2), exponents)
+"""Phong's, as in the paper."""
+
+reflectances_of_any_model = st.builds(Reflectance, numbers(0, 2), numbers(0, 2), models)
 paints = st.builds(
     Paint, colors, colors, st.sampled_from([0.0, 0.25, 0.6, 1.0]) | numbers(0, 1), numbers(0, 100)
 )
@@ -125,7 +133,12 @@ paints = st.builds(
 def surfaces(name: str) -> st.SearchStrategy[Surface]:
     """A surface with any reflectance and paint; few ask for a number of levels."""
     return st.builds(
-        Surface, st.just(name), reflectances, paints, st.booleans(), st.none() | st.integers(2, 300)
+        Surface,
+        st.just(name),
+        reflectances_of_any_model,
+        paints,
+        st.booleans(),
+        st.none() | st.integers(2, 300),
     )
 
 

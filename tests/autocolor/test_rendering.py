@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, UsageError, View, render, scene_of
 from autocolor.lighting.shading import shade
 from autocolor.rendering import Rendering, rendering
-from autocolor.visibility.visible_points import Share
+from autocolor.visibility.visible_points import PointChunk
 from tests.autocolor.meshes import cube, sphere
 from tests.autocolor.strategies import scenes
 
@@ -34,7 +34,7 @@ RECOLORINGS = [
     lambda scene: scene.with_surface("cube", levels=50),
     lambda scene: scene.replace(name="other"),
 ]
-WEIGHTS = [
+MIXES = [
     lambda scene: scene.replace(ambient=0.5),
     lambda scene: scene.with_light("key", intensity=3),
     lambda scene: scene.with_light("key", on=False),
@@ -64,10 +64,10 @@ def test_what_only_colors_computes_no_picture_again(edit: Any) -> None:
     assert after.picture is before.picture
 
 
-@pytest.mark.parametrize("edit", WEIGHTS)
-def test_what_only_weighs_the_lights_keeps_their_planes(edit: Any) -> None:
+@pytest.mark.parametrize("edit", MIXES)
+def test_what_only_mixes_the_lights_keeps_their_planes(edit: Any) -> None:
     before, after = edited(two_surfaces(), edit)
-    assert after.seen is before.seen
+    assert after.points is before.points
     assert after.picture is not before.picture
     for name, planes in after.picture.light_planes.items():
         assert planes.values is before.picture.light_planes[name].values
@@ -76,14 +76,14 @@ def test_what_only_weighs_the_lights_keeps_their_planes(edit: Any) -> None:
 @pytest.mark.parametrize("edit", KEY_LIGHT)
 def test_one_light_moved_computes_its_planes_alone(edit: Any) -> None:
     before, after = edited(two_surfaces(), edit)
-    assert after.seen is before.seen
+    assert after.points is before.points
     for light in after.scene.lights:
         old, new = (each.picture.light_planes.get(light.name) for each in (before, after))
         assert new is not None
         assert (old is not None and new.values is old.values) == (light.name not in ("key", "lamp"))
 
 
-def test_what_stays_while_a_light_is_dragged_is_kept_weighed() -> None:
+def test_the_mix_of_lights_that_stay_is_kept_while_a_light_is_dragged() -> None:
     first = rendering(two_surfaces(), 24, 32)
     dragged = [first]
     for step in (1, 2, 3):
@@ -91,39 +91,39 @@ def test_what_stays_while_a_light_is_dragged_is_kept_weighed() -> None:
         dragged.append(rendering(scene, 24, 32, dragged[-1]))
         assert dragged[-1].picture.intensity.tobytes() == render(scene, 24, 32).intensity.tobytes()
     for light in first.scene.lights:
-        weighed = [each.picture.light_planes[light.name].weighed for each in dragged]
-        assert weighed[0] is None
-        assert (weighed[1] is None) == (light.name == "key")
-        assert weighed[1] is weighed[2] is weighed[3]
+        mixed = [each.picture.light_planes[light.name].mixed for each in dragged]
+        assert mixed[0] is None
+        assert (mixed[1] is None) == (light.name == "key")
+        assert mixed[1] is mixed[2] is mixed[3]
 
 
-def test_a_light_off_and_on_again_is_neither_computed_nor_weighed_again() -> None:
+def test_a_light_off_and_on_again_is_neither_computed_nor_mixed_again() -> None:
     start = two_surfaces()
     first = rendering(start, 24, 32)
     moved = rendering(start.with_light("rim", position=(4, -3, 2)), 24, 32, first)
     dark = rendering(moved.scene.with_light("key", on=False), 24, 32, moved)
     lit = rendering(moved.scene, 24, 32, dark)
     kept = moved.picture.light_planes["key"]
-    assert kept.weighed is not None
+    assert kept.mixed is not None
     assert dark.picture.light_planes["key"] is lit.picture.light_planes["key"] is kept
     assert list(lit.picture.light_planes) == [light.name for light in start.lights]
 
 
-def test_an_exponent_computes_only_the_shares_that_its_surface_is_in(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_exponent_computes_only_the_chunks_that_its_surface_is_in(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("autocolor.visibility.visible_points.PIXELS_AT_ONCE", 37)
     before = rendering(two_surfaces(), 24, 32)
     shaded = []
 
-    def noting(planes: Any, light: Any, seen: Any, share: Share, exponents: Any) -> None:
-        shaded.append(share.pixels)
-        shade(planes, light, seen, share, exponents)
+    def noting(planes: Any, light: Any, points: Any, chunk: PointChunk, models: Any) -> None:
+        shaded.append(chunk.pixels)
+        shade(planes, light, points, chunk, models)
 
     monkeypatch.setattr("autocolor.lighting.illumination.shade", noting)
     rendering(before.scene.with_surface("cube", exponent=3), 24, 32, before)
     having = [
-        share.pixels for share in before.seen.shares if 2 in [each.surface_number for each in share.slices]
+        chunk.pixels for chunk in before.points.chunks if 2 in [each.surface_number for each in chunk.slices]
     ]
-    assert 0 < len(having) < len(before.seen.shares)
+    assert 0 < len(having) < len(before.points.chunks)
     lights = sum(light.shines for light in before.scene.lights)
     assert shaded == [pixels for pixels in having for _ in range(lights)]
 
@@ -131,14 +131,14 @@ def test_an_exponent_computes_only_the_shares_that_its_surface_is_in(monkeypatch
 @pytest.mark.parametrize("edit", EVERYTHING)
 def test_mesh_view_and_the_surface_of_a_part_compute_everything_again(edit: Any) -> None:
     before, after = edited(two_surfaces(), edit)
-    assert after.seen is not before.seen
+    assert after.points is not before.points
 
 
 def test_an_exponent_computes_its_own_surface_again_and_no_other() -> None:
     before, after = edited(two_surfaces(), lambda scene: scene.with_surface("cube", exponent=3))
-    assert after.seen is before.seen
-    of_cube = np.zeros(len(after.seen.pixels), np.bool_)
-    for surface in after.seen.slices:
+    assert after.points is before.points
+    of_cube = np.zeros(len(after.points.pixels), np.bool_)
+    for surface in after.points.slices:
         of_cube[surface.start : surface.stop] = surface.surface_number == 2
     changed = np.zeros_like(of_cube)
     for name, planes in after.picture.light_planes.items():
@@ -147,7 +147,7 @@ def test_an_exponent_computes_its_own_surface_again_and_no_other() -> None:
     assert not (changed & ~of_cube).any()
 
 
-@pytest.mark.parametrize("edit", [*RECOLORINGS, *WEIGHTS, *KEY_LIGHT, *EVERYTHING])
+@pytest.mark.parametrize("edit", [*RECOLORINGS, *MIXES, *KEY_LIGHT, *EVERYTHING])
 def test_what_is_kept_gives_the_same_picture_as_a_fresh_one(edit: Any) -> None:
     _, after = edited(two_surfaces(), edit)
     fresh = render(edit(two_surfaces()), 24, 32)
@@ -158,14 +158,14 @@ def test_what_is_kept_gives_the_same_picture_as_a_fresh_one(edit: Any) -> None:
 EXPONENT = [lambda scene: scene.with_surface("sphere", exponent=3)]
 
 
-@pytest.mark.parametrize("edit", [*RECOLORINGS, *WEIGHTS, *KEY_LIGHT, *EXPONENT])
-def test_a_picture_in_many_shares_is_kept_and_computed_as_in_one(
+@pytest.mark.parametrize("edit", [*RECOLORINGS, *MIXES, *KEY_LIGHT, *EXPONENT])
+def test_a_picture_in_many_chunks_is_kept_and_computed_as_in_one(
     edit: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     in_one = edited(two_surfaces(), edit)[1].picture
     monkeypatch.setattr("autocolor.visibility.visible_points.PIXELS_AT_ONCE", 37)
     _, after = edited(two_surfaces(), edit)
-    assert len(after.seen.shares) > 3
+    assert len(after.points.chunks) > 3
     assert after.picture.intensity.tobytes() == render(edit(two_surfaces()), 24, 32).intensity.tobytes()
     assert after.picture.intensity == pytest.approx(in_one.intensity, rel=1e-5)
 
@@ -185,7 +185,7 @@ def test_a_light_that_was_off_is_computed_when_it_is_switched_on() -> None:
     assert lit.picture.intensity.tobytes() == render(two_surfaces(), 24, 32).intensity.tobytes()
 
 
-def test_another_raster_lends_nothing() -> None:
+def test_nothing_of_another_raster_is_reused() -> None:
     scene = two_surfaces()
     assert rendering(scene, 24, 30, rendering(scene, 24, 32)).picture.intensity.shape == (24, 30)
 

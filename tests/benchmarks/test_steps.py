@@ -53,13 +53,15 @@ def test_a_step_that_no_frame_calls_is_named(monkeypatch: pytest.MonkeyPatch, se
 
 
 def test_a_step_below_the_wrong_one_is_named(monkeypatch: pytest.MonkeyPatch, session: Session) -> None:
-    moved = [step._replace(parent=steps.FRAME) if step.function == "lit" else step for step in steps.STEPS]
+    moved = [
+        step._replace(parent=steps.FRAME) if step.function == "illuminate" else step for step in steps.STEPS
+    ]
     monkeypatch.setattr(steps, "STEPS", tuple(moved))
     watch = steps.Watch()
     with steps.wrapped(watch), pytest.raises(SystemExit) as left:
         watch.timed_frame(session.frame)
     assert str(left.value) == (
-        "benchmarks/steps.py: whole frame must call lit, and rendering does; correct its parent in"
+        "benchmarks/steps.py: whole frame must call illuminate, and rendering does; correct its parent in"
         " STEPS, or leave out a step of several parents"
     )
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, Light, Reflectance, Scene, render
+from autocolor import InputError, Light, Picture, Reflectance, Scene, render
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import level_ranges
 from tests.autocolor.meshes import sphere, wall_scene
@@ -20,12 +20,12 @@ def close_to(expected: object, largest: float) -> object:
 def test_minimum_and_maximum_are_those_of_the_arrays(scene: Scene) -> None:
     picture = render(scene, 12, 16)
     on_object = picture.surface_number > 0
-    seen = {picture.surfaces[number - 1] for number in np.unique(picture.surface_number[on_object])}
-    assert set(picture.ranges.surfaces) == seen
+    points = {picture.surfaces[number - 1] for number in np.unique(picture.surface_number[on_object])}
+    assert set(picture.ranges.surfaces) == points
     for name, extent in picture.ranges.surfaces.items():
         of_surface = picture.intensity[picture.surface_number == picture.surfaces.index(name) + 1]
         assert extent == (of_surface.min(), of_surface.max())
-    if seen:
+    if points:
         assert picture.ranges.whole == (
             picture.intensity[on_object].min(),
             picture.intensity[on_object].max(),
@@ -141,3 +141,19 @@ def test_a_picture_shows_itself_and_tells_about_itself() -> None:
     assert picture._repr_png_().startswith(b"\x89PNG")
     assert repr(picture).startswith("Picture(12 x 16, ")
     assert render(wall_scene(sphere(), lights=[]), 12, 16)._repr_png_().startswith(b"\x89PNG")
+
+
+@given(scenes())
+def test_a_picture_from_its_own_rasters_is_the_same_picture(scene: Scene) -> None:
+    picture = render(scene, 9, 13)
+    relative = np.zeros(9 * 13, np.float32)
+    relative[picture.pixels] = picture.relative
+    again = Picture.from_rasters(
+        relative.reshape(9, 13), picture.surface_number, picture.surfaces, picture.scale
+    )
+    assert again.intensity.tobytes() == picture.intensity.tobytes()
+    assert again.surface_number.tobytes() == picture.surface_number.tobytes()
+    assert again.ranges == picture.ranges
+    assert [(each.surface_number, each.start, each.stop) for each in again.slices] == [
+        (each.surface_number, each.start, each.stop) for each in picture.slices
+    ]

@@ -5,29 +5,42 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Reflectance, Scene, View, render
-from autocolor.lighting.rays import placed
-from autocolor.lighting.shading import shade
-from autocolor.visibility.visible_points import Seen
+from autocolor.arrays import Singles
+from autocolor.lighting.shading import controlled_light, shade
+from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
+from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import sphere, wall, wall_scene
-from tests.autocolor.reference import Lit, light_at, minus, plus, ray, times, unit
+from tests.autocolor.meshes import cube, sphere, wall, wall_scene
+from tests.autocolor.reference import (
+    Lit,
+    controlled,
+    light_at,
+    minus,
+    plus,
+    ray,
+    specular_factor,
+    times,
+    unit,
+)
 from tests.autocolor.strategies import flaps, lights, numbers, reflectances
 
 LINES, ELEMENTS = 12, 16
 WALLS = [wall(), wall(7, 5)]
 
 
-def planes_of(light: Light, seen: Seen, exponent: float) -> npt.NDArray[np.float32]:
+MODELS: list[ReflectionModel] = [Phong(12.0), BlinnPhong(12.0), CookTorrance(0.3), CookTorrance(1.0, 0.5)]
+
+
+def planes_of(light: Light, points: VisiblePoints, model: ReflectionModel) -> Singles:
     """The planes of one light on the one surface there is."""
-    planes = np.empty((2, len(seen.pixels)), np.float32)
-    for share in seen.shares:
-        shade(planes, placed(light, seen), seen, share, {1: exponent})
+    planes = np.empty((2, len(points.pixels)), np.float32)
+    for chunk in points.chunks:
+        shade(planes, controlled_light(light, points), points, chunk, {1: model})
     return planes
 
 
@@ -60,7 +73,7 @@ def assert_as_the_paper(scene: Scene) -> None:
     picture = render(scene, LINES, ELEMENTS)
     expected = expected_on_wall(scene, LINES, ELEMENTS)
     largest = max((lit.intensity for lit in expected.values()), default=0.0)
-    # Where less than a hundredth of the light is seen, float32 rounds in proportion to the whole.
+    # Where less than a hundredth of the light is visible, float32 rounds in proportion to the whole.
     reflectance = scene.surfaces[0].reflectance
     peak = sum(light.intensity for light in scene.lights) * (reflectance.diffuse + reflectance.specular)
     largest = max(largest, peak / 100)
@@ -219,10 +232,10 @@ def test_half_of_a_directed_light_is_left_at_the_angle_of_its_concentration(
     concentration: float, half: float
 ) -> None:
     light = Light("light", (0.0, -0.5, 0.0), direction=(0.0, 1.0, 0.0))
-    seen = visible_surfaces(wall(), View((0, -4, 0), target=(0, 0, 0), field_of_view=25), (1,), 401, 401)
-    whole = planes_of(light, seen, 20.0)[0]
-    directed = planes_of(light.replace(concentration=concentration), seen, 20.0)[0]
-    angles = np.degrees(np.arctan2(np.hypot(seen.points[:, 0], seen.points[:, 2]), 0.5))
+    points = visible_surfaces(wall(), View((0, -4, 0), target=(0, 0, 0), field_of_view=25), (1,), 401, 401)
+    whole = planes_of(light, points, Phong(20.0))[0]
+    directed = planes_of(light.replace(concentration=concentration), points, Phong(20.0))[0]
+    angles = np.degrees(np.arctan2(np.hypot(points.world_points[:, 0], points.world_points[:, 2]), 0.5))
     order = np.argsort(angles)
     falling = (directed / whole)[order]
     assert np.interp(-0.5, -falling, angles[order]) == pytest.approx(half, abs=0.1)
@@ -329,3 +342,90 @@ def test_a_sphere_is_lit_as_the_paper_says(two_sided: bool) -> None:
         expected = sum(lit.intensity for lit in each)
         if min(lit.from_jump for lit in each) > 0.02:
             assert float(picture.intensity[line, element]) == pytest.approx(expected, abs=0.01)
+
+
+@pytest.mark.parametrize("model", MODELS, ids=repr)
+@given(light=lights(), view=wall_views())
+def test_under_every_model_the_controls_leave_their_multiple_of_the_light(
+    model: ReflectionModel, light: Light, view: View
+) -> None:
+    assume(max(map(abs, light.position)) > 0.05)
+    points = visible_surfaces(sphere(24, 16), view, (1,), LINES, ELEMENTS)
+    free = Light("light", light.position)
+    whole, left = planes_of(free, points, model), planes_of(light, points, model)
+    multipliers = [controlled(light, point) for point in points.world_points.tolist()]
+    clear = np.array([each.from_jump > 1e-2 for each in multipliers])
+    expected = whole * np.array([each.intensity for each in multipliers])
+    assert left[:, clear] == pytest.approx(
+        expected[:, clear], rel=1e-3, abs=2e-5 * max(float(whole.max()), 1)
+    )
+    dark = clear & np.array([each.intensity == 0 for each in multipliers])
+    assert not left[:, dark].any()
+
+
+@pytest.mark.parametrize("model", MODELS, ids=repr)
+@given(
+    place=st.tuples(numbers(-3, 3), numbers(-4, -1), numbers(-3, 3)),
+    cone_angle=st.none() | st.sampled_from([3.0, 20.0]),
+)
+def test_under_every_model_both_planes_are_those_of_the_slow_twin(
+    model: ReflectionModel, place: tuple[float, float, float], cone_angle: float | None
+) -> None:
+    # A narrow cone lights few points, which are then picked and computed alone.
+    light = Light("light", place, aim=(0, 0, 0), cone_angle=cone_angle)
+    view = View((0.5, -3.0, 1.0), target=(0.0, 0.0, 0.0), field_of_view=30.0)
+    points = visible_surfaces(wall(7, 5), view, (1,), LINES, ELEMENTS)
+    diffuse, specular = planes_of(light, points, model)
+    for number, point in enumerate(points.world_points.tolist()):
+        to_light, to_eye = unit(minus(place, point)), unit(minus(view.eye, point))
+        left = controlled(light, point)
+        if left.from_jump < 1e-3:
+            continue
+        factor = specular_factor(model, to_light, [0.0, -1.0, 0.0], to_eye) * left.intensity
+        assert diffuse[number] == pytest.approx(-to_light[1] * left.intensity, abs=1e-5)
+        assert specular[number] == pytest.approx(factor, rel=1e-3, abs=1e-4)
+
+
+def test_each_surface_is_reflected_by_its_own_model() -> None:
+    mesh = Mesh.joined([sphere(12, 8), cube(1.4)])
+    view = View((3.0, -4.0, 2.0), target=(0.0, 0.0, 0.0), field_of_view=40.0)
+    points = visible_surfaces(mesh, view, (1, 2), 24, 32)
+    light = controlled_light(Light("light", (2.0, -3.0, 3.0)), points)
+
+    def planes(models: dict[int, ReflectionModel]) -> Singles:
+        filled = np.empty((2, len(points.pixels)), np.float32)
+        for chunk in points.chunks:
+            shade(filled, light, points, chunk, models)
+        return filled
+
+    both: list[ReflectionModel] = [Phong(12.0), CookTorrance(0.4)]
+    mixed = planes({1: both[0], 2: both[1]})
+    for surface, model in zip(points.slices, both, strict=True):
+        alone = planes({1: model, 2: model})
+        assert mixed[:, surface.pixels].tobytes() == alone[:, surface.pixels].tobytes()
+        assert alone[1, surface.pixels].any()
+
+
+@pytest.mark.parametrize("model", MODELS, ids=repr)
+def test_few_lit_points_are_computed_as_all_of_them_would_be(
+    model: ReflectionModel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    points = visible_surfaces(sphere(), View((0, -4, 1), target=(0, 0, 0)), (1,), 40, 40)
+    light = Light("light", (1.0, -3.0, 2.0), aim=(0, 0, 0), cone_angle=6, concentration=3)
+    planes = []
+    for few in (0.0, 2.0):
+        monkeypatch.setattr("autocolor.lighting.shading.FEW", few)
+        planes.append(planes_of(light, points, model))
+    lit = np.count_nonzero(planes[0][0] > 0)
+    assert 0 < lit < 0.3 * len(points.pixels)
+    assert planes[0] == pytest.approx(planes[1], rel=1e-6)
+
+
+def test_no_ray_is_computed_where_flaps_leave_everything_dark(monkeypatch: pytest.MonkeyPatch) -> None:
+    points = visible_surfaces(wall(), View((0, -4, 0), target=(0, 0, 0)), (1,), 12, 12)
+    light = Light("light", (0.0, -1.0, 0.0), flaps=Flaps(y=Flap(1.0, 2.0)))
+    planes = np.full((2, len(points.pixels)), np.float32(7))
+    monkeypatch.setattr("autocolor.lighting.shading.rays_to", None)
+    for chunk in points.chunks:
+        shade(planes, controlled_light(light, points), points, chunk, {1: Phong()})
+    assert not planes.any()

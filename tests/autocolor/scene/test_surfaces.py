@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from autocolor import InputError, Paint, Part, Reflectance, Surface
+from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong
 
 
 @pytest.mark.parametrize(
@@ -73,3 +74,42 @@ def test_numpy_scalars_serve_as_numbers_and_switches() -> None:
     assert (surface.two_sided, surface.levels) == (False, 5)
     assert type(surface.two_sided) is bool
     assert type(surface.levels) is int
+
+
+def test_a_reflectance_has_phongs_model_unless_it_is_given_another() -> None:
+    assert Reflectance().model == Phong(20)
+    assert Reflectance(0.1, 0.2, 30) == Reflectance(0.1, 0.2, Phong(30)) == Reflectance(0.1, 0.2, exponent=30)
+    assert Reflectance(model="blinn").model == BlinnPhong()
+    assert Reflectance(model="blinn", exponent=7).model == BlinnPhong(7)
+    assert Reflectance(model=CookTorrance(0.2)).model == CookTorrance(0.2)
+
+
+def test_the_exponent_of_a_reflectance_is_that_of_its_model() -> None:
+    assert Reflectance(exponent=7).exponent == 7
+    with pytest.raises(AttributeError, match="must have an exponent, not CookTorrance"):
+        _ = Reflectance(model="cook-torrance").exponent
+
+
+def test_another_model_of_a_surface_begins_with_its_own_defaults() -> None:
+    surface = Surface("body").replace(exponent=7)
+    assert surface.reflectance.model == Phong(7)
+    assert surface.replace(model="blinn").reflectance.model == BlinnPhong()
+    assert surface.replace(model="cook-torrance", roughness=0.1).reflectance.model == CookTorrance(0.1)
+    assert surface.replace(model="blinn").replace(exponent=9).reflectance.model == BlinnPhong(9)
+
+
+def test_a_key_of_another_model_is_refused_by_name() -> None:
+    with pytest.raises(InputError) as refusal:
+        Surface("body").replace(roughness=0.1)
+    assert str(refusal.value) == (
+        "surface 'body': roughness must go with model = 'cook-torrance', not with 'phong'; leave it out, or"
+        " change the other"
+    )
+    with pytest.raises(InputError) as other:
+        Surface("body").replace(model="cook-torrance", exponent=9)
+    assert str(other.value) == (
+        "surface 'body': exponent must go with model = 'phong' or 'blinn', not with 'cook-torrance'; leave it"
+        " out, or change the other"
+    )
+    with pytest.raises(InputError, match=r"model must be .*, not 'phonk'; did you mean 'phong'\?"):
+        Reflectance(model="phonk")

@@ -6,16 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.scene import union_find
-from autocolor.scene.union_find import group_numbers, join
+from autocolor.scene.union_find import group_numbers, unite
 
 COUNT = 30
 
-things = st.integers(0, COUNT - 1)
-batches = st.lists(st.lists(st.tuples(things, things), max_size=20), max_size=4)
+items = st.integers(0, COUNT - 1)
+batches = st.lists(st.lists(st.tuples(items, items), max_size=20), max_size=4)
 
 
-def united_one_by_one(pairs: list[tuple[int, int]]) -> list[int]:
-    """The lowest of each thing's group, by passing it on until nothing changes."""
+def roots_one_by_one(pairs: list[tuple[int, int]]) -> list[int]:
+    """The lowest of each item's group, by passing it on until nothing changes."""
     lowest = list(range(COUNT))
     changed = True
     while changed:
@@ -28,23 +28,23 @@ def united_one_by_one(pairs: list[tuple[int, int]]) -> list[int]:
 
 
 @given(batches)
-def test_things_are_in_one_group_when_pairs_lead_from_one_to_the_other(
+def test_items_are_in_one_group_when_pairs_lead_from_one_to_the_other(
     several: list[list[tuple[int, int]]],
 ) -> None:
-    leads = np.arange(COUNT)
+    parents = np.arange(COUNT)
     for pairs in several:
         one, other = np.array(pairs, np.intp).reshape(-1, 2).T
-        join(leads, one, other)
-    lowest = united_one_by_one([pair for pairs in several for pair in pairs])
+        unite(parents, one, other)
+    lowest = roots_one_by_one([pair for pairs in several for pair in pairs])
     in_order = sorted(set(lowest))
-    assert group_numbers(leads).tolist() == [in_order.index(each) for each in lowest]
+    assert group_numbers(parents).tolist() == [in_order.index(each) for each in lowest]
 
 
 def test_a_long_chain_in_any_order_is_one_group(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(union_find, "AT_ONCE", 100)
     chain = np.random.default_rng(7).permutation(10_000)
-    leads = np.arange(len(chain))
+    parents = np.arange(len(chain))
     links = np.random.default_rng(8).permutation(len(chain) - 1)
     for some in np.array_split(links, 5):
-        join(leads, chain[some], chain[some + 1])
-    assert not group_numbers(leads).any()
+        unite(parents, chain[some], chain[some + 1])
+    assert not group_numbers(parents).any()

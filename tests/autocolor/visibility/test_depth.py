@@ -13,25 +13,25 @@ depths = st.floats(1e-9, 1.0)
 
 
 @given(meshes(), views() | outside_views(), rasters)
-def test_the_nearest_node_and_the_last_span_fit_in_a_key(
+def test_the_nearest_node_and_the_last_segment_fit_in_a_key(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     projected = projection(mesh, view, *raster)
     scale = depth_scale(projected)
-    largest = int(scale.keys(projected.inverse_depth).max(initial=0)) + scale.span_limit - 1
+    largest = int(scale.keys(projected.inverse_depth).max(initial=0)) + scale.segment_limit - 1
     assert 0 <= largest < 2**63
-    assert projected.first_crossing[-1] < scale.span_limit
+    assert projected.first_segment[-1] < scale.segment_limit
 
 
 @given(st.integers(1, 24), depths, depths)
-def test_the_nearer_has_the_larger_key_whatever_the_numbers_of_the_spans_are(
+def test_the_nearer_has_the_larger_key_whatever_the_numbers_of_the_segments_are(
     bits: int, one: float, other: float
 ) -> None:
     scale = DepthScale(1 << bits, 2.0 ** (62 - bits))
     near, far = (int(key) for key in scale.keys(np.array([max(one, other), min(one, other)])))
     assert near >= far
-    assert (near > far) == (near > far + scale.span_limit - 1)
-    assert near % scale.span_limit == 0
+    assert (near > far) == (near > far + scale.segment_limit - 1)
+    assert near % scale.segment_limit == 0
 
 
 @given(st.lists(st.floats(-1, 1)))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View
-from autocolor.visibility.edges import DOWN_SIDE, UP_SIDE, Edges, Side, edges_of_sides, other_end
+from autocolor.visibility.edges import DOWN_SIDE, UP_SIDE, Edges, Side, bottom_of_edge, edges_of_sides
 from autocolor.visibility.projection import Projection, projection
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
 
@@ -17,7 +17,7 @@ def all_edges(projected: Projection, side: Side) -> Edges:
 
 
 @given(meshes(), views() | outside_views(), rasters)
-def test_the_edges_of_both_sides_cut_the_same_lines_of_the_same_polygons(
+def test_the_edges_of_both_sides_cross_the_same_lines_of_the_same_polygons(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     projected = projection(mesh, view, *raster)
@@ -28,59 +28,57 @@ def test_the_edges_of_both_sides_cut_the_same_lines_of_the_same_polygons(
         for line in range(min(lines), max(lines))
     ]
     for side in SIDES:
-        cut = all_edges(projected, side)
+        found = all_edges(projected, side)
         assert expected == [
             (top % polygons, line)
-            for top, first, count in zip(cut.top, cut.first_line, cut.count, strict=True)
+            for top, first, count in zip(found.top, found.first_line, found.count, strict=True)
             for line in range(first, first + count)
         ]
-        assert other_end(projected, cut.top, side).tolist() == cut.bottom.tolist()
-        assert len(expected) == projected.first_crossing[-1]
+        assert bottom_of_edge(projected, found.top, side).tolist() == found.bottom.tolist()
+        assert len(expected) == projected.first_segment[-1]
 
 
 @given(meshes(), views() | outside_views(), rasters)
-def test_an_edge_is_cut_where_the_lines_cross_it(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
+def test_an_edge_steps_along_its_own_line(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
     projected = projection(mesh, view, *raster)
     corners = projected.corners.ravel()
-    for cut in (all_edges(projected, side) for side in SIDES):
-        for row in range(len(cut.top)):
-            a, b = corners[cut.top[row]], corners[cut.bottom[row]]
-            assert projected.down[a] <= projected.down[b]
-            assert cut.count[row] > 0
-            span = abs(projected.across[b] - projected.across[a])
+    for found in (all_edges(projected, side) for side in SIDES):
+        for row in range(len(found.top)):
+            a, b = corners[found.top[row]], corners[found.bottom[row]]
+            assert projected.y[a] <= projected.y[b]
+            assert found.count[row] > 0
+            width = abs(projected.x[b] - projected.x[a])
             depths = projected.inverse_depth[[a, b]]
-            for step in (0, int(cut.count[row]) - 1):
-                center = cut.first_line[row] + step + 0.5
-                assert projected.down[a] <= center <= projected.down[b]
-                way = (center - projected.down[a]) / (projected.down[b] - projected.down[a])
-                place = projected.across[a] + way * (projected.across[b] - projected.across[a])
-                depth = depths[0] + way * (depths[1] - depths[0])
-                assert cut.across[row] + step * cut.across_step[row] == pytest.approx(
-                    place, abs=1e-9 * (1 + span)
-                )
-                assert cut.inverse_depth[row] + step * cut.inverse_depth_step[row] == pytest.approx(
+            for step in (0, int(found.count[row]) - 1):
+                center = found.first_line[row] + step + 0.5
+                assert projected.y[a] <= center <= projected.y[b]
+                fraction = (center - projected.y[a]) / (projected.y[b] - projected.y[a])
+                x = projected.x[a] + fraction * (projected.x[b] - projected.x[a])
+                depth = depths[0] + fraction * (depths[1] - depths[0])
+                assert found.x[row] + step * found.x_step[row] == pytest.approx(x, abs=1e-9 * (1 + width))
+                assert found.inverse_depth[row] + step * found.inverse_depth_step[row] == pytest.approx(
                     depth, abs=1e-9 * depths.max()
                 )
 
 
 @given(meshes(), outside_views(), rasters)
-def test_an_edge_is_cut_alike_whichever_way_its_polygon_runs(
+def test_an_edge_has_the_same_crossings_whichever_way_its_polygon_runs(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
-    # Triangles only: a quad that must be cut in two may be cut along its other diagonal.
+    # Triangles only: a quad that must be split may be split along its other diagonal.
     mesh = Mesh(mesh.coordinates, mesh.node_numbers[:, :3], mesh.part_numbers, mesh.part_names)
     backward = Mesh(mesh.coordinates, mesh.node_numbers[:, ::-1], mesh.part_numbers, mesh.part_names)
-    cuts = []
+    crossings = []
     for each in (mesh, backward):
         projected = projection(each, view, *raster)
-        cuts.append(
+        crossings.append(
             {
                 row
                 for side in SIDES
-                for cut in [all_edges(projected, side)]
+                for found in [all_edges(projected, side)]
                 for row in zip(
-                    *(cut.first_line, cut.count, cut.across, cut.across_step, cut.inverse_depth), strict=True
+                    *(found.first_line, found.count, found.x, found.x_step, found.inverse_depth), strict=True
                 )
             }
         )
-    assert cuts[0] == cuts[1]
+    assert crossings[0] == crossings[1]

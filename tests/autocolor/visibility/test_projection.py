@@ -6,6 +6,7 @@ from hypothesis import given
 
 from autocolor import Mesh, View, render, scene_of
 from autocolor.visibility.camera_space import camera_space
+from autocolor.visibility.clipping import clipped_at_near_plane
 from autocolor.visibility.projection import focal_length, projection
 from tests.autocolor.meshes import cube, grid
 from tests.autocolor.reference import ray
@@ -21,16 +22,16 @@ def test_the_rays_of_the_lens_go_through_the_centers_of_the_pixels(
     for pixel in range(raster[0] * raster[1]):
         expected = view.axes @ np.array(ray(view, *raster, *divmod(pixel, raster[1])))
         line, element = divmod(pixel, raster[1])
-        across, down = (element + 0.5 - raster[1] / 2) / focal, (line + 0.5 - raster[0] / 2) / focal
-        assert (across, down, 1.0) == pytest.approx(expected, abs=1e-5)
+        x, y = (element + 0.5 - raster[1] / 2) / focal, (line + 0.5 - raster[0] / 2) / focal
+        assert (x, y, 1.0) == pytest.approx(expected, abs=1e-5)
 
 
 def test_pixels_are_square_and_the_field_of_view_is_the_vertical_one() -> None:
     view = View((0, -1, 0), direction=(0, 1, 0), field_of_view=90)
     panel = grid(1, 1, (-1, 0, -1), (2, 0, 0), (0, 0, 2))
     projected = projection(panel, view, 100, 300)
-    assert np.sort(projected.across) == pytest.approx([100, 100, 200, 200])
-    assert np.sort(projected.down) == pytest.approx([0, 0, 100, 100])
+    assert np.sort(projected.x) == pytest.approx([100, 100, 200, 200])
+    assert np.sort(projected.y) == pytest.approx([0, 0, 100, 100])
 
 
 @given(meshes(), views(), rasters)
@@ -49,8 +50,8 @@ def test_what_is_projected_is_before_the_eye_and_finite(
 ) -> None:
     projected = projection(mesh, view, *raster)
     used = np.unique(projected.corners)
-    assert np.isfinite(projected.across[used]).all()
-    assert np.isfinite(projected.down[used]).all()
+    assert np.isfinite(projected.x[used]).all()
+    assert np.isfinite(projected.y[used]).all()
     assert (projected.inverse_depth[used] > 0).all()
     assert (np.diff(projected.polygon_numbers) >= 0).all()
     assert set(projected.polygon_numbers.tolist()) <= set(range(len(mesh.node_numbers)))
@@ -64,16 +65,16 @@ def test_a_polygon_is_seen_from_behind_when_it_runs_clockwise_to_the_eye(
     assert projection(panel, View(eye, target=(0, 0, 0)), 10, 10).from_behind.tolist() == [from_behind]
 
 
-def test_polygons_that_share_an_edge_through_the_eye_plane_share_its_cut() -> None:
+def test_polygons_that_share_an_edge_through_the_near_plane_share_its_new_node() -> None:
     floor = grid(4, 4, (-2, -2, 0), (4, 0, 0), (0, 4, 0))
     view = View((0.1, 0.05, 0.7), direction=(0.05, 1.0, -0.2), field_of_view=80)
-    cut = camera_space(floor, view)
-    on_cut = np.isclose(cut.places[2, np.unique(cut.corners)], cut.near, rtol=1e-9)
+    clipped = clipped_at_near_plane(camera_space(floor, view))
+    on_plane = np.isclose(clipped.positions[2, np.unique(clipped.corners)], clipped.near, rtol=1e-9)
     # One node for each edge of the floor that runs through the near plane, and no more.
-    before = (floor.coordinates - np.array(view.eye)) @ view.axes[2] / cut.unit < cut.near
+    before = (floor.coordinates - np.array(view.eye)) @ view.axes[2] / clipped.unit < clipped.near
     ends = np.stack([floor.node_numbers, np.roll(floor.node_numbers, -1, axis=1)], axis=2).reshape(-1, 2)
     edges = {tuple(sorted(edge)) for edge in ends.tolist() if before[edge[0]] != before[edge[1]]}
-    assert on_cut.sum() == len(edges) > 4
+    assert on_plane.sum() == len(edges) > 4
 
 
 def test_a_node_that_no_polygon_uses_changes_nothing() -> None:
@@ -89,7 +90,7 @@ def test_a_node_that_no_polygon_uses_changes_nothing() -> None:
     assert pictures[0].intensity.tobytes() == pictures[1].intensity.tobytes()
 
 
-def test_a_dart_is_cut_at_its_notch() -> None:
+def test_a_dart_is_split_at_its_notch() -> None:
     # The notch points down; a line below the tip of the notch crosses the dart four times.
     dart = Mesh(
         np.array([(-1, 0, 1), (0, 0, -1), (1, 0, 1), (0, 0, 0.2)]),
@@ -100,10 +101,10 @@ def test_a_dart_is_cut_at_its_notch() -> None:
     for angle in (0, 90, 180, 270, 37):
         view = View((0, -4, 0), direction=(0, 1, 0), angle=angle, field_of_view=40)
         scene = scene_of(dart, view=view)
-        seen = render(scene, 64, 64).surface_number > 0
+        covered = render(scene, 64, 64).surface_number > 0
         for line, element in np.ndindex(64, 64):
             x, _, z = (4 * part for part in ray(view, 64, 64, line, element))
             x = abs(x)
             inside_by = min((z - (2 * x - 1)) / 2.3, ((0.2 + 0.8 * x) - z) / 1.3)
             if abs(inside_by) > 1e-6:
-                assert seen[line, element] == (inside_by > 0)
+                assert covered[line, element] == (inside_by > 0)

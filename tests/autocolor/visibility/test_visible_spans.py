@@ -1,4 +1,4 @@
-"""What is linear along a segment, where a polygon is seen edge-on or reaches far beyond the picture."""
+"""Interpolation along visible spans, where a polygon is edge-on or reaches far outside the picture."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ def panel(*corners: tuple[float, float, float]) -> Mesh:
 
 
 @given(tenths, tenths, tenths, st.integers(1, 30).map(lambda number: number / 10))
-def test_a_board_that_is_seen_edge_on_has_points_on_itself(
-    across: float, first: float, low: float, size: float
+def test_the_points_of_an_edge_on_board_are_on_the_board(
+    x: float, first: float, low: float, size: float
 ) -> None:
     mesh = panel(
-        (across, first, low),
-        (across, first + size, low),
-        (across, first + size, low + size),
-        (across, first, low + size),
+        (x, first, low),
+        (x, first + size, low),
+        (x, first + size, low + size),
+        (x, first, low + size),
     )
-    for eye in ((across, first - 3.0, low + 0.3), (across + 1e-9, first - 3.0, low + 0.3)):
-        seen = visible_surfaces(mesh, View(eye, direction=(0, 1, 0), field_of_view=40), (1,), 24, 33)
-        points = seen.points
-        assert np.isfinite(seen.rows).all()
-        assert (np.abs(points[:, 0] - across) < 1e-3 * size).all()
-        assert ((points[:, 1] > first - 0.01 * size) & (points[:, 1] < first + 1.01 * size)).all()
+    for eye in ((x, first - 3.0, low + 0.3), (x + 1e-9, first - 3.0, low + 0.3)):
+        points = visible_surfaces(mesh, View(eye, direction=(0, 1, 0), field_of_view=40), (1,), 24, 33)
+        assert np.isfinite(points.rows).all()
+        on_board = points.world_points
+        assert (np.abs(on_board[:, 0] - x) < 1e-3 * size).all()
+        assert ((on_board[:, 1] > first - 0.01 * size) & (on_board[:, 1] < first + 1.01 * size)).all()
 
 
 @pytest.mark.parametrize("beside", [1e-4, 1e-3, 0.1])
@@ -42,13 +42,13 @@ def test_a_board_that_is_seen_edge_on_has_points_on_itself(
 def test_a_flat_wall_close_beside_the_eye_keeps_its_normal(beside: float, turn: float) -> None:
     wall = panel((beside, -50, -20), (beside, 70, -20), (beside, 70, 20), (beside, -50, 20))
     view = View((0.0, 0.0, 0.0), direction=(turn, 1.0, 0.1), field_of_view=60)
-    normals = visible_surfaces(wall, view, (1,), 48, 64).normals
+    normals = visible_surfaces(wall, view, (1,), 48, 64).world_normals
     assert len(normals)
     assert normals == pytest.approx(np.tile([-1.0, 0.0, 0.0], (len(normals), 1)), abs=1e-5)
 
 
 @given(numbers(-1, 1), numbers(0.1, 1), numbers(-1, 1), numbers(-0.5, 0.5), st.integers(0, 3))
-def test_of_twins_that_run_against_each_other_the_later_is_seen(
+def test_of_coincident_polygons_of_opposite_winding_the_later_is_visible(
     left: float, width: float, slope: float, twist: float, first: int
 ) -> None:
     corners = [

@@ -1,4 +1,4 @@
-"""What is seen is what a ray meets first."""
+"""What is visible is what a ray meets first."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.strategies import outside_views, rasters, soups, views
 
 
-def assert_as_rays_see(mesh: Mesh, view: View, lines: int, elements: int) -> None:
-    seen = visible_surfaces(mesh, view, (1,), lines, elements)
+def assert_as_ray_casting(mesh: Mesh, view: View, lines: int, elements: int) -> None:
+    points = visible_surfaces(mesh, view, (1,), lines, elements)
     polygon = np.full(lines * elements, -1)
-    polygon[seen.pixels] = seen.polygon_numbers
+    polygon[points.pixels] = points.polygon_numbers
     depth = np.full(lines * elements, np.inf)
-    depth[seen.pixels] = (seen.points - np.array(view.eye)) @ view.axes[2]
+    depth[points.pixels] = (points.world_points - np.array(view.eye)) @ view.axes[2]
     for pixel in range(lines * elements):
         hit = first_hit(mesh, view.eye, ray(view, lines, elements, *divmod(pixel, elements)))
         if hit.clear > 1e-3 and hit.depth > 1e-3:
@@ -31,13 +31,13 @@ def assert_as_rays_see(mesh: Mesh, view: View, lines: int, elements: int) -> Non
 def test_the_polygon_at_a_pixel_is_the_one_that_a_ray_meets_first(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
-    assert_as_rays_see(mesh, view, *raster)
+    assert_as_ray_casting(mesh, view, *raster)
 
 
 @pytest.mark.parametrize("mesh", [cube(), sphere(8, 6)], ids=repr)
 @given(view=outside_views())
-def test_a_solid_is_seen_as_rays_see_it(mesh: Mesh, view: View) -> None:
-    assert_as_rays_see(mesh, view, 9, 12)
+def test_a_solid_is_as_ray_casting_finds_it(mesh: Mesh, view: View) -> None:
+    assert_as_ray_casting(mesh, view, 9, 12)
 
 
 @given(st.integers(0, 1 << 32))
@@ -51,23 +51,23 @@ def test_polygons_that_pass_through_each_other_cross_where_they_should(seed: int
         ]
     )
     view = View((0.0, -5.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=20.0)
-    seen = visible_surfaces(crossed, view, (1, 2), 16, 16)
+    points = visible_surfaces(crossed, view, (1, 2), 16, 16)
     number = np.zeros(256, int)
-    number[seen.pixels] = crossed.part_numbers[seen.polygon_numbers] + 1
+    number[points.pixels] = crossed.part_numbers[points.polygon_numbers] + 1
     left, right = np.hsplit(number.reshape(16, 16), 2)
     assert set(left.ravel().tolist()) <= {0, 1}
     assert set(right.ravel().tolist()) <= {0, 2}
     assert {1, 2} <= set(number.tolist())
 
 
-def test_of_two_polygons_in_the_same_place_the_later_one_is_seen() -> None:
+def test_of_two_coincident_polygons_the_later_one_is_visible() -> None:
     twice = Mesh.joined([grid(1, 1, (-1, 0, -1), (2, 0, 0), (0, 0, 2), name) for name in ("a", "b")])
     view = View((0.3, -3.0, 0.2), target=(0.0, 0.0, 0.0))
-    seen = visible_surfaces(twice, view, (1, 2), 12, 12)
-    assert set(seen.polygon_numbers.tolist()) == {1}
+    points = visible_surfaces(twice, view, (1, 2), 12, 12)
+    assert set(points.polygon_numbers.tolist()) == {1}
 
 
-def test_what_is_behind_the_eye_is_not_seen() -> None:
+def test_what_is_behind_the_eye_is_not_visible() -> None:
     behind = grid(3, 3, (-1, -9, -1), (2, 0, 0), (0, 0, 2))
     view = View((0.0, -5.0, 0.0), target=(0.0, 0.0, 0.0))
     assert len(visible_surfaces(behind, view, (1,), 12, 12).pixels) == 0
@@ -76,8 +76,8 @@ def test_what_is_behind_the_eye_is_not_seen() -> None:
 def test_a_floor_that_runs_from_behind_the_eye_fills_the_picture_up_to_the_horizon() -> None:
     floor = grid(1, 1, (-1000, -1000, 0), (2000, 0, 0), (0, 2000, 0))
     view = View((0.0, 0.0, 1.0), direction=(0.0, 1.0, 0.0), field_of_view=60.0)
-    seen = visible_surfaces(floor, view, (1,), 20, 30)
-    assert sorted(seen.pixels.tolist()) == list(range(10 * 30, 20 * 30))
+    points = visible_surfaces(floor, view, (1,), 20, 30)
+    assert sorted(points.pixels.tolist()) == list(range(10 * 30, 20 * 30))
 
 
 @given(st.integers(1, 7), st.integers(1, 7), rasters)
@@ -86,18 +86,18 @@ def test_polygons_over_the_edge_of_the_picture_fill_it(
 ) -> None:
     wide = grid(columns, rows, (-100, 0, -100), (200, 0, 0), (0, 0, 200))
     view = View((0.3, -4.0, -0.2), direction=(0.0, 1.0, 0.1), field_of_view=50.0)
-    seen = visible_surfaces(wide, view, (1,), *raster)
-    assert sorted(seen.pixels.tolist()) == list(range(raster[0] * raster[1]))
+    points = visible_surfaces(wide, view, (1,), *raster)
+    assert sorted(points.pixels.tolist()) == list(range(raster[0] * raster[1]))
 
 
-def test_more_polygons_than_are_taken_at_once_are_seen_as_rays_see_them() -> None:
+def test_more_polygons_than_one_chunk_are_as_ray_casting_finds_them() -> None:
     fine = grid(90, 70, (-1, 0, -1), (2, 0, 0), (0, 0, 2))
     view = View((0.0, -4.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=25.0)
     lines, elements = 40, 40
-    seen = visible_surfaces(fine, view, (1,), lines, elements)
-    for pixel, polygon in zip(seen.pixels.tolist(), seen.polygon_numbers.tolist(), strict=True):
+    points = visible_surfaces(fine, view, (1,), lines, elements)
+    for pixel, polygon in zip(points.pixels.tolist(), points.polygon_numbers.tolist(), strict=True):
         line, element = divmod(pixel, elements)
-        across, _, up = (4 * way for way in ray(view, lines, elements, line, element))
-        column, row = (across + 1) / 2 * 90, (up + 1) / 2 * 70
+        x, _, up = (4 * way for way in ray(view, lines, elements, line, element))
+        column, row = (x + 1) / 2 * 90, (up + 1) / 2 * 70
         if 1e-6 < column % 1 < 1 - 1e-6 and 1e-6 < row % 1 < 1 - 1e-6:
             assert polygon == int(row) * 90 + int(column)

@@ -1,4 +1,4 @@
-"""The literal algorithm and the one for all lines at once see the same, to the last bit."""
+"""The literal algorithm and the one for all lines at once give the same visible points, bit for bit."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.visibility.visible_points import Seen
+from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import meshes, outside_views, rasters, soups, views
 
 
-def assert_same(one: Seen, other: Seen) -> None:
+def assert_same(one: VisiblePoints, other: VisiblePoints) -> None:
     assert one.pixels.tolist() == other.pixels.tolist()
     assert one.polygon_numbers.tolist() == other.polygon_numbers.tolist()
     assert [(s.surface_number, s.start, s.stop) for s in one.slices] == [
@@ -25,7 +25,7 @@ def assert_same(one: Seen, other: Seen) -> None:
 
 
 @given(meshes(), views() | outside_views(), rasters, st.sampled_from([frozenset[int](), frozenset({1})]))
-def test_batch_and_watkins_see_the_same_of_any_mesh(
+def test_batch_and_watkins_agree_on_any_mesh(
     mesh: Mesh, view: View, raster: tuple[int, int], one_sided: frozenset[int]
 ) -> None:
     arguments = (mesh, view, (1, 2), *raster, one_sided)
@@ -33,7 +33,7 @@ def test_batch_and_watkins_see_the_same_of_any_mesh(
 
 
 @given(soups(), outside_views(), rasters)
-def test_batch_and_watkins_see_the_same_where_polygons_pass_through_each_other(
+def test_batch_and_watkins_agree_where_polygons_pass_through_each_other(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     assert_same(visible_surfaces(mesh, view, (1,), *raster), watkins(mesh, view, (1,), *raster))
@@ -50,12 +50,12 @@ THROUGH_EACH_OTHER = Mesh(
 @pytest.mark.parametrize(
     "mesh", [cube(), sphere(), THROUGH_EACH_OTHER, grid(9, 7, (-1, 0, -1), (2, 0.3, 0), (0, 0, 2))], ids=repr
 )
-def test_batch_and_watkins_see_the_same_of_a_closer_picture(mesh: Mesh) -> None:
+def test_batch_and_watkins_agree_on_a_larger_picture(mesh: Mesh) -> None:
     view = View((3.0, -5.0, 2.0), target=(0.2, 0.1, 0.0))
     assert_same(visible_surfaces(mesh, view, (1,), 90, 120), watkins(mesh, view, (1,), 90, 120))
 
 
-def test_batch_and_watkins_see_nothing_of_an_empty_mesh() -> None:
+def test_batch_and_watkins_find_nothing_in_an_empty_mesh() -> None:
     empty = Mesh(np.empty((0, 3)), np.empty((0, 4), np.intp), np.empty(0, np.intp), ())
     view = View((0.0, -1.0, 0.0), target=(0.0, 0.0, 0.0))
     assert_same(visible_surfaces(empty, view, (), 4, 5), watkins(empty, view, (), 4, 5))
