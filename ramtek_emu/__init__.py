@@ -31,34 +31,34 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .configuration import GMR_9300 as GMR_9300
-    from .configuration import JPL_9460 as JPL_9460
-    from .configuration import NCAR_9460 as NCAR_9460
-    from .configuration import PRINCETON_9300 as PRINCETON_9300
-    from .configuration import Configuration as Configuration
-    from .configuration import EntryFormat as EntryFormat
-    from .cursors import Joystick as Joystick
-    from .display import Ramtek9300 as Ramtek9300
-    from .errors import ColorsError as ColorsError
-    from .errors import ConfigurationError as ConfigurationError
-    from .errors import InstructionError as InstructionError
-    from .errors import ListingError as ListingError
-    from .errors import MissingInputError as MissingInputError
-    from .errors import NoScreenError as NoScreenError
-    from .errors import OutputError as OutputError
-    from .errors import OutputExistsError as OutputExistsError
-    from .errors import PortError as PortError
-    from .errors import RamtekError as RamtekError
-    from .errors import ReplyError as ReplyError
-    from .errors import SnapshotError as SnapshotError
-    from .errors import WordsError as WordsError
-    from .errors import WriteError as WriteError
-    from .host_port import HostPort as HostPort
-    from .host_port import Recorder as Recorder
-    from .host_port import TcpPort as TcpPort
-    from .snapshot import read_snapshot as read_snapshot
-    from .snapshot import write_snapshot as write_snapshot
-    from .timing import Timing as Timing
+    from ramtek_emu.configuration import GMR_9300 as GMR_9300
+    from ramtek_emu.configuration import JPL_9460 as JPL_9460
+    from ramtek_emu.configuration import NCAR_9460 as NCAR_9460
+    from ramtek_emu.configuration import PRINCETON_9300 as PRINCETON_9300
+    from ramtek_emu.configuration import Configuration as Configuration
+    from ramtek_emu.configuration import EntryFormat as EntryFormat
+    from ramtek_emu.cursors import Joystick as Joystick
+    from ramtek_emu.display import Ramtek9300 as Ramtek9300
+    from ramtek_emu.errors import ColorsError as ColorsError
+    from ramtek_emu.errors import ConfigurationError as ConfigurationError
+    from ramtek_emu.errors import InstructionError as InstructionError
+    from ramtek_emu.errors import ListingError as ListingError
+    from ramtek_emu.errors import MissingInputError as MissingInputError
+    from ramtek_emu.errors import NoScreenError as NoScreenError
+    from ramtek_emu.errors import OutputError as OutputError
+    from ramtek_emu.errors import OutputExistsError as OutputExistsError
+    from ramtek_emu.errors import PortError as PortError
+    from ramtek_emu.errors import RamtekError as RamtekError
+    from ramtek_emu.errors import ReplyError as ReplyError
+    from ramtek_emu.errors import SnapshotError as SnapshotError
+    from ramtek_emu.errors import WordsError as WordsError
+    from ramtek_emu.errors import WriteError as WriteError
+    from ramtek_emu.host_port import HostPort as HostPort
+    from ramtek_emu.host_port import Recorder as Recorder
+    from ramtek_emu.host_port import TcpPort as TcpPort
+    from ramtek_emu.snapshot import read_snapshot as read_snapshot
+    from ramtek_emu.snapshot import write_snapshot as write_snapshot
+    from ramtek_emu.timing import Timing as Timing
 
 _HOME = {
     "ColorsError": "errors",
@@ -98,7 +98,7 @@ def __getattr__(name: str) -> object:
     """A public name, from the module that defines it; loaded when it is first asked for."""
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value: object = getattr(import_module(f".{_HOME[name]}", __name__), name)
+    value: object = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
     globals()[name] = value
     return value
 

@@ -6,8 +6,8 @@ Hardware drops what does not fit; a program that hands over numbers is better to
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import ColorsError, WordsError
-from .scan_orders import Window
+from ramtek_emu.errors import ColorsError, WordsError
+from ramtek_emu.scan_orders import Window
 
 BYTE = np.dtype(np.uint8)
 

@@ -7,8 +7,8 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from .errors import ConfigurationError
-from .timing import Timing
+from ramtek_emu.errors import ConfigurationError
+from ramtek_emu.timing import Timing
 
 
 class EntryFormat(Enum):

@@ -12,8 +12,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from .display import Ramtek9300
-from .errors import OutputExistsError, RamtekError
+from ramtek_emu.display import Ramtek9300
+from ramtek_emu.errors import OutputExistsError, RamtekError
 
 LEFT, RIGHT = 1, 3
 MODIFIERS = frozenset(
@@ -83,7 +83,7 @@ class Console(ABC):
 
     def screenshot(self) -> Path:
         """Save the field under the next free number, never over a file; WriteError when it cannot be."""
-        from .png import save_png
+        from ramtek_emu.png import save_png
 
         number = 1
         while True:

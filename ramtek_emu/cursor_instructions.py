@@ -9,10 +9,10 @@ channel. A cursor that is not there takes nothing, reads as 0 and sets the illeg
 
 import numpy as np
 
-from .cursors import LINE_BITS
-from .instruction import Instruction
-from .processor import Processor, executes
-from .view import pixel_at, screen_at
+from ramtek_emu.cursors import LINE_BITS
+from ramtek_emu.instruction import Instruction
+from ramtek_emu.processor import Processor, executes
+from ramtek_emu.view import pixel_at, screen_at
 
 SHAPE_BYTES_PER_ROW = 4
 

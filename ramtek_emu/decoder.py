@@ -19,9 +19,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from .configuration import GMR_9300, Configuration
-from .instruction import NO_WORDS, Instruction
-from .instruction_set import FORMS, ILLEGAL, OPERANDS, Flags, Form, operands_named
+from ramtek_emu.configuration import GMR_9300, Configuration
+from ramtek_emu.instruction import NO_WORDS, Instruction
+from ramtek_emu.instruction_set import FORMS, ILLEGAL, OPERANDS, Flags, Form, operands_named
 
 Words = NDArray[np.uint16]
 MOST_HEAD = 64

@@ -8,18 +8,18 @@ from os import PathLike
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import checked_stream
-from .configuration import GMR_9300, Configuration
-from .cursors import Cursors, Joystick
-from .decoder import Decoder
-from .executors import EXECUTORS as EXECUTORS
-from .frame_buffer import FrameBuffer
-from .instruction import Instruction
-from .instruction_set import FORM_OF_NAME
-from .lookup_table import LookupTable
-from .processor import Processor, Status
-from .scan_out import ScanOut
-from .timing import Beam
+from ramtek_emu.checks import checked_stream
+from ramtek_emu.configuration import GMR_9300, Configuration
+from ramtek_emu.cursors import Cursors, Joystick
+from ramtek_emu.decoder import Decoder
+from ramtek_emu.executors import EXECUTORS as EXECUTORS
+from ramtek_emu.frame_buffer import FrameBuffer
+from ramtek_emu.instruction import Instruction
+from ramtek_emu.instruction_set import FORM_OF_NAME
+from ramtek_emu.lookup_table import LookupTable
+from ramtek_emu.processor import Processor, Status
+from ramtek_emu.scan_out import ScanOut
+from ramtek_emu.timing import Beam
 
 Words = NDArray[np.uint16]
 
@@ -103,12 +103,12 @@ class Ramtek9300:
 
     def save_png(self, path: str | PathLike[str], overwrite: bool = True) -> None:
         """Write the field to a PNG file, wholly or not at all; OutputExistsError or WriteError if not."""
-        from .png import save_png
+        from ramtek_emu.png import save_png
 
         save_png(self.field(), path, overwrite)
 
     def _repr_png_(self) -> bytes:
         """The field for a notebook."""
-        from .png import png_bytes
+        from ramtek_emu.png import png_bytes
 
         return png_bytes(self.field())

@@ -6,12 +6,12 @@ its name; without it the background word is written there.
 
 import numpy as np
 
-from . import curves, text, vectors
-from .instruction import Instruction
-from .instruction_set import Flags
-from .parameters import STANDARD_FONT, signed
-from .processor import Processor, executes
-from .scan_orders import Point
+from ramtek_emu import curves, text, vectors
+from ramtek_emu.instruction import Instruction
+from ramtek_emu.instruction_set import Flags
+from ramtek_emu.parameters import STANDARD_FONT, signed
+from ramtek_emu.processor import Processor, executes
+from ramtek_emu.scan_orders import Point
 
 
 def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:

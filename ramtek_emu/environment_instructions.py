@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from .instruction import Instruction
-from .instruction_set import FORMS, OPERANDS
-from .parameters import Parameters
-from .processor import Processor, Status, executes
+from ramtek_emu.instruction import Instruction
+from ramtek_emu.instruction_set import FORMS, OPERANDS
+from ramtek_emu.parameters import Parameters
+from ramtek_emu.processor import Processor, Status, executes
 
 MOST_SAVED = 16
 """Environments that PUSHE puts aside at most. Assumed: one more sets the illegal-instruction status."""

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import checked_place, checked_words
-from .configuration import GMR_9300, Configuration
-from .scan_orders import SCAN_ORDERS, Block, Point, ScanOrder, Window, blocks
+from ramtek_emu.checks import checked_place, checked_words
+from ramtek_emu.configuration import GMR_9300, Configuration
+from ramtek_emu.scan_orders import SCAN_ORDERS, Block, Point, ScanOrder, Window, blocks
 
 Words = NDArray[np.uint16]
 Dots = NDArray[np.bool_]

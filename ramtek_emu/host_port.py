@@ -12,8 +12,8 @@ from typing import BinaryIO, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import checked_stream
-from .errors import PortError, ReplyError
+from ramtek_emu.checks import checked_stream
+from ramtek_emu.errors import PortError, ReplyError
 
 Words = NDArray[np.uint16]
 

@@ -16,9 +16,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .display import Ramtek9300
-from .instruction import NO_WORDS
-from .instruction_set import FORMS
+from ramtek_emu.display import Ramtek9300
+from ramtek_emu.instruction import NO_WORDS
+from ramtek_emu.instruction_set import FORMS
 
 Record = Callable[[bytes], object]
 

@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .areas import area
-from .instruction import Instruction
-from .instruction_set import Flags
-from .processor import Processor, executes
-from .scan_orders import Point
+from ramtek_emu.areas import area
+from ramtek_emu.instruction import Instruction
+from ramtek_emu.instruction_set import Flags
+from ramtek_emu.processor import Processor, executes
+from ramtek_emu.scan_orders import Point
 
 Words = NDArray[np.uint16]
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InstructionError
-from .instruction_set import (
+from ramtek_emu.errors import InstructionError
+from ramtek_emu.instruction_set import (
     ADDRESSING_NAMES,
     FLAG_NAMES,
     FORM_OF_NAME,

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
-from .opcode_names import NAMED_ONLY
+from ramtek_emu.opcode_names import NAMED_ONLY
 
 
 class Flags:

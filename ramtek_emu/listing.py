@@ -18,10 +18,18 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .configuration import GMR_9300, Configuration
-from .decoder import Decoder
-from .instruction import Instruction, encode
-from .instruction_set import ADDRESSING_NAMES, FLAG_NAMES, ILLEGAL, OPERANDS, OPERANDS_1, OPERANDS_2, Flags
+from ramtek_emu.configuration import GMR_9300, Configuration
+from ramtek_emu.decoder import Decoder
+from ramtek_emu.instruction import Instruction, encode
+from ramtek_emu.instruction_set import (
+    ADDRESSING_NAMES,
+    FLAG_NAMES,
+    ILLEGAL,
+    OPERANDS,
+    OPERANDS_1,
+    OPERANDS_2,
+    Flags,
+)
 
 Words = NDArray[np.uint16]
 

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import ListingError
+from ramtek_emu.errors import ListingError
 
 Words = NDArray[np.uint16]
 

@@ -12,8 +12,8 @@ Assumed: the entries are black at power-on; no source says what a cold table sho
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import checked_colors
-from .configuration import GMR_9300, Configuration, EntryFormat
+from ramtek_emu.checks import checked_colors
+from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
 
 Words = NDArray[np.uint16]
 

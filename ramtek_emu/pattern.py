@@ -7,8 +7,8 @@ judge the raster, circles to judge its shape, and the characters.
 import numpy as np
 from numpy.typing import NDArray
 
-from . import instructions
-from .configuration import GMR_9300, Configuration, EntryFormat
+from ramtek_emu import instructions
+from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
 
 Words = NDArray[np.uint16]
 

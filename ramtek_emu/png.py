@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from .writing import write_atomically
+from ramtek_emu.writing import write_atomically
 
 
 def png_bytes(field: NDArray[np.uint8]) -> bytes:

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import SnapshotError
+from ramtek_emu.errors import SnapshotError
 
 SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 MOST_FILE: Final = 48 << 20

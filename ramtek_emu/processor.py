@@ -16,16 +16,16 @@ from enum import IntFlag
 import numpy as np
 from numpy.typing import NDArray
 
-from .character_rom import characters, loadable
-from .configuration import Configuration
-from .cursors import Cursors
-from .errors import ReplyError
-from .frame_buffer import FrameBuffer
-from .instruction import NO_WORDS, Instruction
-from .instruction_set import Flags
-from .lookup_table import LookupTable
-from .parameters import Parameters
-from .timing import Beam
+from ramtek_emu.character_rom import characters, loadable
+from ramtek_emu.configuration import Configuration
+from ramtek_emu.cursors import Cursors
+from ramtek_emu.errors import ReplyError
+from ramtek_emu.frame_buffer import FrameBuffer
+from ramtek_emu.instruction import NO_WORDS, Instruction
+from ramtek_emu.instruction_set import Flags
+from ramtek_emu.lookup_table import LookupTable
+from ramtek_emu.parameters import Parameters
+from ramtek_emu.timing import Beam
 
 Words = NDArray[np.uint16]
 MOST_WAITING = 1 << 22

@@ -17,13 +17,13 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from .configuration import Configuration, EntryFormat
-from .cursors import BLINK, SHAPE_CENTER, VISIBLE, Cursor, Cursors
-from .frame_buffer import FrameBuffer
-from .lookup_table import LookupTable
-from .parameters import Parameters
-from .shown_lines import lines_with
-from .timing import Beam
+from ramtek_emu.configuration import Configuration, EntryFormat
+from ramtek_emu.cursors import BLINK, SHAPE_CENTER, VISIBLE, Cursor, Cursors
+from ramtek_emu.frame_buffer import FrameBuffer
+from ramtek_emu.lookup_table import LookupTable
+from ramtek_emu.parameters import Parameters
+from ramtek_emu.shown_lines import lines_with
+from ramtek_emu.timing import Beam
 
 Pixels = NDArray[np.uint32]
 WHITE = np.uint32(0xFFFFFF)

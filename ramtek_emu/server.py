@@ -20,9 +20,9 @@ from collections.abc import Iterator
 from types import TracebackType
 from typing import Final
 
-from .display import Ramtek9300
-from .errors import PortError
-from .host_session import HostSession, Record
+from ramtek_emu.display import Ramtek9300
+from ramtek_emu.errors import PortError
+from ramtek_emu.host_session import HostSession, Record
 
 LOOPBACK: Final = "127.0.0.1"
 IDLE_SECONDS: Final = 600.0

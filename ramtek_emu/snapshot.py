@@ -18,15 +18,15 @@ from typing import Any, Final
 
 import numpy as np
 
-from .configuration import GMR_9300, Configuration
-from .display import Ramtek9300
-from .environment_instructions import MOST_SAVED
-from .errors import ConfigurationError, MissingInputError, SnapshotError
-from .plain_values import listed, packed, plain, refusal, restored, unpacked, whole_number
-from .png_chunks import MOST_FILE, picture_bytes, picture_of
-from .processor import Status
-from .timing import Beam, Timing
-from .writing import write_atomically
+from ramtek_emu.configuration import GMR_9300, Configuration
+from ramtek_emu.display import Ramtek9300
+from ramtek_emu.environment_instructions import MOST_SAVED
+from ramtek_emu.errors import ConfigurationError, MissingInputError, SnapshotError
+from ramtek_emu.plain_values import listed, packed, plain, refusal, restored, unpacked, whole_number
+from ramtek_emu.png_chunks import MOST_FILE, picture_bytes, picture_of
+from ramtek_emu.processor import Status
+from ramtek_emu.timing import Beam, Timing
+from ramtek_emu.writing import write_atomically
 
 SOFTWARE: Final = "ramtek_emu snapshot 1"
 """What the text `Software` says; the number is the format's."""

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from .instruction import Instruction
-from .processor import Processor, executes
+from ramtek_emu.instruction import Instruction
+from ramtek_emu.processor import Processor, executes
 
 
 @executes("LAM")

@@ -10,7 +10,7 @@ retrace before they loaded the table (NCAR).
 
 from dataclasses import dataclass, fields
 
-from .errors import ConfigurationError
+from ramtek_emu.errors import ConfigurationError
 
 MOST = 1_000_000_000
 """The largest rate: a second."""

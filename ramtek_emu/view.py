@@ -7,8 +7,8 @@ Assumed: with the video origin at the bottom the origin is the pixel at the bott
 windows and scan orders stay as they are.
 """
 
-from .configuration import Configuration
-from .parameters import Parameters
+from ramtek_emu.configuration import Configuration
+from ramtek_emu.parameters import Parameters
 
 
 def pixel_at(

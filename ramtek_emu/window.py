@@ -21,14 +21,14 @@ os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
 os.environ["SDL_WINDOWS_DPI_AWARENESS"] = os.environ.get("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
 import pygame
 
-from .console import Console
-from .console import Key as Key
-from .console import Pointer as Pointer
-from .display import Ramtek9300
-from .errors import NoScreenError
-from .placement import pixel_under
-from .placement import placement as placement
-from .scan_out import Stamp
+from ramtek_emu.console import Console
+from ramtek_emu.console import Key as Key
+from ramtek_emu.console import Pointer as Pointer
+from ramtek_emu.display import Ramtek9300
+from ramtek_emu.errors import NoScreenError
+from ramtek_emu.placement import pixel_under
+from ramtek_emu.placement import placement as placement
+from ramtek_emu.scan_out import Stamp
 
 TICK_MILLISECONDS = 15
 BLINK_SECONDS = 0.5  # Seen for so long, then not. Assumed: as in the time model.

@@ -10,7 +10,7 @@ import secrets
 from contextlib import suppress
 from pathlib import Path
 
-from .errors import OutputError, OutputExistsError, WriteError
+from ramtek_emu.errors import OutputError, OutputExistsError, WriteError
 
 NO_PLACE = (
     errno.ENOENT,
