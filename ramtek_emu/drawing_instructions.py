@@ -7,8 +7,8 @@ its name; without it the background word is written there.
 import numpy as np
 
 from ramtek_emu import curves, text, vectors
-from ramtek_emu.instruction import Instruction
-from ramtek_emu.instruction_set import Flags
+from ramtek_emu.instruction_set.instruction import Instruction
+from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.parameters import STANDARD_FONT, signed
 from ramtek_emu.processor import Processor, executes
 from ramtek_emu.scan_orders import Point

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.instruction import NO_WORDS
-from ramtek_emu.instruction_set import FORMS
+from ramtek_emu.instruction_set.instruction import NO_WORDS
+from ramtek_emu.instruction_set.table import FORMS
 
 Record = Callable[[bytes], object]
 

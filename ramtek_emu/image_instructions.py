@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ramtek_emu.areas import area
-from ramtek_emu.instruction import Instruction
-from ramtek_emu.instruction_set import Flags
+from ramtek_emu.instruction_set.instruction import Instruction
+from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.processor import Processor, executes
 from ramtek_emu.scan_orders import Point
 

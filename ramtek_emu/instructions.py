@@ -12,8 +12,16 @@ import numpy as np
 
 from ramtek_emu.checks import checked_colors, checked_words, whole_numbers
 from ramtek_emu.errors import InstructionError, WordsError
-from ramtek_emu.instruction import MOST_BYTES, NO_WORDS, Instruction, Numbers, Words, encode, normal
-from ramtek_emu.instruction_set import FORM_OF_NAME, Flags
+from ramtek_emu.instruction_set.instruction import (
+    MOST_BYTES,
+    NO_WORDS,
+    Instruction,
+    Numbers,
+    Words,
+    encode,
+    normal,
+)
+from ramtek_emu.instruction_set.table import FORM_OF_NAME, Flags
 
 LOW_BYTE_FIRST = np.dtype("<u2")
 THREE_WORDS = Struct("<3H")

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from ramtek_emu.character_rom import CELL_ELEMENTS, CELL_LINES
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.frame_buffer import WriteEnable
-from ramtek_emu.instruction_set import Flags
+from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
 
 ORIGIN = Point(0, 0)

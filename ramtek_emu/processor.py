@@ -21,8 +21,8 @@ from ramtek_emu.configuration import Configuration
 from ramtek_emu.cursors import Cursors
 from ramtek_emu.errors import ReplyError
 from ramtek_emu.frame_buffer import FrameBuffer
-from ramtek_emu.instruction import NO_WORDS, Instruction
-from ramtek_emu.instruction_set import Flags
+from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
+from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.lookup_table import LookupTable
 from ramtek_emu.parameters import Parameters
 from ramtek_emu.timing import Beam

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ramtek_emu.instruction import Instruction
+from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.processor import Processor, executes
 
 

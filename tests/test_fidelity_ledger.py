@@ -10,9 +10,18 @@ BEARING_FORMULAS = [
     "autocolor.light_controls", "autocolor.lights", "autocolor.node_normals", "autocolor.picture",
     "autocolor.reflection", "autocolor.scene", "autocolor.segments", "autocolor.shading",
     "autocolor.tables", "autocolor.view", "autocolor.visible_surfaces", "autocolor.watkins",
-    "ramtek_emu.character_rom", "ramtek_emu.configuration", "ramtek_emu.decoder", "ramtek_emu.vectors",
-    "ramtek_emu.curves", "ramtek_emu.timing", "ramtek_emu.frame_buffer", "ramtek_emu.host_port",
-    "ramtek_emu.lookup_table", "ramtek_emu.parameters", "ramtek_emu.processor", "ramtek_emu.scan_out",
+    "ramtek_emu.character_rom",
+    "ramtek_emu.configuration",
+    "ramtek_emu.instruction_set.decoder",
+    "ramtek_emu.vectors",
+    "ramtek_emu.curves",
+    "ramtek_emu.timing",
+    "ramtek_emu.frame_buffer",
+    "ramtek_emu.host_port",
+    "ramtek_emu.lookup_table",
+    "ramtek_emu.parameters",
+    "ramtek_emu.processor",
+    "ramtek_emu.scan_out",
 ]  # fmt: skip
 
 

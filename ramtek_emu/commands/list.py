@@ -33,7 +33,7 @@ def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
         while data := file.read(PIECE):
             yield data
 
-    from ramtek_emu.listing import items
+    from ramtek_emu.instruction_set.disassembler import items
 
     found = items(pieces(), chosen)
     if not as_json:

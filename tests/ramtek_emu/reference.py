@@ -1,6 +1,6 @@
 """Slow, obvious twins of the display: one pixel, one word at a time."""
 
-from ramtek_emu.instruction_set import FORMS
+from ramtek_emu.instruction_set.table import FORMS
 
 # Scan code -> step to the next word, step to the next run: (element, line) each.
 STEPS = {

@@ -10,7 +10,7 @@ from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
 from ramtek_emu import Configuration
-from ramtek_emu.instruction_set import FORMS, SUBSTANTIATED
+from ramtek_emu.instruction_set.table import FORMS, SUBSTANTIATED
 from ramtek_emu.scan_orders import Point, Window
 
 quick = settings(deadline=None, max_examples=60)

@@ -5,9 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import GMR_9300, PRINCETON_9300
-from ramtek_emu.decoder import MOST_WORDS, Decoder
-from ramtek_emu.instruction import encode
-from ramtek_emu.instruction_set import ILLEGAL
+from ramtek_emu.instruction_set.decoder import MOST_WORDS, Decoder
+from ramtek_emu.instruction_set.instruction import encode
+from ramtek_emu.instruction_set.table import ILLEGAL
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import cuts, quick, streams, thorough, words
 

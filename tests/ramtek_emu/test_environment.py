@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
-from ramtek_emu.instruction_set import FORMS, OPERANDS
+from ramtek_emu.instruction_set.table import FORMS, OPERANDS
 from ramtek_emu.processor import Status
 from tests.ramtek_emu.strategies import SMALL, quick, sent_words, thorough
 

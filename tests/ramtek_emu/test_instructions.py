@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import InstructionError, WordsError, instructions
-from ramtek_emu.decoder import Decoder
-from ramtek_emu.instruction import encode, normal
+from ramtek_emu.instruction_set.decoder import Decoder
+from ramtek_emu.instruction_set.instruction import encode, normal
 from tests.ramtek_emu.strategies import quick, streams
 
 

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, ListingError
-from ramtek_emu.assembly import assemble
-from ramtek_emu.listing import items
+from ramtek_emu.instruction_set.assembler import assemble
+from ramtek_emu.instruction_set.disassembler import items
 from tests.ramtek_emu.recorded_streams import DECODED, OUTLINE, RECORDED, SQUARES, words
 from tests.ramtek_emu.strategies import cuts, streams, thorough
 

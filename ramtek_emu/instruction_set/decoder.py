@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ramtek_emu.configuration import GMR_9300, Configuration
-from ramtek_emu.instruction import NO_WORDS, Instruction
-from ramtek_emu.instruction_set import FORMS, ILLEGAL, OPERANDS, Flags, Form, operands_named
+from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
+from ramtek_emu.instruction_set.table import FORMS, ILLEGAL, OPERANDS, Flags, Form, operands_named
 
 Words = NDArray[np.uint16]
 MOST_HEAD = 64

@@ -20,8 +20,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ramtek_emu.errors import InstructionError
-from ramtek_emu.instruction import MOST_BYTES, NO_WORDS, Instruction, encode
-from ramtek_emu.instruction_set import (
+from ramtek_emu.instruction_set.instruction import MOST_BYTES, NO_WORDS, Instruction, encode
+from ramtek_emu.instruction_set.listing_tokens import (
+    hexadecimal_words,
+    numbers_of,
+    refusal,
+    string_of,
+    tokens_of,
+)
+from ramtek_emu.instruction_set.table import (
     ADDRESSING_NAMES,
     FLAG_NAMES,
     FORM_OF_NAME,
@@ -32,7 +39,6 @@ from ramtek_emu.instruction_set import (
     Flags,
     Form,
 )
-from ramtek_emu.listing_tokens import hexadecimal_words, numbers_of, refusal, string_of, tokens_of
 
 Words = NDArray[np.uint16]
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ramtek_emu.errors import InstructionError
-from ramtek_emu.instruction_set import (
+from ramtek_emu.instruction_set.table import (
     ADDRESSING_NAMES,
     FLAG_NAMES,
     FORM_OF_NAME,

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
-from ramtek_emu.opcode_names import NAMED_ONLY
+from ramtek_emu.instruction_set.opcode_names import NAMED_ONLY
 
 
 class Flags:

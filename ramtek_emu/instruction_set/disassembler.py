@@ -4,10 +4,10 @@
     00004: 0E01 0004                      WVL 4 bytes
     00006: 0064 01C3                        to 100,451
 
-At the left the place of the first word in the stream and the words themselves, at the right what they mean;
-the right side alone is what `assembly` reads, and it gives the words at the left back, all of them, for any
-words at all. What has no better name is `raw`: a word that begins no instruction, an instruction cut off by
-the end of the stream, flag bits that no source names. Data are complete; `0010*640` is a word 640 times.
+On the left are the place of the first word in the stream and the words themselves, on the right what they
+mean. The assembler reads the right side alone, and it gives back exactly the words on the left, for any words
+at all. What has no better name is `raw`: a word that begins no instruction, an instruction cut off by the end
+of the stream, flag bits that no source names. Data are complete; `0010*640` is a word 640 times.
 """
 
 from collections.abc import Iterable, Iterator
@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ramtek_emu.configuration import GMR_9300, Configuration
-from ramtek_emu.decoder import Decoder
-from ramtek_emu.instruction import Instruction, encode
-from ramtek_emu.instruction_set import (
+from ramtek_emu.instruction_set.decoder import Decoder
+from ramtek_emu.instruction_set.instruction import Instruction, encode
+from ramtek_emu.instruction_set.table import (
     ADDRESSING_NAMES,
     FLAG_NAMES,
     ILLEGAL,
