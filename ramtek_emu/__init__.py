@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from ramtek_emu.configuration import PRINCETON_9300 as PRINCETON_9300
     from ramtek_emu.configuration import Configuration as Configuration
     from ramtek_emu.configuration import EntryFormat as EntryFormat
-    from ramtek_emu.cursors import Joystick as Joystick
     from ramtek_emu.display import Ramtek9300 as Ramtek9300
     from ramtek_emu.errors import ColorsError as ColorsError
     from ramtek_emu.errors import ConfigurationError as ConfigurationError
@@ -56,6 +55,7 @@ if TYPE_CHECKING:
     from ramtek_emu.host_port import HostPort as HostPort
     from ramtek_emu.host_port import Recorder as Recorder
     from ramtek_emu.host_port import TcpPort as TcpPort
+    from ramtek_emu.memory.cursors import Joystick as Joystick
     from ramtek_emu.snapshot import read_snapshot as read_snapshot
     from ramtek_emu.snapshot import write_snapshot as write_snapshot
     from ramtek_emu.timing import Timing as Timing
@@ -69,7 +69,7 @@ _HOME = {
     "HostPort": "host_port",
     "InstructionError": "errors",
     "JPL_9460": "configuration",
-    "Joystick": "cursors",
+    "Joystick": "memory.cursors",
     "ListingError": "errors",
     "MissingInputError": "errors",
     "NCAR_9460": "configuration",

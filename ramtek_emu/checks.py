@@ -1,4 +1,4 @@
-"""The checks at the door for Python callers: words, colors and places.
+"""The checks at the door for Python callers: words and colors.
 
 Hardware drops what does not fit; a program that hands over numbers is better told which one is wrong.
 """
@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ramtek_emu.errors import ColorsError, WordsError
-from ramtek_emu.scan_orders import Window
 
 BYTE = np.dtype(np.uint8)
 
@@ -93,12 +92,3 @@ def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[n
             f"(entry {first + row}, {('red', 'green', 'blue')[column]}); clip it first"
         )
     return array.astype(np.uint8)
-
-
-def checked_place(place: Window, memory: Window, thing: str) -> None:
-    """Refuse a window that is not wholly in the memory."""
-    if place.intersection(memory) != place:
-        raise WordsError(
-            f"{thing} must lie within elements 0 to {memory.right} and lines 0 to {memory.bottom}, "
-            f"not {place.left} to {place.right} and {place.top} to {place.bottom}; move it or cut it"
-        )

@@ -9,8 +9,8 @@ channel. A cursor that is not there takes nothing, reads as 0 and sets the illeg
 
 import numpy as np
 
-from ramtek_emu.cursors import LINE_BITS
 from ramtek_emu.instruction_set.instruction import Instruction
+from ramtek_emu.memory.cursors import LINE_BITS
 from ramtek_emu.processor import Processor, executes
 from ramtek_emu.view import pixel_at, screen_at
 

@@ -7,8 +7,8 @@ square (Assumed: a radius in elements is one in lines).
 import numpy as np
 from numpy.typing import NDArray
 
-from ramtek_emu.frame_buffer import FrameBuffer, WriteEnable
-from ramtek_emu.scan_orders import Point
+from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
+from ramtek_emu.memory.scan_orders import Point
 
 Numbers = NDArray[np.int64]
 MOST_PIXELS = 1 << 14

@@ -4,7 +4,7 @@ import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import FORMS, OPERANDS
-from ramtek_emu.parameters import Parameters
+from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.processor import Processor, Status, executes
 
 MOST_SAVED = 16

@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 from ramtek_emu.areas import area
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
+from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor import Processor, executes
-from ramtek_emu.scan_orders import Point
 
 Words = NDArray[np.uint16]
 

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from ramtek_emu.errors import SnapshotError
-from ramtek_emu.scan_orders import Point, Window
+from ramtek_emu.memory.scan_orders import Point, Window
 
 WORD: Final = (-0x8000, 0xFFFF)
 COORDINATE: Final = (-0x8000, 0x7FFF)

@@ -16,15 +16,15 @@ from enum import IntFlag
 import numpy as np
 from numpy.typing import NDArray
 
-from ramtek_emu.character_rom import characters, loadable
 from ramtek_emu.configuration import Configuration
-from ramtek_emu.cursors import Cursors
 from ramtek_emu.errors import ReplyError
-from ramtek_emu.frame_buffer import FrameBuffer
 from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
 from ramtek_emu.instruction_set.table import Flags
-from ramtek_emu.lookup_table import LookupTable
-from ramtek_emu.parameters import Parameters
+from ramtek_emu.memory.character_rom import characters, loadable
+from ramtek_emu.memory.cursors import Cursors
+from ramtek_emu.memory.frame_buffer import FrameBuffer
+from ramtek_emu.memory.lookup_table import LookupTable
+from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.timing import Beam
 
 Words = NDArray[np.uint16]

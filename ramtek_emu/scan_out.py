@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ramtek_emu.configuration import Configuration, EntryFormat
-from ramtek_emu.cursors import BLINK, SHAPE_CENTER, VISIBLE, Cursor, Cursors
-from ramtek_emu.frame_buffer import FrameBuffer
-from ramtek_emu.lookup_table import LookupTable
-from ramtek_emu.parameters import Parameters
+from ramtek_emu.memory.cursors import BLINK, SHAPE_CENTER, VISIBLE, Cursor, Cursors
+from ramtek_emu.memory.frame_buffer import FrameBuffer
+from ramtek_emu.memory.lookup_table import LookupTable
+from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.shown_lines import lines_with
 from ramtek_emu.timing import Beam
 

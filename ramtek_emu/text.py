@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ramtek_emu.frame_buffer import FrameBuffer, WriteEnable
-from ramtek_emu.scan_orders import Point, ScanOrder, Window
+from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
+from ramtek_emu.memory.scan_orders import Point, ScanOrder, Window
 
 Dots = NDArray[np.bool_]
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ramtek_emu.frame_buffer import FrameBuffer, WriteEnable
-from ramtek_emu.scan_orders import Point, Window
+from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
+from ramtek_emu.memory.scan_orders import Point, Window
 
 Numbers = NDArray[np.int64]
 MOST_POINTS = 1 << 15

@@ -8,7 +8,7 @@ windows and scan orders stay as they are.
 """
 
 from ramtek_emu.configuration import Configuration
-from ramtek_emu.parameters import Parameters
+from ramtek_emu.memory.parameters import Parameters
 
 
 def pixel_at(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ramtek_emu import Configuration
 from ramtek_emu.instruction_set.table import FORMS, SUBSTANTIATED
-from ramtek_emu.scan_orders import Point, Window
+from ramtek_emu.memory.scan_orders import Point, Window
 
 quick = settings(deadline=None, max_examples=60)
 thorough = settings(deadline=None, max_examples=150)

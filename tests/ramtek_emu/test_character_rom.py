@@ -1,6 +1,6 @@
 from itertools import combinations
 
-from ramtek_emu.character_rom import characters
+from ramtek_emu.memory.character_rom import characters
 
 
 def test_every_printable_character_but_space_has_a_shape_of_its_own() -> None:

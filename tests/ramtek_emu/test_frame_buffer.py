@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import WordsError
-from ramtek_emu.frame_buffer import FrameBuffer, WriteEnable
-from ramtek_emu.scan_orders import SCAN_ORDERS, Point, Window
+from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, points, quick, rasters, scan_codes, thorough, windows
 from tests.ramtek_emu.strategies import words as any_words

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import Ramtek9300, instructions
-from ramtek_emu.scan_orders import Point, Window
+from ramtek_emu.memory.scan_orders import Point, Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import (
     SMALL,

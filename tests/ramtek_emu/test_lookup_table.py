@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import GMR_9300, PRINCETON_9300, ColorsError, Configuration, Ramtek9300, instructions
-from ramtek_emu.lookup_table import LookupTable
+from ramtek_emu.memory.lookup_table import LookupTable
 from tests.ramtek_emu.strategies import quick, words
 
 

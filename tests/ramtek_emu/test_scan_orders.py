@@ -1,7 +1,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu.scan_orders import SCAN_ORDERS, Point, Window, blocks
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window, blocks
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import points, quick, scan_codes, windows
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import NCAR_9460, Ramtek9300, instructions
-from ramtek_emu.scan_orders import Window
+from ramtek_emu.memory.scan_orders import Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, quick, sent_words, thorough, windows
 

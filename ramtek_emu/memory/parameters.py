@@ -8,11 +8,11 @@ one), the background 0, the mask all ones, the window the whole memory, the scan
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from ramtek_emu.character_rom import CELL_ELEMENTS, CELL_LINES
 from ramtek_emu.configuration import Configuration
-from ramtek_emu.frame_buffer import WriteEnable
 from ramtek_emu.instruction_set.table import Flags
-from ramtek_emu.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
+from ramtek_emu.memory.character_rom import CELL_ELEMENTS, CELL_LINES
+from ramtek_emu.memory.frame_buffer import WriteEnable
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
 
 ORIGIN = Point(0, 0)
 STANDARD_FONT = 0xFF

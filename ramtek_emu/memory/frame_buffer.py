@@ -13,9 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ramtek_emu.checks import checked_place, checked_words
+from ramtek_emu.checks import checked_words
 from ramtek_emu.configuration import GMR_9300, Configuration
-from ramtek_emu.scan_orders import SCAN_ORDERS, Block, Point, ScanOrder, Window, blocks
+from ramtek_emu.errors import WordsError
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Block, Point, ScanOrder, Window, blocks
 
 Words = NDArray[np.uint16]
 Dots = NDArray[np.bool_]
@@ -50,7 +51,7 @@ class FrameBuffer:
         """Write a (lines, elements) array from Python; WordsError when a word or the place does not fit."""
         block = checked_words(words, self.planes)
         place = NORMAL_ORDER.block_window(Point(left, top), block.shape[1], block.shape[0])
-        checked_place(place, self.window, "the words' window")
+        refuse_outside(place, self.window)
         self._store(place, NORMAL_ORDER, block, EVERYTHING)
 
     def fill(self, window: Window, word: int, enable: WriteEnable = EVERYTHING) -> None:
@@ -192,6 +193,15 @@ class FrameBuffer:
         if not clipped.is_empty:
             memory = self._words[clipped.top : clipped.bottom + 1, clipped.left : clipped.right + 1]
             out[part_of(place, clipped, order)] = order.oriented(memory)
+
+
+def refuse_outside(place: Window, memory: Window) -> None:
+    """Refuse a window that does not lie wholly in the memory."""
+    if place.intersection(memory) != place:
+        raise WordsError(
+            f"the words' window must lie within elements 0 to {memory.right} and lines 0 to {memory.bottom}, "
+            f"not {place.left} to {place.right} and {place.top} to {place.bottom}; move it or cut it"
+        )
 
 
 def part_of(place: Window, clipped: Window, order: ScanOrder) -> tuple[slice, slice]:
