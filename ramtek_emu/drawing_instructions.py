@@ -6,7 +6,7 @@ its name; without it the background word is written there.
 
 import numpy as np
 
-from ramtek_emu import curves, text, vectors
+from ramtek_emu.drawing import curves, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.parameters import STANDARD_FONT, signed

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ramtek_emu.areas import area
+from ramtek_emu.drawing.areas import area
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.scan_orders import Point

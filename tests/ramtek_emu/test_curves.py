@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import Ramtek9300
-from ramtek_emu.curves import MOST_PIXELS, conic_pixels
+from ramtek_emu.drawing.curves import MOST_PIXELS, conic_pixels
 from ramtek_emu.memory.scan_orders import Point, Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, quick, sent_words, thorough, windows
