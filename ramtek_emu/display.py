@@ -18,8 +18,8 @@ from ramtek_emu.memory.cursors import Cursors, Joystick
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.processor import Processor, Status
-from ramtek_emu.scan_out import ScanOut
-from ramtek_emu.timing import Beam
+from ramtek_emu.video.beam import Beam
+from ramtek_emu.video.scan_out import ScanOut
 
 Words = NDArray[np.uint16]
 

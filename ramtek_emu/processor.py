@@ -25,7 +25,7 @@ from ramtek_emu.memory.cursors import Cursors
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.memory.parameters import Parameters
-from ramtek_emu.timing import Beam
+from ramtek_emu.video.beam import Beam
 
 Words = NDArray[np.uint16]
 MOST_WAITING = 1 << 22

@@ -25,7 +25,8 @@ from ramtek_emu.errors import ConfigurationError, MissingInputError, SnapshotErr
 from ramtek_emu.plain_values import listed, packed, plain, refusal, restored, unpacked, whole_number
 from ramtek_emu.png_chunks import MOST_FILE, picture_bytes, picture_of
 from ramtek_emu.processor import Status
-from ramtek_emu.timing import Beam, Timing
+from ramtek_emu.timing import Timing
+from ramtek_emu.video.beam import Beam
 from ramtek_emu.writing import write_atomically
 
 SOFTWARE: Final = "ramtek_emu snapshot 1"

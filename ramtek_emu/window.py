@@ -28,7 +28,7 @@ from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import NoScreenError
 from ramtek_emu.placement import pixel_under
 from ramtek_emu.placement import placement as placement
-from ramtek_emu.scan_out import Stamp
+from ramtek_emu.video.scan_out import Stamp
 
 TICK_MILLISECONDS = 15
 BLINK_SECONDS = 0.5  # Seen for so long, then not. Assumed: as in the time model.

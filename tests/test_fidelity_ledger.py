@@ -21,7 +21,7 @@ BEARING_FORMULAS = [
     "ramtek_emu.memory.lookup_table",
     "ramtek_emu.memory.parameters",
     "ramtek_emu.processor",
-    "ramtek_emu.scan_out",
+    "ramtek_emu.video.scan_out",
 ]  # fmt: skip
 
 

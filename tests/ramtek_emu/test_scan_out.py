@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import Configuration, EntryFormat, Ramtek9300, instructions
-from ramtek_emu.scan_out import Stamp
-from ramtek_emu.shown_lines import lines_with
 from ramtek_emu.timing import Timing
+from ramtek_emu.video.dirty_lines import lines_with
+from ramtek_emu.video.scan_out import Stamp
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, quick, rasters, ten_bit_words, thorough
 
@@ -151,7 +151,7 @@ def test_a_field_that_is_kept_is_always_the_one_that_a_whole_scan_out_makes(
     display.send(instructions.write_image(words & configuration.largest_word))
     scan_out, held = display.scan_out, None
     kept, fresh = (np.zeros((scan_out.lines, scan_out.elements), np.uint32) for _ in range(2))
-    with patch("ramtek_emu.shown_lines.STRIP", strip):
+    with patch("ramtek_emu.video.dirty_lines.STRIP", strip):
         for (name, value), is_scanned_out in steps:
             if name == "draw on it":
                 kept[value % len(kept)], held = 0xABCDEF, None
@@ -173,7 +173,7 @@ def test_the_lines_that_show_a_run_of_entries_are_found(
     raster: NDArray[np.uint16], first: int, count: int
 ) -> None:
     end = min(first + count, 1024)
-    with patch("ramtek_emu.shown_lines.STRIP", 7):
+    with patch("ramtek_emu.video.dirty_lines.STRIP", 7):
         top, bottom = lines_with(raster, first, end)
     showing = [line for line, words in enumerate(raster.tolist()) if any(first <= w < end for w in words)]
     assert (top, bottom) == ((showing[0], showing[-1] + 1) if showing else (0, 0))
@@ -212,7 +212,7 @@ class KeptField:
         return bool((self.pixels == self.fresh).all())
 
 
-@patch("ramtek_emu.shown_lines.STRIP", 1)
+@patch("ramtek_emu.video.dirty_lines.STRIP", 1)
 def test_words_that_were_written_meanwhile_show_the_next_load_of_the_same_entries() -> None:
     display = Ramtek9300(SMALL)
     kept = KeptField(display)
@@ -223,7 +223,7 @@ def test_words_that_were_written_meanwhile_show_the_next_load_of_the_same_entrie
         assert kept.is_right()
 
 
-@patch("ramtek_emu.shown_lines.STRIP", 1)
+@patch("ramtek_emu.video.dirty_lines.STRIP", 1)
 def test_a_view_that_came_back_shows_the_next_load() -> None:
     display = Ramtek9300(SMALL)
     display.send(instructions.write_image(np.arange(117).reshape(9, 13)))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import GMR_9300, ConfigurationError, Ramtek9300, Timing, instructions
-from ramtek_emu.timing import Beam
+from ramtek_emu.video.beam import Beam
 from tests.ramtek_emu.strategies import SMALL, cuts, quick, sent_words, streams
 
 TIMED = replace(GMR_9300, timing=Timing())

@@ -22,8 +22,8 @@ from ramtek_emu.memory.cursors import BLINK, SHAPE_CENTER, VISIBLE, Cursor, Curs
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.memory.parameters import Parameters
-from ramtek_emu.shown_lines import lines_with
-from ramtek_emu.timing import Beam
+from ramtek_emu.video.beam import Beam
+from ramtek_emu.video.dirty_lines import lines_with
 
 Pixels = NDArray[np.uint32]
 WHITE = np.uint32(0xFFFFFF)
