@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from ramtek_emu.checks import checked_stream
 from ramtek_emu.configuration import GMR_9300, Configuration
-from ramtek_emu.executors import EXECUTORS as EXECUTORS
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import FORM_OF_NAME
 from ramtek_emu.memory.cursors import Cursors, Joystick
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
-from ramtek_emu.processor import Processor, Status
+from ramtek_emu.processor.executors import EXECUTORS as EXECUTORS
+from ramtek_emu.processor.processor import Processor, Status
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.scan_out import ScanOut
 

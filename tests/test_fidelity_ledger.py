@@ -20,7 +20,7 @@ BEARING_FORMULAS = [
     "ramtek_emu.host_port",
     "ramtek_emu.memory.lookup_table",
     "ramtek_emu.memory.parameters",
-    "ramtek_emu.processor",
+    "ramtek_emu.processor.processor",
     "ramtek_emu.video.scan_out",
 ]  # fmt: skip
 

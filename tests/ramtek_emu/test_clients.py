@@ -16,7 +16,7 @@ from ramtek_emu import (
     Ramtek9300,
     instructions,
 )
-from ramtek_emu.processor import Status
+from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.clients import (
     VISIBLE,

@@ -3,7 +3,7 @@ import pytest
 
 from ramtek_emu import GMR_9300, NCAR_9460, PRINCETON_9300, Ramtek9300, instructions
 from ramtek_emu.memory.cursors import cross
-from ramtek_emu.processor import Status
+from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu.strategies import sent_words
 
 

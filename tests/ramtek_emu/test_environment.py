@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ramtek_emu import GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
 from ramtek_emu.instruction_set.table import FORMS, OPERANDS
-from ramtek_emu.processor import Status
+from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu.strategies import SMALL, quick, sent_words, thorough
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ramtek_emu import PRINCETON_9300, Configuration, Ramtek9300, ReplyError, instructions
 from ramtek_emu.instruction_set.table import FORMS
-from ramtek_emu.processor import EXECUTORS, Status
+from ramtek_emu.processor.processor import EXECUTORS, Status
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, cuts, quick, scan_codes, streams, thorough, windows
 

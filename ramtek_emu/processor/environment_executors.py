@@ -5,7 +5,7 @@ import numpy as np
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import FORMS, OPERANDS
 from ramtek_emu.memory.parameters import Parameters
-from ramtek_emu.processor import Processor, Status, executes
+from ramtek_emu.processor.processor import Processor, Status, executes
 
 MOST_SAVED = 16
 """Environments that PUSHE puts aside at most. Assumed: one more sets the illegal-instruction status."""

@@ -7,7 +7,7 @@ from ramtek_emu.drawing.areas import area
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.scan_orders import Point
-from ramtek_emu.processor import Processor, executes
+from ramtek_emu.processor.processor import Processor, executes
 
 Words = NDArray[np.uint16]
 

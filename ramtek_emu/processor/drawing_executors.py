@@ -11,7 +11,7 @@ from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.parameters import STANDARD_FONT, signed
 from ramtek_emu.memory.scan_orders import Point
-from ramtek_emu.processor import Processor, executes
+from ramtek_emu.processor.processor import Processor, executes
 
 
 def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:

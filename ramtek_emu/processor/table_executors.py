@@ -3,7 +3,7 @@
 import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction
-from ramtek_emu.processor import Processor, executes
+from ramtek_emu.processor.processor import Processor, executes
 
 
 @executes("LAM")

@@ -11,7 +11,7 @@ import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.memory.cursors import LINE_BITS
-from ramtek_emu.processor import Processor, executes
+from ramtek_emu.processor.processor import Processor, executes
 from ramtek_emu.video.view import pixel_at, screen_at
 
 SHAPE_BYTES_PER_ROW = 4

@@ -1,0 +1,16 @@
+"""The registry of executors: importing it enters the function of every instruction in the processor's table.
+
+A new instruction is a row of the instruction table and one function in one of these modules.
+"""
+
+from ramtek_emu.processor import (
+    cursor_executors,
+    drawing_executors,
+    environment_executors,
+    image_executors,
+    table_executors,
+)
+from ramtek_emu.processor.processor import EXECUTORS as EXECUTORS
+
+SUBJECTS = (image_executors, drawing_executors, table_executors, cursor_executors, environment_executors)
+"""The modules whose functions stand in EXECUTORS."""
