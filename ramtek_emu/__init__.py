@@ -52,9 +52,9 @@ if TYPE_CHECKING:
     from ramtek_emu.errors import SnapshotError as SnapshotError
     from ramtek_emu.errors import WordsError as WordsError
     from ramtek_emu.errors import WriteError as WriteError
-    from ramtek_emu.host_port import HostPort as HostPort
-    from ramtek_emu.host_port import Recorder as Recorder
-    from ramtek_emu.host_port import TcpPort as TcpPort
+    from ramtek_emu.host.host_port import HostPort as HostPort
+    from ramtek_emu.host.host_port import Recorder as Recorder
+    from ramtek_emu.host.host_port import TcpPort as TcpPort
     from ramtek_emu.memory.cursors import Joystick as Joystick
     from ramtek_emu.snapshot import read_snapshot as read_snapshot
     from ramtek_emu.snapshot import write_snapshot as write_snapshot
@@ -66,7 +66,7 @@ _HOME = {
     "ConfigurationError": "errors",
     "EntryFormat": "configuration",
     "GMR_9300": "configuration",
-    "HostPort": "host_port",
+    "HostPort": "host.host_port",
     "InstructionError": "errors",
     "JPL_9460": "configuration",
     "Joystick": "memory.cursors",
@@ -80,10 +80,10 @@ _HOME = {
     "PortError": "errors",
     "Ramtek9300": "display",
     "RamtekError": "errors",
-    "Recorder": "host_port",
+    "Recorder": "host.host_port",
     "ReplyError": "errors",
     "SnapshotError": "errors",
-    "TcpPort": "host_port",
+    "TcpPort": "host.host_port",
     "Timing": "timing",
     "WordsError": "errors",
     "WriteError": "errors",

@@ -17,7 +17,7 @@ BEARING_FORMULAS = [
     "ramtek_emu.drawing.curves",
     "ramtek_emu.timing",
     "ramtek_emu.memory.frame_buffer",
-    "ramtek_emu.host_port",
+    "ramtek_emu.host.host_port",
     "ramtek_emu.memory.lookup_table",
     "ramtek_emu.memory.parameters",
     "ramtek_emu.processor.processor",

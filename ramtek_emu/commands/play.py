@@ -44,8 +44,8 @@ def play(
     file = open_stream(stream)
     display = display_asked_for(configuration, start)
 
-    from ramtek_emu.host_session import HostSession
-    from ramtek_emu.pipe import PolledPipe, serve_pipe
+    from ramtek_emu.host.host_session import HostSession
+    from ramtek_emu.host.pipe import PolledPipe, serve_pipe
 
     read = reader_of(file)
     with recording(record, force) as kept:

@@ -21,9 +21,9 @@ from ramtek_emu.commands.displays import (
 )
 
 if TYPE_CHECKING:
-    from ramtek_emu.host_session import HostSession
-    from ramtek_emu.pipe import Read, Write
-    from ramtek_emu.server import Server
+    from ramtek_emu.host.host_session import HostSession
+    from ramtek_emu.host.pipe import Read, Write
+    from ramtek_emu.host.server import Server
 
 EXAMPLES = """\b
 Examples:
@@ -76,8 +76,8 @@ def serve(
     refuse_outputs(force, output, snapshot, record)
     display = display_asked_for(configuration, start)
 
-    from ramtek_emu.host_session import HostSession
-    from ramtek_emu.server import Server
+    from ramtek_emu.host.host_session import HostSession
+    from ramtek_emu.host.server import Server
 
     with recording(record, force) as kept:
         if stdio:
@@ -90,7 +90,7 @@ def serve(
 
 def serve_stdio(session: "HostSession", window: bool) -> None:
     """Serve the program on the other ends of stdin and stdout until it sends no more."""
-    from ramtek_emu.pipe import PolledPipe, serve_pipe
+    from ramtek_emu.host.pipe import PolledPipe, serve_pipe
 
     read, write = standard_streams()
     if window:

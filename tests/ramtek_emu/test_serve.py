@@ -16,8 +16,8 @@ import pytest
 from PIL import Image
 
 from ramtek_emu import GMR_9300, PRINCETON_9300, Ramtek9300, TcpPort, instructions, read_snapshot
-from ramtek_emu.host_session import HostSession
-from ramtek_emu.pipe import serve_pipe
+from ramtek_emu.host.host_session import HostSession
+from ramtek_emu.host.pipe import serve_pipe
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, RECORDED, words
 
 ROOT = Path(__file__).parents[2]

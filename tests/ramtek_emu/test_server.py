@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from ramtek_emu import HostPort, PortError, Ramtek9300, ReplyError, TcpPort, instructions
-from ramtek_emu.host_port import host_and_port
-from ramtek_emu.host_session import HostSession
-from ramtek_emu.server import REPLY_BYTES, Server
+from ramtek_emu.host.host_port import host_and_port
+from ramtek_emu.host.host_session import HostSession
+from ramtek_emu.host.server import REPLY_BYTES, Server
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
 
 READ_EVERYTHING = np.concatenate([stream for stream, _ in instructions.read_image(0, 0, 640, 480)])

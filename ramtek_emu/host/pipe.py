@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from ramtek_emu.host_session import HostSession
+from ramtek_emu.host.host_session import HostSession
 
 READ_BYTES: Final = 1 << 16
 Read = Callable[[int], bytes]

@@ -22,7 +22,7 @@ from typing import Final
 
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import PortError
-from ramtek_emu.host_session import HostSession, Record
+from ramtek_emu.host.host_session import HostSession, Record
 
 LOOPBACK: Final = "127.0.0.1"
 IDLE_SECONDS: Final = 600.0
