@@ -38,7 +38,7 @@ ROOMS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
 DOORS_OF_THE_DISPLAY = {
     "ramtek_emu", "ramtek_emu.command_group", "ramtek_emu.command_line", "ramtek_emu.configuration",
     "ramtek_emu.errors", "ramtek_emu.host.host_port", "ramtek_emu.instructions", "ramtek_emu.png",
-    "ramtek_emu.window", "ramtek_emu.writing",
+    "ramtek_emu.monitor.window", "ramtek_emu.writing",
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "pydantic", "PIL", "pygame"}
 
@@ -110,7 +110,7 @@ def test_the_renderer_knows_the_display_only_where_they_meet_and_only_by_its_doo
 
 def test_pygame_is_in_one_file() -> None:
     having = {name for name in MODULES for each in imports_of(name) if outer(each.target) == "pygame"}
-    assert having == {"ramtek_emu.window"}
+    assert having == {"ramtek_emu.monitor.window"}
 
 
 def test_pillow_is_in_one_file() -> None:
@@ -157,9 +157,9 @@ for name in {names!r}:
     child = os.fork()
     if child == 0:
         importlib.import_module(name)
-        if ("pygame" in sys.modules) != (name == "ramtek_emu.window"):
+        if ("pygame" in sys.modules) != (name == "ramtek_emu.monitor.window"):
             print(name, "and pygame", flush=True)
-        if "PIL" in sys.modules and name not in ("ramtek_emu.png", "ramtek_emu.window"):
+        if "PIL" in sys.modules and name not in ("ramtek_emu.png", "ramtek_emu.monitor.window"):
             print(name, "and Pillow", flush=True)
         os._exit(0)
     if os.waitpid(child, 0)[1]:

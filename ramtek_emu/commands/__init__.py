@@ -67,7 +67,7 @@ def ramtek(
         return
     from ramtek_emu.commands.displays import configuration_named
     from ramtek_emu.display import Ramtek9300
-    from ramtek_emu.pattern import pattern
+    from ramtek_emu.monitor.pattern import pattern
 
     chosen = configuration_named(configuration)
     display = Ramtek9300(chosen)
@@ -75,6 +75,6 @@ def ramtek(
     if output is not None:
         display.save_png(output, overwrite=force)
         return
-    from ramtek_emu.window import Monitor
+    from ramtek_emu.monitor.window import Monitor
 
     Monitor(display, "RAMTEK 9300 test pattern", full_screen=full_screen, fit=fit).run()

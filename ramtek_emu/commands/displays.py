@@ -148,7 +148,7 @@ def tell(message: str) -> None:
 
 def show(display: "Ramtek9300", serve_for: Callable[[float], None]) -> None:
     """Show the display in a window until it is closed; `serve_for` is called between its fields."""
-    from ramtek_emu.window import Monitor
+    from ramtek_emu.monitor.window import Monitor
 
     name = display.configuration.name.replace("_", " ")
     # Ctrl+C closes the window; what is to be written at the end is written.

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, Ramtek9300
-from ramtek_emu.pattern import pattern, ramp_words
+from ramtek_emu.monitor.pattern import pattern, ramp_words
 from ramtek_emu.processor.processor import Status
 
 EIGHT = Configuration(name="EIGHT_PLANES", elements=1280, lines=1024, planes=8)

@@ -14,7 +14,7 @@ from ramtek_emu import Ramtek9300, TcpPort, instructions
 from ramtek_emu.host.host_session import HostSession
 from ramtek_emu.host.pipe import PolledPipe
 from ramtek_emu.host.server import Server
-from ramtek_emu.window import Monitor
+from ramtek_emu.monitor.window import Monitor
 from tests.ramtek_emu.recorded_streams import BARS, OUTLINE
 from tests.ramtek_emu.test_window import screen as screen
 from tests.ramtek_emu.test_window import shown

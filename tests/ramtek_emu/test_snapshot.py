@@ -24,7 +24,7 @@ from ramtek_emu import (
     write_snapshot,
 )
 from ramtek_emu.configuration import CONFIGURATIONS
-from ramtek_emu.pattern import pattern
+from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.png_chunks import MOST_TEXT, picture_bytes, picture_of
 from ramtek_emu.snapshot import display_of, snapshot_bytes
 from ramtek_emu.timing import Timing

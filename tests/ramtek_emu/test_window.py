@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import NoScreenError, Ramtek9300, instructions
-from ramtek_emu.pattern import pattern
-from ramtek_emu.window import Key, Monitor, Pointer, placement
+from ramtek_emu.monitor.pattern import pattern
+from ramtek_emu.monitor.window import Key, Monitor, Pointer, placement
 from tests.ramtek_emu.strategies import quick
 
 pygame = pytest.importorskip("pygame")

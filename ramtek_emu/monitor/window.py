@@ -21,13 +21,13 @@ os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
 os.environ["SDL_WINDOWS_DPI_AWARENESS"] = os.environ.get("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
 import pygame
 
-from ramtek_emu.console import Console
-from ramtek_emu.console import Key as Key
-from ramtek_emu.console import Pointer as Pointer
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import NoScreenError
-from ramtek_emu.placement import pixel_under
-from ramtek_emu.placement import placement as placement
+from ramtek_emu.monitor.console import Console
+from ramtek_emu.monitor.console import Key as Key
+from ramtek_emu.monitor.console import Pointer as Pointer
+from ramtek_emu.monitor.placement import pixel_under
+from ramtek_emu.monitor.placement import placement as placement
 from ramtek_emu.video.scan_out import Stamp
 
 TICK_MILLISECONDS = 15
