@@ -56,8 +56,8 @@ if TYPE_CHECKING:
     from ramtek_emu.host.host_port import Recorder as Recorder
     from ramtek_emu.host.host_port import TcpPort as TcpPort
     from ramtek_emu.memory.cursors import Joystick as Joystick
-    from ramtek_emu.snapshot import read_snapshot as read_snapshot
-    from ramtek_emu.snapshot import write_snapshot as write_snapshot
+    from ramtek_emu.snapshot.snapshot import read_snapshot as read_snapshot
+    from ramtek_emu.snapshot.snapshot import write_snapshot as write_snapshot
     from ramtek_emu.timing import Timing as Timing
 
 _HOME = {
@@ -87,8 +87,8 @@ _HOME = {
     "Timing": "timing",
     "WordsError": "errors",
     "WriteError": "errors",
-    "read_snapshot": "snapshot",
-    "write_snapshot": "snapshot",
+    "read_snapshot": "snapshot.snapshot",
+    "write_snapshot": "snapshot.snapshot",
 }
 
 __all__ = list(_HOME)

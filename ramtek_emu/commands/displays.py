@@ -63,7 +63,7 @@ def display_asked_for(configuration: str | None, start: str | None) -> "Ramtek93
     if start is not None:
         if configuration is not None:
             raise click.UsageError("a display must be given by --configuration or --start; leave one out")
-        from ramtek_emu.snapshot import read_snapshot
+        from ramtek_emu.snapshot.snapshot import read_snapshot
 
         return read_snapshot(start)
     from ramtek_emu.display import Ramtek9300
@@ -100,7 +100,7 @@ def write_outputs(display: "Ramtek9300", output: str | None, snapshot: str | Non
         write_atomically(output, png_bytes(display.field()), overwrite=force)
         tell(f"wrote {output}")
     if snapshot is not None:
-        from ramtek_emu.snapshot import write_snapshot
+        from ramtek_emu.snapshot.snapshot import write_snapshot
 
         write_snapshot(display, snapshot, overwrite=force)
         tell(f"wrote {snapshot}")

@@ -25,8 +25,8 @@ from ramtek_emu import (
 )
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.monitor.pattern import pattern
-from ramtek_emu.png_chunks import MOST_TEXT, picture_bytes, picture_of
-from ramtek_emu.snapshot import display_of, snapshot_bytes
+from ramtek_emu.snapshot.png_chunks import MOST_TEXT, picture_bytes, picture_of
+from ramtek_emu.snapshot.snapshot import display_of, snapshot_bytes
 from ramtek_emu.timing import Timing
 from tests.ramtek_emu.recorded_streams import BYTE_IMAGE, DECODED, OUTLINE, words
 from tests.ramtek_emu.strategies import SMALL, streams, thorough

@@ -21,10 +21,10 @@ import numpy as np
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import ConfigurationError, MissingInputError, SnapshotError
-from ramtek_emu.plain_values import listed, packed, plain, refusal, restored, unpacked, whole_number
-from ramtek_emu.png_chunks import MOST_FILE, picture_bytes, picture_of
 from ramtek_emu.processor.environment_executors import MOST_SAVED
 from ramtek_emu.processor.processor import Status
+from ramtek_emu.snapshot.plain_values import listed, packed, plain, refusal, restored, unpacked, whole_number
+from ramtek_emu.snapshot.png_chunks import MOST_FILE, picture_bytes, picture_of
 from ramtek_emu.timing import Timing
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.writing import write_atomically
