@@ -5,8 +5,7 @@ from typing import ClassVar
 
 import click
 
-from ramtek_emu.command_group import CommandGroup
-from ramtek_emu.command_line import version_option
+from ramtek_emu.command_line import CommandGroup, version_option
 
 EXAMPLES = """\b
 Examples:
