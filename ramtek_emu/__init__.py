@@ -27,6 +27,8 @@ LONGLIB manual), ASF (the Alaska SAR facility) and GM (Warn, "Lighting Controls 
 SIGGRAPH 1983).
 """
 
+from __future__ import annotations
+
 from importlib import import_module
 from typing import TYPE_CHECKING
 

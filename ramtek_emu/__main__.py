@@ -1,5 +1,7 @@
 """The `ramtek` command."""
 
+from __future__ import annotations
+
 from ramtek_emu.command_line import run_command
 from ramtek_emu.commands import ramtek
 

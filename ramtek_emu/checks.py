@@ -3,17 +3,17 @@
 Hardware drops what does not fit; a program that hands over numbers is better told which one is wrong.
 """
 
-import numpy as np
-from numpy.typing import NDArray
+from __future__ import annotations
 
+import numpy as np
+
+from ramtek_emu.arrays import Colors, WholeNumbers, Words
 from ramtek_emu.errors import ColorsError, WordsError
 
 BYTE = np.dtype(np.uint8)
 
 
-def whole_numbers(
-    values: object, thing: str, error: type[WordsError] | type[ColorsError]
-) -> NDArray[np.integer]:
+def whole_numbers(values: object, thing: str, error: type[WordsError] | type[ColorsError]) -> WholeNumbers:
     """The values as an array of whole numbers; `error` when they are anything else."""
     try:
         array = np.asarray(values)
@@ -28,7 +28,7 @@ def whole_numbers(
     return array
 
 
-def checked_words(words: object, planes: int = 10) -> NDArray[np.uint16]:
+def checked_words(words: object, planes: int = 10) -> Words:
     """(lines, elements) words as uint16, none of them beyond the planes.
 
     >>> checked_words([[1024]])
@@ -51,7 +51,7 @@ def checked_words(words: object, planes: int = 10) -> NDArray[np.uint16]:
     return array.astype(np.uint16, copy=False)
 
 
-def checked_stream(words: object) -> NDArray[np.uint16]:
+def checked_stream(words: object) -> Words:
     """A flat row of 16-bit words as a host sends them; uint16 arrays are taken as they are."""
     if isinstance(words, np.ndarray) and words.dtype == np.uint16 and words.ndim == 1:
         return words
@@ -66,7 +66,7 @@ def checked_stream(words: object) -> NDArray[np.uint16]:
     return array.astype(np.uint16)
 
 
-def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[np.uint8]:
+def checked_colors(first: int, colors: object, entries: int = 1024) -> Colors:
     """(n, 3) colors as uint8, for the entries from `first` on."""
     array = whole_numbers(colors, "colors", ColorsError)
     if array.ndim != 2 or array.shape[1] != 3:

@@ -4,6 +4,8 @@ A command answers on stdout and says everything else on stderr; it ends with an 
 traceback. Both commands of this distribution run through here, so that they end alike.
 """
 
+from __future__ import annotations
+
 import difflib
 import os
 import sys

@@ -4,6 +4,8 @@
 (640, 480, 1023)
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import Enum
 

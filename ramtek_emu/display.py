@@ -3,11 +3,13 @@
 host port -> decoder -> processor -> frame buffer, lookup table, cursors -> scan-out -> field
 """
 
+from __future__ import annotations
+
 from os import PathLike
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Colors, Words
 from ramtek_emu.checks import checked_stream
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.decoder import Decoder
@@ -20,8 +22,6 @@ from ramtek_emu.processor.executors import EXECUTORS as EXECUTORS
 from ramtek_emu.processor.processor import Processor, Status
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.scan_out import ScanOut
-
-Words = NDArray[np.uint16]
 
 
 class Ramtek9300:
@@ -82,7 +82,7 @@ class Ramtek9300:
         """The next `count` words that a reading instruction left, uint16; ReplyError when there are fewer."""
         return self.processor.take_reply(count)
 
-    def field(self) -> NDArray[np.uint8]:
+    def field(self) -> Colors:
         """What the monitor shows, (lines, elements, 3) uint8."""
         return self.scan_out.field()
 
@@ -92,7 +92,7 @@ class Ramtek9300:
         return self.frame_buffer.words
 
     @property
-    def entries(self) -> NDArray[np.uint8]:
+    def entries(self) -> Colors:
         """The entries of the lookup table, (1024, 3) uint8, read-only; a copy of this moment."""
         return self.lookup_table.entries
 

@@ -3,6 +3,8 @@
 They are raised to Python callers only. Words that arrive on the wire never raise anything.
 """
 
+from __future__ import annotations
+
 
 class RamtekError(Exception):
     """Every refusal of this package; `exit_code` is what a command leaves with."""

@@ -4,20 +4,22 @@
 '0802 0002 0001'
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from struct import Struct
 
 import numpy as np
 
+from ramtek_emu.arrays import Words
 from ramtek_emu.checks import checked_colors, checked_words, whole_numbers
 from ramtek_emu.errors import InstructionError, WordsError
 from ramtek_emu.instruction_set.instruction import (
     MOST_BYTES,
     NO_WORDS,
     Instruction,
-    Numbers,
-    Words,
+    OperandValue,
     encode,
     normal,
 )
@@ -44,7 +46,7 @@ def no_operation() -> Words:
     return encode(Instruction(FORM_OF_NAME["NOP"]))
 
 
-def set_parameters(**operands: Numbers | None) -> Words:
+def set_parameters(**operands: OperandValue | None) -> Words:
     """SET: operands by name (`foreground=3`, `window=(0, 0, 639, 479)`), kept until set again."""
     return encode(normal("SET", operands))
 
@@ -154,7 +156,7 @@ def write_text(
     if not (1 <= across <= 16 and 1 <= down <= 16):
         raise InstructionError(f"the size of text must be 1 to 16, not {size!r}; write it smaller")
     window = (left, top, left + 7 * across * max(1, len(data)) - 1, top + 9 * down - 1)
-    operands: dict[str, Numbers | None] = {
+    operands: dict[str, OperandValue | None] = {
         "foreground": word,
         "background": background,
         "window": window,
@@ -187,7 +189,7 @@ def write_vectors(vertices: object, word: int | None = None, start: Sequence[int
     if start is None:
         start = words[0].tolist()
         words = words[1:] if len(words) > 1 else words
-    operands: dict[str, Numbers | None] = {"foreground": word, "start": start}
+    operands: dict[str, OperandValue | None] = {"foreground": word, "start": start}
     parts = []
     for first in range(0, len(words), MOST_BYTES // 4):
         parts.append(encode(normal("WVL", operands, words[first : first + MOST_BYTES // 4].reshape(-1))))
@@ -209,7 +211,7 @@ def write_circles(circles: Sequence[Sequence[int]], word: int | None = None) -> 
 
 def fill(element: int, line: int, word: int | None = None) -> Words:
     """FILL: the area around a place, up to pixels of the foreground, with the foreground."""
-    operands: dict[str, Numbers | None] = {"foreground": word, "start": (element, line)}
+    operands: dict[str, OperandValue | None] = {"foreground": word, "start": (element, line)}
     return encode(normal("FILL", operands, np.zeros(1, np.uint16)))
 
 

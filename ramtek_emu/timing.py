@@ -4,6 +4,8 @@ Assumed: every rate here. The sources give none for any model, only that program
 retrace before they loaded the table (NCAR).
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields
 
 from ramtek_emu.errors import ConfigurationError

@@ -4,6 +4,8 @@ The bytes go into a file beside, which is synced and then renamed. Both packages
 their files through here.
 """
 
+from __future__ import annotations
+
 import errno
 import os
 import secrets
@@ -64,7 +66,7 @@ class Output:
         except OSError as error:
             raise _refusal(self.path, error) from None
 
-    def __enter__(self) -> "Output":
+    def __enter__(self) -> Output:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -1,5 +1,7 @@
 """The command line of the display: one file a command, each loaded only when it is named."""
 
+from __future__ import annotations
+
 from pathlib import Path
 from typing import ClassVar
 

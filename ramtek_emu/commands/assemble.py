@@ -1,5 +1,7 @@
 """`ramtek assemble`: a listing back into its stream."""
 
+from __future__ import annotations
+
 import io
 import sys
 from collections.abc import Iterator

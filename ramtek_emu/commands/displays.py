@@ -1,5 +1,7 @@
 """What the commands share: the display, the streams that are read, and what is written at the end."""
 
+from __future__ import annotations
+
 import difflib
 import os
 import sys
@@ -41,7 +43,7 @@ def display_options(function: Function) -> Function:
     return function
 
 
-def configuration_named(name: str | None) -> "Configuration":
+def configuration_named(name: str | None) -> Configuration:
     """The configuration of that name, capitals or not; ConfigurationError names those there are."""
     from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 
@@ -58,7 +60,7 @@ def configuration_named(name: str | None) -> "Configuration":
     return CONFIGURATIONS[asked]
 
 
-def display_asked_for(configuration: str | None, start: str | None) -> "Ramtek9300":
+def display_asked_for(configuration: str | None, start: str | None) -> Ramtek9300:
     """A display of that configuration just switched on, or the one of a snapshot."""
     if start is not None:
         if configuration is not None:
@@ -92,7 +94,7 @@ def recording(path: str | None, force: bool) -> Iterator[Callable[[bytes], objec
     tell(f"wrote {path}")
 
 
-def write_outputs(display: "Ramtek9300", output: str | None, snapshot: str | None, force: bool) -> None:
+def write_outputs(display: Ramtek9300, output: str | None, snapshot: str | None, force: bool) -> None:
     """Write the picture and the snapshot, whichever is asked for, and say so on stderr."""
     if output is not None:
         from ramtek_emu.png import png_bytes
@@ -146,7 +148,7 @@ def tell(message: str) -> None:
     click.echo(message, err=True)
 
 
-def show(display: "Ramtek9300", serve_for: Callable[[float], None]) -> None:
+def show(display: Ramtek9300, serve_for: Callable[[float], None]) -> None:
     """Show the display in a window until it is closed; `serve_for` is called between its fields."""
     from ramtek_emu.monitor.window import Monitor
 
@@ -156,7 +158,7 @@ def show(display: "Ramtek9300", serve_for: Callable[[float], None]) -> None:
         Monitor(display, f"RAMTEK {name}", on_tick=lambda: serve_for(TICK_SECONDS)).run()
 
 
-def tell_the_end(display: "Ramtek9300", held_words: int, odd_byte: bytes) -> None:
+def tell_the_end(display: Ramtek9300, held_words: int, odd_byte: bytes) -> None:
     """Say what of a stream was not done: what is no instruction or has no effect, and what is not whole."""
     illegal = display.processor.illegal_words
     if illegal:

@@ -1,5 +1,7 @@
 """`ramtek list`: a stream as instructions with named operands."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterator
 

@@ -1,5 +1,7 @@
 """`ramtek play`: a stream of instructions from a file, in a window or into a picture."""
 
+from __future__ import annotations
+
 import click
 
 from ramtek_emu.commands.displays import (

@@ -1,5 +1,7 @@
 """`ramtek serve`: a display for programs, over TCP or on a pipe."""
 
+from __future__ import annotations
+
 import os
 import signal
 import sys
@@ -88,7 +90,7 @@ def serve(
     write_outputs(display, output, snapshot, force)
 
 
-def serve_stdio(session: "HostSession", window: bool) -> None:
+def serve_stdio(session: HostSession, window: bool) -> None:
     """Serve the program on the other ends of stdin and stdout until it sends no more."""
     from ramtek_emu.host.pipe import PolledPipe, serve_pipe
 
@@ -101,7 +103,7 @@ def serve_stdio(session: "HostSession", window: bool) -> None:
     tell_the_end(session.display, session.held_words, session.odd_byte)
 
 
-def standard_streams() -> "tuple[Read, Write | None]":
+def standard_streams() -> tuple[Read, Write | None]:
     """What reads stdin and what writes all of its bytes to stdout; nothing else gets there from here on."""
     if sys.stdin is None:
         return lambda _: b"", None
@@ -125,7 +127,7 @@ def standard_streams() -> "tuple[Read, Write | None]":
     return read, write
 
 
-def serve_port(server: "Server", window: bool, once: bool) -> None:
+def serve_port(server: Server, window: bool, once: bool) -> None:
     """Serve hosts over TCP until Ctrl+C, until the window is closed, or until the first one has left."""
     if window:
         announce(server)
@@ -137,7 +139,7 @@ def serve_port(server: "Server", window: bool, once: bool) -> None:
             server.step(STEP_SECONDS)
 
 
-def announce(server: "Server") -> None:
+def announce(server: Server) -> None:
     """Print the address that hosts are to be given, with a warning if it is more than this machine's own."""
     if server.host not in ("127.0.0.1", "localhost", "::1"):
         tell(
@@ -161,7 +163,7 @@ class Told:
         if self._waiting:
             raise InterruptedError
 
-    def reading(self, read: "Read") -> "Read":
+    def reading(self, read: Read) -> Read:
         """The same as `read`, which gives nothing more once the signal came, or when reading fails."""
 
         def read_until_told(most: int) -> bytes:

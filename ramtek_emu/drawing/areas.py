@@ -4,10 +4,11 @@ Rows of pixels that may be filled are runs; runs of neighboring lines that touch
 run that links lead to. So the work is bounded by the size of the memory, whatever it holds.
 """
 
-import numpy as np
-from numpy.typing import NDArray
+from __future__ import annotations
 
-Dots = NDArray[np.bool_]
+import numpy as np
+
+from ramtek_emu.arrays import Dots, Indices
 
 
 def area(open_pixels: Dots, line: int, element: int) -> Dots:
@@ -35,9 +36,7 @@ def area(open_pixels: Dots, line: int, element: int) -> Dots:
     return filled[:, 1:-1].astype(np.bool_)
 
 
-def links(
-    starts: NDArray[np.intp], ends: NDArray[np.intp], width: int
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def links(starts: Indices, ends: Indices, width: int) -> tuple[Indices, Indices]:
     """The pairs of runs that touch: each run, and each of those one line below that overlap it."""
     first = np.searchsorted(ends, starts + width, side="right")
     last = np.searchsorted(starts, ends + width, side="left")
@@ -47,7 +46,7 @@ def links(
     return upper, lower
 
 
-def joined(one: NDArray[np.intp], other: NDArray[np.intp], count: int) -> NDArray[np.intp]:
+def joined(one: Indices, other: Indices, count: int) -> Indices:
     """A label for each of `count` things, the same where pairs of `one` and `other` link them."""
     labels = np.arange(count)
     while True:

@@ -4,13 +4,14 @@ What is modeled: outlines, one pixel wide. What is **not**: arcs (known by name 
 square (Assumed: a radius in elements is one in lines).
 """
 
-import numpy as np
-from numpy.typing import NDArray
+from __future__ import annotations
 
+import numpy as np
+
+from ramtek_emu.arrays import Numbers
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point
 
-Numbers = NDArray[np.int64]
 MOST_PIXELS = 1 << 14
 """Pixels of a conic at most.
 

@@ -4,16 +4,15 @@ What is modeled: whole cells, dots and what lies between them; the turns of the 
 next line at the window's edge. What is **not**: the size factors of more than 16.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Dots
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, ScanOrder, Window
-
-Dots = NDArray[np.bool_]
-
 
 LARGEST_CELL = 16
 """Elements and lines of a cell at most.

@@ -7,16 +7,17 @@ Assumed: of two pixels equally near to the line, the one farther from where it s
 free there); no source says.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Dots, Indices, Numbers
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, Window
 
-Numbers = NDArray[np.int64]
 MOST_POINTS = 1 << 15
 """Points that are worked out in one go, or those of one line: a bound on memory."""
 FEW = 4
@@ -37,7 +38,7 @@ class Ink(NamedTuple):
         """Whether the texture has no zeros."""
         return self.texture[0] == 0xFFFF
 
-    def is_one(self, numbers: Numbers) -> NDArray[np.bool_]:
+    def is_one(self, numbers: Numbers) -> Dots:
         """The bit of the texture for pixels of these numbers along the line.
 
         Hardware: NCAR (sixteen bits, no pixel repeated); LONG (the low field is a bit's width less one).
@@ -122,7 +123,7 @@ def write_line(
 
 def points(
     starts: Numbers, ends: Numbers, inside: Window
-) -> Iterator[tuple[Numbers, Numbers, Numbers, NDArray[np.intp]]]:
+) -> Iterator[tuple[Numbers, Numbers, Numbers, Indices]]:
     """The points of lines in their order: elements, lines, the number along the line, the line's row.
 
     Of each line only the part comes that lies inside along its longer side.

@@ -4,18 +4,18 @@ Streams lie in files in the memory order of the PDP-11 and the VAX: low byte fir
 programs hand the words of their memory to the interface as they are).
 """
 
+from __future__ import annotations
+
 import re
 import selectors
 import socket
 from typing import BinaryIO, Final, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Words
 from ramtek_emu.checks import checked_stream
 from ramtek_emu.errors import PortError, ReplyError
-
-Words = NDArray[np.uint16]
 
 ADDRESS: Final = re.compile(r"tcp://(?P<host>\[[0-9A-Fa-f:.%\w]+\]|[^\s:/\[\]@]+):(?P<port>[0-9]{1,5})")
 SENT_AT_ONCE: Final = 1 << 18
@@ -114,7 +114,7 @@ class TcpPort:
         """Leave the display; another host may come."""
         self._socket.close()
 
-    def __enter__(self) -> "TcpPort":
+    def __enter__(self) -> TcpPort:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -9,13 +9,15 @@ MOST_WAITING words ever wait: what a host sends next is not read before its repl
 one that took long is short too, so that whoever serves in between other work, a window, gets back to it.
 """
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Iterator
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Booleans, Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.instruction_set.table import FORMS
@@ -34,7 +36,7 @@ REPLY_PIECE: Final = 1 << 15
 """Words of a reply handed on at once."""
 
 
-def asking() -> NDArray[np.bool_]:
+def asking() -> Booleans:
     """For each of the 256 opcodes, whether it makes the display reply."""
     opcodes = np.zeros(256, np.bool_)
     opcodes[[form.opcode for form in FORMS if form.replies]] = True
@@ -93,7 +95,7 @@ class HostSession:
             while waiting := self.display.processor.waiting:
                 yield self.display.receive(min(waiting, REPLY_PIECE)).astype("<u2", copy=False).tobytes()
 
-    def _keep(self, piece: NDArray[np.uint16]) -> None:
+    def _keep(self, piece: Words) -> None:
         """Record the words of the instructions that are whole now."""
         if self._record is not None:
             words = np.concatenate((self._unrecorded, piece))

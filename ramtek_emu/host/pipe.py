@@ -8,6 +8,8 @@ leaves wants its picture). What ends the input ends the session: an unfinished i
 byte are dropped.
 """
 
+from __future__ import annotations
+
 import queue
 import threading
 import time

@@ -13,6 +13,8 @@ instruction unfinished for `partial_seconds`; an unfinished instruction is never
 while REPLY_BYTES wait to be taken by the host, nothing more is read from it.
 """
 
+from __future__ import annotations
+
 import selectors
 import socket
 import time
@@ -113,7 +115,7 @@ class Server:
         self._selector.close()
         self._listener.close()
 
-    def __enter__(self) -> "Server":
+    def __enter__(self) -> Server:
         return self
 
     def __exit__(

@@ -12,13 +12,15 @@ at the end of a stream. A length that is not given is that of the data. The word
 for readers: the text at the right is what counts.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Words
 from ramtek_emu.errors import InstructionError
 from ramtek_emu.instruction_set.instruction import MOST_BYTES, NO_WORDS, Instruction, encode
 from ramtek_emu.instruction_set.listing_tokens import (
@@ -39,8 +41,6 @@ from ramtek_emu.instruction_set.table import (
     Flags,
     Form,
 )
-
-Words = NDArray[np.uint16]
 
 FLAG_OF_NAME: Final = {name: flag for flag, name in (FLAG_NAMES | ADDRESSING_NAMES).items()} | {
     "OF1": Flags.OPERANDS_1,

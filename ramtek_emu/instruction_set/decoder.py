@@ -13,17 +13,18 @@ are taken where twelve make no sense: in a WC with data, when the word that is t
 would be the upper half of a coefficient after twelve, and is 4, the length of one point.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Booleans, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
 from ramtek_emu.instruction_set.table import FORMS, ILLEGAL, OPERANDS, Flags, Form, operands_named
 
-Words = NDArray[np.uint16]
 MOST_HEAD = 64
 """More words than any instruction has before its data."""
 CONIC = 1 << list(OPERANDS).index("conic")
@@ -182,7 +183,7 @@ def forms_of_opcodes(extended: bool) -> tuple[Form, ...]:
 
 
 @lru_cache
-def words_that_begin(extended: bool) -> NDArray[np.bool_]:
+def words_that_begin(extended: bool) -> Booleans:
     """Whether each of the 65,536 words begins an instruction: rows of illegal ones are found at once."""
     forms = forms_of_opcodes(extended)
     begins = np.repeat([form is not ILLEGAL for form in forms], 256)

@@ -10,14 +10,16 @@ at all. What has no better name is `raw`: a word that begins no instruction, an 
 of the stream, flag bits that no source names. Data are complete; `0010*640` is a word 640 times.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import Instruction, encode
@@ -30,8 +32,6 @@ from ramtek_emu.instruction_set.table import (
     OPERANDS_2,
     Flags,
 )
-
-Words = NDArray[np.uint16]
 
 COLUMN: Final = 6
 """Words at the left of a line."""

@@ -4,12 +4,14 @@
 'SET  foreground 1'
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Words
 from ramtek_emu.errors import InstructionError
 from ramtek_emu.instruction_set.table import (
     ADDRESSING_NAMES,
@@ -23,8 +25,7 @@ from ramtek_emu.instruction_set.table import (
     Form,
 )
 
-Words = NDArray[np.uint16]
-Numbers = int | Sequence[int]
+OperandValue = int | Sequence[int]
 """An operand's value: one number, or as many as it has words."""
 NO_WORDS: Words = np.zeros(0, np.uint16)
 MOST_BYTES = 0xFFFF
@@ -91,7 +92,7 @@ def encode(instruction: Instruction) -> Words:
 
 def normal(
     name: str,
-    operands: Mapping[str, Numbers | None],
+    operands: Mapping[str, OperandValue | None],
     data: Words = NO_WORDS,
     length: int | None = None,
     flags: int = 0,
@@ -114,7 +115,7 @@ def normal(
     return Instruction(FORM_OF_NAME[name], int(flags), named, length, data)
 
 
-def operand_words(name: str, value: Numbers) -> tuple[int, ...]:
+def operand_words(name: str, value: OperandValue) -> tuple[int, ...]:
     """The words of one operand, checked for their number and range."""
     if name not in OPERANDS:
         raise InstructionError(

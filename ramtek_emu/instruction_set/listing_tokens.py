@@ -1,14 +1,14 @@
 """The words, numbers and strings that a line of a listing is made of, each refused by one sentence."""
 
+from __future__ import annotations
+
 import re
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Words
 from ramtek_emu.errors import ListingError
-
-Words = NDArray[np.uint16]
 
 LEFT: Final = re.compile(r"\s*[0-9A-Fa-f]{4,}:(?: [0-9A-Fa-f]{4})*(?=\s|$)")
 TOKEN: Final = re.compile(r'\s+|;.*|"(?:[^"\\]|\\.)*"|[^\s";]+')

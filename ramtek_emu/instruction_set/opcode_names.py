@@ -3,6 +3,8 @@
 Hardware: NCAR, whose header lists them; no client of any of them was found.
 """
 
+from __future__ import annotations
+
 from typing import Final
 
 NAMED_ONLY: Final = (

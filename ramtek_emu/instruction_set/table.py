@@ -12,6 +12,8 @@ Assumed: DCL is one word, as its neighbors are; no client sends it.
 Assumed: the bits of the second flag word that no source names carry no words.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final

@@ -8,11 +8,14 @@ Assumed: these shapes, drawn for this emulator: 5 x 7 dots in columns 1 to 5 and
 line 8, so that neither cells nor lines touch. Codes without a shape are blank.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ramtek_emu.arrays import Dots
 
 CELL_ELEMENTS: Final = 7
 CELL_LINES: Final = 9
@@ -130,7 +133,7 @@ SHEET: Final = """
 
 
 @lru_cache
-def characters() -> NDArray[np.bool_]:
+def characters() -> Dots:
     """The dots of the 256 character codes, (256, 9, 7), read-only; codes from 128 on repeat the first 128."""
     rows = SHEET.strip().split("\n\n")
     shapes = np.zeros((256, CELL_LINES, CELL_ELEMENTS), np.bool_)
@@ -148,7 +151,7 @@ LOADED_ELEMENTS: Final = 8
 LOADED_LINES: Final = 12
 
 
-def loadable(shapes: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def loadable(shapes: Dots) -> Dots:
     """Room for characters that a host loads, (256, 12, 8), with the shapes of the ROM until it does.
 
     Hardware: LIN (twelve rows of a byte each).

@@ -14,12 +14,13 @@ and INIT leave the cursors as they are, like the lookup table; the joystick driv
 says otherwise.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-Dots = NDArray[np.bool_]
+from ramtek_emu.arrays import Bytes, Dots
 
 VISIBLE, BLINK, TRACK, ENTER = 1 << 10, 1 << 11, 1 << 12, 1 << 13
 """Bits of the word that holds the line and the state (Hardware: LIN)."""
@@ -100,7 +101,7 @@ class Cursors:
         cursor.enter = False
         return state
 
-    def shape(self, number: int, rows: NDArray[np.uint8]) -> None:
+    def shape(self, number: int, rows: Bytes) -> None:
         """Give a cursor another shape: up to 32 rows of four bytes, the leftmost dot highest."""
         dots = np.unpackbits(rows, axis=1).astype(np.bool_)
         self.all[number].shape = self.all[number].shape.copy()

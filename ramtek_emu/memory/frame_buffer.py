@@ -8,18 +8,17 @@ Hardware: LIN, JPL (mask, runs in a window); GM (ten planes).
 Assumed: what is read where there is no memory is 0.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Dots, Numbers, Words
 from ramtek_emu.checks import checked_words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.errors import WordsError
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Block, Point, ScanOrder, Window, blocks
-
-Words = NDArray[np.uint16]
-Dots = NDArray[np.bool_]
 
 
 class WriteEnable(NamedTuple):
@@ -133,8 +132,8 @@ class FrameBuffer:
 
     def write_points(
         self,
-        elements: NDArray[np.int64],
-        lines: NDArray[np.int64],
+        elements: Numbers,
+        lines: Numbers,
         words: int | Words,
         enable: WriteEnable = EVERYTHING,
     ) -> None:

@@ -9,13 +9,13 @@ the table that is shown when there are fewer planes than address bits).
 Assumed: the entries are black at power-on; no source says what a cold table shows.
 """
 
-import numpy as np
-from numpy.typing import NDArray
+from __future__ import annotations
 
+import numpy as np
+
+from ramtek_emu.arrays import Bytes, Colors, PackedColors, Words
 from ramtek_emu.checks import checked_colors
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
-
-Words = NDArray[np.uint16]
 
 
 class LookupTable:
@@ -32,12 +32,12 @@ class LookupTable:
         """Entry words ever written; it only grows."""
         self._last_run = 0, 0, 0
         """Of the run written last: entry words written before it, its first entry, the one after its last."""
-        self._packed: NDArray[np.uint32] = np.zeros(self.size, "<u4")
+        self._packed: PackedColors = np.zeros(self.size, "<u4")
         # In this byte order the two halves of a packed entry are the two words of the 24-bit format.
         self._halves: Words = self._packed.view("<u2")
-        self._unused: NDArray[np.uint8] = self._packed.view(np.uint8)[3::4]
+        self._unused: Bytes = self._packed.view(np.uint8)[3::4]
         """The byte of each entry that no color is in."""
-        self.packed: NDArray[np.uint32] = self._packed.view()
+        self.packed: PackedColors = self._packed.view()
         """The entries as 0x00RRGGBB, (entries,) uint32, read-only; always the present ones."""
         self.packed.flags.writeable = False
 
@@ -47,7 +47,7 @@ class LookupTable:
         return self.address if self.entry_format is EntryFormat.WORD_12 else self.address >> 1
 
     @property
-    def entries(self) -> NDArray[np.uint8]:
+    def entries(self) -> Colors:
         """The colors, (entries, 3) uint8, read-only; a copy of this moment."""
         colors = self._packed.view(np.uint8).reshape(-1, 4)[:, 2::-1].copy()
         colors.flags.writeable = False

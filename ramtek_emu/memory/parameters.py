@@ -5,6 +5,8 @@ one), the background 0, the mask all ones, the window the whole memory, the scan
 (PRG), the zoom 1, the video origin at the top, and everything else 0; no source lists the values.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -76,7 +78,7 @@ class Parameters:
     """A word with every plane set."""
 
     @classmethod
-    def at_reset(cls, configuration: Configuration) -> "Parameters":
+    def at_reset(cls, configuration: Configuration) -> Parameters:
         """What RSET and INIT restore."""
         window = Window(0, 0, configuration.elements - 1, configuration.lines - 1)
         return cls(
@@ -89,7 +91,7 @@ class Parameters:
             whole_word=configuration.largest_word,
         )
 
-    def copy(self) -> "Parameters":
+    def copy(self) -> Parameters:
         """The same, on their own."""
         return replace(self)
 

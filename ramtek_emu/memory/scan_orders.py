@@ -12,13 +12,12 @@ far edges is at them: in the next run, or in the first one.
 Assumed: a window whose right is left of its left, or whose bottom is above its top, holds no word.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-Item = TypeVar("Item", bound=np.generic)
+from ramtek_emu.arrays import Item, Raster
 
 
 class Point(NamedTuple):
@@ -55,7 +54,7 @@ class Window(NamedTuple):
         """Whether the point lies inside."""
         return self.left <= point.element <= self.right and self.top <= point.line <= self.bottom
 
-    def intersection(self, other: "Window") -> "Window":
+    def intersection(self, other: Window) -> Window:
         """What the two windows share; it may be empty."""
         return Window(
             max(self.left, other.left),
@@ -64,7 +63,7 @@ class Window(NamedTuple):
             min(self.bottom, other.bottom),
         )
 
-    def moved(self, elements: int, lines: int) -> "Window":
+    def moved(self, elements: int, lines: int) -> Window:
         """The window, that much to the right and down."""
         return Window(self.left + elements, self.top + lines, self.right + elements, self.bottom + lines)
 
@@ -76,7 +75,7 @@ class ScanOrder(NamedTuple):
     leftward: bool
     upward: bool
 
-    def oriented(self, raster: NDArray[Item]) -> NDArray[Item]:
+    def oriented(self, raster: Raster[Item]) -> Raster[Item]:
         """A view of [line, element] data as [outer, inner]; its own inverse is `raster`."""
         if self.leftward:
             raster = raster[:, ::-1]

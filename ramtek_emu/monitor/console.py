@@ -6,6 +6,8 @@ ENTER, the right one TRACK while it is down. What is **not**: the joystick's fee
 Nothing here knows how the window is made.
 """
 
+from __future__ import annotations
+
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable

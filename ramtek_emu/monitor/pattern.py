@@ -4,13 +4,13 @@ A disc with color bars, ramps of the words through gray, red, green, blue and ar
 judge the raster, circles to judge its shape, and the characters.
 """
 
+from __future__ import annotations
+
 import numpy as np
-from numpy.typing import NDArray
 
 from ramtek_emu import instructions
+from ramtek_emu.arrays import Colors, Indices, Words
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
-
-Words = NDArray[np.uint16]
 
 BARS = (
     (255, 255, 255),
@@ -38,7 +38,7 @@ def words_in_use(configuration: Configuration) -> int:
     return min(configuration.entries, configuration.largest_word + 1)
 
 
-def ramp_words(configuration: Configuration) -> dict[str, NDArray[np.intp]]:
+def ramp_words(configuration: Configuration) -> dict[str, Indices]:
     """The words of each ramp: a quarter of the table for the grays, an eighth for each of the others."""
     total = words_in_use(configuration)
     starts = {"gray": 2, "red": 4, "green": 5, "blue": 6, "hue": 7}
@@ -48,7 +48,7 @@ def ramp_words(configuration: Configuration) -> dict[str, NDArray[np.intp]]:
     }
 
 
-def colors(configuration: Configuration) -> NDArray[np.uint8]:
+def colors(configuration: Configuration) -> Colors:
     """The entries of the pattern, (words in use, 3)."""
     table = np.zeros((words_in_use(configuration), 3), np.uint8)
     table[FIRST_BAR : FIRST_BAR + len(BARS)] = BARS
@@ -95,7 +95,7 @@ def picture(configuration: Configuration) -> Words:
     across = np.arange(width) - (center - radius)
     disc = np.zeros_like(words)
     bars = FIRST_BAR + np.clip(across * len(BARS) // (2 * radius), 0, len(BARS) - 1)
-    rows: list[NDArray[np.intp]] = [bars]
+    rows: list[Indices] = [bars]
     for name in ("gray", "hue", "red", "green", "blue"):
         place = np.clip(across * len(ramps[name]) // (2 * radius), 0, len(ramps[name]) - 1)
         rows.append(ramps[name][place])

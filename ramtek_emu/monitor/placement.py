@@ -1,5 +1,7 @@
 """Placement: where the field lies in a window, and which pixel of it lies under the mouse."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 

@@ -7,6 +7,8 @@ The window shows, it never draws: everything to be seen is words in the frame bu
 drops and ticks are handed to whoever drives the display as plain values.
 """
 
+from __future__ import annotations
+
 import os
 import sys
 import time

@@ -7,6 +7,8 @@ there, through origin, zoom and video origin; global coordinates are those of th
 channel. A cursor that is not there takes nothing, reads as 0 and sets the illegal-instruction status.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction

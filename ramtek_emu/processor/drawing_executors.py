@@ -4,6 +4,8 @@ Assumed: the additive flag leaves what lies between dots as it is, in characters
 its name; without it the background word is written there.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from ramtek_emu.drawing import curves, text, vectors

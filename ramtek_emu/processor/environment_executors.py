@@ -1,5 +1,7 @@
 """The instructions of the environment: reset, parameters, status, what is shown, waiting; and none."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction

@@ -3,6 +3,8 @@
 A new instruction is a row of the instruction table and one function in one of these modules.
 """
 
+from __future__ import annotations
+
 from ramtek_emu.processor import (
     cursor_executors,
     drawing_executors,

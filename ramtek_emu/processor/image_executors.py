@@ -1,15 +1,14 @@
 """The instructions that write and read the words of areas: erasing, images, rasters, filling, copying."""
 
+from __future__ import annotations
+
 import numpy as np
-from numpy.typing import NDArray
 
 from ramtek_emu.drawing.areas import area
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Processor, executes
-
-Words = NDArray[np.uint16]
 
 
 @executes("ERS")

@@ -9,13 +9,15 @@ source explains); write-enable offsets, which are kept and read back and move no
 client, NCAR, sends the corner of the window beside coordinates that contain it already).
 """
 
+from __future__ import annotations
+
 from collections import deque
 from collections.abc import Callable
 from enum import IntFlag
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Numbers, Words
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.errors import ReplyError
 from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
@@ -27,7 +29,6 @@ from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.video.beam import Beam
 
-Words = NDArray[np.uint16]
 MOST_WAITING = 1 << 22
 """Words of replies that wait for the host at most.
 
@@ -106,13 +107,13 @@ class Processor:
             self.parameters.take(instruction.operands, instruction.low_byte)
         EXECUTORS[instruction.form.name](self, instruction)
 
-    def points(self, instruction: Instruction, numbers_each: int = 2) -> NDArray[np.int64]:
+    def points(self, instruction: Instruction, numbers_each: int = 2) -> Numbers:
         """The data as (n, numbers_each) signed numbers; what is left over at the end is no point."""
         size = 2 * numbers_each
         words = instruction.data[: (instruction.length or 0) // size * numbers_each]
         return words.view(np.int16).reshape(-1, numbers_each).astype(np.int64)
 
-    def placed(self, points: NDArray[np.int64], flags: int) -> NDArray[np.int64]:
+    def placed(self, points: Numbers, flags: int) -> Numbers:
         """(n, 2) points as the addressing mode counts them.
 
         Assumed: with relative addressing each point is counted from the one before, the first from the
@@ -124,7 +125,7 @@ class Processor:
             points = points + self.parameters.base(flags)
         else:
             return points
-        wrapped: NDArray[np.int64] = (points + 0x8000) % 0x10000 - 0x8000
+        wrapped: Numbers = (points + 0x8000) % 0x10000 - 0x8000
         return wrapped
 
     def reply(self, words: Words) -> None:

@@ -1,5 +1,7 @@
 """The instructions of the lookup table: LAM and RAM."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction

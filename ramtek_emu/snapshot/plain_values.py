@@ -4,6 +4,8 @@ A pattern, the same state of a display just switched on, says of every value wha
 length, the fields that it has. So what is read from a file fits, or is refused by one sentence.
 """
 
+from __future__ import annotations
+
 import base64
 import binascii
 import zlib
@@ -13,6 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from ramtek_emu.arrays import AnyArray
 from ramtek_emu.errors import SnapshotError
 from ramtek_emu.memory.scan_orders import Point, Window
 
@@ -133,7 +136,7 @@ def _named(pattern: Enum, value: Any, place: str) -> Enum:
     return kinds[value]
 
 
-def _array(pattern: "np.ndarray[Any, Any]", value: Any, place: str) -> "np.ndarray[Any, Any]":
+def _array(pattern: AnyArray, value: Any, place: str) -> AnyArray:
     dots = pattern.dtype == np.bool_
     size = (pattern.size + 7) // 8 if dots else 2 * pattern.size
     try:

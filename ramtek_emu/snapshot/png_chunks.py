@@ -6,14 +6,16 @@ dozen kinds of errors for such files and is kept in one place; this is the small
 needed, and it refuses the rest: other depths, interlacing, filters, critical chunks that it does not know.
 """
 
+from __future__ import annotations
+
 import struct
 import zlib
 from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Words
 from ramtek_emu.errors import SnapshotError
 
 SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
@@ -24,7 +26,7 @@ MOST_TEXT: Final = 8 << 20
 MOST_CHUNKS: Final = 1 << 16
 
 
-def picture_bytes(words: NDArray[np.uint16], texts: Mapping[str, str]) -> bytes:
+def picture_bytes(words: Words, texts: Mapping[str, str]) -> bytes:
     """A PNG file of (lines, elements) words, 16 bits gray, with ASCII texts by their keywords."""
     lines, elements = words.shape
     # Before each line stands the number of its filter, 0: none.
@@ -39,7 +41,7 @@ def picture_bytes(words: NDArray[np.uint16], texts: Mapping[str, str]) -> bytes:
     return b"".join(parts)
 
 
-def picture_of(data: bytes) -> tuple[NDArray[np.uint16], dict[str, str]]:
+def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
     """The words and the texts of such a file; SnapshotError when it is not one."""
     if data[:8] != SIGNATURE:
         raise _refusal("begin as a PNG file does", "as something else")
@@ -106,7 +108,7 @@ def _text(content: bytes) -> tuple[str, str]:
     return keyword.decode("ascii"), text.decode("ascii")
 
 
-def _words(packed: list[bytes], lines: int, elements: int) -> NDArray[np.uint16]:
+def _words(packed: list[bytes], lines: int, elements: int) -> Words:
     expected = lines * (1 + 2 * elements)
     unpacker = zlib.decompressobj()
     try:

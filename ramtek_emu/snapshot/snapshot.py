@@ -9,6 +9,8 @@ The pixels are the words themselves, so that any program that reads 16-bit gray 
 dark, since ten bits of sixteen are used.
 """
 
+from __future__ import annotations
+
 import json
 import os
 from dataclasses import fields, replace

@@ -5,6 +5,8 @@ field to its bottom and is then blanked for a while. So the same stream always g
 **not**: interlace, the time of day, the host's own pauses.
 """
 
+from __future__ import annotations
+
 from ramtek_emu.timing import Timing
 
 

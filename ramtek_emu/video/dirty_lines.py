@@ -1,15 +1,18 @@
 """Which lines show an entry: the part of a field that a load of the lookup table changes."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ramtek_emu.arrays import Words
 
 STRIP = 32
 """Lines that are searched at once."""
 
 
-def lines_with(words: NDArray[np.uint16], first: int, end: int) -> tuple[int, int]:
+def lines_with(words: Words, first: int, end: int) -> tuple[int, int]:
     """The first line that has a word from `first` to before `end`, and the one after the last.
 
     (0, 0) when no line has one.
@@ -30,7 +33,7 @@ def lines_with(words: NDArray[np.uint16], first: int, end: int) -> tuple[int, in
     return top + int(np.argmax(in_first)), bottom - int(np.argmax(in_last[::-1]))
 
 
-def least_above(words: NDArray[np.uint16], first: int, axis: int | None = None) -> Any:
+def least_above(words: Words, first: int, axis: int | None = None) -> Any:
     """How far above `first` the nearest word is, of all or of each line; a word below it is very far."""
     # What is below wraps to far above.
     return (words - np.uint16(first)).min(axis=axis)

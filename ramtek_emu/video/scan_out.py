@@ -11,12 +11,14 @@ Assumed: a cursor is white where the picture is dark and black where it is light
 how the 9300 mixed it into the video is in no source.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ramtek_emu.arrays import Colors, Indices, PackedColors, Words
 from ramtek_emu.configuration import Configuration, EntryFormat
 from ramtek_emu.memory.cursors import BLINK, SHAPE_CENTER, VISIBLE, Cursor, Cursors
 from ramtek_emu.memory.frame_buffer import FrameBuffer
@@ -25,7 +27,6 @@ from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.dirty_lines import lines_with
 
-Pixels = NDArray[np.uint32]
 WHITE = np.uint32(0xFFFFFF)
 View = tuple[tuple[int, int], tuple[int, int], bool]
 """Origin, zoom, and whether the origin is at the bottom."""
@@ -67,9 +68,9 @@ class ScanOut:
         """Words ever written when the indices were made, and the view that they are of."""
         shown_words = frame_buffer.words[: self.lines, : self.elements]
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
-        self._gray: tuple[int, Pixels] = (-1, lookup_table.packed)
+        self._gray: tuple[int, PackedColors] = (-1, lookup_table.packed)
         # With a beam: what the monitor shows, and how far the beam has come since power-on.
-        self._glass: Pixels = np.zeros((self.lines, self.elements), np.uint32)
+        self._glass: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
         self._painted = 0
 
     @property
@@ -86,16 +87,16 @@ class ScanOut:
         )
 
     @property
-    def glass(self) -> tuple[int, Pixels]:
+    def glass(self) -> tuple[int, PackedColors]:
         """With a beam: the lines begun since power-on that are painted, and what the monitor shows."""
         return self._painted, self._glass
 
     @glass.setter
-    def glass(self, shown: tuple[int, Pixels]) -> None:
+    def glass(self, shown: tuple[int, PackedColors]) -> None:
         self._painted = shown[0]
         self._glass[...] = shown[1]
 
-    def scan_out_into(self, pixels: Pixels) -> None:
+    def scan_out_into(self, pixels: PackedColors) -> None:
         """Write the field as 0x00RRGGBB into a (lines, elements) uint32 array."""
         if self._beam is not None:
             self._finish_field(self._beam, pixels)
@@ -104,7 +105,7 @@ class ScanOut:
             self._table().take(self._indices, out=pixels, mode="wrap")
         self._mark_cursors(pixels)
 
-    def scan_out_changes_into(self, pixels: Pixels, held: Stamp | None) -> Stamp:
+    def scan_out_changes_into(self, pixels: PackedColors, held: Stamp | None) -> Stamp:
         """Make an array hold the present field, and return its stamp.
 
         `held` is the stamp of the field that the array holds, None where it holds something else: whoever
@@ -121,7 +122,7 @@ class ScanOut:
         self._mark_cursors(pixels[first:end], first)
         return stamp
 
-    def field(self) -> NDArray[np.uint8]:
+    def field(self) -> Colors:
         """The field, (lines, elements, 3) uint8: red, green, blue."""
         pixels = np.empty((self.lines, self.elements), "<u4")
         self.scan_out_into(pixels)
@@ -142,14 +143,14 @@ class ScanOut:
             begun += total
         self._painted = beam.lines_done
 
-    def _finish_field(self, beam: Beam, pixels: Pixels) -> None:
+    def _finish_field(self, beam: Beam, pixels: PackedColors) -> None:
         # What the beam has not come to yet is as the memories are now: in the retrace the whole next field.
         self.follow_beam()
         line = beam.line if beam.line < self.lines else 0
         pixels[:line] = self._glass[:line]
         self._paint(line, self.lines, pixels)
 
-    def _paint(self, first: int, last: int, pixels: Pixels) -> None:
+    def _paint(self, first: int, last: int, pixels: PackedColors) -> None:
         parameters, (lines, elements) = self._parameters(), self._frame_buffer.words.shape
         rows, columns = np.arange(first, last), np.arange(self.elements)
         if parameters.origin_at_bottom:
@@ -160,7 +161,7 @@ class ScanOut:
             self._frame_buffer.words[np.ix_(rows, columns)], out=pixels[first:last], mode="wrap"
         )
 
-    def _mark_cursors(self, pixels: Pixels, first_line: int = 0) -> None:
+    def _mark_cursors(self, pixels: PackedColors, first_line: int = 0) -> None:
         for cursor in self._cursors.all:
             if cursor.state & VISIBLE and (self._blink() or not cursor.blinks):
                 mark(pixels, cursor, first_line)
@@ -198,7 +199,7 @@ class ScanOut:
     def _blink(self) -> bool:
         return self.blink_is_on if self._beam is None else self._beam.blink_is_on
 
-    def _table(self) -> Pixels:
+    def _table(self) -> PackedColors:
         table = self._lookup_table.packed
         if self._configuration.monochrome:
             if self._gray[0] != self._lookup_table.written:
@@ -212,7 +213,7 @@ class ScanOut:
         return self._lookup_table.addressed_entry // self._words * self._words if self._is_parted else 0
 
 
-def copy_around(target: NDArray[np.intp], words: NDArray[np.uint16], element: int, line: int) -> None:
+def copy_around(target: Indices, words: Words, element: int, line: int) -> None:
     """Fill the target with the words from an element and a line on, which wrap at the memory's edges."""
     lines, elements = words.shape
     done = 0
@@ -230,7 +231,7 @@ def copy_around(target: NDArray[np.intp], words: NDArray[np.uint16], element: in
         done += height
 
 
-def mark(pixels: Pixels, cursor: Cursor, first_line: int = 0) -> None:
+def mark(pixels: PackedColors, cursor: Cursor, first_line: int = 0) -> None:
     """Draw a cursor on the lines of a field from a first one on, clipped at the edges."""
     size = cursor.shape.shape[0]
     top, left = cursor.line - first_line - SHAPE_CENTER, cursor.element - SHAPE_CENTER

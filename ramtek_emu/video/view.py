@@ -7,6 +7,8 @@ Assumed: with the video origin at the bottom the origin is the pixel at the bott
 windows and scan orders stay as they are.
 """
 
+from __future__ import annotations
+
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.memory.parameters import Parameters
 
