@@ -31,6 +31,15 @@ PUBLIC_NAMES = {
     ],
 }  # fmt: skip
 
+WINGS = {
+    "ramtek_emu": (
+        "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "command_line",
+        "instruction_set", "memory", "drawing", "video", "processor", "instructions", "display",
+        "host", "monitor", "snapshot", "commands", "__main__",
+    ),
+}  # fmt: skip
+"""The wings of a package in the order of its data: each may use those before it and no other."""
+
 KNOWING_THE_DISPLAY = (
     "autocolor.studio", "autocolor.picture", "autocolor.__main__", "autocolor.files.writing",
 )  # fmt: skip
@@ -123,8 +132,34 @@ def test_nothing_is_imported_that_is_no_dependency() -> None:
     assert used <= {*PUBLIC_NAMES, *OUTSIDE, *sys.stdlib_module_names}
 
 
+def wing_of(name: str) -> str:
+    return [*name.split("."), ""][1]
+
+
+@pytest.mark.parametrize("package", WINGS)
+def test_every_wing_has_its_place_in_the_order(package: str) -> None:
+    assert {wing_of(name) for name in MODULES if outer(name) == package} == {"", *WINGS[package]}
+
+
+@pytest.mark.parametrize("name", [name for name in MODULES if outer(name) in WINGS and name not in WINGS])
+def test_no_module_imports_from_a_wing_below_its_own(name: str) -> None:
+    package, order = outer(name), WINGS[outer(name)]
+    above = ("", *order[: order.index(wing_of(name)) + 1])
+    used = {each.target for each in imports_of(name) if outer(each.target) == package}
+    # The package itself names all of its modules: it stands below every wing.
+    assert package not in used
+    assert {target for target in used if wing_of(target) not in above} == set()
+
+
 def test_no_modules_import_each_other_in_a_circle() -> None:
     state: dict[str, str] = {}
+
+    def counts(name: str, each: Import) -> bool:
+        """Whether an import links two files: in a package with wings also one that is made later."""
+        if each.target not in MODULES or name.startswith(f"{each.target}."):
+            # A module of a package loads the package before it; that is no circle of theirs.
+            return False
+        return each.at_once or (outer(name) in WINGS and name not in WINGS)
 
     def visit(name: str, path: tuple[str, ...]) -> None:
         assert state.get(name) != "open", f"circle: {' -> '.join((*path, name))}"
@@ -132,8 +167,7 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
             return
         state[name] = "open"
         for each in imports_of(name):
-            # A module of a package loads the package before it; that is no circle of theirs.
-            if each.at_once and each.target in MODULES and not name.startswith(f"{each.target}."):
+            if counts(name, each):
                 visit(each.target, (*path, name))
         state[name] = "done"
 
