@@ -30,7 +30,7 @@ SIGGRAPH 1983).
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from ramtek_emu.configuration import GMR_9300 as GMR_9300
@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from ramtek_emu.snapshot.snapshot import write_snapshot as write_snapshot
     from ramtek_emu.timing import Timing as Timing
 
-_HOME = {
+_HOME: Final = {
     "ColorsError": "errors",
     "Configuration": "configuration",
     "ConfigurationError": "errors",

@@ -5,12 +5,14 @@ Hardware drops what does not fit; a program that hands over numbers is better to
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from ramtek_emu.arrays import Colors, WholeNumbers, Words
 from ramtek_emu.errors import ColorsError, WordsError
 
-BYTE = np.dtype(np.uint8)
+BYTE: Final = np.dtype(np.uint8)
 
 
 def whole_numbers(values: object, thing: str, error: type[WordsError] | type[ColorsError]) -> WholeNumbers:

@@ -13,13 +13,13 @@ import traceback
 from contextlib import suppress
 from importlib import import_module
 from io import TextIOWrapper
-from typing import ClassVar, NoReturn
+from typing import ClassVar, Final, NoReturn
 
 import click
 
-FAULT = 70
-INTERRUPTED = 130
-WRITING_FAILED = 74
+FAULT: Final = 70
+INTERRUPTED: Final = 130
+WRITING_FAILED: Final = 74
 
 
 def _show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Final
 
 from ramtek_emu.errors import ConfigurationError
 from ramtek_emu.timing import Timing
@@ -79,7 +80,7 @@ class Configuration:
         return (1 << self.planes) - 1
 
 
-GMR_9300 = Configuration(name="GMR_9300", elements=640, lines=480, planes=10)
+GMR_9300: Final = Configuration(name="GMR_9300", elements=640, lines=480, planes=10)
 """The display of the paper.
 
 Hardware: GM, 640 x 480 words of ten bits, one parallel table of 1024 x 24 bits.
@@ -89,7 +90,7 @@ Departs: the 9300 had no second operand flag word and no 9460 instructions; this
 the programs of the whole family run on it. PRINCETON_9300 is the strict one.
 """
 
-PRINCETON_9300 = Configuration(
+PRINCETON_9300: Final = Configuration(
     name="PRINCETON_9300",
     elements=640,
     lines=512,
@@ -103,19 +104,19 @@ Hardware: LIN and PRG, 640 x 512 memory, 1024 entries of 12 bits, words of ten b
 Assumed: all 640 elements are shown; the programs kept to 620, probably because the monitor cut the rest.
 """
 
-JPL_9460 = Configuration(name="JPL_9460", elements=640, lines=480, planes=8)
+JPL_9460: Final = Configuration(name="JPL_9460", elements=640, lines=480, planes=8)
 """The RM-9460 of the Jet Propulsion Laboratory, in its low resolution.
 
 Hardware: JPL, 640 x 480, bytes for pixels, four sections of 256 entries of 24 bits, two cursors.
 Assumed: eight planes, since its masks are FFh and its images bytes.
 """
 
-NCAR_9460 = Configuration(name="NCAR_9460", elements=1280, lines=1024, planes=8, cursors=4)
+NCAR_9460: Final = Configuration(name="NCAR_9460", elements=1280, lines=1024, planes=8, cursors=4)
 """The RM-9460 of the National Center for Atmospheric Research.
 
 Hardware: NCAR and LONG, 1280 x 1024, bytes for pixels, 24-bit entries; LONG, cursors 0 to 3.
 Assumed: eight planes, since its masks are FFh; four sections of 256 entries, as JPL's.
 """
 
-CONFIGURATIONS = {each.name: each for each in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)}
+CONFIGURATIONS: Final = {each.name: each for each in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)}
 """The named configurations, by name."""

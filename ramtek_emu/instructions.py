@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from struct import Struct
+from typing import Final
 
 import numpy as np
 
@@ -25,9 +26,9 @@ from ramtek_emu.instruction_set.instruction import (
 )
 from ramtek_emu.instruction_set.table import FORM_OF_NAME, Flags
 
-LOW_BYTE_FIRST = np.dtype("<u2")
-THREE_WORDS = Struct("<3H")
-LOAD = FORM_OF_NAME["LAM"].opcode << 8
+LOW_BYTE_FIRST: Final = np.dtype("<u2")
+THREE_WORDS: Final = Struct("<3H")
+LOAD: Final = FORM_OF_NAME["LAM"].opcode << 8
 """The first word of the instruction that loads the lookup table."""
 
 

@@ -7,10 +7,11 @@ retrace before they loaded the table (NCAR).
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Final
 
 from ramtek_emu.errors import ConfigurationError
 
-MOST = 1_000_000_000
+MOST: Final = 1_000_000_000
 """The largest rate: a second."""
 
 

@@ -11,10 +11,11 @@ import os
 import secrets
 from contextlib import suppress
 from pathlib import Path
+from typing import Final
 
 from ramtek_emu.errors import OutputError, OutputExistsError, WriteError
 
-NO_PLACE = (
+NO_PLACE: Final = (
     errno.ENOENT,
     errno.ENOTDIR,
     errno.EACCES,
@@ -25,7 +26,7 @@ NO_PLACE = (
 )
 """What says that there is no place for an output, rather than that writing failed midway."""
 
-NO_LINKS = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EMLINK)
+NO_LINKS: Final = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EMLINK)
 """What a file system without hard links answers."""
 
 

@@ -40,6 +40,9 @@ WINGS = {
 }  # fmt: skip
 """The wings of a package in the order of its data: each may use those before it and no other."""
 
+IN_THE_DIALECT = ("ramtek_emu",)
+"""The packages whose constants are Final and whose array types are all in arrays.py."""
+
 KNOWING_THE_DISPLAY = (
     "autocolor.studio", "autocolor.picture", "autocolor.__main__", "autocolor.files.writing",
 )  # fmt: skip
@@ -130,6 +133,20 @@ def test_pillow_is_in_one_file() -> None:
 def test_nothing_is_imported_that_is_no_dependency() -> None:
     used = {outer(each.target) for name in MODULES for each in imports_of(name)}
     assert used <= {*PUBLIC_NAMES, *OUTSIDE, *sys.stdlib_module_names}
+
+
+@pytest.mark.parametrize("name", [name for name in MODULES if outer(name) in IN_THE_DIALECT])
+def test_constants_are_final_and_array_types_stand_in_one_module(name: str) -> None:
+    source = MODULES[name].read_text("utf-8")
+    for node in ast.parse(source).body:
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        names = [
+            each.id for target in targets if target for each in ast.walk(target) if isinstance(each, ast.Name)
+        ]
+        if any(each.strip("_").isupper() for each in names):
+            assert isinstance(node, ast.AnnAssign), f"{names} must be Final"
+            assert ast.unparse(node.annotation).startswith("Final"), f"{names} must be Final"
+    assert ("NDArray" in source) == (name == f"{outer(name)}.arrays")
 
 
 def wing_of(name: str) -> str:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Final
 
 import click
 
 from ramtek_emu.command_line import CommandGroup, version_option
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   ramtek                          the test pattern in a window
   ramtek -o pattern.png           the same in a picture file, without a screen

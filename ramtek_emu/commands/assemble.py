@@ -5,13 +5,14 @@ from __future__ import annotations
 import io
 import sys
 from collections.abc import Iterator
+from typing import Final
 
 import click
 
 from ramtek_emu.commands.displays import open_stream, tell
 from ramtek_emu.writing import refuse_output, write_atomically
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   ramtek assemble drawing.txt -o drawing.ramtek
   ramtek list drawing.ramtek | ramtek assemble - -o same.ramtek

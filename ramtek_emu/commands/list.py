@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from typing import Final
 
 import click
 
 from ramtek_emu.commands.displays import configuration_named, open_stream
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   ramtek list drawing.ramtek
   ramtek list drawing.ramtek --json | jq '.[].name'
   ramtek list drawing.ramtek > drawing.txt; ramtek assemble drawing.txt -o again.ramtek
 """
 
-PIECE = 1 << 18
+PIECE: Final = 1 << 18
 
 
 @click.command(name="list", epilog=EXAMPLES)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import click
 
 from ramtek_emu.commands.displays import (
@@ -16,7 +18,7 @@ from ramtek_emu.commands.displays import (
     write_outputs,
 )
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   ramtek play drawing.ramtek
   ramtek play drawing.ramtek -o drawing.png --configuration princeton_9300

@@ -7,7 +7,7 @@ import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ramtek_emu.host.pipe import Read, Write
     from ramtek_emu.host.server import Server
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   ramtek serve --port 9300                          a display at tcp://127.0.0.1:9300
   ramtek serve --port 0 --window                    any free port, which is printed, and a window
@@ -35,7 +35,7 @@ Examples:
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
 """
 
-STEP_SECONDS = 0.25
+STEP_SECONDS: Final = 0.25
 
 
 @click.command(epilog=EXAMPLES)

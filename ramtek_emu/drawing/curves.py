@@ -6,13 +6,15 @@ square (Assumed: a radius in elements is one in lines).
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from ramtek_emu.arrays import Numbers
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point
 
-MOST_PIXELS = 1 << 14
+MOST_PIXELS: Final = 1 << 14
 """Pixels of a conic at most.
 
 Assumed: a curve that meets nothing to stop it ends here; it is five times around the largest memory.

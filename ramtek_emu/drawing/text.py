@@ -7,6 +7,7 @@ next line at the window's edge. What is **not**: the size factors of more than 1
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -14,12 +15,12 @@ from ramtek_emu.arrays import Dots
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, ScanOrder, Window
 
-LARGEST_CELL = 16
+LARGEST_CELL: Final = 16
 """Elements and lines of a cell at most.
 
 Assumed: a programmed character has 12 lines of 8 dots (LIN), so that four bits hold a dimension.
 """
-MOST_ALONG = 4096
+MOST_ALONG: Final = 4096
 """Words along the scan that are drawn in one go: a bound on memory, whatever the host asks for."""
 
 

@@ -10,7 +10,7 @@ free there); no source says.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -18,9 +18,9 @@ from ramtek_emu.arrays import Dots, Indices, Numbers
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, Window
 
-MOST_POINTS = 1 << 15
+MOST_POINTS: Final = 1 << 15
 """Points that are worked out in one go, or those of one line: a bound on memory."""
-FEW = 4
+FEW: Final = 4
 """Lines that are quicker one by one."""
 
 

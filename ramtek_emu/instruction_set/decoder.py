@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import lru_cache
+from typing import Final
 
 import numpy as np
 
@@ -25,11 +26,11 @@ from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
 from ramtek_emu.instruction_set.table import FORMS, ILLEGAL, OPERANDS, Flags, Form, operands_named
 
-MOST_HEAD = 64
+MOST_HEAD: Final = 64
 """More words than any instruction has before its data."""
-CONIC = 1 << list(OPERANDS).index("conic")
+CONIC: Final = 1 << list(OPERANDS).index("conic")
 """The bit of the conic coefficients in the first operand flag word."""
-MOST_WORDS = MOST_HEAD + 0x8000
+MOST_WORDS: Final = MOST_HEAD + 0x8000
 """More words than any instruction has."""
 
 
@@ -108,7 +109,7 @@ class Decoder:
         return form
 
 
-FLAG_WORDS = {0: 1, Flags.OPERANDS_1: 2, Flags.OPERANDS_2: 2, Flags.OPERANDS_1 | Flags.OPERANDS_2: 3}
+FLAG_WORDS: Final = {0: 1, Flags.OPERANDS_1: 2, Flags.OPERANDS_2: 2, Flags.OPERANDS_1 | Flags.OPERANDS_2: 3}
 """The instruction word and the flag words that its flags announce."""
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 
@@ -27,8 +28,8 @@ from ramtek_emu.instruction_set.table import (
 
 OperandValue = int | Sequence[int]
 """An operand's value: one number, or as many as it has words."""
-NO_WORDS: Words = np.zeros(0, np.uint16)
-MOST_BYTES = 0xFFFF
+NO_WORDS: Final[Words] = np.zeros(0, np.uint16)
+MOST_BYTES: Final = 0xFFFF
 """The longest data field: its length is one word."""
 
 

@@ -47,7 +47,7 @@ class Operand:
     words: int
 
 
-OPERANDS_1 = (
+OPERANDS_1: Final = (
     Operand("mask", "SUB", 1),
     Operand("foreground", "FORE", 1),
     Operand("background", "BACK", 1),
@@ -65,7 +65,7 @@ OPERANDS_1 = (
     Operand("scroll", "SCRO", 1),
     Operand("start", "STRT", 2),
 )
-OPERANDS_2 = (
+OPERANDS_2: Final = (
     Operand("read_mask", "RMSK", 1),
     Operand("write_window", "WEW", 4),
     Operand("write_offset", "WOF", 2),
@@ -73,7 +73,7 @@ OPERANDS_2 = (
     Operand("display_class", "DCL", 1),
     Operand("image_mode", "IMG", 1),
 )
-OPERANDS = {operand.name: operand for operand in OPERANDS_1 + OPERANDS_2}
+OPERANDS: Final = {operand.name: operand for operand in OPERANDS_1 + OPERANDS_2}
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,13 +100,13 @@ class Form:
         return self.fixed is None
 
 
-ILLEGAL = Form(-1, "???", "no instruction", ())
+ILLEGAL: Final = Form(-1, "???", "no instruction", ())
 """What a word is that no row describes; it is skipped alone."""
 
-CHARACTER_ROWS = tuple(f"rows_{2 * pair}_{2 * pair + 1}" for pair in range(6))
+CHARACTER_ROWS: Final = tuple(f"rows_{2 * pair}_{2 * pair + 1}" for pair in range(6))
 """The operands of LPF: twelve rows of eight dots, two a word."""
 
-SUBSTANTIATED = (
+SUBSTANTIATED: Final = (
     Form(0x03, "LAM", "load the lookup table", ("address", "length")),
     # Assumed: on the 9300 too, though only clients of the 9460 were seen to send it: one that reads the table
     # of a 9300 would wait for an answer for ever.
@@ -157,7 +157,7 @@ Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP,
 WVU, WRP and COPY, of which the sources give
 numbers and names; each is described where it is done.
 """
-FORMS = SUBSTANTIATED + tuple(
+FORMS: Final = SUBSTANTIATED + tuple(
     Form(opcode, name, meaning, extended=True, named_only=True) for opcode, name, meaning in NAMED_ONLY
 )
 """Every row.
@@ -166,13 +166,13 @@ Assumed: an instruction known by its name only has the normal format: its flag w
 consumed as its low byte says, so that the next instruction is found; the operands are taken, for they are
 sticky; nothing else is done, and the illegal-instruction status is set.
 """
-FLAG_NAMES = {
+FLAG_NAMES: Final = {
     Flags.REVERSE_PACKING: "RP",
     Flags.SWAP: "BK",
     Flags.ADDITIVE: "AD",
 }
-ADDRESSING_NAMES = {Flags.INDEX_1: "IX01", Flags.INDEX_2: "IX10", Flags.RELATIVE: "IX11"}
-FORM_OF_NAME = {form.name: form for form in FORMS}
+ADDRESSING_NAMES: Final = {Flags.INDEX_1: "IX01", Flags.INDEX_2: "IX10", Flags.RELATIVE: "IX11"}
+FORM_OF_NAME: Final = {form.name: form for form in FORMS}
 
 
 @lru_cache(maxsize=1024)

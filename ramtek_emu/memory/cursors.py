@@ -17,16 +17,21 @@ says otherwise.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 
 from ramtek_emu.arrays import Bytes, Dots
 
-VISIBLE, BLINK, TRACK, ENTER = 1 << 10, 1 << 11, 1 << 12, 1 << 13
-"""Bits of the word that holds the line and the state (Hardware: LIN)."""
-LINE_BITS = 0x3FF
-SHAPE_SIZE = 32
-SHAPE_CENTER = 15
+VISIBLE: Final = 1 << 10
+BLINK: Final = 1 << 11
+TRACK: Final = 1 << 12
+ENTER: Final = 1 << 13
+"""The bits of the state in the word that holds the line as well (Hardware: LIN)."""
+LINE_BITS: Final = 0x3FF
+"""The bits of the line in that word."""
+SHAPE_SIZE: Final = 32
+SHAPE_CENTER: Final = 15
 
 
 def cross() -> Dots:

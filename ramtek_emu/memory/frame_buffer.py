@@ -10,7 +10,7 @@ Assumed: what is read where there is no memory is 0.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -28,8 +28,8 @@ class WriteEnable(NamedTuple):
     window: Window = Window(-0x8000, -0x8000, 0x7FFF, 0x7FFF)
 
 
-EVERYTHING = WriteEnable()
-NORMAL_ORDER = SCAN_ORDERS[0]
+EVERYTHING: Final = WriteEnable()
+NORMAL_ORDER: Final = SCAN_ORDERS[0]
 
 
 class FrameBuffer:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.instruction_set.table import Flags
@@ -16,8 +17,8 @@ from ramtek_emu.memory.character_rom import CELL_ELEMENTS, CELL_LINES
 from ramtek_emu.memory.frame_buffer import WriteEnable
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
 
-ORIGIN = Point(0, 0)
-STANDARD_FONT = 0xFF
+ORIGIN: Final = Point(0, 0)
+STANDARD_FONT: Final = 0xFF
 """Hardware: NCAR."""
 
 

@@ -15,7 +15,7 @@ Assumed: a window whose right is left of its left, or whose bottom is above its 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ramtek_emu.arrays import Item, Raster
 
@@ -147,7 +147,7 @@ class ScanOrder(NamedTuple):
         return Window(left, top, left + width - 1, top + height - 1)
 
 
-SCAN_ORDERS = (
+SCAN_ORDERS: Final = (
     ScanOrder(False, False, False),  # 0: left to right, top to bottom
     ScanOrder(False, True, False),  # 1: right to left, top to bottom
     ScanOrder(False, False, True),  # 2: left to right, bottom to top

@@ -12,13 +12,15 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import OutputExistsError, RamtekError
 
-LEFT, RIGHT = 1, 3
-MODIFIERS = frozenset(
+LEFT: Final = 1
+RIGHT: Final = 3
+"""Numbers of the mouse's buttons."""
+MODIFIERS: Final = frozenset(
     f"{side} {key}" for side in ("left", "right") for key in ("shift", "ctrl", "alt", "meta")
 )
 

@@ -6,13 +6,15 @@ judge the raster, circles to judge its shape, and the characters.
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from ramtek_emu import instructions
 from ramtek_emu.arrays import Colors, Indices, Words
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
 
-BARS = (
+BARS: Final = (
     (255, 255, 255),
     (255, 255, 0),
     (0, 255, 255),
@@ -22,8 +24,14 @@ BARS = (
     (0, 0, 255),
     (0, 0, 0),
 )
-FIRST_BAR, GROUND, GRID, LABEL, SHADE = 1, 9, 10, 11, 12
-"""The words of the bars, of the ground, of the grid, of letters and circles, and of the letters' ground."""
+FIRST_BAR: Final = 1
+"""The word of the first bar; those of the others follow."""
+GROUND: Final = 9
+GRID: Final = 10
+LABEL: Final = 11
+"""The word of letters, circles and the border."""
+SHADE: Final = 12
+"""The word behind the letters."""
 
 
 def pattern(configuration: Configuration = GMR_9300) -> Words:

@@ -14,6 +14,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -32,11 +33,14 @@ from ramtek_emu.monitor.placement import pixel_under
 from ramtek_emu.monitor.placement import placement as placement
 from ramtek_emu.video.scan_out import Stamp
 
-TICK_MILLISECONDS = 15
-BLINK_SECONDS = 0.5  # Seen for so long, then not. Assumed: as in the time model.
-KEY_DELAY, KEY_INTERVAL = 400, 40
-FIELD_MASKS = (0xFF0000, 0x00FF00, 0x0000FF, 0)
-REDRAWN_ON = frozenset(
+TICK_MILLISECONDS: Final = 15
+BLINK_SECONDS: Final = 0.5
+"""How long a blinking cursor is seen, and then not seen. Assumed: as in the time model."""
+KEY_DELAY: Final = 400
+KEY_INTERVAL: Final = 40
+"""Milliseconds until a key that is held down repeats, and between its repeats."""
+FIELD_MASKS: Final = (0xFF0000, 0x00FF00, 0x0000FF, 0)
+REDRAWN_ON: Final = frozenset(
     (pygame.WINDOWEXPOSED, pygame.WINDOWSIZECHANGED, pygame.WINDOWRESTORED, pygame.WINDOWSHOWN)
 )
 

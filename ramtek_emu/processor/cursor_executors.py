@@ -9,6 +9,8 @@ channel. A cursor that is not there takes nothing, reads as 0 and sets the illeg
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction
@@ -16,7 +18,7 @@ from ramtek_emu.memory.cursors import LINE_BITS
 from ramtek_emu.processor.processor import Processor, executes
 from ramtek_emu.video.view import pixel_at, screen_at
 
-SHAPE_BYTES_PER_ROW = 4
+SHAPE_BYTES_PER_ROW: Final = 4
 
 
 def is_there(processor: Processor, instruction: Instruction) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction
@@ -9,7 +11,7 @@ from ramtek_emu.instruction_set.table import FORMS, OPERANDS
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.processor.processor import Processor, Status, executes
 
-MOST_SAVED = 16
+MOST_SAVED: Final = 16
 """Environments that PUSHE puts aside at most. Assumed: one more sets the illegal-instruction status."""
 
 

@@ -5,6 +5,8 @@ A new instruction is a row of the instruction table and one function in one of t
 
 from __future__ import annotations
 
+from typing import Final
+
 from ramtek_emu.processor import (
     cursor_executors,
     drawing_executors,
@@ -14,5 +16,11 @@ from ramtek_emu.processor import (
 )
 from ramtek_emu.processor.processor import EXECUTORS as EXECUTORS
 
-SUBJECTS = (image_executors, drawing_executors, table_executors, cursor_executors, environment_executors)
+SUBJECTS: Final = (
+    image_executors,
+    drawing_executors,
+    table_executors,
+    cursor_executors,
+    environment_executors,
+)
 """The modules whose functions stand in EXECUTORS."""

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from enum import IntFlag
+from typing import Final
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.video.beam import Beam
 
-MOST_WAITING = 1 << 22
+MOST_WAITING: Final = 1 << 22
 """Words of replies that wait for the host at most.
 
 Assumed: what a host never reads is dropped, newest first; hardware would stop the host.
@@ -161,7 +162,7 @@ class Processor:
 
 
 Executor = Callable[[Processor, Instruction], None]
-EXECUTORS: dict[str, Executor] = {}
+EXECUTORS: Final[dict[str, Executor]] = {}
 
 
 def executes(name: str) -> Callable[[Executor], Executor]:

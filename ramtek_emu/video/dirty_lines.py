@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from ramtek_emu.arrays import Words
 
-STRIP = 32
+STRIP: Final = 32
 """Lines that are searched at once."""
 
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Final
 
 import numpy as np
 
@@ -27,10 +28,10 @@ from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.dirty_lines import lines_with
 
-WHITE = np.uint32(0xFFFFFF)
+WHITE: Final = np.uint32(0xFFFFFF)
 View = tuple[tuple[int, int], tuple[int, int], bool]
 """Origin, zoom, and whether the origin is at the bottom."""
-PLAIN_VIEW: View = (0, 0), (1, 1), False
+PLAIN_VIEW: Final[View] = (0, 0), (1, 1), False
 """The one that shows the lines of the memory as they are."""
 Stamp = tuple[int, tuple[object, ...]]
 """What a field is made from: entry words ever written, and all else. Fields with equal stamps are equal."""

@@ -1,5 +1,7 @@
 """Slow, obvious twins of the display: one pixel, one word at a time."""
 
+from __future__ import annotations
+
 from ramtek_emu.instruction_set.table import FORMS
 
 # Scan code -> step to the next word, step to the next run: (element, line) each.

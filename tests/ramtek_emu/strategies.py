@@ -1,5 +1,7 @@
 """Words, windows, entries and streams for the display's tests."""
 
+from __future__ import annotations
+
 import itertools
 from collections.abc import Iterable
 

@@ -1,3 +1,5 @@
+from __future__ import annotations
+
 from itertools import combinations
 
 from ramtek_emu.memory.character_rom import characters

@@ -1,5 +1,7 @@
 """Programs that draw, read back and draw from what they read; and the habits of the drivers of the time."""
 
+from __future__ import annotations
+
 import itertools
 from collections.abc import Iterator
 

@@ -1,5 +1,7 @@
 """Parameters, status and what is shown; and streams that nobody would send."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Streams of real programs with faults in them, as bad lines and bad programs make them."""
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 import numpy as np

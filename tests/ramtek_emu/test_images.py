@@ -1,5 +1,7 @@
 """Images, rasters, areas and copies, against twins that go word by word."""
 
+from __future__ import annotations
+
 import numpy as np
 import pytest
 from hypothesis import given

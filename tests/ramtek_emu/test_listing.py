@@ -1,3 +1,5 @@
+from __future__ import annotations
+
 import json
 import subprocess
 import sys
@@ -172,7 +174,7 @@ def test_any_text_is_assembled_or_refused(lines: list[str]) -> None:
         assert all(isinstance(part, bytes) for part in assemble(lines))
 
 
-def run(*arguments: str, data: bytes = b"") -> "subprocess.CompletedProcess[bytes]":
+def run(*arguments: str, data: bytes = b"") -> subprocess.CompletedProcess[bytes]:
     return subprocess.run(
         [sys.executable, "-m", "ramtek_emu", *arguments],
         cwd=ROOT,

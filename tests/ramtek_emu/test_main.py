@@ -1,3 +1,5 @@
+from __future__ import annotations
+
 import os
 import subprocess
 import sys
@@ -6,7 +8,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 
 
-def ramtek(*arguments: str, **environment: str) -> "subprocess.CompletedProcess[str]":
+def ramtek(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
     without_screen = {
         key: value
         for key, value in os.environ.items()

@@ -1,5 +1,7 @@
 """The instructions, by what they leave in the words; and streams recorded from programs of the time."""
 
+from __future__ import annotations
+
 import numpy as np
 import pytest
 from hypothesis import given

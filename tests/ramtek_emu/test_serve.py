@@ -1,5 +1,7 @@
 """The commands that run streams, as other programs see them: real processes, pipes and sockets."""
 
+from __future__ import annotations
+
 import os
 import random
 import signal
@@ -28,7 +30,7 @@ def environment() -> dict[str, str]:
     return {**kept, "PYTHONPATH": str(ROOT)}
 
 
-def run(*arguments: object, data: bytes = b"") -> "subprocess.CompletedProcess[bytes]":
+def run(*arguments: object, data: bytes = b"") -> subprocess.CompletedProcess[bytes]:
     return subprocess.run(
         [sys.executable, "-m", "ramtek_emu", *map(str, arguments)],
         env=environment(),
@@ -40,7 +42,7 @@ def run(*arguments: object, data: bytes = b"") -> "subprocess.CompletedProcess[b
 
 
 @contextmanager
-def started(*arguments: object) -> "Iterator[subprocess.Popen[bytes]]":
+def started(*arguments: object) -> Iterator[subprocess.Popen[bytes]]:
     """A command with pipes at its three ends."""
     process = subprocess.Popen(
         [sys.executable, "-m", "ramtek_emu", *map(str, arguments)],
@@ -72,7 +74,7 @@ def field_of(path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
 class PipedHost:
     """A host program at a display on a pipe."""
 
-    def __init__(self, process: "subprocess.Popen[bytes]") -> None:
+    def __init__(self, process: subprocess.Popen[bytes]) -> None:
         assert process.stdin is not None
         assert process.stdout is not None
         self.into, self.out = process.stdin, process.stdout
@@ -80,7 +82,7 @@ class PipedHost:
     def send(self, numbers: object) -> None:
         self.into.write(stream(numbers))
 
-    def receive(self, count: int) -> "np.ndarray[tuple[int, ...], np.dtype[np.uint16]]":
+    def receive(self, count: int) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
         data = b""
         while len(data) < 2 * count:
             piece = self.out.read(2 * count - len(data))

@@ -1,5 +1,7 @@
 """The window on a display that a program elsewhere draws on, on a real screen, Xvfb's."""
 
+from __future__ import annotations
+
 import os
 import signal
 import subprocess

@@ -1,5 +1,7 @@
 """The window on a real screen, Xvfb's; and the arithmetic that needs none."""
 
+from __future__ import annotations
+
 import os
 import shutil
 import subprocess
