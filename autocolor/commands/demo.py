@@ -7,7 +7,7 @@ from pathlib import Path
 from autocolor.errors import MissingInputError
 
 PACKAGE = Path(__file__).resolve().parents[1]
-PLACES = (PACKAGE / "demo", PACKAGE.parent / "scenes" / "coupe")
+PLACES = (PACKAGE / "demo_scene", PACKAGE.parent / "scenes" / "coupe")
 
 
 def demo_folder() -> Path:
