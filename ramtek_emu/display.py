@@ -14,7 +14,7 @@ from ramtek_emu.checks import checked_stream
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import Instruction
-from ramtek_emu.instruction_set.table import FORM_OF_NAME
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.cursors import Cursors, Joystick
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
@@ -76,7 +76,7 @@ class Ramtek9300:
         self.decoder.clear()
         self.processor.clear_replies()
         self.cursors.hide()
-        self.send(np.array([FORM_OF_NAME["RSET"].opcode << 8], np.uint16))
+        self.send(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16))
 
     def receive(self, count: int) -> Words:
         """The next `count` words that a reading instruction left, uint16; ReplyError when there are fewer."""

@@ -24,27 +24,27 @@ from ramtek_emu.instruction_set.instruction import (
     encode,
     normal,
 )
-from ramtek_emu.instruction_set.table import FORM_OF_NAME, Flags
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, Flags
 
 LOW_BYTE_FIRST: Final = np.dtype("<u2")
 THREE_WORDS: Final = Struct("<3H")
-LOAD: Final = FORM_OF_NAME["LAM"].opcode << 8
+LOAD: Final = FORMAT_OF_NAME["LAM"].opcode << 8
 """The first word of the instruction that loads the lookup table."""
 
 
 def reset() -> Words:
     """RSET: every parameter as at power-on, the screen erased; the lookup table stays."""
-    return encode(Instruction(FORM_OF_NAME["RSET"]))
+    return encode(Instruction(FORMAT_OF_NAME["RSET"]))
 
 
 def initialize() -> Words:
     """INIT: every parameter as at power-on; screen and lookup table stay."""
-    return encode(Instruction(FORM_OF_NAME["INIT"]))
+    return encode(Instruction(FORMAT_OF_NAME["INIT"]))
 
 
 def no_operation() -> Words:
     """NOP."""
-    return encode(Instruction(FORM_OF_NAME["NOP"]))
+    return encode(Instruction(FORMAT_OF_NAME["NOP"]))
 
 
 def set_parameters(**operands: OperandValue | None) -> Words:
@@ -75,7 +75,7 @@ def write_image(words: object, left: int = 0, top: int = 0, planes: int = 10) ->
     place = 0
     for start in starts:
         part = flat[start : start + most]
-        first = head if start == 0 else (FORM_OF_NAME["WI"].opcode << 8 | Flags.DATA, 2 * part.size)
+        first = head if start == 0 else (FORMAT_OF_NAME["WI"].opcode << 8 | Flags.DATA, 2 * part.size)
         stream[place : place + len(first)] = first
         place += len(first)
         stream[place : place + part.size] = part
@@ -135,7 +135,7 @@ def park_table(address: int = 0) -> Words:
 
 def read_entries(address: int = 0, words: int = 2048) -> Words:
     """RAM: ask for words of the lookup table from a word address on; receive as many."""
-    return np.array((FORM_OF_NAME["RAM"].opcode << 8, address, 2 * words), np.uint16)
+    return np.array((FORMAT_OF_NAME["RAM"].opcode << 8, address, 2 * words), np.uint16)
 
 
 def write_text(
@@ -221,7 +221,7 @@ def zoom(across: int = 1, down: int | None = None) -> Words:
     factors = (across, across if down is None else down)
     if not all(isinstance(each, int) and 1 <= each <= 16 for each in factors):
         raise InstructionError(f"zoom factors must be 1 to 16, not {factors}; choose smaller ones")
-    return np.array((FORM_OF_NAME["ZOOM"].opcode << 8, factors[1] - 1 << 8 | factors[0] - 1), np.uint16)
+    return np.array((FORMAT_OF_NAME["ZOOM"].opcode << 8, factors[1] - 1 << 8 | factors[0] - 1), np.uint16)
 
 
 def write_cursor(
@@ -233,14 +233,14 @@ def write_cursor(
         if not 0 <= value <= most:
             raise InstructionError(f"a cursor's {each} must be 0 to {most}, not {value}; keep to the screen")
     state = (0x0400 if visible else 0) | (0x0800 if blinking else 0)
-    return np.array((FORM_OF_NAME["WCSS"].opcode << 8 | number, element, line | state), np.uint16)
+    return np.array((FORMAT_OF_NAME["WCSS"].opcode << 8 | number, element, line | state), np.uint16)
 
 
 def read_cursor(number: int) -> Words:
     """RCSS: ask for a cursor; receive two words, the element, and the line with the state above ten bits."""
     if not 0 <= number <= 255:
         raise InstructionError(f"a cursor's number must be 0 to 255, not {number}; choose one there is")
-    return np.array([FORM_OF_NAME["RCSS"].opcode << 8 | number], np.uint16)
+    return np.array([FORMAT_OF_NAME["RCSS"].opcode << 8 | number], np.uint16)
 
 
 def concatenate(*parts: Words) -> Words:

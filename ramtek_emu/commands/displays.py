@@ -163,7 +163,7 @@ def tell_the_end(display: Ramtek9300, held_words: int, odd_byte: bytes) -> None:
     illegal = display.processor.illegal_words
     if illegal:
         tell(f"{illegal} {'word begins' if illegal == 1 else 'words begin'} no instruction: skipped")
-    unknown = display.processor.named_only
+    unknown = display.processor.unimplemented
     if unknown:
         plural = "instruction is" if unknown == 1 else "instructions are"
         tell(f"{unknown} {plural} known by name only: without effect")

@@ -20,7 +20,7 @@ import numpy as np
 from ramtek_emu.arrays import Booleans, Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.instruction_set.instruction import NO_WORDS
-from ramtek_emu.instruction_set.table import FORMS
+from ramtek_emu.instruction_set.table import FORMATS
 
 Record = Callable[[bytes], object]
 
@@ -39,7 +39,7 @@ REPLY_PIECE: Final = 1 << 15
 def asking() -> Booleans:
     """For each of the 256 opcodes, whether it makes the display reply."""
     opcodes = np.zeros(256, np.bool_)
-    opcodes[[form.opcode for form in FORMS if form.replies]] = True
+    opcodes[[format.opcode for format in FORMATS if format.replies]] = True
     return opcodes
 
 

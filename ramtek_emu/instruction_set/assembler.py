@@ -33,20 +33,20 @@ from ramtek_emu.instruction_set.listing_tokens import (
 from ramtek_emu.instruction_set.table import (
     ADDRESSING_NAMES,
     FLAG_NAMES,
-    FORM_OF_NAME,
-    FORMS,
+    FORMAT_OF_NAME,
+    FORMATS,
     OPERANDS,
     OPERANDS_1,
     OPERANDS_2,
     Flags,
-    Form,
+    InstructionFormat,
 )
 
 FLAG_OF_NAME: Final = {name: flag for flag, name in (FLAG_NAMES | ADDRESSING_NAMES).items()} | {
     "OF1": Flags.OPERANDS_1,
     "OF2": Flags.OPERANDS_2,
 }
-FORM_OF_WORD: Final = {"WV": FORM_OF_NAME["WVL"]} | {form.name.upper(): form for form in FORMS}
+FORMAT_OF_WORD: Final = {"WV": FORMAT_OF_NAME["WVL"]} | {format.name.upper(): format for format in FORMATS}
 OPERAND_OF_WORD: Final = {
     word.upper(): operand for operand in OPERANDS.values() for word in (operand.name, operand.mnemonic)
 }
@@ -96,12 +96,12 @@ class Draft:
     def __init__(self, tokens: list[str], number: int) -> None:
         self.number = number
         name = tokens[0].upper()
-        if name not in FORM_OF_WORD:
+        if name not in FORMAT_OF_WORD:
             raise refusal(
                 number,
                 f"an instruction must be one of the table, not {tokens[0]!r}; write its words after raw",
             )
-        self.form: Form = FORM_OF_WORD[name]
+        self.format: InstructionFormat = FORMAT_OF_WORD[name]
         self.low_byte = 0
         self.operands: dict[str, tuple[int, ...]] = {}
         self.length: int | None = None
@@ -123,35 +123,35 @@ class Draft:
     @property
     def takes_data(self) -> bool:
         """Whether words follow this instruction."""
-        return not self.form.replies and (self.form.is_normal or "length" in (self.form.fixed or ()))
+        return not self.format.replies and (self.format.is_normal or "length" in (self.format.fixed or ()))
 
     def _take(self, token: str) -> None:
         """Take a flag, a number or an operand."""
         name, _, value = token.partition("=")
         upper = name.upper()
-        if self.form.is_normal and upper in FLAG_OF_NAME and not value:
+        if self.format.is_normal and upper in FLAG_OF_NAME and not value:
             self.low_byte |= FLAG_OF_NAME[upper]
-        elif self.form.is_normal and upper in OPERAND_OF_WORD:
+        elif self.format.is_normal and upper in OPERAND_OF_WORD:
             operand = OPERAND_OF_WORD[upper]
             words = numbers_of(value, self.number) if value else ()
-            allowed = (0,) if self.form.asks else (6, 12) if operand.name == "conic" else (operand.words,)
+            allowed = (0,) if self.format.asks else (6, 12) if operand.name == "conic" else (operand.words,)
             if len(words) not in allowed:
                 raise refusal(
                     self.number,
                     f"{name} must be {' or '.join(map(str, allowed))} numbers, not {value!r}; give all",
                 )
             self.operands[operand.name] = words
-        elif not self.form.is_normal and name in (self.form.fixed or ()) and name != "length":
+        elif not self.format.is_normal and name in (self.format.fixed or ()) and name != "length":
             words = numbers_of(value, self.number)
             if len(words) != 1:
                 raise refusal(self.number, f"{name} must be one number, not {value!r}; give one")
             self.operands[name] = words
-        elif not self.form.is_normal and re.fullmatch(r"#[0-9]{1,3}", token) and int(token[1:]) <= 0xFF:
+        elif not self.format.is_normal and re.fullmatch(r"#[0-9]{1,3}", token) and int(token[1:]) <= 0xFF:
             self.low_byte = int(token[1:])
         else:
             raise refusal(
                 self.number,
-                f"what follows {self.form.name} must be a flag, an operand or a length, not {token!r}; "
+                f"what follows {self.format.name} must be a flag, an operand or a length, not {token!r}; "
                 "see `ramtek list`",
             )
 
@@ -188,29 +188,31 @@ class Draft:
         """The bytes of the whole instruction."""
         data = np.concatenate(self.data) if self.data else NO_WORDS
         length = self.length
-        if length is None and (len(data) or "length" in (self.form.fixed or ())):
+        if length is None and (len(data) or "length" in (self.format.fixed or ())):
             length = self.bytes
-        expected = 0 if self.form.replies else ((length or 0) + 1) // 2
+        expected = 0 if self.format.replies else ((length or 0) + 1) // 2
         if len(data) != expected:
             raise refusal(
                 self.number,
-                f"{self.form.name} must have data of {length or 0} bytes, not of {2 * len(data)}; "
+                f"{self.format.name} must have data of {length or 0} bytes, not of {2 * len(data)}; "
                 "leave the length out to have it counted",
             )
-        missing = [name for name in self.form.fixed or () if name not in self.operands and name != "length"]
+        missing = [name for name in self.format.fixed or () if name not in self.operands and name != "length"]
         if missing:
             raise refusal(
-                self.number, f"{self.form.name} must have all its operands; add {', '.join(missing)}"
+                self.number, f"{self.format.name} must have all its operands; add {', '.join(missing)}"
             )
         low_byte = self.low_byte
-        if self.form.is_normal:
+        if self.format.is_normal:
             low_byte |= Flags.DATA if length is not None else 0
             low_byte |= Flags.OPERANDS_1 if any(each.name in self.operands for each in OPERANDS_1) else 0
             low_byte |= Flags.OPERANDS_2 if any(each.name in self.operands for each in OPERANDS_2) else 0
         # The words come in the order of the table, however they were written.
-        named = {name: self.operands[name] for name in (self.form.fixed or OPERANDS) if name in self.operands}
+        named = {
+            name: self.operands[name] for name in (self.format.fixed or OPERANDS) if name in self.operands
+        }
         try:
-            words = encode(Instruction(self.form, int(low_byte), named, length, data))
+            words = encode(Instruction(self.format, int(low_byte), named, length, data))
         except InstructionError as cause:
             raise refusal(self.number, str(cause)) from cause
         return words.astype("<u2", copy=False).tobytes()

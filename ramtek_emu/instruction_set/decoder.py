@@ -24,7 +24,14 @@ import numpy as np
 from ramtek_emu.arrays import Booleans, Words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
-from ramtek_emu.instruction_set.table import FORMS, ILLEGAL, OPERANDS, Flags, Form, operands_named
+from ramtek_emu.instruction_set.table import (
+    FORMATS,
+    ILLEGAL,
+    OPERANDS,
+    Flags,
+    InstructionFormat,
+    operands_named,
+)
 
 MOST_HEAD: Final = 64
 """More words than any instruction has before its data."""
@@ -39,7 +46,7 @@ class Decoder:
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
         self._extended = configuration.extended
-        self._forms = forms_of_opcodes(configuration.extended)
+        self._formats = formats_of_opcodes(configuration.extended)
         self._begins = words_that_begin(configuration.extended)
         self._held: Words = np.empty(MOST_WORDS, np.uint16)
         self._count = 0
@@ -68,28 +75,28 @@ class Decoder:
             if self._count < self._needed:
                 return
             head = self._held[: min(self._count, MOST_HEAD)].tolist()
-            form = self._form(head[0])
-            self._needed = words_needed(form, head)
+            format = self._format(head[0])
+            self._needed = words_needed(format, head)
             if self._needed == self._count:
                 whole = self._held[: self._count].copy()
                 self.clear()
-                yield instruction_of(form, head, whole)
+                yield instruction_of(format, head, whole)
         while place < len(words):
             head = words[place : place + MOST_HEAD].tolist()
-            form = self._form(head[0])
-            if in_rows and form is ILLEGAL:
+            format = self._format(head[0])
+            if in_rows and format is ILLEGAL:
                 row = self._illegal_row(words, place)
                 yield Instruction(ILLEGAL, 0, {}, None, words[place : place + row])
                 place += row
                 continue
-            needed = words_needed(form, head)
+            needed = words_needed(format, head)
             if needed > len(words) - place:
                 # Hold the beginning of an instruction.
                 self._needed, self._count = needed, len(words) - place
                 self._held[: self._count] = words[place:]
                 return
             place += needed
-            yield instruction_of(form, head, words[place - needed : place])
+            yield instruction_of(format, head, words[place - needed : place])
 
     def _illegal_row(self, words: Words, place: int) -> int:
         """How many words from `place` on begin nothing."""
@@ -102,53 +109,53 @@ class Decoder:
             step *= 2
         return count
 
-    def _form(self, word: int) -> Form:
-        form = self._forms[word >> 8]
-        if not self._extended and form.is_normal and word & Flags.OPERANDS_2:
+    def _format(self, word: int) -> InstructionFormat:
+        format = self._formats[word >> 8]
+        if not self._extended and format.is_normal and word & Flags.OPERANDS_2:
             return ILLEGAL
-        return form
+        return format
 
 
 FLAG_WORDS: Final = {0: 1, Flags.OPERANDS_1: 2, Flags.OPERANDS_2: 2, Flags.OPERANDS_1 | Flags.OPERANDS_2: 3}
 """The instruction word and the flag words that its flags announce."""
 
 
-def words_needed(form: Form, head: list[int]) -> int:
-    """How many words an instruction of a form is, as far as its first words tell."""
-    if form.fixed is not None:
-        count = 1 + len(form.fixed)
-        if form.replies or "length" not in form.fixed or len(head) < count:
+def words_needed(format: InstructionFormat, head: list[int]) -> int:
+    """How many words an instruction has, as far as its first words tell."""
+    if format.fixed is not None:
+        count = 1 + len(format.fixed)
+        if format.replies or "length" not in format.fixed or len(head) < count:
             return count
-        return count + (head[1 + form.fixed.index("length")] + 1) // 2
+        return count + (head[1 + format.fixed.index("length")] + 1) // 2
     flags = head[0]
     count = FLAG_WORDS[flags & 6]
     if len(head) < count:
         return count
-    if count > 1 and not form.asks:
+    if count > 1 and not format.asks:
         first, second = flag_words(head)
         count += sum(operand.words for operand in operands_named(first, second))
-        if first & CONIC and flags & Flags.DATA and form.name == "WC":
+        if first & CONIC and flags & Flags.DATA and format.name == "WC":
             place = short_length_place(head)
             if place is not None and len(head) <= place:
                 return place + 1
             count -= 6 if place is not None and head[place] == 4 else 0
     if flags & Flags.DATA:
         count += 1
-        if not form.replies and len(head) >= count:
+        if not format.replies and len(head) >= count:
             count += (head[count - 1] + 1) // 2
     return count
 
 
-def instruction_of(form: Form, head: list[int], words: Words) -> Instruction:
-    """An instruction of a form from its first words and all of them."""
-    if form is ILLEGAL:
-        return Instruction(form, 0, {"word": (head[0],)})
+def instruction_of(format: InstructionFormat, head: list[int], words: Words) -> Instruction:
+    """The instruction that these words are; `head` holds the first of them as numbers."""
+    if format is ILLEGAL:
+        return Instruction(format, 0, {"word": (head[0],)})
     low_byte = head[0] & 0xFF
     operands: dict[str, tuple[int, ...]] = {}
     length: int | None = None
-    if form.fixed is not None:
-        place = 1 + len(form.fixed)
-        for name, word in zip(form.fixed, head[1:place], strict=True):
+    if format.fixed is not None:
+        place = 1 + len(format.fixed)
+        for name, word in zip(format.fixed, head[1:place], strict=True):
             if name == "length":
                 length = word
             else:
@@ -157,8 +164,8 @@ def instruction_of(form: Form, head: list[int], words: Words) -> Instruction:
         place = FLAG_WORDS[low_byte & 6]
         if place > 1:
             for operand in operands_named(*flag_words(head)):
-                size = 0 if form.asks else operand.words
-                if operand.name == "conic" and form.name == "WC" and low_byte & Flags.DATA:
+                size = 0 if format.asks else operand.words
+                if operand.name == "conic" and format.name == "WC" and low_byte & Flags.DATA:
                     length_place = short_length_place(head)
                     size = 6 if length_place is not None and head[length_place] == 4 else 12
                 operands[operand.name] = tuple(head[place : place + size])
@@ -166,7 +173,7 @@ def instruction_of(form: Form, head: list[int], words: Words) -> Instruction:
         if low_byte & Flags.DATA:
             length = head[place]
             place += 1
-    return Instruction(form, low_byte, operands, length, words[place:] if place < len(words) else NO_WORDS)
+    return Instruction(format, low_byte, operands, length, words[place:] if place < len(words) else NO_WORDS)
 
 
 def flag_words(head: list[int]) -> tuple[int, int]:
@@ -177,20 +184,22 @@ def flag_words(head: list[int]) -> tuple[int, int]:
 
 
 @lru_cache
-def forms_of_opcodes(extended: bool) -> tuple[Form, ...]:
-    """The form of each of the 256 opcodes, with or without those of the 9400 and 9460."""
-    known = {form.opcode: form for form in FORMS if extended or not form.extended}
+def formats_of_opcodes(extended: bool) -> tuple[InstructionFormat, ...]:
+    """The format of each of the 256 opcodes, with or without those of the 9400 and 9460."""
+    known = {format.opcode: format for format in FORMATS if extended or not format.extended}
     return tuple(known.get(opcode, ILLEGAL) for opcode in range(256))
 
 
 @lru_cache
 def words_that_begin(extended: bool) -> Booleans:
     """Whether each of the 65,536 words begins an instruction: rows of illegal ones are found at once."""
-    forms = forms_of_opcodes(extended)
-    begins = np.repeat([form is not ILLEGAL for form in forms], 256)
+    formats = formats_of_opcodes(extended)
+    begins = np.repeat([format is not ILLEGAL for format in formats], 256)
     if not extended:
         words = np.arange(0x10000)
-        begins &= ~(np.repeat([form.is_normal for form in forms], 256) & (words & Flags.OPERANDS_2 != 0))
+        begins &= ~(
+            np.repeat([format.is_normal for format in formats], 256) & (words & Flags.OPERANDS_2 != 0)
+        )
     return begins
 
 

@@ -85,9 +85,9 @@ class Item:
             if self.odd_byte:
                 item["byte"] = self.odd_byte[0]
             return item
-        form, low_byte = self.instruction.form, self.instruction.low_byte
-        item |= {"name": form.name, "meaning": form.meaning}
-        item |= {"flags": flag_names(low_byte)} if form.is_normal else {"number": low_byte}
+        format, low_byte = self.instruction.format, self.instruction.low_byte
+        item |= {"name": format.name, "meaning": format.meaning}
+        item |= {"flags": flag_names(low_byte)} if format.is_normal else {"number": low_byte}
         item["operands"] = {name: list(words) for name, words in self.instruction.operands.items()}
         if self.instruction.length is not None:
             item["bytes"] = self.instruction.length
@@ -108,12 +108,14 @@ def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> I
         for instruction in decoder.feed(words):
             meant = encode(instruction)
             item = rest[taken : taken + len(meant)]
-            if instruction.form is ILLEGAL:
+            if instruction.format is ILLEGAL:
                 yield Item(place, item, None, "begins no instruction")
             elif np.array_equal(item, meant):
                 yield Item(place, item, instruction)
             else:
-                yield Item(place, item, None, f"{instruction.form.name} with flag bits that no source names")
+                yield Item(
+                    place, item, None, f"{instruction.format.name} with flag bits that no source names"
+                )
             taken += len(meant)
             place += len(meant)
         rest = rest[taken:]
@@ -132,9 +134,9 @@ def flag_names(low_byte: int) -> list[str]:
 
 def head_text(instruction: Instruction) -> str:
     """An instruction without its data: name, flags, operands, length."""
-    form = instruction.form
-    parts = [form.name]
-    if form.is_normal:
+    format = instruction.format
+    parts = [format.name]
+    if format.is_normal:
         parts += flag_names(instruction.low_byte)
         for flag, name, operands in (
             (Flags.OPERANDS_1, "OF1", OPERANDS_1),
@@ -167,7 +169,7 @@ def operand_text(name: str, words: tuple[int, ...]) -> str:
 
 def data_texts(instruction: Instruction) -> Iterator[tuple[Words, str]]:
     """The data of an instruction in lines: some words and what they mean."""
-    data, name = instruction.data, instruction.form.name
+    data, name = instruction.data, instruction.format.name
     length = instruction.length or 0
     if name in VERTICES and len(data) % 2 == 0:
         points = data.view(np.int16).reshape(-1, 2)

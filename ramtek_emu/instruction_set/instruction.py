@@ -17,13 +17,13 @@ from ramtek_emu.errors import InstructionError
 from ramtek_emu.instruction_set.table import (
     ADDRESSING_NAMES,
     FLAG_NAMES,
-    FORM_OF_NAME,
+    FORMAT_OF_NAME,
     ILLEGAL,
     OPERANDS,
     OPERANDS_1,
     OPERANDS_2,
     Flags,
-    Form,
+    InstructionFormat,
 )
 
 OperandValue = int | Sequence[int]
@@ -37,7 +37,7 @@ MOST_BYTES: Final = 0xFFFF
 class Instruction:
     """One instruction: its row of the table, its low byte, its operands as words, its data."""
 
-    form: Form
+    format: InstructionFormat
     low_byte: int = 0
     operands: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     length: int | None = None
@@ -57,22 +57,22 @@ class Instruction:
 
     def __str__(self) -> str:
         operands = [f"{name} {', '.join(map(str, words))}" for name, words in self.operands.items()]
-        if self.form.is_normal:
+        if self.format.is_normal:
             low = [name for flag, name in FLAG_NAMES.items() if self.low_byte & flag]
             low += filter(None, [ADDRESSING_NAMES.get(self.low_byte & Flags.ADDRESSING)])
         else:
             low = [str(self.low_byte)] if self.low_byte else []
         length = [] if self.length is None else [f"{self.length} bytes"]
-        return f"{self.form.name:<5}{'; '.join(low + operands + length)}".rstrip()
+        return f"{self.format.name:<5}{'; '.join(low + operands + length)}".rstrip()
 
 
 def encode(instruction: Instruction) -> Words:
     """The words of an instruction."""
-    form = instruction.form
-    if form is ILLEGAL:
+    format = instruction.format
+    if format is ILLEGAL:
         return np.concatenate((np.array(instruction.operands.get("word", ()), np.uint16), instruction.data))
-    head = [form.opcode << 8 | instruction.low_byte]
-    if form.is_normal:
+    head = [format.opcode << 8 | instruction.low_byte]
+    if format.is_normal:
         flag_words = [
             sum(1 << bit for bit, operand in enumerate(operands) if operand.name in instruction.operands)
             for operands in (OPERANDS_1, OPERANDS_2)
@@ -86,7 +86,7 @@ def encode(instruction: Instruction) -> Words:
         if instruction.length is not None:
             head.append(instruction.length)
     else:
-        for name in form.fixed or ():
+        for name in format.fixed or ():
             head.extend((instruction.length or 0,) if name == "length" else instruction.operands[name])
     return np.concatenate((np.array(head, np.uint16), instruction.data))
 
@@ -113,7 +113,7 @@ def normal(
                 f"the data of {name} must be 0 to {MOST_BYTES} bytes, not {length}; "
                 "send them in several instructions"
             )
-    return Instruction(FORM_OF_NAME[name], int(flags), named, length, data)
+    return Instruction(FORMAT_OF_NAME[name], int(flags), named, length, data)
 
 
 def operand_words(name: str, value: OperandValue) -> tuple[int, ...]:

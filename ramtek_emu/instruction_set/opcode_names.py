@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-NAMED_ONLY: Final = (
+UNIMPLEMENTED: Final = (
     (0x01, "LOAD", "load a hard register"),
     (0x02, "READ", "read a soft register"),
     (0x10, "WPB", "write a plot box"),

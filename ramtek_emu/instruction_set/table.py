@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
-from ramtek_emu.instruction_set.opcode_names import NAMED_ONLY
+from ramtek_emu.instruction_set.opcode_names import UNIMPLEMENTED
 
 
 class Flags:
@@ -77,7 +77,7 @@ OPERANDS: Final = {operand.name: operand for operand in OPERANDS_1 + OPERANDS_2}
 
 
 @dataclass(frozen=True, slots=True)
-class Form:
+class InstructionFormat:
     """A row of the instruction table."""
 
     opcode: int
@@ -89,7 +89,7 @@ class Form:
     """Whether the data go to the host: then a length is sent, but no data."""
     extended: bool = False
     """Whether only the 9400 and 9460 know it."""
-    named_only: bool = False
+    unimplemented: bool = False
     """Whether no source tells more than its name."""
     asks: bool = False
     """Whether the flag words name operands that go to the host: then none of them are sent."""
@@ -100,54 +100,58 @@ class Form:
         return self.fixed is None
 
 
-ILLEGAL: Final = Form(-1, "???", "no instruction", ())
+ILLEGAL: Final = InstructionFormat(-1, "???", "no instruction", ())
 """What a word is that no row describes; it is skipped alone."""
 
 CHARACTER_ROWS: Final = tuple(f"rows_{2 * pair}_{2 * pair + 1}" for pair in range(6))
 """The operands of LPF: twelve rows of eight dots, two a word."""
 
 SUBSTANTIATED: Final = (
-    Form(0x03, "LAM", "load the lookup table", ("address", "length")),
+    InstructionFormat(0x03, "LAM", "load the lookup table", ("address", "length")),
     # Assumed: on the 9300 too, though only clients of the 9460 were seen to send it: one that reads the table
     # of a 9300 would wait for an answer for ever.
-    Form(0x04, "RAM", "read the lookup table", ("address", "length"), replies=True),
-    Form(0x05, "RSET", "restore every parameter and erase the screen", ()),
-    Form(0x06, "INIT", "restore every parameter", ()),
-    Form(0x07, "NOP", "do nothing", ()),
-    Form(0x08, "SET", "set parameters"),
-    Form(0x09, "ERS", "erase the window"),
-    Form(0x0A, "WI", "write an image"),
-    Form(0x0B, "RI", "read an image", replies=True),
-    Form(0x0C, "WT", "write text"),
-    Form(0x0D, "WR", "write a raster of one bit a pixel"),
-    Form(0x0E, "WVL", "write linked vectors"),
-    Form(0x0F, "WC", "write a conic"),
-    Form(0x13, "PUSHE", "save the environment", (), extended=True),
-    Form(0x14, "POPE", "restore the environment", (), extended=True),
-    Form(0x15, "LPF", "load a character", CHARACTER_ROWS),
-    Form(0x16, "WCSS", "write a cursor, screen coordinates", ("element", "line_and_state")),
-    Form(0x17, "RCSS", "read a cursor, screen coordinates", ()),
-    Form(0x21, "LPFRP", "load a character, reverse packed", CHARACTER_ROWS, extended=True),
-    Form(0x24, "READP", "read parameters", extended=True, asks=True),
-    Form(0x25, "RERR", "read and clear the error status", (), extended=True),
-    Form(0x26, "ZOOM", "repeat elements and lines", ("zoom",), extended=True),
-    Form(0x27, "SELVO", "select the video origin", (), extended=True),
-    Form(0x29, "WAITVR", "wait for the vertical retrace", (), extended=True),
-    Form(0x2A, "WAITL", "wait for a line", ("line",), extended=True),
-    Form(0x2B, "BERS", "erase the whole memory", extended=True),
-    Form(0x2C, "WCSP", "write a cursor, pixel coordinates", ("element", "line_and_state"), extended=True),
-    Form(0x2D, "WCSG", "write a cursor, global coordinates", ("element", "line", "state"), extended=True),
-    Form(0x2E, "RCSP", "read a cursor, pixel coordinates", (), extended=True),
-    Form(0x2F, "RCSG", "read a cursor, global coordinates", (), extended=True),
-    Form(0x30, "LCF", "load a cursor's shape", ("length",), extended=True),
-    Form(0x33, "DDCC", "connect a tracking device to cursors", ("cursors",), extended=True),
-    Form(0x35, "WVU", "write unlinked vectors", extended=True),
-    Form(0x38, "WPT", "write points", extended=True),
-    Form(0x39, "WRP", "write random pixels", extended=True),
-    Form(0x3A, "FILL", "fill an area", extended=True),
-    Form(0x4E, "ATTPF", "attach a font", (), extended=True),
-    Form(0x69, "COPY", "copy an image", extended=True),
-    Form(0x6D, "CIRC", "write circles", extended=True),
+    InstructionFormat(0x04, "RAM", "read the lookup table", ("address", "length"), replies=True),
+    InstructionFormat(0x05, "RSET", "restore every parameter and erase the screen", ()),
+    InstructionFormat(0x06, "INIT", "restore every parameter", ()),
+    InstructionFormat(0x07, "NOP", "do nothing", ()),
+    InstructionFormat(0x08, "SET", "set parameters"),
+    InstructionFormat(0x09, "ERS", "erase the window"),
+    InstructionFormat(0x0A, "WI", "write an image"),
+    InstructionFormat(0x0B, "RI", "read an image", replies=True),
+    InstructionFormat(0x0C, "WT", "write text"),
+    InstructionFormat(0x0D, "WR", "write a raster of one bit a pixel"),
+    InstructionFormat(0x0E, "WVL", "write linked vectors"),
+    InstructionFormat(0x0F, "WC", "write a conic"),
+    InstructionFormat(0x13, "PUSHE", "save the environment", (), extended=True),
+    InstructionFormat(0x14, "POPE", "restore the environment", (), extended=True),
+    InstructionFormat(0x15, "LPF", "load a character", CHARACTER_ROWS),
+    InstructionFormat(0x16, "WCSS", "write a cursor, screen coordinates", ("element", "line_and_state")),
+    InstructionFormat(0x17, "RCSS", "read a cursor, screen coordinates", ()),
+    InstructionFormat(0x21, "LPFRP", "load a character, reverse packed", CHARACTER_ROWS, extended=True),
+    InstructionFormat(0x24, "READP", "read parameters", extended=True, asks=True),
+    InstructionFormat(0x25, "RERR", "read and clear the error status", (), extended=True),
+    InstructionFormat(0x26, "ZOOM", "repeat elements and lines", ("zoom",), extended=True),
+    InstructionFormat(0x27, "SELVO", "select the video origin", (), extended=True),
+    InstructionFormat(0x29, "WAITVR", "wait for the vertical retrace", (), extended=True),
+    InstructionFormat(0x2A, "WAITL", "wait for a line", ("line",), extended=True),
+    InstructionFormat(0x2B, "BERS", "erase the whole memory", extended=True),
+    InstructionFormat(
+        0x2C, "WCSP", "write a cursor, pixel coordinates", ("element", "line_and_state"), extended=True
+    ),
+    InstructionFormat(
+        0x2D, "WCSG", "write a cursor, global coordinates", ("element", "line", "state"), extended=True
+    ),
+    InstructionFormat(0x2E, "RCSP", "read a cursor, pixel coordinates", (), extended=True),
+    InstructionFormat(0x2F, "RCSG", "read a cursor, global coordinates", (), extended=True),
+    InstructionFormat(0x30, "LCF", "load a cursor's shape", ("length",), extended=True),
+    InstructionFormat(0x33, "DDCC", "connect a tracking device to cursors", ("cursors",), extended=True),
+    InstructionFormat(0x35, "WVU", "write unlinked vectors", extended=True),
+    InstructionFormat(0x38, "WPT", "write points", extended=True),
+    InstructionFormat(0x39, "WRP", "write random pixels", extended=True),
+    InstructionFormat(0x3A, "FILL", "fill an area", extended=True),
+    InstructionFormat(0x4E, "ATTPF", "attach a font", (), extended=True),
+    InstructionFormat(0x69, "COPY", "copy an image", extended=True),
+    InstructionFormat(0x6D, "CIRC", "write circles", extended=True),
 )
 """What the programs of the time substantiate, and what their names leave little doubt about.
 
@@ -157,8 +161,9 @@ Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP,
 WVU, WRP and COPY, of which the sources give
 numbers and names; each is described where it is done.
 """
-FORMS: Final = SUBSTANTIATED + tuple(
-    Form(opcode, name, meaning, extended=True, named_only=True) for opcode, name, meaning in NAMED_ONLY
+FORMATS: Final = SUBSTANTIATED + tuple(
+    InstructionFormat(opcode, name, meaning, extended=True, unimplemented=True)
+    for opcode, name, meaning in UNIMPLEMENTED
 )
 """Every row.
 
@@ -172,7 +177,7 @@ FLAG_NAMES: Final = {
     Flags.ADDITIVE: "AD",
 }
 ADDRESSING_NAMES: Final = {Flags.INDEX_1: "IX01", Flags.INDEX_2: "IX10", Flags.RELATIVE: "IX11"}
-FORM_OF_NAME: Final = {form.name: form for form in FORMS}
+FORMAT_OF_NAME: Final = {format.name: format for format in FORMATS}
 
 
 @lru_cache(maxsize=1024)

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction
-from ramtek_emu.instruction_set.table import FORMS, OPERANDS
+from ramtek_emu.instruction_set.table import FORMATS, OPERANDS
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.processor.processor import Processor, Status, executes
 
@@ -25,11 +25,11 @@ def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
 def consume(processor: Processor, instruction: Instruction) -> None:
     """Assumed: an instruction known by name only is consumed whole and sets the illegal status."""
     processor.flag_illegal()
-    processor.named_only += 1
+    processor.unimplemented += 1
 
 
-for _form in FORMS:
-    if _form.named_only:
+for _form in FORMATS:
+    if _form.unimplemented:
         executes(_form.name)(consume)
 
 

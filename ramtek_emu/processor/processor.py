@@ -70,7 +70,7 @@ class Processor:
         """The dots of the characters that a host may load, (256, 12, 8); the ROM's until it does."""
         self.illegal_words = 0
         """Words skipped because no instruction begins with them; it only grows."""
-        self.named_only = 0
+        self.unimplemented = 0
         """Instructions consumed of which only the name is known; it only grows."""
         self._illegal = False
         self._replies: deque[Words] = deque()
@@ -104,9 +104,9 @@ class Processor:
 
     def execute(self, instruction: Instruction) -> None:
         """Take an instruction's operands, then do it; nothing that a host sends raises."""
-        if instruction.form.is_normal and instruction.operands and not instruction.form.asks:
+        if instruction.format.is_normal and instruction.operands and not instruction.format.asks:
             self.parameters.take(instruction.operands, instruction.low_byte)
-        EXECUTORS[instruction.form.name](self, instruction)
+        EXECUTORS[instruction.format.name](self, instruction)
 
     def points(self, instruction: Instruction, numbers_each: int = 2) -> Numbers:
         """The data as (n, numbers_each) signed numbers; what is left over at the end is no point."""

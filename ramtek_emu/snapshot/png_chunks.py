@@ -93,8 +93,8 @@ def _next_chunk(data: bytes, place: int) -> tuple[bytes, bytes, int]:
 def _size(kind: bytes, content: bytes) -> tuple[int, int]:
     if kind != b"IHDR" or len(content) != 13:
         raise _refusal("begin with its size", "with another chunk")
-    elements, lines, *form = struct.unpack(">IIBBBBB", content)
-    if form != [16, 0, 0, 0, 0]:
+    elements, lines, *kind_of_pixels = struct.unpack(">IIBBBBB", content)
+    if kind_of_pixels != [16, 0, 0, 0, 0]:
         raise _refusal("be 16 bits gray, not interlaced", "another kind of picture")
     if not (1 <= elements <= MOST_SIDE and 1 <= lines <= MOST_SIDE):
         raise _refusal(f"be 1 to {MOST_SIDE} elements and lines", f"{elements} x {lines}")

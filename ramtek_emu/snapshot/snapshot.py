@@ -46,7 +46,7 @@ def snapshot_bytes(display: Ramtek9300) -> bytes:
             "loaded_characters": plain(processor.loaded_characters),
             "illegal": bool(processor.status & Status.ILLEGAL),
             "illegal_words": processor.illegal_words,
-            "named_only": processor.named_only,
+            "named_only": processor.unimplemented,
             "nanoseconds": 0 if processor.beam is None else processor.beam.nanoseconds,
         },
         "cursors": {
@@ -57,7 +57,7 @@ def snapshot_bytes(display: Ramtek9300) -> bytes:
         },
     }
     if display.beam is not None:
-        lines, pixels = display.scan_out.glass
+        lines, pixels = display.scan_out.monitor_image
         colors = pixels.astype("<u4").view(np.uint8).reshape(-1, 4)[:, :3]
         texts["glass"] = {"lines": lines, "pixels": packed(colors.tobytes())}
     written = {keyword: json.dumps(state, separators=(",", ":")) for keyword, state in texts.items()}
@@ -98,7 +98,7 @@ def display_of(data: bytes) -> Ramtek9300:
     )
     _restore_cursors(display, _state(texts, "cursors", "all", "track", "enter_is_pressed", "driven"))
     if display.beam is not None:
-        _restore_glass(display, display.beam, _state(texts, "glass", "lines", "pixels"))
+        _restore_monitor_image(display, display.beam, _state(texts, "glass", "lines", "pixels"))
     return display
 
 
@@ -168,8 +168,12 @@ def _restore_processor(display: Ramtek9300, parameters: dict[str, Any], state: d
     pattern = processor.parameters
     processor.parameters = restored(pattern, parameters["now"], "parameters")
     processor.saved[:] = listed(pattern, parameters["saved"], "saved", MOST_SAVED)
-    for name in ("loaded_characters", "illegal_words", "named_only"):
-        setattr(processor, name, restored(getattr(processor, name), state[name], name))
+    for name, attribute in (
+        ("loaded_characters", "loaded_characters"),
+        ("illegal_words", "illegal_words"),
+        ("named_only", "unimplemented"),
+    ):
+        setattr(processor, attribute, restored(getattr(processor, attribute), state[name], name))
     if restored(False, state["illegal"], "illegal"):
         processor.flag_illegal()
     nanoseconds = restored(0, state["nanoseconds"], "nanoseconds")
@@ -188,13 +192,13 @@ def _restore_cursors(display: Ramtek9300, state: dict[str, Any]) -> None:
     cursors.changed += 1
 
 
-def _restore_glass(display: Ramtek9300, beam: Beam, state: dict[str, Any]) -> None:
+def _restore_monitor_image(display: Ramtek9300, beam: Beam, state: dict[str, Any]) -> None:
     lines = whole_number(state["lines"], (0, beam.lines_done), "lines")
-    _, pixels = display.scan_out.glass
+    _, pixels = display.scan_out.monitor_image
     colors = np.zeros((pixels.size, 4), np.uint8)
     data = unpacked(state["pixels"], 3 * pixels.size, "pixels")
     colors[:, :3] = np.frombuffer(data, np.uint8).reshape(-1, 3)
-    display.scan_out.glass = lines, colors.view("<u4").reshape(pixels.shape)
+    display.scan_out.monitor_image = lines, colors.view("<u4").reshape(pixels.shape)
 
 
 def _state(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:

@@ -71,7 +71,7 @@ class ScanOut:
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
         self._gray: tuple[int, PackedColors] = (-1, lookup_table.packed)
         # With a beam: what the monitor shows, and how far the beam has come since power-on.
-        self._glass: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
+        self._monitor_image: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
         self._painted = 0
 
     @property
@@ -88,14 +88,14 @@ class ScanOut:
         )
 
     @property
-    def glass(self) -> tuple[int, PackedColors]:
+    def monitor_image(self) -> tuple[int, PackedColors]:
         """With a beam: the lines begun since power-on that are painted, and what the monitor shows."""
-        return self._painted, self._glass
+        return self._painted, self._monitor_image
 
-    @glass.setter
-    def glass(self, shown: tuple[int, PackedColors]) -> None:
+    @monitor_image.setter
+    def monitor_image(self, shown: tuple[int, PackedColors]) -> None:
         self._painted = shown[0]
-        self._glass[...] = shown[1]
+        self._monitor_image[...] = shown[1]
 
     def scan_out_into(self, pixels: PackedColors) -> None:
         """Write the field as 0x00RRGGBB into a (lines, elements) uint32 array."""
@@ -140,7 +140,7 @@ class ScanOut:
         while begun < beam.lines_done:
             first, last = max(start - begun, 0), min(beam.lines_done - begun, self.lines)
             if first < last:
-                self._paint(first, last, self._glass)
+                self._paint(first, last, self._monitor_image)
             begun += total
         self._painted = beam.lines_done
 
@@ -148,7 +148,7 @@ class ScanOut:
         # What the beam has not come to yet is as the memories are now: in the retrace the whole next field.
         self.follow_beam()
         line = beam.line if beam.line < self.lines else 0
-        pixels[:line] = self._glass[:line]
+        pixels[:line] = self._monitor_image[:line]
         self._paint(line, self.lines, pixels)
 
     def _paint(self, first: int, last: int, pixels: PackedColors) -> None:

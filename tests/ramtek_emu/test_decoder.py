@@ -55,8 +55,8 @@ def test_data_are_views_of_the_words_sent() -> None:
 
 def test_a_word_that_begins_nothing_is_skipped_alone() -> None:
     stream = np.array([0xFF00, 0x0000, 0x0700], np.uint16)
-    forms = [instruction.form.name for instruction in Decoder().feed(stream)]
-    assert forms == ["???", "???", "NOP"]
+    names = [instruction.format.name for instruction in Decoder().feed(stream)]
+    assert names == ["???", "???", "NOP"]
 
 
 @thorough
@@ -95,15 +95,15 @@ def test_rows_of_illegal_words_are_the_illegal_words_one_by_one(stream: list[int
 def test_an_instruction_known_by_name_only_is_consumed_whole() -> None:
     # WPB with a foreground and data, a keyboard instruction, a display list's.
     stream = np.array([0x1003, 0x0002, 7, 3, 1, 2, 0x1800, 0x4100, 0x0700], np.uint16)
-    forms = [instruction.form.name for instruction in Decoder().feed(stream)]
-    assert forms == ["WPB", "WKB", "CDL", "NOP"]
-    strict = [instruction.form.name for instruction in Decoder(PRINCETON_9300).feed(stream)]
+    names = [instruction.format.name for instruction in Decoder().feed(stream)]
+    assert names == ["WPB", "WKB", "CDL", "NOP"]
+    strict = [instruction.format.name for instruction in Decoder(PRINCETON_9300).feed(stream)]
     assert strict == ["???"] * 8 + ["NOP"]
 
 
 def test_a_9300_knows_no_second_operand_flag_word() -> None:
     stream = np.array([0x0804, 0x0001, 0x0700], np.uint16)
-    strict = [instruction.form for instruction in Decoder(PRINCETON_9300).feed(stream)]
+    strict = [instruction.format for instruction in Decoder(PRINCETON_9300).feed(stream)]
     assert strict[0] is ILLEGAL
     (instruction,) = Decoder().feed(stream)
     assert instruction.operands == {"read_mask": (0x0700,)}

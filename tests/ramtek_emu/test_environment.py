@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
-from ramtek_emu.instruction_set.table import FORMS, OPERANDS
+from ramtek_emu.instruction_set.table import FORMATS, OPERANDS
 from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu.strategies import SMALL, quick, sent_words, thorough
 
@@ -71,21 +71,25 @@ def test_the_error_status_is_read_and_cleared() -> None:
     assert display.status == Status.READY
 
 
-@pytest.mark.parametrize("form", [form for form in FORMS if form.named_only], ids=lambda form: form.name)
-def test_what_is_known_by_name_only_is_consumed_and_flagged(form: object) -> None:
+@pytest.mark.parametrize(
+    "format", [format for format in FORMATS if format.unimplemented], ids=lambda format: format.name
+)
+def test_what_is_known_by_name_only_is_consumed_and_flagged(format: object) -> None:
     display = Ramtek9300()
-    opcode = form.opcode  # type: ignore[attr-defined]
+    opcode = format.opcode  # type: ignore[attr-defined]
     display.send(sent_words([opcode << 8 | 3, 2, 5, 4, 0x0500, 0x0600, 0x0902, 0x44, 3, 0, 0, 1, 1]))
     assert display.status == Status.READY | Status.ILLEGAL
-    assert display.processor.named_only == 1
+    assert display.processor.unimplemented == 1
     assert display.processor.parameters.foreground == 5
     assert (display.words[:2, :2] == 3).all()
 
 
-@pytest.mark.parametrize("form", [form for form in FORMS if form.extended], ids=lambda form: form.name)
-def test_what_the_9460_brought_is_illegal_on_the_9300(form: object) -> None:
+@pytest.mark.parametrize(
+    "format", [format for format in FORMATS if format.extended], ids=lambda format: format.name
+)
+def test_what_the_9460_brought_is_illegal_on_the_9300(format: object) -> None:
     display = Ramtek9300(PRINCETON_9300)
-    opcode = form.opcode  # type: ignore[attr-defined]
+    opcode = format.opcode  # type: ignore[attr-defined]
     display.send(sent_words([opcode << 8]))
     assert display.status == Status.READY | Status.ILLEGAL
     assert display.processor.illegal_words == 1

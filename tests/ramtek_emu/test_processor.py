@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import PRINCETON_9300, Configuration, Ramtek9300, ReplyError, instructions
-from ramtek_emu.instruction_set.table import FORMS
+from ramtek_emu.instruction_set.table import FORMATS
 from ramtek_emu.processor.processor import EXECUTORS, Status
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, cuts, quick, scan_codes, streams, thorough, windows
@@ -30,7 +30,7 @@ def box(display: Ramtek9300) -> tuple[int, int, int, int]:
 
 
 def test_every_row_of_the_table_has_its_function() -> None:
-    assert {form.name for form in FORMS} <= set(EXECUTORS)
+    assert {format.name for format in FORMATS} <= set(EXECUTORS)
 
 
 @thorough
