@@ -19,7 +19,7 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Colors, Indices, PackedColors, Words
+from ramtek_emu.arrays import Colors, PackedColors
 from ramtek_emu.configuration import Configuration, EntryFormat
 from ramtek_emu.memory.cursors import BLINK, SHAPE_CENTER, VISIBLE, Cursor, Cursors
 from ramtek_emu.memory.frame_buffer import FrameBuffer
@@ -27,12 +27,9 @@ from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.dirty_lines import lines_with
+from ramtek_emu.video.view import PLAIN_VIEW, View, copy_shown, pixel_at, view_of
 
 WHITE: Final = np.uint32(0xFFFFFF)
-View = tuple[tuple[int, int], tuple[int, int], bool]
-"""Origin, zoom, and whether the origin is at the bottom."""
-PLAIN_VIEW: Final[View] = (0, 0), (1, 1), False
-"""The one that shows the lines of the memory as they are."""
 Stamp = tuple[int, tuple[object, ...]]
 """What a field is made from: entry words ever written, and all else. Fields with equal stamps are equal."""
 
@@ -80,7 +77,7 @@ class ScanOut:
         seen, beam = self._cursors.seen, self._beam
         return self._lookup_table.written, (
             self._frame_buffer.written,
-            self._view(),
+            view_of(self._parameters()),
             self._is_parted and self._partition(),
             seen,
             seen and (self._cursors.changed, any(state & BLINK for _, _, state in seen) and self._blink()),
@@ -152,15 +149,11 @@ class ScanOut:
         self._paint(line, self.lines, pixels)
 
     def _paint(self, first: int, last: int, pixels: PackedColors) -> None:
-        parameters, (lines, elements) = self._parameters(), self._frame_buffer.words.shape
-        rows, columns = np.arange(first, last), np.arange(self.elements)
-        if parameters.origin_at_bottom:
-            rows = self.lines - 1 - rows
-        rows = (parameters.origin.line + rows // parameters.zoom[1]) % lines
-        columns = (parameters.origin.element + columns // parameters.zoom[0]) % elements
-        self._table().take(
-            self._frame_buffer.words[np.ix_(rows, columns)], out=pixels[first:last], mode="wrap"
+        elements, lines = pixel_at(
+            self._parameters(), self._configuration, np.arange(self.elements), np.arange(first, last)
         )
+        words = self._frame_buffer.words[np.ix_(lines, elements)]
+        self._table().take(words, out=pixels[first:last], mode="wrap")
 
     def _mark_cursors(self, pixels: PackedColors, first_line: int = 0) -> None:
         for cursor in self._cursors.all:
@@ -173,29 +166,15 @@ class ScanOut:
         return self._lines_with(*run) if run and is_plain else (0, self.lines)
 
     def _renew_indices(self) -> None:
-        # The view is told here once more: with cold caches another call takes a fiftieth of a scan-out.
+        # This is `view_of` without the call: with cold caches it would take a fiftieth of a scan-out.
         parameters = self._parameters()
-        origin, zoom, origin_at_bottom = parameters.origin, parameters.zoom, parameters.origin_at_bottom
-        now = self._frame_buffer.written, (origin, zoom, origin_at_bottom)
+        view = parameters.origin, parameters.zoom, parameters.origin_at_bottom
+        now = self._frame_buffer.written, view
         if self._indices_of == now:
             return
         self._indices_of = now
         self._lines_with.cache_clear()
-        across, down = zoom
-        target = self._indices[::-1] if origin_at_bottom else self._indices
-        if (across, down) == (1, 1):
-            copy_around(target, self._frame_buffer.words, *origin)
-            return
-        rows = np.empty((-(-self.lines // down), self.elements), np.intp)
-        for repeat in range(across):
-            copy_around(rows[:, repeat::across], self._frame_buffer.words, *origin)
-        for repeat in range(down):
-            part = target[repeat::down]
-            part[...] = rows[: len(part)]
-
-    def _view(self) -> View:
-        parameters = self._parameters()
-        return parameters.origin, parameters.zoom, parameters.origin_at_bottom
+        copy_shown(self._indices, self._frame_buffer.words, view)
 
     def _blink(self) -> bool:
         return self.blink_is_on if self._beam is None else self._beam.blink_is_on
@@ -212,24 +191,6 @@ class ScanOut:
 
     def _partition(self) -> int:
         return self._lookup_table.addressed_entry // self._words * self._words if self._is_parted else 0
-
-
-def copy_around(target: Indices, words: Words, element: int, line: int) -> None:
-    """Fill the target with the words from an element and a line on, which wrap at the memory's edges."""
-    lines, elements = words.shape
-    done = 0
-    while done < target.shape[0]:
-        row = (line + done) % lines
-        height = min(lines - row, target.shape[0] - done)
-        across = 0
-        while across < target.shape[1]:
-            column = (element + across) % elements
-            width = min(elements - column, target.shape[1] - across)
-            target[done : done + height, across : across + width] = words[
-                row : row + height, column : column + width
-            ]
-            across += width
-        done += height
 
 
 def mark(pixels: PackedColors, cursor: Cursor, first_line: int = 0) -> None:
