@@ -3,48 +3,15 @@ from __future__ import annotations
 import socket
 import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 
 import numpy as np
 import pytest
 
-from ramtek_emu import HostPort, PortError, Ramtek9300, ReplyError, TcpPort, instructions
-from ramtek_emu.host.host_port import host_and_port
-from ramtek_emu.host.host_session import HostSession
+from ramtek_emu import HostPort, PortError, Ramtek9300, TcpPort, instructions
 from ramtek_emu.host.server import REPLY_BYTES, Server
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
-
-READ_EVERYTHING = np.concatenate([stream for stream, _ in instructions.read_image(0, 0, 640, 480)])
-
-
-@contextmanager
-def serving(idle_seconds: float = 20.0, partial_seconds: float = 20.0) -> Iterator[Server]:
-    """A server in a thread of its own; its display is looked at when it has nothing to do."""
-    server = Server(Ramtek9300(), idle_seconds=idle_seconds, partial_seconds=partial_seconds)
-    ended = threading.Event()
-
-    def serve() -> None:
-        while not ended.is_set():
-            server.step(0.01)
-
-    thread = threading.Thread(target=serve)
-    thread.start()
-    try:
-        yield server
-    finally:
-        ended.set()
-        thread.join()
-        server.close()
-
-
-def until(condition: object, seconds: float = 5.0) -> None:
-    """Wait until a condition holds."""
-    assert callable(condition)
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "it did not happen in time"
-        time.sleep(0.002)
+from tests.ramtek_emu.serving import READ_EVERYTHING, serving, until
 
 
 def connected(server: Server) -> socket.socket:
@@ -221,45 +188,6 @@ def test_a_host_that_ends_its_side_still_gets_its_replies() -> None:
         assert received == 2 * 640 * 480
 
 
-def test_a_port_without_a_display_is_refused_in_one_sentence() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        port = listener.getsockname()[1]
-        with pytest.raises(PortError) as taken:
-            Server(Ramtek9300(), port)
-    assert f"a server must have a port to itself, and 127.0.0.1:{port} cannot be had" in str(taken.value)
-    with pytest.raises(PortError) as refusal:
-        TcpPort(f"tcp://127.0.0.1:{port}")
-    assert str(refusal.value) == (
-        f"a display must listen at tcp://127.0.0.1:{port}, and it is not reached (connection refused); "
-        "start `ramtek serve` there"
-    )
-
-
-@pytest.mark.parametrize(
-    "address",
-    ["", "127.0.0.1:1", "tcp://", "tcp://a", "tcp://a:0", "tcp://a:70000", "tcp://a:b", "tcp://a b:1"],
-)
-def test_what_is_no_address_is_refused(address: str) -> None:
-    with pytest.raises(PortError) as refusal:
-        host_and_port(address)
-    assert str(refusal.value) == (
-        f"an address must be tcp://host:port with a port from 1 to 65535, not {address!r}; write it so"
-    )
-
-
-def test_words_that_do_not_come_are_refused_after_a_while() -> None:
-    with serving() as server, TcpPort(server.address, timeout=0.2) as port:
-        port.send(words("0B03 0040 0 0 0 0 2"))
-        with pytest.raises(ReplyError) as refusal:
-            port.receive(3)
-        assert "within 0.2 seconds, not 3 of which 1 came" in str(refusal.value)
-        assert port.receive(1).tolist() == [0]
-        with pytest.raises(ReplyError):
-            port.receive(-1)
-    with pytest.raises(PortError, match="must be open"):
-        port.send(words("0700"))
-
-
 @pytest.mark.parametrize("number", range(len(RECORDED)))
 def test_a_recorded_stream_over_tcp_gives_the_same_display(number: int) -> None:
     twin = Ramtek9300()
@@ -270,11 +198,3 @@ def test_a_recorded_stream_over_tcp_gives_the_same_display(number: int) -> None:
         port.receive(1)
         assert (server.display.words == twin.words).all()
         assert (server.display.entries == twin.entries).all()
-
-
-def test_a_session_never_lets_more_replies_wait_than_the_display_holds() -> None:
-    session = HostSession(Ramtek9300())
-    asked = np.tile(np.array([0x0B01, 0xFFFE], np.uint16), 2000).astype("<u2").tobytes()
-    count = sum(len(reply) for reply in session.feed(asked))
-    assert count == 2000 * 0xFFFE
-    assert session.words == 4000

@@ -1,8 +1,7 @@
-"""The window on a real screen, Xvfb's; and the arithmetic that needs none."""
+"""The window on a real screen, Xvfb's."""
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -10,37 +9,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from ramtek_emu import NoScreenError, Ramtek9300, instructions
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.monitor.window import Key, Monitor, Pointer, placement
-from tests.ramtek_emu.strategies import quick
+from tests.ramtek_emu.screens import shown
 
 pygame = pytest.importorskip("pygame")
-
-
-@pytest.fixture(scope="module")
-def screen() -> Iterator[str]:
-    """A virtual screen of 1400 x 1100 pixels."""
-    if shutil.which("Xvfb") is None:
-        pytest.skip("Xvfb is not installed; the window cannot be tried without a screen")
-    read_end, write_end = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(write_end), "-screen", "0", "1400x1100x24", "-nolisten", "tcp"],
-        pass_fds=[write_end],
-        stderr=subprocess.DEVNULL,
-    )
-    os.close(write_end)
-    with os.fdopen(read_end) as pipe:
-        number = pipe.readline().strip()
-    if not number:
-        server.wait()
-        pytest.skip("Xvfb does not start here; the window cannot be tried without a screen")
-    yield f":{number}"
-    server.terminate()
-    server.wait()
 
 
 @pytest.fixture
@@ -69,30 +44,9 @@ def settle(monitor: Monitor) -> None:
         monitor.step(5)
 
 
-def shown() -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
-    """The pixels of the window, (height, width, 3)."""
-    return np.asarray(pygame.surfarray.array3d(pygame.display.get_surface())).transpose(1, 0, 2)
-
-
 def press(monitor: Monitor, key: int, text: str = "", mod: int = 0) -> None:
     pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key, unicode=text, mod=mod))
     monitor.step()
-
-
-@quick
-@given(st.integers(1, 700), st.integers(1, 500), st.integers(1, 4000), st.integers(1, 3000))
-def test_the_field_is_placed_at_the_largest_whole_multiple(w: int, h: int, width: int, height: int) -> None:
-    left, top, across, down = placement((w, h), (width, height))
-    multiple = across // w
-    assert (across, down) == (multiple * w, multiple * h)
-    assert (multiple + 1) * w > width or (multiple + 1) * h > height
-    assert multiple == 1 or (across <= width and down <= height)
-    assert abs(2 * left + across - width) <= 1
-    assert abs(2 * top + down - height) <= 1
-
-
-def test_a_fitted_field_fills_one_side() -> None:
-    assert placement((640, 480), (1000, 1000), fit=True) == (0, 125, 1000, 750)
 
 
 @pytest.mark.parametrize(

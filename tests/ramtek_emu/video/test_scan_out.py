@@ -5,16 +5,36 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ramtek_emu import Configuration, EntryFormat, Ramtek9300, instructions
-from ramtek_emu.timing import Timing
-from ramtek_emu.video.dirty_lines import lines_with
+from ramtek_emu import (
+    GMR_9300,
+    JPL_9460,
+    NCAR_9460,
+    PRINCETON_9300,
+    Configuration,
+    EntryFormat,
+    Ramtek9300,
+    Timing,
+    instructions,
+)
+from ramtek_emu.memory.cursors import cross
 from ramtek_emu.video.scan_out import Stamp
 from tests.ramtek_emu import reference
-from tests.ramtek_emu.strategies import SMALL, quick, rasters, ten_bit_words, thorough
+from tests.ramtek_emu.displays import colored
+from tests.ramtek_emu.strategies import (
+    SMALL,
+    cuts,
+    quick,
+    rasters,
+    sent_words,
+    streams,
+    ten_bit_words,
+    thorough,
+)
 
 
 @quick
@@ -75,8 +95,12 @@ def test_with_fewer_planes_the_address_counter_picks_the_part_of_the_table() -> 
 
 
 PLACES = st.tuples(st.integers(0, 8), st.integers(0, 12))
+
+
 LOADS = st.tuples(st.integers(0, 8), st.integers(-3, 18), st.sampled_from([0, 1, 5, 210, 2100]))
 """The line that shows a run of entries, how far from its first one the run begins, and its words."""
+
+
 MEMORY_ACTIONS = st.one_of(
     st.tuples(st.just("load"), LOADS),
     st.tuples(st.just("load"), LOADS),
@@ -85,6 +109,8 @@ MEMORY_ACTIONS = st.one_of(
     st.tuples(st.just("cursor"), st.tuples(PLACES, st.integers(0, 1), st.integers(0, 3))),
     st.tuples(st.just("draw on it"), st.integers(0, 8)),
 )
+
+
 VIEW_ACTIONS = st.one_of(
     st.tuples(st.just("origin"), PLACES),
     st.tuples(st.just("origin"), st.just((0, 0))),
@@ -94,11 +120,17 @@ VIEW_ACTIONS = st.one_of(
     st.tuples(st.just("blink"), st.booleans()),
     st.tuples(st.just("scan out another"), st.none()),
 )
+
+
 SCANNED_OUT = st.sampled_from([True, True, False])
 """Whether a field is made after the action."""
+
+
 STEPS = st.lists(st.tuples(MEMORY_ACTIONS, SCANNED_OUT), min_size=10, max_size=30) | st.lists(
     st.tuples(MEMORY_ACTIONS | VIEW_ACTIONS, SCANNED_OUT), min_size=10, max_size=30
 )
+
+
 KINDS: list[dict[str, Any]] = [
     {},
     {"visible_lines": 7, "visible_elements": 10},
@@ -169,18 +201,6 @@ def test_a_field_that_is_kept_is_always_the_one_that_a_whole_scan_out_makes(
                 assert (kept == fresh).all()
 
 
-@quick
-@given(rasters(60, 5), st.integers(0, 1023), st.integers(1, 1024))
-def test_the_lines_that_show_a_run_of_entries_are_found(
-    raster: NDArray[np.uint16], first: int, count: int
-) -> None:
-    end = min(first + count, 1024)
-    with patch("ramtek_emu.video.dirty_lines.STRIP", 7):
-        top, bottom = lines_with(raster, first, end)
-    showing = [line for line, words in enumerate(raster.tolist()) if any(first <= w < end for w in words)]
-    assert (top, bottom) == ((showing[0], showing[-1] + 1) if showing else (0, 0))
-
-
 def test_after_a_load_only_lines_that_may_show_its_entries_are_written() -> None:
     display = Ramtek9300()
     display.send(instructions.write_image(np.repeat(np.arange(480), 640).reshape(480, 640)))
@@ -245,3 +265,137 @@ def test_a_part_of_the_table_that_is_parked_at_is_shown_by_a_field_that_is_kept(
     for address in (0, 0x200, 0, 0x400):
         display.send(instructions.park_table(address))
         assert kept.is_right()
+
+
+def test_a_black_and_white_monitor_sees_the_low_eight_bits() -> None:
+    display = Ramtek9300(replace(PRINCETON_9300, monochrome=True))
+    # The first table of cmap: each word its own number.
+    display.send(sent_words([0x0300, 0, 2048, *range(1024)]))
+    display.send(instructions.write_image(np.arange(1024).reshape(2, 512)))
+    field = display.field()[:2, :512].reshape(-1, 3)
+    assert (field == (np.arange(1024) & 0xFF)[:, np.newaxis]).all()
+    wide = Ramtek9300(replace(GMR_9300, monochrome=True))
+    wide.send(instructions.load_entries(0, [[10, 20, 30]]))
+    assert wide.field()[0, 0].tolist() == [30, 30, 30]
+
+
+@pytest.mark.parametrize("configuration", [JPL_9460, NCAR_9460])
+def test_four_sections_of_the_table_are_picked_by_the_pointer(configuration: Configuration) -> None:
+    display = Ramtek9300(configuration)
+    for section in range(4):
+        color = [10 * section + 1, 10 * section + 2, 10 * section + 3]
+        # Section s lies at word (s - 1) * 200h; 1024 bytes each.
+        display.send(
+            sent_words([0x2901, 0x0300, 0x200 * section, 1024, *([color[1] << 8 | color[2], color[0]] * 256)])
+        )
+    for section in (2, 0, 3, 1):
+        display.send(sent_words([0x0300, 0x200 * section, 0]))
+        assert display.field()[5, 5].tolist() == [10 * section + 1, 10 * section + 2, 10 * section + 3]
+
+
+def test_a_cursor_is_drawn_on_the_field_and_not_in_the_memory() -> None:
+    display = colored(Ramtek9300())
+    plain = display.field()
+    stamp = display.scan_out.stamp
+    display.send(sent_words([0x1600, 300, 0x400 | 200]))
+    assert display.scan_out.stamp != stamp
+    assert not display.words.any()
+    field = display.field()
+    changed = (field != plain).any(axis=2)
+    assert (changed[185:217, 285:317] == cross()).all()
+    assert np.count_nonzero(changed) == np.count_nonzero(cross())
+    assert (field[changed] == 255).all()
+    display.send(sent_words([0x1600, 300, 200]))
+    assert (display.field() == plain).all()
+
+
+def test_a_cursor_is_dark_on_a_light_picture_and_clipped_at_the_edges() -> None:
+    display = Ramtek9300()
+    display.send(instructions.load_entries(0, [[250, 250, 250]]))
+    for element, line in ((0, 0), (639, 479), (1023, 1023), (646, 100)):
+        display.send(sent_words([0x1600, element, 0x400 | line]))
+        field = display.field()
+        assert set(np.unique(field)) <= {0, 250}
+    display.send(sent_words([0x1600, 0, 0x400]))
+    assert np.count_nonzero(display.field()[..., 0] == 0) == 12
+
+
+def test_a_blinking_cursor_follows_the_monitor() -> None:
+    display = colored(Ramtek9300())
+    plain = display.field()
+    display.send(sent_words([0x1600, 300, 0xC00 | 200]))
+    assert (display.field() != plain).any()
+    stamp = display.scan_out.stamp
+    display.scan_out.blink_is_on = False
+    assert (display.field() == plain).all()
+    assert display.scan_out.stamp != stamp
+
+
+TIMED = replace(GMR_9300, timing=Timing())
+
+
+def colors(display: Ramtek9300) -> list[int]:
+    """The red of each line, which must be the same all along it."""
+    field = display.field()
+    assert (field == field[:, :1]).all()
+    reds: list[int] = field[:, 0, 0].tolist()
+    return reds
+
+
+def entry(red: int) -> NDArray[np.uint16]:
+    return instructions.load_entries(0, [[red, 0, 0]])
+
+
+def test_a_load_in_mid_field_shows_on_the_lines_below() -> None:
+    display = Ramtek9300(TIMED)
+    display.send(entry(50))
+    display.send(sent_words([0x2A00, 200]))
+    display.send(entry(90))
+    assert colors(display) == [50] * 200 + [90] * 280
+    # A field later it is everywhere.
+    display.send(sent_words([0x2A00, 100]))
+    assert colors(display) == [90] * 480
+
+
+def test_a_load_in_the_retrace_shows_on_the_whole_field() -> None:
+    display = Ramtek9300(TIMED)
+    display.send(entry(50))
+    display.send(sent_words([0x2A00, 300, 0x2901]))
+    assert display.beam is not None
+    assert display.beam.line == 480
+    display.send(entry(90))
+    assert colors(display) == [90] * 480
+
+
+def test_several_loads_in_a_field_make_as_many_stripes() -> None:
+    display = Ramtek9300(TIMED)
+    display.send(sent_words([0x2901]))
+    for number in range(8):
+        display.send(sent_words([0x2A00, 60 * number]))
+        display.send(entry(10 + number))
+    assert colors(display) == [10 + line // 60 for line in range(480)]
+
+
+def test_words_written_behind_the_beam_wait_for_the_next_field() -> None:
+    display = Ramtek9300(TIMED)
+    display.send(instructions.load_entries(0, [[0, 0, 0], [200, 0, 0]]))
+    display.send(sent_words([0x2A00, 240]))
+    display.send(instructions.erase((0, 200, 1, 299), 1))
+    assert display.field()[:, 0, 0].tolist() == [0] * 240 + [200] * 60 + [0] * 180
+    display.send(sent_words([0x2901]))
+    assert display.field()[:, 0, 0].tolist() == [0] * 200 + [200] * 100 + [0] * 180
+
+
+@quick
+@given(streams(200), st.lists(st.integers(0, 200), max_size=5))
+def test_the_same_stream_gives_the_same_field_however_it_is_cut(stream: list[int], places: list[int]) -> None:
+    slow = Timing(instruction=400_000, word=20_000, pixel=9_000)
+    configuration = replace(SMALL, timing=replace(slow, line=100_000, blanked_lines=2))
+    whole, cut = Ramtek9300(configuration), Ramtek9300(configuration)
+    whole.send(sent_words(stream))
+    for piece in cuts(stream, places):
+        cut.send(piece)
+    assert (whole.field() == cut.field()).all()
+    assert whole.scan_out.stamp == cut.scan_out.stamp
+    # Looking takes no time.
+    assert (whole.field() == cut.field()).all()

@@ -1,9 +1,6 @@
 from __future__ import annotations
 
 import random
-import struct
-import tracemalloc
-import zlib
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -27,13 +24,12 @@ from ramtek_emu import (
 )
 from ramtek_emu.configuration import CONFIGURATIONS
 from ramtek_emu.monitor.pattern import pattern
-from ramtek_emu.snapshot.png_chunks import MOST_TEXT, picture_bytes, picture_of
+from ramtek_emu.snapshot.png_chunks import picture_bytes, picture_of
 from ramtek_emu.snapshot.snapshot import display_of, snapshot_bytes
 from ramtek_emu.timing import Timing
 from tests.ramtek_emu.recorded_streams import BYTE_IMAGE, DECODED, OUTLINE, words
+from tests.ramtek_emu.snapshots import CURSORS, SNAPSHOT, texts_of, with_text
 from tests.ramtek_emu.strategies import SMALL, streams, thorough
-
-CURSORS = words("1600 0064 0C64 1601 0032 0440")
 
 
 def same(one: Ramtek9300, other: Ramtek9300) -> None:
@@ -115,105 +111,11 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
             read_snapshot(path)
 
 
-def small_snapshot() -> bytes:
-    display = Ramtek9300(SMALL)
-    display.send(OUTLINE)
-    display.send(CURSORS)
-    display.send(words("1300 0902 0044 0005 0000 0000 0003 0003"))
-    return snapshot_bytes(display)
-
-
-SNAPSHOT = small_snapshot()
-
-
-def texts_of(data: bytes) -> dict[str, str]:
-    return picture_of(data)[1]
-
-
-def with_text(keyword: str, text: str) -> bytes:
-    picture, texts = picture_of(SNAPSHOT)
-    return picture_bytes(picture, texts | {keyword: text})
-
-
-@pytest.mark.parametrize(
-    ("keyword", "old", "new", "part"),
-    [
-        ("Software", "snapshot 1", "snapshot 9", "of the format 'ramtek_emu snapshot 1'"),
-        ("configuration", '"elements":13', '"elements":14', "must have 14 x 9 words"),
-        ("configuration", '"elements":13', '"elements":99999999', "from -32768 to 65535, not 99999999"),
-        ("configuration", '"elements":13', '"elements":-1', "elements must be a whole number from 1"),
-        ("configuration", '"planes":10', '"planes":1', "a word of a snapshot must be 0 to 1"),
-        ("configuration", '"PAIR_24"', '"PAIR_99"', "must be one of PAIR_24, WORD_12"),
-        ("configuration", '"name"', '"nome"', "must be an object of name"),
-        ("parameters", '"scan_order":0', '"scan_order":"0"', "parameters.scan_order of a snapshot"),
-        ("parameters", '"scan_order":0', '"scan_order":1e9', "parameters.scan_order of a snapshot"),
-        ("parameters", '"zoom":[1,1]', '"zoom":[0,1]', "parameters.zoom[0] of a snapshot must be a whole"),
-        ("parameters", '"zoom":[1,1]', '"zoom":[1]', "must be 2 items"),
-        ("parameters", '"zoom":[1,1]', '"zoom":true', "must be 2 items"),
-        ("cursors", '"track":false', '"track":0', "track of a snapshot must be true or false, not 0"),
-        ("cursors", '"shape":"', '"shape":"!', "bytes in base64"),
-        ("lookup table", '"address":0', '"address":5000', "address of a snapshot"),
-        ("processor", '"illegal":false', '"illegal":null', "illegal of a snapshot must be true or false"),
-    ],
-)
-def test_a_value_that_does_not_fit_is_refused_by_name(keyword: str, old: str, new: str, part: str) -> None:
-    text = texts_of(SNAPSHOT)[keyword]
-    assert old in text
-    with pytest.raises(SnapshotError) as refusal:
-        display_of(with_text(keyword, text.replace(old, new, 1)))
-    assert part in str(refusal.value)
-    assert "\n" not in str(refusal.value)
-    assert len(str(refusal.value)) < 700
-
-
 @pytest.mark.parametrize("text", ["", "null", "[" * 100_000, "{}", "9" * 5000, '{"now":1,"now":2}', "NaN"])
 @pytest.mark.parametrize("keyword", ["configuration", "lookup table", "parameters", "processor", "cursors"])
 def test_a_text_that_is_no_state_is_refused(keyword: str, text: str) -> None:
     with pytest.raises(SnapshotError):
         display_of(with_text(keyword, text))
-
-
-def chunk(kind: bytes, content: bytes) -> bytes:
-    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-
-
-def hostile(*chunks: bytes, header: bytes = struct.pack(">IIBBBBB", 13, 9, 16, 0, 0, 0, 0)) -> bytes:
-    return b"\x89PNG\r\n\x1a\n" + b"".join((chunk(b"IHDR", header), *chunks, chunk(b"IEND", b"")))
-
-
-@pytest.mark.parametrize(
-    ("data", "part"),
-    [
-        (b"", "begin as a PNG file does"),
-        (b"GIF89a", "begin as a PNG file does"),
-        (SNAPSHOT[:-5], "have whole chunks"),
-        (SNAPSHOT[:40], "have whole chunks"),
-        (SNAPSHOT[:20] + b"\x99" + SNAPSHOT[21:], "right checksum"),
-        (hostile(header=struct.pack(">IIBBBBB", 1 << 31, 1, 16, 0, 0, 0, 0)), "1 to 4096 elements and lines"),
-        (hostile(header=struct.pack(">IIBBBBB", 13, 9, 8, 2, 0, 0, 0)), "16 bits gray"),
-        (hostile(header=struct.pack(">IIBBBBB", 13, 9, 16, 0, 0, 0, 1)), "not interlaced"),
-        (hostile(), "have pixels|9 lines of 13 words"),
-        (hostile(chunk(b"IDAT", b"nonsense")), "have pixels that can be unpacked"),
-        (hostile(chunk(b"IDAT", zlib.compress(bytes(10)))), "9 lines of 13 words"),
-        (hostile(chunk(b"IDAT", zlib.compress(bytes(50_000_000)))), "9 lines of 13 words"),
-        (hostile(chunk(b"IDAT", zlib.compress(b"\2" * 9 * 27))), "unfiltered lines"),
-        (hostile(chunk(b"PLTE", b"")), "chunks that are known"),
-        (hostile(chunk(b"tEXt", b"no zero")), "texts with a keyword"),
-        (hostile(chunk(b"tEXt", b"a\0\xff")), "in ASCII"),
-        (hostile(*[chunk(b"tEXt", b"a\0b")] * 2), "each text once"),
-        (hostile(*[chunk(b"tEXt", b"%d\0" % n + b"a" * 900_000) for n in range(10)]), f"at most {MOST_TEXT}"),
-        (hostile(*[chunk(b"tIME", b"")] * 70_000), "end within 65536 chunks"),
-    ],
-)
-def test_a_hostile_file_is_refused_by_one_sentence(data: bytes, part: str) -> None:
-    tracemalloc.start()
-    with pytest.raises(SnapshotError) as refusal:
-        display_of(data)
-    _, most = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    assert any(piece in str(refusal.value) for piece in part.split("|"))
-    assert str(refusal.value).endswith("take a new one with --snapshot")
-    assert most < 3 * len(data) + (8 << 20)
 
 
 def test_mutated_snapshots_are_read_or_refused() -> None:

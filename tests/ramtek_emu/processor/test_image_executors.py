@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu import Configuration, Ramtek9300, instructions
 from ramtek_emu.memory.scan_orders import Point, Window
 from tests.ramtek_emu import reference
+from tests.ramtek_emu.displays import box, sent
 from tests.ramtek_emu.strategies import (
     SMALL,
     masks,
@@ -23,7 +24,6 @@ from tests.ramtek_emu.strategies import (
     windows,
 )
 
-EVERYWHERE = (-(10**6), -(10**6), 10**6, 10**6)
 addressings = st.sampled_from([0x00, 0x40, 0x80, 0xC0])
 
 
@@ -256,3 +256,94 @@ def test_a_large_area_is_filled_whole(noise: float) -> None:
     assert not (new[:-1] & left[1:]).any()
     assert not (new[:, 1:] & left[:, :-1]).any()
     assert not (new[:, :-1] & left[:, 1:]).any()
+
+
+def test_the_mask_keeps_the_other_planes() -> None:
+    display = sent(
+        "0902 0044 000F 0000 0000 0003 0000", "0802 0001 0003", "0902 0044 0000 0001 0000 0001 0000"
+    )
+    assert display.words[0, :5].tolist() == [15, 12, 15, 15, 0]
+
+
+def test_bits_beyond_the_planes_are_dropped() -> None:
+    display = sent("0A03 0040 0000 0000 0001 0000 0004 FFFF 0401")
+    assert display.words[0, :3].tolist() == [1023, 1, 0]
+
+
+def test_erase_with_the_swap_flag_uses_the_foreground() -> None:
+    display = sent("0912 0043 00FF 0007 0064 0032 00C7 0063")
+    assert box(display) == (100, 50, 199, 99)
+    assert set(np.unique(display.words)) == {0, 7}
+
+
+def test_erase_accepts_a_data_field_of_no_bytes() -> None:
+    assert sent("0802 0004 0005", "0909 0000", "0700").words.min() == 5
+
+
+def test_an_image_without_operands_goes_on_where_the_last_one_ended() -> None:
+    display = sent("0A03 0040 0002 0001 0004 0005 0008 0001 0002 0003 0004", "0A01 0004 0005 0006")
+    assert display.words[1:3, 2:5].tolist() == [[1, 2, 3], [4, 5, 6]]
+
+
+@quick
+@given(windows(), scan_codes, st.lists(st.integers(0, 1023), min_size=1, max_size=60))
+def test_images_follow_the_scan_order_and_are_read_back(
+    window: tuple[int, ...], code: int, row: list[int]
+) -> None:
+    display = Ramtek9300(SMALL)
+    head = [0x0A03, 0x00C0, *(number & 0xFFFF for number in window), code, 2 * len(row)]
+    display.send(np.array(head + row, np.uint16))
+    twin = [[0] * 13 for _ in range(9)]
+    left, top, right, bottom = window
+    corners = (left, top, right, bottom)
+    reference.write_run(
+        twin, corners, code, reference.corner(corners, code), row, 1023, (-(10**6), -(10**6), 10**6, 10**6)
+    )
+    assert display.words.tolist() == twin
+    display.send(np.array([0x0B03, 0x0040, *(number & 0xFFFF for number in window), 2 * len(row)], np.uint16))
+    read, _ = reference.read_run(twin, corners, code, reference.corner(corners, code), len(row))
+    assert display.receive(len(row)).tolist() == read
+
+
+def test_a_whole_picture_survives_the_stream() -> None:
+    words = np.random.default_rng(7).integers(0, 1024, (480, 640))
+    display = Ramtek9300()
+    display.send(instructions.write_image(words))
+    assert (display.words == words).all()
+    received: list[NDArray[np.uint16]] = []
+    for stream, count in instructions.read_image(0, 0, 640, 480):
+        display.send(stream)
+        received.append(display.receive(count))
+    assert (np.concatenate(received).reshape(480, 640) == words).all()
+
+
+@quick
+@given(st.integers(1, 70), st.integers(1, 1200), st.integers(-40, 40))
+def test_images_of_any_shape_arrive_whole(lines: int, elements: int, left: int) -> None:
+    configuration = Configuration(name="WIDE", elements=1300, lines=80, planes=10)
+    words = (np.arange(lines * elements) % 1023 + 1).reshape(lines, elements)
+    display = Ramtek9300(configuration)
+    display.send(instructions.write_image(words, left, 3))
+    first = min(elements, max(0, -left))
+    assert (display.words[3 : 3 + lines, max(0, left) : max(0, left + elements)] == words[:, first:]).all()
+    assert np.count_nonzero(display.words) == lines * (elements - first)
+
+
+def test_byte_images_hold_two_pixels_a_word() -> None:
+    # A 4 x 4 image of the NCAR driver, reverse packed.
+    display = sent(
+        "0A0F 00C0 0020 0008 0010 000B 0013 0000 0001 0010 0201 0403 0605 0807 0A09 0C0B 0E0D 100F",
+        "0B0B 0040 0008 0010 000B 0013 0005",
+        "0B03 0040 0008 0010 000B 0013 0004",
+    )
+    assert display.words[16:20, 8:12].tolist() == np.arange(1, 17).reshape(4, 4).tolist()
+    assert display.receive(5).tolist() == [0x0201, 0x0403, 0x0005, 0x0102, 0x0304]
+
+
+def test_recorded_byte_image_line_of_the_vicar_driver() -> None:
+    display = sent(
+        "0A0F 80C1 0020 00FF 0000 0000 027F 01DF 0000 000A 0001 0001 0010 "
+        "0100 0302 0504 0706 0908 0B0A 0D0C 0F0E"
+    )
+    assert display.words[1, 10:26].tolist() == list(range(16))
+    assert display.processor.parameters.start == (26, 1)
