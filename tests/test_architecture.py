@@ -43,6 +43,9 @@ WINGS = {
 IN_THE_DIALECT = ("ramtek_emu",)
 """The packages whose constants are Final and whose array types are all in arrays.py."""
 
+TESTED_ROOM_BY_ROOM = ("ramtek_emu",)
+"""The packages of which every module has a file of tests at the mirrored place."""
+
 KNOWING_THE_DISPLAY = (
     "autocolor.studio", "autocolor.picture", "autocolor.__main__", "autocolor.files.writing",
 )  # fmt: skip
@@ -147,6 +150,13 @@ def test_constants_are_final_and_array_types_stand_in_one_module(name: str) -> N
             assert isinstance(node, ast.AnnAssign), f"{names} must be Final"
             assert ast.unparse(node.annotation).startswith("Final"), f"{names} must be Final"
     assert ("NDArray" in source) == (name == f"{outer(name)}.arrays")
+
+
+@pytest.mark.parametrize("package", TESTED_ROOM_BY_ROOM)
+def test_every_room_has_its_tests_at_the_mirrored_place(package: str) -> None:
+    rooms = [path for path in (ROOT / package).rglob("*.py") if not path.stem.startswith("__")]
+    mirrored = {ROOT / "tests" / path.relative_to(ROOT).with_name(f"test_{path.name}") for path in rooms}
+    assert sorted(str(path.relative_to(ROOT)) for path in mirrored if not path.is_file()) == []
 
 
 def wing_of(name: str) -> str:

@@ -19,3 +19,8 @@ def test_rates_that_no_display_has_are_refused(rates: dict[str, Any], sentence: 
     with pytest.raises(ConfigurationError) as refusal:
         Timing(**rates)
     assert str(refusal.value) == f"{sentence}; give nanoseconds, lines or fields"
+
+
+def test_a_field_of_the_default_rates_takes_a_thirtieth_of_a_second() -> None:
+    timing = Timing()
+    assert (480 + timing.blanked_lines) * timing.line == pytest.approx(1e9 / 30, rel=1e-4)

@@ -8,6 +8,7 @@ import pytest
 
 from ramtek_emu import OutputError, OutputExistsError, WriteError
 from ramtek_emu.png import png_bytes, save_png
+from ramtek_emu.writing import Output, refuse_output, write_atomically
 
 FIELD = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
 
@@ -67,3 +68,54 @@ def test_after_a_failed_write_the_old_file_is_whole(tmp_path: Path, monkeypatch:
         save_png(FIELD, path)
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["field.png"]
+
+
+def test_an_output_comes_piece_by_piece_and_is_there_when_it_is_kept(tmp_path: Path) -> None:
+    path = tmp_path / "words.ramtek"
+    with Output(path, overwrite=False) as output:
+        output.write(b"one ")
+        assert not path.exists()
+        output.write(b"two")
+        output.keep()
+    assert path.read_bytes() == b"one two"
+    assert os.listdir(tmp_path) == ["words.ramtek"]
+
+
+def test_an_output_that_is_not_kept_leaves_nothing_behind(tmp_path: Path) -> None:
+    path = tmp_path / "words.ramtek"
+    path.write_bytes(b"old")
+    with Output(path, overwrite=True) as output:
+        output.write(b"new")
+    assert path.read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["words.ramtek"]
+
+
+def test_a_file_that_came_to_exist_meanwhile_is_not_overwritten(tmp_path: Path) -> None:
+    path = tmp_path / "words.ramtek"
+    with Output(path, overwrite=False) as output:
+        path.write_bytes(b"another's")
+        with pytest.raises(OutputExistsError):
+            output.keep()
+    assert path.read_bytes() == b"another's"
+    assert os.listdir(tmp_path) == ["words.ramtek"]
+
+
+def test_a_file_that_is_replaced_keeps_its_permissions(tmp_path: Path) -> None:
+    path = tmp_path / "words.ramtek"
+    path.write_bytes(b"old")
+    path.chmod(0o640)
+    write_atomically(path, b"new", overwrite=True)
+    assert path.read_bytes() == b"new"
+    assert path.stat().st_mode & 0o777 == 0o640
+
+
+def test_places_where_no_output_can_be_are_refused_before_anything_is_done(tmp_path: Path) -> None:
+    refuse_output(tmp_path / "new.png", overwrite=False)
+    for place, sentence in (
+        (tmp_path, "an output must be a file, not the folder"),
+        (Path("/dev/null"), "an output must be a file, not the device"),
+        (Path("a\0b"), "a file name must be one that the system can hold"),
+        (tmp_path / ("x" * 300), "an output must have a place, and at"),
+    ):
+        with pytest.raises(OutputError, match=sentence):
+            refuse_output(place, overwrite=True)

@@ -1,12 +1,21 @@
 from __future__ import annotations
 
+import json
+
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from ramtek_emu import (
     SnapshotError,
 )
+from ramtek_emu.configuration import GMR_9300
+from ramtek_emu.memory.parameters import Parameters
+from ramtek_emu.snapshot.plain_values import listed, packed, plain, restored, unpacked, whole_number
 from ramtek_emu.snapshot.snapshot import display_of
 from tests.ramtek_emu.snapshots import SNAPSHOT, texts_of, with_text
+from tests.ramtek_emu.strategies import SMALL, quick
 
 
 @pytest.mark.parametrize(
@@ -38,3 +47,54 @@ def test_a_value_that_does_not_fit_is_refused_by_name(keyword: str, old: str, ne
     assert part in str(refusal.value)
     assert "\n" not in str(refusal.value)
     assert len(str(refusal.value)) < 700
+
+
+@quick
+@given(
+    st.lists(st.integers(0, 0xFFFF), min_size=6, max_size=6),
+    st.lists(st.booleans(), min_size=11, max_size=11),
+)
+def test_what_was_made_plain_is_restored_through_json(words: list[int], dots: list[bool]) -> None:
+    parameters = Parameters.at_reset(SMALL)
+    parameters.conic = tuple(words)
+    parameters.background = words[0]
+    state = {
+        "parameters": parameters,
+        "words": np.array(words, np.uint16).reshape(2, 3),
+        "dots": np.array(dots),
+        "configuration": GMR_9300,
+    }
+    for name, value in state.items():
+        pattern = value if name != "parameters" else Parameters.at_reset(SMALL)
+        again = restored(pattern, json.loads(json.dumps(plain(value))), name)
+        assert np.array_equal(again, value) if isinstance(value, np.ndarray) else again == value
+
+
+@quick
+@given(st.binary(max_size=200), st.integers(0, 3))
+def test_packed_bytes_are_unpacked_when_they_are_as_many_as_expected(data: bytes, more: int) -> None:
+    text = packed(data)
+    if not more:
+        assert unpacked(text, len(data), "pixels") == data
+        return
+    with pytest.raises(SnapshotError) as refusal:
+        unpacked(text, len(data) + more, "pixels")
+    assert str(refusal.value).startswith(
+        f"pixels of a snapshot must be {len(data) + more} packed bytes, not "
+    )
+
+
+@pytest.mark.parametrize("value", [True, 1.0, "1", None, -1, 11])
+def test_a_number_is_whole_and_within_its_limits(value: object) -> None:
+    with pytest.raises(SnapshotError) as refusal:
+        whole_number(value, (0, 10), "lines")
+    assert str(refusal.value) == (
+        f"lines of a snapshot must be a whole number from 0 to 10, not {value!r}; "
+        "take a new one with --snapshot"
+    )
+
+
+def test_a_list_is_no_longer_than_it_may_be() -> None:
+    assert listed((0, 0), [[1, 2], [3, 4]], "driven", 2) == [(1, 2), (3, 4)]
+    with pytest.raises(SnapshotError, match="driven of a snapshot must be a list of at most 1, not"):
+        listed((0, 0), [[1, 2], [3, 4]], "driven", 1)

@@ -4,14 +4,20 @@ import struct
 import tracemalloc
 import zlib
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
 
 from ramtek_emu import (
     SnapshotError,
 )
-from ramtek_emu.snapshot.png_chunks import MOST_TEXT
+from ramtek_emu.arrays import Words
+from ramtek_emu.snapshot.png_chunks import MOST_TEXT, picture_bytes, picture_of
 from ramtek_emu.snapshot.snapshot import display_of
 from tests.ramtek_emu.snapshots import SNAPSHOT
+from tests.ramtek_emu.strategies import quick
 
 
 def chunk(kind: bytes, content: bytes) -> bytes:
@@ -55,3 +61,18 @@ def test_a_hostile_file_is_refused_by_one_sentence(data: bytes, part: str) -> No
     assert any(piece in str(refusal.value) for piece in part.split("|"))
     assert str(refusal.value).endswith("take a new one with --snapshot")
     assert most < 3 * len(data) + (8 << 20)
+
+
+names = st.text(st.characters(min_codepoint=32, max_codepoint=126), min_size=1, max_size=20)
+
+
+@quick
+@given(
+    arrays.arrays(np.uint16, st.tuples(st.integers(1, 6), st.integers(1, 6))),
+    st.dictionaries(names, names, max_size=3),
+)
+def test_words_and_texts_come_back_as_they_were_written(words: Words, texts: dict[str, str]) -> None:
+    read, read_texts = picture_of(picture_bytes(words, texts))
+    assert read.dtype == np.uint16
+    assert read.tolist() == words.tolist()
+    assert read_texts == texts
