@@ -1,14 +1,14 @@
 """An emulator of the RAMTEK RM-9300 raster display, driven by the 16-bit words that its programs sent.
 
 What is modeled
-    the instruction stream: one continuous row of words, cut anywhere, with its sticky operands
+    the instruction stream: one continuous stream of words, cut anywhere, with its sticky operands
     the instructions: instruction_set names their sources; those known by name only are consumed and flagged
     the frame buffer: planes behind a write mask, a write window, image windows, scan orders, bytes or words
     drawing: text, rasters, vectors with texture, points, conics, circles, areas, copies
     the video lookup table: 1024 parallel entries of 24 bits, or of 12; the section that is shown
-    the characters: a 7 x 9 cell, dots of our own drawing, and those that a host loads
-    cursors and the joystick unit: positions, shapes, blinking, TRACK and ENTER, on the glass, not in memory
-    scan-out: words through the table to a field of colors, from an origin on, zoomed; also black and white
+    the characters: cells of 7 x 9 with dots that were drawn for this emulator, and those that a host loads
+    cursors and the joystick unit: positions, shapes, blinking, TRACK and ENTER, over the field, not in memory
+    scan-out: words through the table to a field of colors, with display origin and zoom; also black and white
     time, if the configuration has it: a beam, retrace, waiting (timing holds every rate; all are assumed)
     the status bits of the interface: illegal instruction, cursor interrupt
 
@@ -18,7 +18,7 @@ What is **not** modeled
     the alphanumeric overlay of the 9460: the words of its table go nowhere
     interlace, blanking levels, phosphor
     the UNIBUS registers: a host port of two methods stands for them
-    interrupts: their request bits can be read, nothing is interrupted
+    interrupts: the request bits can be read, but nothing is interrupted
 
 The sources are named by keys: LIN (Linton's C library for the Princeton RM-9300, 1978), PRG (the Princeton
 and Cincinnati programs), BTL (the Bell Labs plot library), PIC (Bell Labs pico and rebecca), V8K (the Bell
@@ -97,7 +97,7 @@ __all__ = list(_HOME)
 
 
 def __getattr__(name: str) -> object:
-    """A public name, from the module that defines it; loaded when it is first asked for."""
+    """A public name from the module that defines it, which is loaded when the name is first used."""
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value: object = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

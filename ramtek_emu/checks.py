@@ -1,6 +1,6 @@
-"""The checks at the door for Python callers: words and colors.
+"""Checks of what Python callers pass in: words, streams and colors.
 
-Hardware drops what does not fit; a program that hands over numbers is better told which one is wrong.
+The hardware drops bits that do not fit. A Python program is told instead which number is wrong.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def whole_numbers(values: object, thing: str, error: type[WordsError] | type[Col
 
 
 def checked_words(words: object, planes: int = 10) -> Words:
-    """(lines, elements) words as uint16, none of them beyond the planes.
+    """The words as a (lines, elements) uint16 array; WordsError if one has more bits than there are planes.
 
     >>> checked_words([[1024]])
     Traceback (most recent call last):
@@ -54,7 +54,7 @@ def checked_words(words: object, planes: int = 10) -> Words:
 
 
 def checked_stream(words: object) -> Words:
-    """A flat row of 16-bit words as a host sends them; uint16 arrays are taken as they are."""
+    """A stream of 16-bit words as a flat uint16 array; one that is that already is returned unchanged."""
     if isinstance(words, np.ndarray) and words.dtype == np.uint16 and words.ndim == 1:
         return words
     array = whole_numbers(words, "a stream of words", WordsError)
@@ -69,7 +69,7 @@ def checked_stream(words: object) -> Words:
 
 
 def checked_colors(first: int, colors: object, entries: int = 1024) -> Colors:
-    """(n, 3) colors as uint8, for the entries from `first` on."""
+    """The (n, 3) colors as uint8; ColorsError if one does not fit, or the table ends before the last."""
     array = whole_numbers(colors, "colors", ColorsError)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ColorsError(

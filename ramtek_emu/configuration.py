@@ -1,4 +1,4 @@
-"""Configuration: the sizes and formats of one display; the named ones carry the source of every number.
+"""Configuration: the sizes and formats of a display, and the four displays that the sources describe.
 
 >>> GMR_9300.elements, GMR_9300.lines, GMR_9300.largest_word
 (640, 480, 1023)
@@ -15,7 +15,7 @@ from ramtek_emu.timing import Timing
 
 
 class EntryFormat(Enum):
-    """How an entry of the lookup table travels in words."""
+    """How the host sends an entry of the lookup table."""
 
     PAIR_24 = "two words an entry: green << 8 | blue, then red"
     """Hardware: JPL, NCAR."""
@@ -25,7 +25,7 @@ class EntryFormat(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Configuration:
-    """The sizes of a display; the part of the memory that is shown starts at line 0, element 0."""
+    """The sizes of a display. The part of the memory that is shown starts at line 0, element 0."""
 
     name: str
     elements: int
@@ -36,12 +36,12 @@ class Configuration:
     entries: int = 1024
     entry_format: EntryFormat = EntryFormat.PAIR_24
     extended: bool = True
-    """Whether the 9400/9460 instructions and the second operand flag word are there."""
+    """Whether the display has the instructions of the 9400/9460 and the second operand flag word."""
     cursors: int = 2
     monochrome: bool = False
-    """Whether the monitor is black and white: it sees the low eight bits of an entry."""
+    """Whether the monitor is black and white; it then shows the low eight bits of an entry."""
     timing: Timing | None = None
-    """How fast everything is; None: no time passes."""
+    """How long everything takes; None means that no time passes."""
 
     def __post_init__(self) -> None:
         limits = {
@@ -66,17 +66,17 @@ class Configuration:
 
     @property
     def shown_elements(self) -> int:
-        """Elements of a line on the screen, before any zoom."""
+        """How many elements of a line the screen shows, without zoom."""
         return self.elements if self.visible_elements is None else self.visible_elements
 
     @property
     def shown_lines(self) -> int:
-        """Lines on the screen, before any zoom."""
+        """How many lines the screen shows, without zoom."""
         return self.lines if self.visible_lines is None else self.visible_lines
 
     @property
     def largest_word(self) -> int:
-        """The largest number that a pixel holds; its bits are the planes."""
+        """The largest number that a pixel holds: a word with every plane set."""
         return (1 << self.planes) - 1
 
 
@@ -119,4 +119,4 @@ Assumed: eight planes, since its masks are FFh; four sections of 256 entries, as
 """
 
 CONFIGURATIONS: Final = {each.name: each for each in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)}
-"""The named configurations, by name."""
+"""The four displays above, by name."""

@@ -1,4 +1,4 @@
-"""Ramtek9300: the display, its boxes wired together.
+"""Ramtek9300: the display, with all its parts connected.
 
 host port -> decoder -> processor -> frame buffer, lookup table, cursors -> scan-out -> field
 """
@@ -25,7 +25,7 @@ from ramtek_emu.video.scan_out import ScanOut
 
 
 class Ramtek9300:
-    """A display in this process; itself the host port that a host sends to."""
+    """A display in this process. It is a host port: a host sends words to it and receives its replies."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
         self.configuration = configuration
@@ -49,7 +49,7 @@ class Ramtek9300:
         )
 
     def send(self, words: Words) -> None:
-        """Send 16-bit words as a host does, cut anywhere; WordsError when they are no words at all."""
+        """Send 16-bit words; instructions may be cut anywhere. WordsError if they are not 16-bit words."""
         stream = checked_stream(words)
         if self.beam is None:
             for instruction in self.decoder.feed(stream, in_rows=True):
@@ -59,7 +59,7 @@ class Ramtek9300:
                 self._execute_in_time(instruction, self.beam)
 
     def _execute_in_time(self, instruction: Instruction, beam: Beam) -> None:
-        # What the beam has passed keeps the look of before; what it has not will have that of after.
+        # Lines that the beam has passed show the state before the instruction, all others the state after.
         self.scan_out.follow_beam()
         written = self.frame_buffer.written
         self.processor.execute(instruction)
@@ -68,7 +68,7 @@ class Ramtek9300:
         beam.charge(words, self.frame_buffer.written - written)
 
     def reset(self) -> None:
-        """Press RESET on the control unit: parameters, screen, cursors, and what a host left unfinished.
+        """Press RESET on the control unit: reset parameters, screen, cursors; drop words held and replies.
 
         Hardware: PRG introdoc (the switch), DRIVER.c (the interface's hard reset).
         Assumed: the lookup table and loaded characters stay, as after the instruction RSET.
@@ -79,21 +79,21 @@ class Ramtek9300:
         self.send(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16))
 
     def receive(self, count: int) -> Words:
-        """The next `count` words that a reading instruction left, uint16; ReplyError when there are fewer."""
+        """The next `count` words of the replies, uint16; ReplyError when there are fewer."""
         return self.processor.take_reply(count)
 
     def field(self) -> Colors:
-        """What the monitor shows, (lines, elements, 3) uint8."""
+        """The field that the monitor shows, (lines, elements, 3) uint8."""
         return self.scan_out.field()
 
     @property
     def words(self) -> Words:
-        """The words, (lines, elements) uint16, read-only; always the present ones."""
+        """The words of the frame buffer, (lines, elements) uint16; a read-only view that stays current."""
         return self.frame_buffer.words
 
     @property
     def entries(self) -> Colors:
-        """The entries of the lookup table, (1024, 3) uint8, read-only; a copy of this moment."""
+        """The entries of the lookup table, (entries, 3) uint8; a read-only copy."""
         return self.lookup_table.entries
 
     @property
@@ -102,7 +102,7 @@ class Ramtek9300:
         return self.processor.status
 
     def save_png(self, path: str | PathLike[str], overwrite: bool = True) -> None:
-        """Write the field to a PNG file, wholly or not at all; OutputExistsError or WriteError if not."""
+        """Write the field to a PNG file, whole or not at all; OutputError or WriteError if it fails."""
         from ramtek_emu.png import save_png
 
         save_png(self.field(), path, overwrite)

@@ -1,4 +1,4 @@
-"""Pictures out: fields as PNG files, written wholly or not at all. The only place that knows Pillow."""
+"""Fields as PNG files, written whole or not at all. The only module that uses Pillow."""
 
 from __future__ import annotations
 
@@ -20,5 +20,5 @@ def png_bytes(field: Colors) -> bytes:
 
 
 def save_png(field: Colors, path: str | PathLike[str], overwrite: bool = True) -> None:
-    """Write a field to a PNG file, wholly or not at all: OutputExistsError, OutputError or WriteError."""
+    """Write a field to a PNG file, whole or not at all; OutputExistsError, OutputError or WriteError."""
     write_atomically(path, png_bytes(field), overwrite=overwrite)

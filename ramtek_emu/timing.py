@@ -1,4 +1,4 @@
-"""Timing: how long instructions and lines take; `video.beam` counts with these rates.
+"""Timing: how long instructions and lines take. The clock that uses these rates is in video.beam.
 
 Assumed: every rate here. The sources give none for any model, only that programs waited for the vertical
 retrace before they loaded the table (NCAR).
@@ -12,7 +12,7 @@ from typing import Final
 from ramtek_emu.errors import ConfigurationError
 
 MOST: Final = 1_000_000_000
-"""The largest rate: a second."""
+"""The largest value of any rate: one second, if it is a time."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +24,7 @@ class Timing:
     """
 
     line: int = 63_492
-    """One line of the field, its way back included."""
+    """One line of the field, horizontal retrace included."""
     blanked_lines: int = 45
     """Lines between the last line of a field and the first of the next."""
     instruction: int = 10_000
@@ -33,7 +33,7 @@ class Timing:
     pixel: int = 800
     """One word written to the frame buffer."""
     blink_fields: int = 15
-    """Fields that a blinking cursor is seen, and is then not seen."""
+    """The number of fields for which a blinking cursor is shown, and then hidden."""
 
     def __post_init__(self) -> None:
         for each in fields(self):

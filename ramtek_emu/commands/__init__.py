@@ -1,4 +1,4 @@
-"""The command line of the display: one file a command, each loaded only when it is named."""
+"""The command `ramtek`: one module for each of its commands, imported when the command is used."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the commands share: the display, the streams that are read, and what is written at the end."""
+"""What the commands have in common: the display, the streams to read, and the output files."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 Function = TypeVar("Function", bound=Callable[..., object])
 
 TICK_SECONDS: Final = 0.01
-"""How long a host is served between two looks at the window."""
+"""How long a host is served before the window is handled again."""
 
 
 def display_options(function: Function) -> Function:
-    """The options of every command that has a display: which one, and what is written of it at the end."""
+    """Add the options of all commands with a display: the configuration, and the files to write."""
     for option in (
         click.option("--force", is_flag=True, help="Overwrite what exists."),
         click.option("--configuration", metavar="NAME", help="The display; GMR_9300 if not given."),
@@ -44,7 +44,7 @@ def display_options(function: Function) -> Function:
 
 
 def configuration_named(name: str | None) -> Configuration:
-    """The configuration of that name, capitals or not; ConfigurationError names those there are."""
+    """The configuration of that name, in upper or lower case; ConfigurationError lists all names."""
     from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 
     if name is None:
@@ -61,7 +61,7 @@ def configuration_named(name: str | None) -> Configuration:
 
 
 def display_asked_for(configuration: str | None, start: str | None) -> Ramtek9300:
-    """A display of that configuration just switched on, or the one of a snapshot."""
+    """A new display of that configuration, or the one of a snapshot."""
     if start is not None:
         if configuration is not None:
             raise click.UsageError("a display must be given by --configuration or --start; leave one out")
@@ -74,7 +74,7 @@ def display_asked_for(configuration: str | None, start: str | None) -> Ramtek930
 
 
 def refuse_outputs(force: bool, *paths: str | None) -> None:
-    """Refuse outputs that cannot be made, before anything is done; None is no output."""
+    """Refuse outputs that cannot be written, before anything is done; None stands for no output."""
     for path in paths:
         if path is not None:
             if path in ("", "-"):
@@ -84,7 +84,7 @@ def refuse_outputs(force: bool, *paths: str | None) -> None:
 
 @contextmanager
 def recording(path: str | None, force: bool) -> Iterator[Callable[[bytes], object] | None]:
-    """What is to be given the words of whole instructions; their file is there once all went well."""
+    """A function that records words in a file, or None; the file gets its name if nothing fails."""
     if path is None:
         yield None
         return
@@ -95,7 +95,7 @@ def recording(path: str | None, force: bool) -> Iterator[Callable[[bytes], objec
 
 
 def write_outputs(display: Ramtek9300, output: str | None, snapshot: str | None, force: bool) -> None:
-    """Write the picture and the snapshot, whichever is asked for, and say so on stderr."""
+    """Write the picture and the snapshot, if asked for, and report it on stderr."""
     if output is not None:
         from ramtek_emu.png import png_bytes
 
@@ -109,7 +109,7 @@ def write_outputs(display: Ramtek9300, output: str | None, snapshot: str | None,
 
 
 def open_stream(path: str) -> BinaryIO:
-    """A file of words to read, `-` for stdin; MissingInputError when there is none."""
+    """The input file, stdin for `-`; MissingInputError if it cannot be read."""
     if path == "-":
         if sys.stdin is None:
             raise MissingInputError("a stream must come from stdin, which is closed; name a file instead")
@@ -128,7 +128,7 @@ def open_stream(path: str) -> BinaryIO:
 
 
 def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
-    """What gives the bytes that are there, at most so many, without waiting for more; nothing at the end."""
+    """A function that reads the bytes available, up to a number; it returns none at the end of the file."""
     number = file.fileno()
 
     def read(most: int) -> bytes:
@@ -144,22 +144,22 @@ def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
 
 
 def tell(message: str) -> None:
-    """Say something that is no answer: on stderr."""
+    """Print a message on stderr, since stdout is for results."""
     click.echo(message, err=True)
 
 
 def show(display: Ramtek9300, serve_for: Callable[[float], None]) -> None:
-    """Show the display in a window until it is closed; `serve_for` is called between its fields."""
+    """Show the display in a window until that is closed; `serve_for` is called at each tick."""
     from ramtek_emu.monitor.window import Monitor
 
     name = display.configuration.name.replace("_", " ")
-    # Ctrl+C closes the window; what is to be written at the end is written.
+    # Ctrl+C closes the window; the output files are still written.
     with suppress(KeyboardInterrupt):
         Monitor(display, f"RAMTEK {name}", on_tick=lambda: serve_for(TICK_SECONDS)).run()
 
 
 def tell_the_end(display: Ramtek9300, held_words: int, odd_byte: bytes) -> None:
-    """Say what of a stream was not done: what is no instruction or has no effect, and what is not whole."""
+    """Report what was not executed: illegal words, instructions without effect, an incomplete end."""
     illegal = display.processor.illegal_words
     if illegal:
         tell(f"{illegal} {'word begins' if illegal == 1 else 'words begin'} no instruction: skipped")

@@ -91,7 +91,7 @@ def serve(
 
 
 def serve_stdio(session: HostSession, window: bool) -> None:
-    """Serve the program on the other ends of stdin and stdout until it sends no more."""
+    """Serve the program at the other ends of stdin and stdout until it closes its end."""
     from ramtek_emu.host.pipe import PolledPipe, serve_pipe
 
     read, write = standard_streams()
@@ -104,7 +104,7 @@ def serve_stdio(session: HostSession, window: bool) -> None:
 
 
 def standard_streams() -> tuple[Read, Write | None]:
-    """What reads stdin and what writes all of its bytes to stdout; nothing else gets there from here on."""
+    """Functions that read stdin and write stdout. From here on, nothing else can write to stdout."""
     if sys.stdin is None:
         return lambda _: b"", None
     number = sys.stdin.fileno()
@@ -114,7 +114,7 @@ def standard_streams() -> tuple[Read, Write | None]:
 
     try:
         kept = os.dup(sys.stdout.fileno())
-        # Whatever prints from here on must not come between the words.
+        # Redirect what is printed from here on, so that it does not mix with the words.
         os.dup2(sys.stderr.fileno() if sys.stderr is not None else kept, sys.stdout.fileno())
     except OSError:
         return read, None
@@ -128,7 +128,7 @@ def standard_streams() -> tuple[Read, Write | None]:
 
 
 def serve_port(server: Server, window: bool, once: bool) -> None:
-    """Serve hosts over TCP until Ctrl+C, until the window is closed, or until the first one has left."""
+    """Serve hosts over TCP until Ctrl+C, until the window is closed, or, with `once`, until a host leaves."""
     if window:
         announce(server)
         show(server.display, server.serve_for)
@@ -140,7 +140,7 @@ def serve_port(server: Server, window: bool, once: bool) -> None:
 
 
 def announce(server: Server) -> None:
-    """Print the address that hosts are to be given, with a warning if it is more than this machine's own."""
+    """Print the address for hosts, with a warning if other machines can reach it."""
     if server.host not in ("127.0.0.1", "localhost", "::1"):
         tell(
             f"warning: whoever reaches {server.address} can draw on this display and read it back; "
@@ -151,27 +151,27 @@ def announce(server: Server) -> None:
 
 
 class Told:
-    """Whether Ctrl+C or a termination signal came: how a display that serves is ended, no failure."""
+    """Remembers Ctrl+C or a termination signal, which end a server without an error."""
 
     def __init__(self) -> None:
         self.given = False
         self._waiting = False
 
     def signal(self, *_: object) -> None:
-        """Note the signal, and end what waits for input."""
+        """Remember the signal, and interrupt a read that is waiting."""
         self.given = True
         if self._waiting:
             raise InterruptedError
 
     def reading(self, read: Read) -> Read:
-        """The same as `read`, which gives nothing more once the signal came, or when reading fails."""
+        """A function like `read` that returns nothing after the signal, or if reading fails."""
 
         def read_until_told(most: int) -> bytes:
             try:
                 self._waiting = True
                 return b"" if self.given else read(most)
             except OSError:
-                # Also a terminal or a socket whose other side has gone.
+                # Also raised by a terminal or a socket whose other end was closed.
                 return b""
             finally:
                 self._waiting = False
@@ -181,7 +181,7 @@ class Told:
 
 @contextmanager
 def until_told() -> Iterator[Told]:
-    """Take note of Ctrl+C and termination signals for a while."""
+    """Handle Ctrl+C and termination signals within a `with` block."""
     told = Told()
     before = {number: signal.signal(number, told.signal) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

@@ -1,7 +1,7 @@
-"""Areas: the pixels that hang together with one, for FILL.
+"""Areas: the connected pixels around one pixel, for FILL.
 
-Rows of pixels that may be filled are runs; runs of neighboring lines that touch are linked; the area is every
-run that links lead to. So the work is bounded by the size of the memory, whatever it holds.
+Each line is split into runs of open pixels. Runs of neighboring lines that touch are linked, and the area is
+every run that links lead to. So the work is bounded by the size of the memory, whatever the picture.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from ramtek_emu.arrays import Dots, Indices
 
 
 def area(open_pixels: Dots, line: int, element: int) -> Dots:
-    """The open pixels that paths of such, up, down, left and right, join with the one at (line, element).
+    """The open pixels that are connected to the one at (line, element), up, down, left and right.
 
     >>> area(np.array([[True, False, True], [True, True, False]]), 0, 0).astype(int).tolist()
     [[1, 0, 0], [1, 1, 0]]
@@ -20,7 +20,7 @@ def area(open_pixels: Dots, line: int, element: int) -> Dots:
     lines, elements = open_pixels.shape
     if not open_pixels[line, element]:
         return np.zeros_like(open_pixels)
-    # A closed column on either side, so that every run begins and ends within its line.
+    # Add a closed column on either side, so that every run begins and ends within its line.
     fenced = np.zeros((lines, elements + 2), np.int8)
     fenced[:, 1:-1] = open_pixels
     edges = np.diff(fenced.reshape(-1))
@@ -37,7 +37,7 @@ def area(open_pixels: Dots, line: int, element: int) -> Dots:
 
 
 def links(starts: Indices, ends: Indices, width: int) -> tuple[Indices, Indices]:
-    """The pairs of runs that touch: each run, and each of those one line below that overlap it."""
+    """The pairs of runs that touch: the upper run and the lower run of each pair."""
     first = np.searchsorted(ends, starts + width, side="right")
     last = np.searchsorted(starts, ends + width, side="left")
     counts = np.maximum(last - first, 0)
@@ -47,10 +47,10 @@ def links(starts: Indices, ends: Indices, width: int) -> tuple[Indices, Indices]
 
 
 def joined(one: Indices, other: Indices, count: int) -> Indices:
-    """A label for each of `count` things, the same where pairs of `one` and `other` link them."""
+    """A label for each of `count` runs, equal for runs that the pairs of `one` and `other` connect."""
     labels = np.arange(count)
     while True:
-        # Hang the larger root below the smaller one, then shorten every path to its root.
+        # Link the larger root to the smaller one, then shorten every path to its root.
         least = np.minimum(labels[one], labels[other])
         before = labels.copy()
         np.minimum.at(labels, before[one], least)

@@ -1,4 +1,4 @@
-"""Curves: circles and conics as the pixels that lie nearest to them.
+"""Curves: circles and conics as the pixels nearest to them.
 
 What is modeled: outlines, one pixel wide. What is **not**: arcs (known by name only), pixels that are not
 square (Assumed: a radius in elements is one in lines).
@@ -15,9 +15,10 @@ from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point
 
 MOST_PIXELS: Final = 1 << 14
-"""Pixels of a conic at most.
+"""The largest number of pixels of a conic.
 
-Assumed: a curve that meets nothing to stop it ends here; it is five times around the largest memory.
+Assumed: a curve that nothing else stops ends here; a memory of 4096 x 4096, the largest, has that many pixels
+at its edges.
 """
 
 
@@ -27,12 +28,12 @@ def write_circle(
     """Draw the outline of a circle.
 
     Hardware: NCAR (disabled code: center, then the radius in elements).
-    Assumed: in each octant, the pixel of every step that is nearest to the circle; radius 0 is a point.
+    Assumed: in each octant, at every step the pixel nearest to the circle; radius 0 is a point.
     """
     inside = frame_buffer.window.intersection(enable.window)
     steps = []
     for transposed in (False, True):
-        # Keep to the steps that the memory holds.
+        # Compute only the steps that lie within the memory.
         middle = center.line if transposed else center.element
         low, high = (inside.top, inside.bottom) if transposed else (inside.left, inside.right)
         reach = int(radius * 0.7072) + 1
@@ -46,21 +47,21 @@ def write_circle(
 
 
 def nearest_root(squares: Numbers) -> Numbers:
-    """The whole numbers nearest to the roots; a whole number is never half way between two squares' roots."""
+    """The whole numbers nearest to the square roots; no root of a whole number lies half way between two."""
     root = np.sqrt(np.maximum(squares, 0)).astype(np.int64)
     return root + (squares - root * root > root)
 
 
 def conic_pixels(conic: tuple[int, ...], start: Point, stop: Point | None) -> tuple[Numbers, Numbers]:
-    """The elements and lines of a conic's pixels, from the start on.
+    """The elements and lines of the pixels of a conic, in order, from the start on.
 
-    `conic` is a to e of 0 = a x^2 + b y^2 + c xy + d x + e y, x and y counted from the start, and the most
-    pixels. Hardware: LIN libdoc (the equation, the two ways to stop).
+    `conic` holds a to e of 0 = a x^2 + b y^2 + c xy + d x + e y, with x and y counted from the start, and the
+    largest number of pixels. Hardware: LIN libdoc (the equation, the two ways to stop).
 
-    Assumed: the trace keeps the side where the right-hand side is below 0 to its right as seen on the
-    screen: with a and b above 0 it runs clockwise, with all signs changed the other way. The number of
-    pixels includes the first. A stop that rounding put beside the curve is reached where the trace, having
-    been farther away, comes nearest to it within a pixel. A closed curve without a stop ends where it
+    Assumed: on the screen, the side where the right-hand side of the equation is negative lies to the right
+    of the trace: with positive a and b it runs clockwise, and with all signs changed the other way. The
+    number of pixels includes the first. A stop that rounding put beside the curve is reached where the trace,
+    after it was farther away, comes nearest to it within a pixel. A closed curve without a stop ends where it
     began.
     """
     a, b, c, d, e, most = conic
@@ -71,7 +72,7 @@ def conic_pixels(conic: tuple[int, ...], start: Point, stop: Point | None) -> tu
     was_away = False
     while len(pixels) < most:
         slope_x, slope_y = 2 * a * x + c * y + d, 2 * b * y + c * x + e
-        # Along the curve, with the inner side to the right.
+        # Follow the curve with its inner side to the right.
         along_x, along_y = -slope_y, slope_x
         if along_x == 0 and along_y == 0:
             break

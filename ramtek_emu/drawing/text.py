@@ -1,7 +1,7 @@
 """Text: characters in cells, with size, spacing and scan order.
 
-What is modeled: whole cells, dots and what lies between them; the turns of the scan orders; going on in the
-next line at the window's edge. What is **not**: the size factors of more than 16.
+What is modeled: whole cells, dots and the pixels between them; text turned by the scan order; the next line
+at the edge of the window. What is **not**: size factors above 16.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, ScanOrder, Window
 
 LARGEST_CELL: Final = 16
-"""Elements and lines of a cell at most.
+"""The largest number of elements, and of lines, of a cell.
 
 Assumed: a programmed character has 12 lines of 8 dots (LIN), so that four bits hold a dimension.
 """
 MOST_ALONG: Final = 4096
-"""Words along the scan that are drawn in one go: a bound on memory, whatever the host asks for."""
+"""How many words along the scan are drawn at once: a bound on memory, whatever the host asks for."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class TextStyle:
-    """How characters are set: cell, spacing, repeats of a dot, and whether what lies between dots is left."""
+    """How text is drawn: cell, spacing, size factors, words, and whether only the dots are written."""
 
     dimensions: tuple[int, int]
     spacing: tuple[int, int]
@@ -37,17 +37,17 @@ class TextStyle:
 
     @property
     def cell(self) -> tuple[int, int]:
-        """Words of a cell along the scan and across it."""
+        """The size of a cell along the scan and across it, in pixels."""
         along, across = (max(1, min(each, LARGEST_CELL)) for each in self.dimensions)
         return along * self.size[0], across * self.size[1]
 
     @property
     def step(self) -> tuple[int, int]:
-        """Words from a cell to the next, and from a line of text to the next."""
+        """The distance from a cell to the next, and from a line of text to the next, in pixels."""
         return self.cell[0] + self.spacing[0] * self.size[0], self.cell[1] + self.spacing[1] * self.size[1]
 
     def dots(self, shapes: Dots) -> Dots:
-        """Characters' shapes, (n, lines, elements), side by side as [outer, inner] dots of the cells."""
+        """The shapes of characters, (n, lines, elements), scaled and side by side as [outer, inner] dots."""
         along, across = self.cell[0] // self.size[0], self.cell[1] // self.size[1]
         cells = np.zeros((len(shapes), across, along), np.bool_)
         part = shapes[:, :across, :along]
@@ -57,7 +57,7 @@ class TextStyle:
 
 
 def beside(cells: Dots, step: int) -> Dots:
-    """Cells, (n, outer, inner), side by side, `step` words from one to the next."""
+    """Cells, (n, outer, inner), side by side at a distance of `step` pixels."""
     count, across, along = cells.shape
     if count == 1:
         single: Dots = cells[0]
@@ -79,14 +79,14 @@ def write_text(
     start: Point,
     enable: WriteEnable,
 ) -> Point:
-    """Write characters from `start` on, along the scan of the window; the place of the next cell is returned.
+    """Write characters along the scan of the window from `start` on; returns the place of the next cell.
 
     Hardware: BTL, LIN, JPL (whole cells, advance 7, line 9); NCAR (the scan order turns the letters); LIN
     (the dots between are background); JPL (its window begins at 1, 1 and its text anywhere, also before it).
-    Assumed: a cell that would pass the window's edge starts the next line of text at the edge where the scan
-    starts; below the last line text goes on at the window's first corner, and of text that goes around
-    the window many times only the last times are written; a cell larger than the window is written
-    whole, since clipping is the write window's.
+    Assumed: a cell that would cross the edge of the window starts the next line of text, at the edge where
+    the scan starts; after the last line, text continues at the corner where the scan starts, and of text that
+    goes around the window many times only the last times are written; a cell larger than the window is
+    written whole, since only the write window clips.
     """
     along, across = style.cell
     step, line_step = style.step
@@ -124,5 +124,5 @@ def write_text(
 
 
 def cells(room: int, size: int, step: int) -> int:
-    """How many cells of a size fit, each a step from the last; one at least, for one is written whole."""
+    """How many cells of a size fit at a distance of `step`; at least one, since one is always written."""
     return 1 + max(0, room - size) // step

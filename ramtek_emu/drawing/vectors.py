@@ -1,10 +1,10 @@
-"""Vectors: straight lines of words, one or thousands at once, with their texture.
+"""Vectors: straight lines of pixels, one or thousands at once, with texture.
 
-What is modeled: the nearest pixels, both ends of each line; texture patterns; clipping at the memory and the
-write window. What is **not**: the order in time in which the pixels of one line are written.
+What is modeled: the pixels nearest to each line, both ends included; texture patterns; clipping at the memory
+and at the write window. What is **not**: the order in which the pixels of a line are written.
 
-Assumed: of two pixels equally near to the line, the one farther from where it starts (Bresenham's choice is
-free there); no source says.
+Assumed: of two pixels equally near to the line, the one farther from the start in the direction across the
+line (Bresenham's algorithm leaves the choice open); no source says.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, Window
 
 MOST_POINTS: Final = 1 << 15
-"""Points that are worked out in one go, or those of one line: a bound on memory."""
+"""How many points are computed at once, or those of one line if they are more: a bound on memory."""
 FEW: Final = 4
-"""Lines that are quicker one by one."""
+"""Up to this number, lines are drawn faster one by one."""
 
 
 class Ink(NamedTuple):
-    """What a line is written with: a word for the ones of its texture and one for the zeros."""
+    """What a line is written with: a word for the ones of the texture, and one for the zeros."""
 
     word: int
     background: int = 0
     texture: tuple[int, int] = (0xFFFF, 0)
     transparent: bool = False
-    """Whether the zeros of the texture are left as they are."""
+    """Whether pixels at zeros of the texture stay unchanged."""
 
     @property
     def is_solid(self) -> bool:
@@ -39,7 +39,7 @@ class Ink(NamedTuple):
         return self.texture[0] == 0xFFFF
 
     def is_one(self, numbers: Numbers) -> Dots:
-        """The bit of the texture for pixels of these numbers along the line.
+        """The bits of the texture for pixels with these numbers along the line.
 
         Hardware: NCAR (sixteen bits, no pixel repeated); LONG (the low field is a bit's width less one).
         Assumed: the highest bit comes first.
@@ -52,7 +52,7 @@ class Ink(NamedTuple):
 def write_linked(frame_buffer: FrameBuffer, vertices: Numbers, ink: Ink, enable: WriteEnable) -> None:
     """Draw the lines that link (n, 2) vertices.
 
-    Assumed: the texture runs on from line to line, and begins anew with the next instruction.
+    Assumed: the texture continues from line to line, and starts again with the next instruction.
     """
     write_lines(frame_buffer, vertices[:-1], vertices[1:], ink, enable, runs_on=True)
 
@@ -92,7 +92,7 @@ def write_lines(
 def write_line(
     frame_buffer: FrameBuffer, start: Point, end: Point, word: int, enable: WriteEnable, inside: Window
 ) -> None:
-    """Draw one solid line, which takes fewer steps than many at once."""
+    """Draw one solid line, with fewer numpy calls than many lines at once take."""
     across, down = end.element - start.element, end.line - start.line
     if across == 0 or down == 0:
         box = Window(
@@ -124,9 +124,9 @@ def write_line(
 def points(
     starts: Numbers, ends: Numbers, inside: Window
 ) -> Iterator[tuple[Numbers, Numbers, Numbers, Indices]]:
-    """The points of lines in their order: elements, lines, the number along the line, the line's row.
+    """The points of lines in order: elements, lines, the number along the line, and the row of the line.
 
-    Of each line only the part comes that lies inside along its longer side.
+    Of each line, only the points whose coordinate along its longer side is inside the window are computed.
     """
     step = ends - starts
     size = np.abs(step)
@@ -143,7 +143,7 @@ def points(
     first[still] = last[still] = 0
     counts = np.maximum(last - first + 1, 0)
     done = np.cumsum(counts)
-    # 2 n |step| + length over 2 length is the nearest whole number, halves away from the start.
+    # (2 n |step| + length) // (2 length) is n |step| / length rounded, with halves away from the start.
     doubled, divisor, direction = 2 * size, 2 * np.maximum(length, 1), np.sign(step)
     row = 0
     while row < len(rows):

@@ -1,6 +1,6 @@
-"""HostPort: all that a host sees of a display, two methods wide; the ports to a file and over TCP.
+"""HostPort: the two methods by which a host uses a display; and the ports to a file and over TCP.
 
-Streams lie in files in the memory order of the PDP-11 and the VAX: low byte first (Hardware: PRG, JPL, whose
+Files hold streams in the byte order of the PDP-11 and the VAX, low byte first (Hardware: PRG, JPL, whose
 programs hand the words of their memory to the interface as they are).
 """
 
@@ -23,18 +23,18 @@ SENT_AT_ONCE: Final = 1 << 18
 
 
 class HostPort(Protocol):
-    """Where a host sends instruction words and receives what they ask for; `Ramtek9300` is one."""
+    """Takes the words of a host, and returns the replies; `Ramtek9300` is a host port."""
 
     def send(self, words: Words) -> None:
-        """Send 16-bit words; an instruction may be cut anywhere between two sends."""
+        """Send 16-bit words; an instruction may be spread over several calls."""
 
     def receive(self, count: int) -> Words:
-        """The next `count` words that the display has to give, uint16; ReplyError when it has fewer."""
+        """The next `count` words of the replies, uint16; ReplyError if there are fewer."""
         ...
 
 
 class Recorder:
-    """A host port that writes every word to a file, and passes it on to another port if there is one."""
+    """A host port that writes all words to a file, and passes them on to another port if one is given."""
 
     def __init__(self, file: BinaryIO, port: HostPort | None = None) -> None:
         self._file = file
@@ -48,7 +48,7 @@ class Recorder:
             self._port.send(stream)
 
     def receive(self, count: int) -> Words:
-        """The words that the other port gives; ReplyError when there is none: a file answers nothing."""
+        """The words that the other port returns; ReplyError if there is no other port."""
         if self._port is None:
             raise ReplyError(
                 f"a recording must have a display behind it to give words, not none ({count} asked); "
@@ -58,10 +58,10 @@ class Recorder:
 
 
 class TcpPort:
-    """A host port to a display behind a TCP port, as `ramtek serve` opens one: `tcp://host:port`.
+    """A host port to a display behind a TCP port, such as `ramtek serve` opens: `tcp://host:port`.
 
-    Words go and come low byte first. `receive` waits for the display up to `timeout` seconds. What the
-    display sends while words are being sent is taken in, so that neither side waits for the other forever.
+    Words are transferred low byte first. `receive` waits up to `timeout` seconds. While `send` is sending, it
+    also takes what the display replies; otherwise both sides could wait for each other forever.
     """
 
     def __init__(self, address: str, timeout: float = 30.0) -> None:
@@ -80,7 +80,7 @@ class TcpPort:
         self._socket.setblocking(False)
 
     def send(self, words: Words) -> None:
-        """Send 16-bit words; PortError when the display is gone."""
+        """Send 16-bit words; PortError if the connection is lost."""
         data = memoryview(checked_stream(words).astype("<u2", copy=False).tobytes())
         while data:
             readable, writable = self._wait(writing=True)
@@ -95,7 +95,7 @@ class TcpPort:
                     raise self._gone(cause) from cause
 
     def receive(self, count: int) -> Words:
-        """The next `count` words, uint16; ReplyError when they do not come in time, PortError when gone."""
+        """The next `count` words, uint16; ReplyError at the timeout, PortError if the connection is lost."""
         if count < 0:
             raise ReplyError(f"the words received must be 0 or more, not {count}; ask for fewer")
         while len(self._received) < 2 * count:
@@ -111,7 +111,7 @@ class TcpPort:
         return words
 
     def close(self) -> None:
-        """Leave the display; another host may come."""
+        """Close the connection; the display is then free for another host."""
         self._socket.close()
 
     def __enter__(self) -> TcpPort:
@@ -121,7 +121,7 @@ class TcpPort:
         self.close()
 
     def _wait(self, writing: bool) -> tuple[bool, bool]:
-        """Whether there is something to read, and room to write, as soon as either is so."""
+        """Wait until the socket is ready; returns whether it can be read, and whether it can be written."""
         if self._socket.fileno() < 0:
             raise PortError(f"a port must be open, not closed ({self.address}); open it again")
         with selectors.DefaultSelector() as selector:
@@ -153,7 +153,7 @@ class TcpPort:
 
 
 def host_and_port(address: str) -> tuple[str, int]:
-    """The host and port of `tcp://host:port`; PortError when the address is no such thing.
+    """The host and the port of `tcp://host:port`; PortError if the address is not of that form.
 
     >>> host_and_port("tcp://127.0.0.1:9300"), host_and_port("tcp://[::1]:9300")
     (('127.0.0.1', 9300), ('::1', 9300))

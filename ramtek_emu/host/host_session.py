@@ -1,12 +1,12 @@
-"""HostSession: bytes of a host into a display, bytes of its replies back; the same for a socket and a pipe.
+"""HostSession: passes the bytes of a host to a display and those of the replies back, for sockets and pipes.
 
 What is modeled: words low byte first both ways (Hardware: PRG, JPL, V8K: the words of a PDP-11's or a VAX's
-memory as they are); an instruction cut anywhere; replies as soon as they exist and in order; whole words: of
-an odd number of bytes the last is dropped at the end (Hardware: PRG DRIVER.c, V8K round down).
+memory as they are); instructions cut anywhere; replies in order and as soon as they exist; whole words: an
+odd byte at the end is dropped (Hardware: PRG DRIVER.c, V8K round down).
 
-Words are handed to the display in pieces. A piece that may ask for replies is short, so that no more than
-MOST_WAITING words ever wait: what a host sends next is not read before its replies are taken. A piece after
-one that took long is short too, so that whoever serves in between other work, a window, gets back to it.
+The words are passed on in pieces. A piece that may contain reading instructions is short, so that no more
+than MOST_WAITING words of replies ever wait; the next piece is read when those replies were taken. A piece is
+also short if the last one took long, so that a window that is served in between stays responsive.
 """
 
 from __future__ import annotations
@@ -26,53 +26,53 @@ Record = Callable[[bytes], object]
 
 LEAST: Final = 4
 PIECE: Final = 1 << 15
-"""Words handed to the display at once, at least and at most."""
+"""The smallest and the largest number of words passed to the display at once."""
 LONG: Final = 0.004
 SHORT: Final = 0.001
-"""Seconds from which a piece was long, and up to which it was short."""
+"""Seconds: a piece that took longer than LONG makes the next one shorter, one below SHORT makes it longer."""
 ASKING_PIECE: Final = 64
-"""Words at once where some may be instructions that reply: at most 32, each with at most 32,767 words."""
+"""The size of a piece that may contain reading instructions: at most 32, each with at most 32,767 words."""
 REPLY_PIECE: Final = 1 << 15
-"""Words of a reply handed on at once."""
+"""The largest number of words of replies returned at once."""
 
 
 def asking() -> Booleans:
-    """For each of the 256 opcodes, whether it makes the display reply."""
+    """Whether each of the 256 opcodes makes the display reply."""
     opcodes = np.zeros(256, np.bool_)
     opcodes[[format.opcode for format in FORMATS if format.replies]] = True
     return opcodes
 
 
 class HostSession:
-    """One host at a display; when it leaves, what it left unfinished is forgotten, and memory stays."""
+    """One host at a display. When it leaves, its unfinished words are dropped and the memories are kept."""
 
     def __init__(self, display: Ramtek9300, record: Record | None = None) -> None:
-        """Begin; `record` is given the bytes of whole instructions, in order."""
+        """Begin a session; `record` is called with the bytes of whole instructions, in order."""
         self.display = display
         self._record = record
         self._unrecorded = NO_WORDS
         self.words = 0
-        """Words taken from the host; it only grows."""
+        """How many words the host has sent; it never decreases."""
         self.odd_byte = b""
-        """The first half of a word whose other half has not come."""
+        """The first byte of a word whose second byte has not arrived."""
         self._asking = asking()
         self._size = ASKING_PIECE
         self.leave()
 
     @property
     def held_words(self) -> int:
-        """Words of an instruction that is not complete."""
+        """How many words of an incomplete instruction are held."""
         return self.display.decoder.held_words
 
     @property
     def unfinished(self) -> bool:
-        """Whether a word or an instruction waits for its rest."""
+        """Whether a word or an instruction is incomplete."""
         return bool(self.odd_byte) or self.held_words > 0
 
     def feed(self, data: bytes) -> Iterator[bytes]:
-        """Hand bytes of the host to the display, piece by piece; after each, the replies that it made.
+        """Pass bytes of the host to the display, piece by piece, and yield the replies to each piece.
 
-        Nothing happens until the iterator is asked; whoever does not take a reply stops the host's words.
+        The work is done while the iterator is consumed: the next piece waits until all replies were taken.
         """
         data = self.odd_byte + data
         self.odd_byte = data[len(data) & ~1 :]
@@ -96,7 +96,7 @@ class HostSession:
                 yield self.display.receive(min(waiting, REPLY_PIECE)).astype("<u2", copy=False).tobytes()
 
     def _keep(self, piece: Words) -> None:
-        """Record the words of the instructions that are whole now."""
+        """Record the words of the instructions that are complete now."""
         if self._record is not None:
             words = np.concatenate((self._unrecorded, piece))
             whole = len(words) - self.held_words
@@ -104,7 +104,7 @@ class HostSession:
             self._unrecorded = words[whole:]
 
     def leave(self) -> None:
-        """Forget the unfinished instruction, the odd byte and the replies that nobody took."""
+        """Drop the incomplete instruction, the odd byte and the replies that were not taken."""
         self.odd_byte = b""
         self._unrecorded = NO_WORDS
         self.display.decoder.clear()

@@ -1,11 +1,11 @@
-"""A display on a pipe: a host's words on one end, its replies on the other.
+"""A display on pipes: the words of the host come in on one, the replies go out on the other.
 
-`serve_pipe` waits for the host, as a command does. `PolledPipe` never waits, so that a window can be drawn in
-between: two threads do the waiting, and only whoever asks it touches the display.
+`serve_pipe` blocks until the host sends something, as a command does. `PolledPipe` never blocks, so that a
+window can be drawn in between: two threads read and write the pipes, and only the caller uses the display.
 
-A host that no longer takes its replies loses them; its words are still done (Assumed: a host that draws and
-leaves wants its picture). What ends the input ends the session: an unfinished instruction and an odd last
-byte are dropped.
+A host that no longer takes its replies loses them, but its words are still executed (Assumed: a host that
+draws and leaves wants its picture). The session ends with the input; an unfinished instruction and an odd
+last byte are dropped.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ Write = Callable[[bytes], object]
 
 
 def serve_pipe(session: HostSession, read: Read, write: Write | None) -> None:
-    """Do what comes from `read` until it gives nothing more; hand each reply to `write` at once.
+    """Execute what `read` returns until it returns nothing; pass each reply to `write` at once.
 
-    `read` returns what is there, at most as many bytes as it is asked for; without `write` replies are
-    dropped.
+    `read` returns the bytes that are available, at most as many as it is asked for. Without `write`, replies
+    are dropped.
     """
     while data := read(READ_BYTES):
         for reply in session.feed(data):
@@ -35,12 +35,12 @@ def serve_pipe(session: HostSession, read: Read, write: Write | None) -> None:
                 try:
                     write(reply)
                 except ConnectionError:
-                    # The host has gone.
+                    # The host has closed its end.
                     write = None
 
 
 class PolledPipe:
-    """The same in slices of time; `ended` once the host has nothing more to send."""
+    """Serves pipes in slices of time; `ended` is set when the host has closed its end."""
 
     def __init__(self, session: HostSession, read: Read, write: Write | None = None) -> None:
         self.session = session
@@ -55,7 +55,7 @@ class PolledPipe:
             threading.Thread(target=self._drain, daemon=True).start()
 
     def step(self) -> bool:
-        """Do one piece of what has come; returns whether there was one, and room for its reply."""
+        """Execute one piece; returns False if none has arrived, or if its reply must wait."""
         if self._reply:
             try:
                 self._replies.put_nowait(self._reply)
@@ -77,7 +77,7 @@ class PolledPipe:
         return True
 
     def serve_for(self, seconds: float) -> None:
-        """Serve without waiting until nothing is left to do, or the time is over."""
+        """Serve, without blocking, until there is nothing left to do or the time is over."""
         end = time.monotonic() + seconds
         while not self.ended and self.step() and time.monotonic() < end:
             pass

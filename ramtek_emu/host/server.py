@@ -1,16 +1,16 @@
 """Server: a display behind a TCP port, for one host at a time.
 
-What is modeled: the host interface as a row of words low byte first, both ways. What is **not**: the UNIBUS
-registers and their interrupts; who asks over this port gets words, nothing else.
+What is modeled: the host interface as a stream of words, low byte first, both ways. What is **not**: the
+UNIBUS registers and their interrupts.
 
-Nothing here ever waits longer than it is told to, so that a window can be drawn in between: `step` takes what
-has come, sends what can go, and returns. A host that leaves, in mid-instruction or not, leaves the display
-ready for the next: its unfinished instruction and its unread replies are dropped, memory stays. A second host
-is let in and shown out at once: its connection is closed.
+No call blocks longer than its argument allows, so that a window can be drawn in between: `step` reads what
+has arrived, sends what can be sent, and returns. When a host leaves, its unfinished instruction and its
+unread replies are dropped, the memories keep their state, and the next host can connect. The connection of a
+second host is closed at once.
 
-Bounds: a host that neither sends nor takes anything for `idle_seconds` is shown out, and one that leaves an
-instruction unfinished for `partial_seconds`; an unfinished instruction is never more than its own words;
-while REPLY_BYTES wait to be taken by the host, nothing more is read from it.
+Limits: a host is disconnected if nothing is sent or received for `idle_seconds`, or if an instruction stays
+incomplete for `partial_seconds`. While REPLY_BYTES of replies wait for the host, nothing more is read from
+it.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ IDLE_SECONDS: Final = 600.0
 PARTIAL_SECONDS: Final = 60.0
 READ_BYTES: Final = 1 << 16
 REPLY_BYTES: Final = 1 << 18
-"""Bytes of replies that wait for the host before its words are left unread."""
+"""When this many bytes of replies wait for the host, no more of its words are read."""
 
 
 class Server:
-    """Listens at once; `port` is the one that was given, or that the system chose for 0."""
+    """A TCP server with one display. `port` is the port it listens on, even if 0 asked for any free one."""
 
     def __init__(
         self,
@@ -47,15 +47,15 @@ class Server:
         partial_seconds: float = PARTIAL_SECONDS,
         record: Record | None = None,
     ) -> None:
-        """Begin to listen; `record` is given the bytes of whole instructions, of one host after the other."""
+        """Start to listen; `record` is called with the bytes of whole instructions, host after host."""
         self.display = display
         self.record = record
         self.idle_seconds = idle_seconds
         self.partial_seconds = partial_seconds
         self.served = 0
-        """Hosts that came and left; it only grows."""
+        """How many hosts were served and have left; it never decreases."""
         self.refused = 0
-        """Hosts that came while another was there; it only grows."""
+        """How many hosts were refused because another was connected; it never decreases."""
         try:
             family = socket.AF_INET6 if ":" in host else socket.AF_INET
             self._listener = socket.create_server((host, port), family=family, backlog=4)
@@ -74,16 +74,16 @@ class Server:
 
     @property
     def address(self) -> str:
-        """What a host gives to TcpPort."""
+        """The address that a host passes to TcpPort."""
         return f"tcp://{f'[{self.host}]' if ':' in self.host else self.host}:{self.port}"
 
     @property
     def busy(self) -> bool:
-        """Whether a host is there."""
+        """Whether a host is connected."""
         return self._client is not None
 
     def step(self, seconds: float = 0.0) -> bool:
-        """Serve what has come, waiting for it up to `seconds`; returns whether anything was done."""
+        """Serve what has arrived, waiting up to `seconds` for it; returns whether anything was done."""
         client = self._client
         if client is not None:
             left = max(0.0, client.deadline - time.monotonic())
@@ -99,19 +99,19 @@ class Server:
         if client is not None:
             done |= client.work()
             if client.ended or time.monotonic() >= client.deadline:
-                self._show_out()
+                self._disconnect()
                 done = True
         return done
 
     def serve_for(self, seconds: float) -> None:
-        """Serve without waiting until nothing is left to do, or the time is over; for a window's tick."""
+        """Serve, without blocking, until nothing is left to do or the time is over; for a window's ticks."""
         end = time.monotonic() + seconds
         while self.step() and time.monotonic() < end:
             pass
 
     def close(self) -> None:
-        """Show the host out and listen no more."""
-        self._show_out()
+        """Disconnect the host and stop listening."""
+        self._disconnect()
         self._selector.close()
         self._listener.close()
 
@@ -127,7 +127,7 @@ class Server:
         try:
             connection, _ = self._listener.accept()
         except OSError:
-            # Whoever called has gone already.
+            # The caller has disconnected already.
             return
         if self._client is not None:
             self.refused += 1
@@ -140,7 +140,7 @@ class Server:
         self._client = Client(connection, session, self.idle_seconds, self.partial_seconds)
         self._selector.register(connection, selectors.EVENT_READ)
 
-    def _show_out(self) -> None:
+    def _disconnect(self) -> None:
         if self._client is not None:
             self._selector.unregister(self._client.socket)
             self._client.leave()
@@ -149,7 +149,7 @@ class Server:
 
 
 class Client:
-    """The host that is there: its connection, what it sent and what it is to be sent."""
+    """The connected host: its connection, its words and the replies to be sent."""
 
     def __init__(
         self, connection: socket.socket, session: HostSession, idle_seconds: float, partial_seconds: float
@@ -165,23 +165,23 @@ class Client:
 
     @property
     def has_work(self) -> bool:
-        """Whether words of the host wait, and nothing keeps them from the display."""
+        """Whether words of the host can be passed to the display now."""
         return self._pending is not None and len(self._replies) < REPLY_BYTES
 
     @property
     def wanted(self) -> int:
-        """The events of the connection that can be dealt with now."""
+        """The events of the connection that can be handled now."""
         reading = self._pending is None and not self.sent_all and len(self._replies) < REPLY_BYTES
         return (selectors.EVENT_READ if reading else 0) | (selectors.EVENT_WRITE if self._replies else 0)
 
     @property
     def ended(self) -> bool:
-        """Whether there is nothing more to do for this host."""
+        """Whether nothing remains to be done for this host."""
         return self.gone or (self.sent_all and self._pending is None and not self._replies)
 
     @property
     def deadline(self) -> float:
-        """When the host is shown out if nothing happens."""
+        """When the host is disconnected if nothing happens."""
         idle = self._moved + self.idle_seconds
         return min(idle, self._whole + self.partial_seconds) if self.session.unfinished else idle
 
@@ -208,7 +208,7 @@ class Client:
         return moved
 
     def work(self) -> bool:
-        """Hand one piece of the host's words to the display; returns whether there was one."""
+        """Pass one piece of the host's words to the display; returns whether there was one."""
         if not self.has_work or self._pending is None:
             return False
         reply = next(self._pending, None)
@@ -221,7 +221,7 @@ class Client:
         return True
 
     def leave(self) -> None:
-        """Close the connection and forget what the host left unfinished."""
+        """Close the connection and drop what is unfinished."""
         self._pending = None
         self.session.leave()
         self.socket.close()

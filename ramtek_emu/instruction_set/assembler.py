@@ -1,15 +1,15 @@
-"""Assembly: the words of a listing, or of a program written by hand in the same manner.
+"""Assembler: the words of a listing, or of a program that was written by hand in the same form.
 
-A line is an instruction: its name, flags, operands by either of their names, the length of its data.
+A line holds an instruction: its name, its flags, its operands by name or mnemonic, the length of its data.
 
     SET FORE=1 BK
     ERS BACK=2 WIN=100,331..200,411       ; a filled box
     WVL STRT=10,501                       ; what comes after a semicolon is for readers
       to 100,451  200,300                 ; points; `text "HELLO"` for characters, `words 0010*640` for others
 
-Numbers are decimal or, after 0x, hexadecimal; `raw` and `words` take hexadecimal words, `byte` the odd byte
-at the end of a stream. A length that is not given is that of the data. The words at the left of a listing are
-for readers: the text at the right is what counts.
+Numbers are decimal or, after 0x, hexadecimal. `raw` and `words` take hexadecimal words, `byte` takes the odd
+byte at the end of a stream. If no length is given, it is that of the data. The words on the left of a listing
+are ignored.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ OPERAND_OF_WORD: Final = {
 
 
 def assemble(lines: Iterable[str]) -> Iterator[bytes]:
-    """The bytes of the stream, low byte first, instruction by instruction; ListingError names the line."""
+    """The stream as bytes, low byte first, one instruction at a time; ListingError names the wrong line."""
     pending: Draft | None = None
     ended = 0
     for number, line in enumerate(lines, 1):
@@ -91,7 +91,7 @@ def assemble(lines: Iterable[str]) -> Iterator[bytes]:
 
 
 class Draft:
-    """An instruction whose data are still coming."""
+    """An instruction whose lines of data have not all been read yet."""
 
     def __init__(self, tokens: list[str], number: int) -> None:
         self.number = number
@@ -126,7 +126,7 @@ class Draft:
         return not self.format.replies and (self.format.is_normal or "length" in (self.format.fixed or ()))
 
     def _take(self, token: str) -> None:
-        """Take a flag, a number or an operand."""
+        """Add a flag, a number or an operand."""
         name, _, value = token.partition("=")
         upper = name.upper()
         if self.format.is_normal and upper in FLAG_OF_NAME and not value:
@@ -156,7 +156,7 @@ class Draft:
             )
 
     def add(self, kind: str, tokens: list[str], number: int) -> None:
-        """Take a line of data."""
+        """Add a line of data."""
         if kind == "text":
             codes = b"".join(string_of(token, number) for token in tokens)
             if self.bytes % 2:
@@ -207,7 +207,7 @@ class Draft:
             low_byte |= Flags.DATA if length is not None else 0
             low_byte |= Flags.OPERANDS_1 if any(each.name in self.operands for each in OPERANDS_1) else 0
             low_byte |= Flags.OPERANDS_2 if any(each.name in self.operands for each in OPERANDS_2) else 0
-        # The words come in the order of the table, however they were written.
+        # Send the operands in the order of the table, in whatever order they were written.
         named = {
             name: self.operands[name] for name in (self.format.fixed or OPERANDS) if name in self.operands
         }

@@ -1,16 +1,15 @@
-"""Decoder: a continuous stream of words, cut anywhere, becomes instructions.
+"""Decoder: splits a continuous stream of words into instructions, wherever the stream is cut.
 
-An instruction may span two sends and one send may hold many (Hardware: PRG, DRIVER.c cuts its transfers
-every 512 bytes). The words of an instruction that is not complete are held; they are never more than one
-instruction's.
+An instruction may span two sends, and one send may hold many instructions (Hardware: PRG, DRIVER.c cuts its
+transfers every 512 bytes). The words of an incomplete instruction are held until the rest of it arrives.
 
 Assumed: a word whose opcode is in no row of the table, or that asks for a second operand flag word on a
 display without one, is skipped alone and flagged as illegal; the next word is read as an instruction. The
 sources know the status bit but not how the hardware finds its way again.
 
-Assumed: conic coefficients are twelve words, as the only client sends them; the six of the header's comment
-are taken where twelve make no sense: in a WC with data, when the word that is the data's length after six
-would be the upper half of a coefficient after twelve, and is 4, the length of one point.
+Assumed: conic coefficients are twelve words, as the only client sends them. The six words of the header's
+comment are taken only where twelve make no sense: in a WC with data, if the word that is the data length
+after six coefficients would be the upper half of a coefficient with twelve, and is 4, the length of a point.
 """
 
 from __future__ import annotations
@@ -34,15 +33,15 @@ from ramtek_emu.instruction_set.table import (
 )
 
 MOST_HEAD: Final = 64
-"""More words than any instruction has before its data."""
+"""A bound on the words of an instruction before its data."""
 CONIC: Final = 1 << list(OPERANDS).index("conic")
 """The bit of the conic coefficients in the first operand flag word."""
 MOST_WORDS: Final = MOST_HEAD + 0x8000
-"""More words than any instruction has."""
+"""A bound on the words of an instruction."""
 
 
 class Decoder:
-    """Takes words as they come and gives whole instructions; what is left waits for the next words."""
+    """Takes words as they arrive and returns whole instructions; the words of an incomplete one are held."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
         self._extended = configuration.extended
@@ -54,17 +53,18 @@ class Decoder:
 
     @property
     def held_words(self) -> int:
-        """Words of an instruction that is not complete yet."""
+        """How many words of an incomplete instruction are held."""
         return self._count
 
     def clear(self) -> None:
-        """Forget the words of an instruction that is not complete."""
+        """Drop the words of an incomplete instruction."""
         self._count, self._needed = 0, 1
 
     def feed(self, words: Words, in_rows: bool = False) -> Iterator[Instruction]:
         """The instructions that these words complete, in order; their data are views where possible.
 
-        Illegal words come one by one, or `in_rows` as the data of one illegal instruction.
+        Each illegal word is an instruction of its own. With `in_rows`, consecutive illegal words are the data
+        of one.
         """
         place = 0
         while self._count and place < len(words):
@@ -91,7 +91,7 @@ class Decoder:
                 continue
             needed = words_needed(format, head)
             if needed > len(words) - place:
-                # Hold the beginning of an instruction.
+                # Hold the words of an incomplete instruction.
                 self._needed, self._count = needed, len(words) - place
                 self._held[: self._count] = words[place:]
                 return
@@ -99,7 +99,7 @@ class Decoder:
             yield instruction_of(format, head, words[place - needed : place])
 
     def _illegal_row(self, words: Words, place: int) -> int:
-        """How many words from `place` on begin nothing."""
+        """How many consecutive words from `place` on are illegal."""
         count, step = 1, MOST_HEAD
         while place + count < len(words):
             begins = self._begins[words[place + count : place + count + step]]
@@ -117,7 +117,7 @@ class Decoder:
 
 
 FLAG_WORDS: Final = {0: 1, Flags.OPERANDS_1: 2, Flags.OPERANDS_2: 2, Flags.OPERANDS_1 | Flags.OPERANDS_2: 3}
-"""The instruction word and the flag words that its flags announce."""
+"""How many words come before the operands, by the two flags: the instruction word and its flag words."""
 
 
 def words_needed(format: InstructionFormat, head: list[int]) -> int:
@@ -177,7 +177,7 @@ def instruction_of(format: InstructionFormat, head: list[int], words: Words) -> 
 
 
 def flag_words(head: list[int]) -> tuple[int, int]:
-    """The two operand flag words of a normal instruction, 0 where there is none."""
+    """The two operand flag words of a normal instruction; 0 for one that it does not have."""
     first = head[1] if head[0] & Flags.OPERANDS_1 else 0
     second = head[2 if head[0] & Flags.OPERANDS_1 else 1] if head[0] & Flags.OPERANDS_2 else 0
     return first, second
@@ -192,7 +192,7 @@ def formats_of_opcodes(extended: bool) -> tuple[InstructionFormat, ...]:
 
 @lru_cache
 def words_that_begin(extended: bool) -> Booleans:
-    """Whether each of the 65,536 words begins an instruction: rows of illegal ones are found at once."""
+    """Whether each of the 65,536 words begins an instruction, to find quickly where illegal words end."""
     formats = formats_of_opcodes(extended)
     begins = np.repeat([format is not ILLEGAL for format in formats], 256)
     if not extended:
@@ -204,7 +204,10 @@ def words_that_begin(extended: bool) -> Booleans:
 
 
 def short_length_place(head: list[int]) -> int | None:
-    """Where the data length is after six coefficients, if twelve make an upper half of that word."""
+    """The index of the data length if there are six coefficients; None if it cannot be told from twelve.
+
+    It can be told where twelve coefficients would make that word the upper half of one of them.
+    """
     first, second = flag_words(head)
     place = FLAG_WORDS[head[0] & 6]
     coefficients = place + sum(operand.words for operand in operands_named(first & (CONIC - 1)))

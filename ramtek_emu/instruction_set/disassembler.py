@@ -1,13 +1,13 @@
-"""Listing: a stream of words as instructions with named operands, for reading, changing and assembling.
+"""Disassembler: a stream of words as a listing, which can be read, changed and assembled again.
 
     00000: 0802 8000 000A 01F5            SET STRT=10,501
     00004: 0E01 0004                      WVL 4 bytes
     00006: 0064 01C3                        to 100,451
 
-On the left are the place of the first word in the stream and the words themselves, on the right what they
-mean. The assembler reads the right side alone, and it gives back exactly the words on the left, for any words
-at all. What has no better name is `raw`: a word that begins no instruction, an instruction cut off by the end
-of the stream, flag bits that no source names. Data are complete; `0010*640` is a word 640 times.
+On the left are the index of the first word in the stream and the words; on the right is what they mean. The
+assembler reads only the right side, and returns exactly the words on the left, for any words. `raw` marks
+words that cannot be shown as an instruction: an illegal word, an instruction that the end of the stream cuts
+off, or one with flag bits that no source names. All data are listed; `0010*640` is one word 640 times.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ from ramtek_emu.instruction_set.table import (
 )
 
 COLUMN: Final = 6
-"""Words at the left of a line."""
+"""The largest number of words on the left of a line."""
 IN_HEXADECIMAL: Final = frozenset(("mask", "read_mask", "texture", "scale", "conic"))
 PLAIN: Final = frozenset(("address", "element", "line"))
-"""Operands of special instructions that are numbers; the others hold bits."""
+"""Operands of special instructions that are numbers; all others are listed in hexadecimal."""
 SIGNED: Final = frozenset(
     ("index_1", "index_2", "origin", "window", "write_window", "write_offset", "start", "element", "line")
 )
@@ -47,18 +47,18 @@ VERTICES: Final = frozenset(("WVL", "WVU", "WPT"))
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One instruction of a stream, or words that are none."""
+    """One instruction of a stream, or words that are no instruction."""
 
     place: int
-    """The number of its first word in the stream."""
+    """The index of its first word in the stream."""
     words: Words
     instruction: Instruction | None = None
     note: str = ""
-    """Why there is no instruction."""
+    """Why it is no instruction."""
     odd_byte: bytes = field(default=b"")
 
     def lines(self) -> Iterator[str]:
-        """Its lines, words at the left, meaning at the right."""
+        """Its lines: words on the left, meaning on the right."""
         if self.odd_byte:
             yield _line(self.place, "", f"byte {self.odd_byte[0]:02X} ; {self.note}")
             return
@@ -78,7 +78,7 @@ class Item:
             place += len(words)
 
     def plain(self) -> dict[str, Any]:
-        """The same in plain values, for JSON."""
+        """The item in plain values, for JSON."""
         item: dict[str, Any] = {"place": self.place, "words": self.words.tolist()}
         if self.instruction is None:
             item["note"] = self.note
@@ -95,7 +95,7 @@ class Item:
 
 
 def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> Iterator[Item]:
-    """The items of a stream that comes in pieces of bytes, low byte first, cut anywhere."""
+    """The items of a stream given as pieces of bytes, low byte first, cut anywhere."""
     decoder = Decoder(configuration)
     place, odd_byte = 0, b""
     rest: Words = np.zeros(0, np.uint16)
@@ -126,14 +126,14 @@ def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> I
 
 
 def flag_names(low_byte: int) -> list[str]:
-    """The flags of a normal instruction that its operands and data do not tell."""
+    """The names of the flags that do not follow from the operands and the data."""
     names = [name for flag, name in FLAG_NAMES.items() if low_byte & flag]
     addressing = ADDRESSING_NAMES.get(low_byte & Flags.ADDRESSING)
     return names if addressing is None else [*names, addressing]
 
 
 def head_text(instruction: Instruction) -> str:
-    """An instruction without its data: name, flags, operands, length."""
+    """The text of an instruction without its data: name, flags, operands, length."""
     format = instruction.format
     parts = [format.name]
     if format.is_normal:
@@ -157,7 +157,7 @@ def head_text(instruction: Instruction) -> str:
 
 
 def operand_text(name: str, words: tuple[int, ...]) -> str:
-    """The words of an operand as they are best read: coordinates signed, masks and bits hexadecimal."""
+    """The text of an operand: coordinates as signed numbers, masks and bits in hexadecimal."""
     if name in IN_HEXADECIMAL or (name not in OPERANDS and name not in PLAIN):
         return ",".join(f"0x{word:04X}" for word in words)
     numbers = [word - 0x10000 if name in SIGNED and word & 0x8000 else word for word in words]
@@ -168,7 +168,7 @@ def operand_text(name: str, words: tuple[int, ...]) -> str:
 
 
 def data_texts(instruction: Instruction) -> Iterator[tuple[Words, str]]:
-    """The data of an instruction in lines: some words and what they mean."""
+    """The data of an instruction line by line: the words and their text."""
     data, name = instruction.data, instruction.format.name
     length = instruction.length or 0
     if name in VERTICES and len(data) % 2 == 0:
@@ -187,7 +187,7 @@ def data_texts(instruction: Instruction) -> Iterator[tuple[Words, str]]:
 
 
 def _has_pad(instruction: Instruction, length: int) -> bool:
-    """Whether the byte that fills up the last word is not 0."""
+    """Whether the padding byte in the last word is not 0."""
     if length % 2 == 0:
         return False
     low = instruction.low_byte & Flags.REVERSE_PACKING
@@ -195,7 +195,7 @@ def _has_pad(instruction: Instruction, length: int) -> bool:
 
 
 def _runs(data: Words) -> Iterator[tuple[Words, str]]:
-    """Words in hexadecimal, rows of one word as a product, eight of either in a line."""
+    """Words in hexadecimal, at most eight items a line; a word that repeats is written as a product."""
     edges = np.flatnonzero(np.diff(data)) + 1
     starts = [0, *edges.tolist(), len(data)] if len(data) else [0]
     texts: list[str] = []

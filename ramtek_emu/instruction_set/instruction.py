@@ -1,4 +1,4 @@
-"""Instruction, one value: its row of the table, its operands and its data; and its words.
+"""Instruction: an instruction as one value, and the words that it is sent as.
 
 >>> str(normal("SET", {"foreground": 1}))
 'SET  foreground 1'
@@ -27,7 +27,7 @@ from ramtek_emu.instruction_set.table import (
 )
 
 OperandValue = int | Sequence[int]
-"""An operand's value: one number, or as many as it has words."""
+"""The value of an operand: one number, or one for each of its words."""
 NO_WORDS: Final[Words] = np.zeros(0, np.uint16)
 MOST_BYTES: Final = 0xFFFF
 """The longest data field: its length is one word."""
@@ -35,17 +35,17 @@ MOST_BYTES: Final = 0xFFFF
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Instruction:
-    """One instruction: its row of the table, its low byte, its operands as words, its data."""
+    """An instruction: its format, its low byte, its operands as words, and its data."""
 
     format: InstructionFormat
     low_byte: int = 0
     operands: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     length: int | None = None
-    """Bytes of data, None without a data field."""
+    """The number of bytes of data; None if there is no data field."""
     data: Words = field(default_factory=lambda: NO_WORDS)
 
     def data_bytes(self) -> bytes:
-        """The data as bytes: high byte first, low byte first with reverse packing; a pad byte is left out."""
+        """The data as bytes without padding: high byte first, or low byte first with reverse packing."""
         packed = self.data.astype("<u2" if self.low_byte & Flags.REVERSE_PACKING else ">u2")
         return packed.tobytes()[: self.length]
 
@@ -77,7 +77,7 @@ def encode(instruction: Instruction) -> Words:
             sum(1 << bit for bit, operand in enumerate(operands) if operand.name in instruction.operands)
             for operands in (OPERANDS_1, OPERANDS_2)
         ]
-        # A flag word that announces nothing is sent when its flag says so.
+        # A flag that is set has its flag word, even if that word names no operand.
         for flag, word in zip((Flags.OPERANDS_1, Flags.OPERANDS_2), flag_words, strict=True):
             if instruction.low_byte & flag:
                 head.append(word)
@@ -98,7 +98,7 @@ def normal(
     length: int | None = None,
     flags: int = 0,
 ) -> Instruction:
-    """A normal instruction from named operands; numbers from -32768 to 65535 are sent as 16 bits."""
+    """A normal instruction with these operands; numbers from -32768 to 65535 become words of 16 bits."""
     named = {key: operand_words(key, value) for key, value in operands.items() if value is not None}
     if any(operand.name in named for operand in OPERANDS_1):
         flags |= Flags.OPERANDS_1
@@ -117,7 +117,7 @@ def normal(
 
 
 def operand_words(name: str, value: OperandValue) -> tuple[int, ...]:
-    """The words of one operand, checked for their number and range."""
+    """The words of an operand; InstructionError if their number or range is wrong."""
     if name not in OPERANDS:
         raise InstructionError(
             f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; choose one of them"

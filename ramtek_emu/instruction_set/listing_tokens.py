@@ -1,4 +1,4 @@
-"""The words, numbers and strings that a line of a listing is made of, each refused by one sentence."""
+"""The tokens of a listing: names, numbers, words and strings, checked and converted."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ HEXADECIMAL: Final = re.compile(r"(?P<word>[0-9A-Fa-f]{1,4})(?:\*(?P<times>[0-9]
 ESCAPE: Final = re.compile(r"\\x([0-9A-Fa-f]{2})|\\(.)")
 MOST_TIMES: Final = 0x8000
 MOST_LINE: Final = 1 << 16
-"""Characters of a line at most."""
+"""The largest number of characters in a line."""
 
 
 def tokens_of(line: str, number: int) -> list[str]:
-    """The words, numbers and strings of a line, without the words at the left and the comment."""
+    """The tokens of a line, without the words on the left and the comment."""
     if len(line) > MOST_LINE:
         raise refusal(number, f"a line must be at most {MOST_LINE} characters, not {len(line)}; break it")
     left = LEFT.match(line)
@@ -40,7 +40,7 @@ def tokens_of(line: str, number: int) -> list[str]:
 
 
 def numbers_of(text: str, number: int) -> tuple[int, ...]:
-    """Numbers between commas, or the two points of a window, as 16-bit words."""
+    """Numbers separated by commas, or the two points of a window, as 16-bit words."""
     words = []
     for part in text.replace("..", ",").split(","):
         if not NUMBER.fullmatch(part) or not -0x8000 <= int(part, 0 if "x" in part.lower() else 10) <= 0xFFFF:
@@ -69,7 +69,7 @@ def hexadecimal_words(tokens: list[str], number: int) -> Words:
 
 
 def string_of(token: str, number: int) -> bytes:
-    r"""The bytes of a string in quotation marks; `\"`, `\\` and `\x1B` stand for what cannot be written."""
+    r"""The bytes of a string in quotation marks; the escapes are `\"`, `\\` and, for any byte, `\x1B`."""
     text = ESCAPE.sub(lambda found: chr(int(found[1], 16)) if found[1] else found[2], token[1:-1])
     if len(token) < 2 or token[0] != '"' or not all(ord(character) < 256 for character in text):
         raise refusal(
@@ -79,5 +79,5 @@ def string_of(token: str, number: int) -> bytes:
 
 
 def refusal(number: int, sentence: str) -> ListingError:
-    """The sentence for a line that cannot be assembled."""
+    """The error for a line that cannot be assembled."""
     return ListingError(f"line {number}: {sentence}")

@@ -1,6 +1,6 @@
-"""The opcodes of the 9400 and 9460 that are known by number and name only.
+"""The opcodes of the 9400 and 9460 of which only number and name are known.
 
-Hardware: NCAR, whose header lists them; no client of any of them was found.
+Hardware: NCAR, whose header lists them; no client that sends one of them was found.
 """
 
 from __future__ import annotations
@@ -62,4 +62,4 @@ UNIMPLEMENTED: Final = (
     (0x8C, "RTCS", "RTCS"),
     (0x8D, "WCVU", "WCVU"),
 )
-"""Opcode, name and what the name says; the header names a range of opcodes only by what they are for."""
+"""Opcode, name, and what the name means. Names such as DL43 are ours: the header describes a whole range."""

@@ -1,9 +1,9 @@
-"""The instruction set: one table of operands and one of instructions, for decoder, processor and listing.
+"""The instruction table and the operand table, on which decoder, processor, disassembler and assembler work.
 
-An instruction is a word with the opcode in its high byte. A *normal* one has flags in its low byte: operand
-flag words follow, then the operands that they name in ascending bit order, then, with the data flag, a
-length in bytes and the data. A *special* one has a device, cursor or character number there and a fixed row
-of operands.
+An instruction begins with a word whose high byte is the opcode. In a *normal* instruction the low byte holds
+flags. Operand flag words follow, then the operands that they name in ascending bit order, then, with the data
+flag, a length in bytes and the data. In a *special* instruction the low byte is the number of a device, a
+cursor or a character, and a fixed sequence of operands follows.
 
 Hardware: LIN, BTL, JPL and NCAR agree on all of this; the counts of words are Linton's `Argno` and `libdoc`.
 Assumed: CONE is 12 words, as its only client sends; a header comment says 6, which the decoder takes where
@@ -22,14 +22,14 @@ from ramtek_emu.instruction_set.opcode_names import UNIMPLEMENTED
 
 
 class Flags:
-    """The low byte of a normal instruction, in plain numbers: every instruction is tested for them."""
+    """The bits in the low byte of a normal instruction; plain numbers, which are quick to test."""
 
     DATA: Final = 0x01
     OPERANDS_1: Final = 0x02
     OPERANDS_2: Final = 0x04
     REVERSE_PACKING: Final = 0x08
     SWAP: Final = 0x10
-    """Foreground and background change places."""
+    """Swap foreground and background."""
     ADDITIVE: Final = 0x20
     ADDRESSING: Final = 0xC0
     """Two bits: 0 absolute, or one of the three below."""
@@ -40,7 +40,7 @@ class Flags:
 
 @dataclass(frozen=True, slots=True)
 class Operand:
-    """A sticky parameter: its name here, the hardware's, and how many words it is."""
+    """A sticky parameter: its name here, its mnemonic in the sources, and its number of words."""
 
     name: str
     mnemonic: str
@@ -84,15 +84,15 @@ class InstructionFormat:
     name: str
     meaning: str
     fixed: tuple[str, ...] | None = None
-    """The operands of a special instruction, `length` among them where data follow; None for a normal one."""
+    """The operands of a special instruction, with `length` if data follow; None for a normal instruction."""
     replies: bool = False
-    """Whether the data go to the host: then a length is sent, but no data."""
+    """Whether the data go to the host; the instruction then has a length but no data."""
     extended: bool = False
-    """Whether only the 9400 and 9460 know it."""
+    """Whether only the 9400 and the 9460 have it."""
     unimplemented: bool = False
-    """Whether no source tells more than its name."""
+    """Whether the sources give only its name, so that it has no effect here."""
     asks: bool = False
-    """Whether the flag words name operands that go to the host: then none of them are sent."""
+    """Whether the flag words name operands that the host asks for; then the instruction holds none."""
 
     @property
     def is_normal(self) -> bool:
@@ -101,15 +101,15 @@ class InstructionFormat:
 
 
 ILLEGAL: Final = InstructionFormat(-1, "???", "no instruction", ())
-"""What a word is that no row describes; it is skipped alone."""
+"""A word that begins no instruction of the table; that one word is skipped."""
 
 CHARACTER_ROWS: Final = tuple(f"rows_{2 * pair}_{2 * pair + 1}" for pair in range(6))
 """The operands of LPF: twelve rows of eight dots, two a word."""
 
 SUBSTANTIATED: Final = (
     InstructionFormat(0x03, "LAM", "load the lookup table", ("address", "length")),
-    # Assumed: on the 9300 too, though only clients of the 9460 were seen to send it: one that reads the table
-    # of a 9300 would wait for an answer for ever.
+    # Assumed: on the 9300 too, though only clients of the 9460 were seen to send it; without it, a client
+    # that reads the table of a 9300 would wait for its answer forever.
     InstructionFormat(0x04, "RAM", "read the lookup table", ("address", "length"), replies=True),
     InstructionFormat(0x05, "RSET", "restore every parameter and erase the screen", ()),
     InstructionFormat(0x06, "INIT", "restore every parameter", ()),
@@ -153,22 +153,21 @@ SUBSTANTIATED: Final = (
     InstructionFormat(0x69, "COPY", "copy an image", extended=True),
     InstructionFormat(0x6D, "CIRC", "write circles", extended=True),
 )
-"""What the programs of the time substantiate, and what their names leave little doubt about.
+"""The instructions that programs of the time confirm, or whose names leave little doubt.
 
 Hardware: LIN, PRG, BTL (those that are not extended), JPL, NCAR (RAM, ZOOM, SELVO, WAITVR, the pixel and
 global cursor forms, LCF, DDCC, ATTPF; FILL, WPT and CIRC in disabled code).
-Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP,
-WVU, WRP and COPY, of which the sources give
-numbers and names; each is described where it is done.
+Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP, WVU, WRP and COPY, of which the
+sources give numbers and names; each is described at its executor.
 """
 FORMATS: Final = SUBSTANTIATED + tuple(
     InstructionFormat(opcode, name, meaning, extended=True, unimplemented=True)
     for opcode, name, meaning in UNIMPLEMENTED
 )
-"""Every row.
+"""All rows of the instruction table.
 
-Assumed: an instruction known by its name only has the normal format: its flag words, operands and data are
-consumed as its low byte says, so that the next instruction is found; the operands are taken, for they are
+Assumed: an instruction known by its name only has the normal format. Its flag words, operands and data are
+consumed as its low byte says, so that the next instruction is found. The operands are set, since they are
 sticky; nothing else is done, and the illegal-instruction status is set.
 """
 FLAG_NAMES: Final = {
@@ -182,7 +181,7 @@ FORMAT_OF_NAME: Final = {format.name: format for format in FORMATS}
 
 @lru_cache(maxsize=1024)
 def operands_named(flag_word_1: int, flag_word_2: int = 0) -> tuple[Operand, ...]:
-    """The operands that two flag words announce, in the order in which they come."""
+    """The operands that two flag words name, in the order in which they are sent."""
     return tuple(
         operand
         for flag_word, operands in ((flag_word_1, OPERANDS_1), (flag_word_2, OPERANDS_2))

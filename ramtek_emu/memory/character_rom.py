@@ -1,11 +1,11 @@
-"""The characters: 7 x 9 dots a cell.
+"""The character ROM: shapes in cells of 7 x 9 dots.
 
-What is modeled: the size of the cell and its codes. What is **not**: the shapes of RAMTEK's own
+What is modeled: the size of the cell and the character codes. What is **not**: the shapes of RAMTEK's own
 characters, which are in no source.
 
 Hardware: BTL, LIN, JPL (7 x 9, the cell's top-left corner at the operating point).
-Assumed: these shapes, drawn for this emulator: 5 x 7 dots in columns 1 to 5 and lines 1 to 7, descenders in
-line 8, so that neither cells nor lines touch. Codes without a shape are blank.
+Assumed: these shapes, which were drawn for this emulator: 5 x 7 dots in columns 1 to 5 and lines 1 to 7, with
+descenders in line 8, so that neighboring cells and lines do not touch. Codes without a shape are blank.
 """
 
 from __future__ import annotations
@@ -129,12 +129,12 @@ SHEET: Final = """
 #...# ....# ##### ...## ..#.. ##... ..... .....
 ..... .###. ..... ..... ..#.. ..... ..... .....
 """
-"""Codes 32 to 127, eight in a row."""
+"""The shapes of the codes 32 to 127, eight in each row."""
 
 
 @lru_cache
 def characters() -> Dots:
-    """The dots of the 256 character codes, (256, 9, 7), read-only; codes from 128 on repeat the first 128."""
+    """The dots of the 256 character codes, (256, 9, 7), read-only; codes 128 to 255 repeat 0 to 127."""
     rows = SHEET.strip().split("\n\n")
     shapes = np.zeros((256, CELL_LINES, CELL_ELEMENTS), np.bool_)
     code = 32
@@ -152,7 +152,7 @@ LOADED_LINES: Final = 12
 
 
 def loadable(shapes: Dots) -> Dots:
-    """Room for characters that a host loads, (256, 12, 8), with the shapes of the ROM until it does.
+    """The initial dots of the characters that a host can load, (256, 12, 8): the shapes of the ROM.
 
     Hardware: LIN (twelve rows of a byte each).
     """

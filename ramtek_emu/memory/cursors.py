@@ -1,17 +1,17 @@
-"""Cursors and the joystick unit: marks on the glass that a host places and reads, and a user moves.
+"""Cursors and the joystick unit: marks on the screen that a host places and reads, and that a user moves.
 
-What is modeled: positions, visible and blinking marks, their shapes, TRACK and ENTER, the connection of
-joysticks to cursors. What is **not**: the joystick's speed and spring, how a mark was mixed into the video.
+What is modeled: positions, visible and blinking cursors, their shapes, TRACK and ENTER, the connection of
+joysticks to cursors. What is **not**: the joystick's speed and spring, how a cursor was mixed into the video.
 
-A position is an element and a line of the screen, whatever part of the memory is shown there: a program that
-moves the display origin with the cursor would lose it otherwise (Hardware: PRG, orig.c).
+A position is an element and a line of the screen, whatever part of the memory is shown there. Otherwise a
+program that moves the display origin with the cursor would lose it (Hardware: PRG, orig.c).
 
-Hardware: LIN (words of the screen forms, TRACK and ENTER); NCAR (the pixel forms); JPL (the global forms, the
-shape of 32 x 32 around (15, 15), which device drives which cursor).
-Assumed: reading a cursor clears its ENTER, so that one press is one ENTER; every cursor tells of the
-switches, since the unit has one set; positions beyond the screen are kept, and the mark is clipped; RSET
-and INIT leave the cursors as they are, like the lookup table; the joystick drives cursor 0 until the host
-says otherwise.
+Hardware: LIN (words in screen coordinates, TRACK and ENTER); NCAR (in pixel coordinates); JPL (in global
+coordinates; the shape of 32 x 32 around (15, 15), which device drives which cursor).
+Assumed: reading a cursor clears its ENTER, so that one press is read once; every cursor reports the switches,
+since the unit has one set; positions beyond the screen are kept, and the shape is clipped; RSET and INIT
+leave the cursors as they are, like the lookup table; the joystick drives cursor 0 until the host connects it
+to others.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ SHAPE_CENTER: Final = 15
 
 
 def cross() -> Dots:
-    """The shape of a cursor that no host has loaded, (32, 32).
+    """The shape of a cursor until a host loads another, (32, 32).
 
-    Assumed: an upright cross of 15 x 15 pixels, open in the middle so that what it points at is seen; the
-    9300's is in no source.
+    Assumed: an upright cross of 15 x 15 pixels, open in the middle so that the pixel it points at is visible;
+    the 9300's shape is in no source.
     """
     shape = np.zeros((SHAPE_SIZE, SHAPE_SIZE), np.bool_)
     arm = [*range(SHAPE_CENTER - 7, SHAPE_CENTER - 1), *range(SHAPE_CENTER + 2, SHAPE_CENTER + 8)]
@@ -48,29 +48,29 @@ def cross() -> Dots:
 
 @dataclass
 class Cursor:
-    """One mark: where it is on the screen, and how it is seen."""
+    """A cursor: its place on the screen and how it is shown."""
 
     element: int = 0
     line: int = 0
     state: int = 0
-    """VISIBLE, BLINK and whatever else the host wrote above the line's bits."""
+    """VISIBLE, BLINK and any other bits that the host wrote above those of the line."""
     enter: bool = False
     """Whether ENTER was pressed since the host last read this cursor."""
     shape: Dots = field(default_factory=cross, repr=False)
 
     @property
     def is_visible(self) -> bool:
-        """Whether the mark is drawn."""
+        """Whether the cursor is shown."""
         return bool(self.state & VISIBLE)
 
     @property
     def blinks(self) -> bool:
-        """Whether the mark comes and goes."""
+        """Whether the cursor is shown and hidden in turns."""
         return bool(self.state & BLINK)
 
 
 class Cursors:
-    """All cursors of a display and the switches of its joystick unit."""
+    """The cursors of a display, and the switches of its joystick unit."""
 
     def __init__(self, count: int) -> None:
         self.all = tuple(Cursor() for _ in range(count))
@@ -79,9 +79,9 @@ class Cursors:
         self.enter_is_pressed = False
         """Whether ENTER was pressed since the interface's status was last cleared."""
         self.driven = {0: 1}
-        """For each tracking device the cursors that it drives, one bit a cursor."""
+        """The cursors that each tracking device drives, one bit for each cursor."""
         self.changed = 0
-        """How often the shapes were changed; it only grows."""
+        """How often a shape was changed; it never decreases."""
 
     def __len__(self) -> int:
         return len(self.all)
@@ -98,7 +98,7 @@ class Cursors:
         cursor.element, cursor.line, cursor.state = element, line, state
 
     def state_of(self, number: int) -> int:
-        """The state bits as the host reads them; its ENTER is cleared by it."""
+        """The state bits as the host reads them; reading clears the ENTER of this cursor."""
         cursor = self.all[number]
         state = (
             cursor.state & ~(TRACK | ENTER) | (TRACK if self.track else 0) | (ENTER if cursor.enter else 0)
@@ -107,7 +107,7 @@ class Cursors:
         return state
 
     def shape(self, number: int, rows: Bytes) -> None:
-        """Give a cursor another shape: up to 32 rows of four bytes, the leftmost dot highest."""
+        """Change the shape of a cursor: up to 32 rows of four bytes, the highest bit leftmost."""
         dots = np.unpackbits(rows, axis=1).astype(np.bool_)
         self.all[number].shape = self.all[number].shape.copy()
         self.all[number].shape[: len(dots)] = dots
@@ -119,18 +119,18 @@ class Cursors:
         return tuple([(each.element, each.line, each.state) for each in self.all if each.state & VISIBLE])
 
     def forget_enter(self) -> None:
-        """Take back an ENTER that no cursor's reader has been told of."""
+        """Clear the ENTER of every cursor, so that no read reports it."""
         for cursor in self.all:
             cursor.enter = False
 
     def hide(self) -> None:
-        """Make every cursor unseen."""
+        """Hide every cursor."""
         for cursor in self.all:
             cursor.state = 0
 
 
 class Joystick:
-    """A tracking device in the hands of a user: `display.joystick` from Python, the mouse in a window."""
+    """A tracking device that a user moves: `display.joystick` in Python, the mouse in a window."""
 
     def __init__(self, cursors: Cursors, elements: int, lines: int, device: int = 0) -> None:
         self._cursors = cursors
@@ -145,18 +145,18 @@ class Joystick:
 
     @property
     def position(self) -> tuple[int, int]:
-        """The element and the line of the first cursor that it moves; (0, 0) if it moves none."""
+        """The element and line of the first cursor that it moves; (0, 0) if it moves none."""
         driven = self.driven
         return (driven[0].element, driven[0].line) if driven else (0, 0)
 
     def move_to(self, element: int, line: int) -> None:
-        """Move its cursors; they stay at the screen's edge, as a joystick's do."""
+        """Move its cursors to a place; they stop at the edges of the screen."""
         place = min(max(int(element), 0), self._limits[0]), min(max(int(line), 0), self._limits[1])
         for cursor in self.driven:
             cursor.element, cursor.line = place
 
     def move_by(self, elements: int, lines: int) -> None:
-        """Push it for a while."""
+        """Move its cursors by some elements and lines."""
         element, line = self.position
         self.move_to(element + elements, line + lines)
 
@@ -170,7 +170,7 @@ class Joystick:
         self._cursors.track = bool(is_on)
 
     def press_enter(self) -> None:
-        """Press ENTER: each cursor tells of it once, and the interface requests an interrupt."""
+        """Press ENTER: each cursor reports it at its next read, and the interface requests an interrupt."""
         for cursor in self._cursors.all:
             cursor.enter = True
         self._cursors.enter_is_pressed = True

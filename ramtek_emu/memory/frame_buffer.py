@@ -1,11 +1,11 @@
 """FrameBuffer: the words of the picture, behind a write mask and a write window.
 
-What is modeled: planes, the mask, the clipping of whatever lies outside the memory, the eight scan orders,
-a count of the words ever written. What is **not**: the time that a write takes, memory outside the raster.
+What is modeled: planes, the write mask, clipping at the edges of the memory, the eight scan orders, a count
+of the words written since power-on. What is **not**: the time that a write takes, memory outside the raster.
 
-Words from the wire lose the bits beyond the planes; words from Python are refused when they have some.
+Bits for which there is no plane are dropped from words of the host, and refused in words from Python.
 Hardware: LIN, JPL (mask, runs in a window); GM (ten planes).
-Assumed: what is read where there is no memory is 0.
+Assumed: outside the memory every word reads as 0.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Block, Point, ScanOrder, 
 
 
 class WriteEnable(NamedTuple):
-    """What a write may change: the planes of a mask, within a window."""
+    """What a write may change: the planes of the mask, within the window."""
 
     mask: int = 0xFFFF
     window: Window = Window(-0x8000, -0x8000, 0x7FFF, 0x7FFF)
@@ -33,21 +33,21 @@ NORMAL_ORDER: Final = SCAN_ORDERS[0]
 
 
 class FrameBuffer:
-    """The memory of the picture: (lines, elements) words."""
+    """The picture memory: (lines, elements) words."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
         self.planes = configuration.planes
         self.window = Window(0, 0, configuration.elements - 1, configuration.lines - 1)
         self.written = 0
-        """Words ever written; it only grows."""
+        """The number of words written since power-on; it never decreases."""
         self._every_plane = configuration.largest_word
         self._words: Words = np.zeros((configuration.lines, configuration.elements), np.uint16)
         self.words: Words = self._words.view()
-        """The words, (lines, elements) uint16, read-only; always the present ones."""
+        """The words, (lines, elements) uint16; a read-only view that stays current."""
         self.words.flags.writeable = False
 
     def write(self, words: object, left: int = 0, top: int = 0) -> None:
-        """Write a (lines, elements) array from Python; WordsError when a word or the place does not fit."""
+        """Write a (lines, elements) array from Python; WordsError if a word or the window does not fit."""
         block = checked_words(words, self.planes)
         place = NORMAL_ORDER.block_window(Point(left, top), block.shape[1], block.shape[0])
         refuse_outside(place, self.window)
@@ -66,9 +66,9 @@ class FrameBuffer:
         enable: WriteEnable = EVERYTHING,
         dots: Dots | None = None,
     ) -> Point:
-        """Write words along the scan of a window from a point on; returns the point after the last one.
+        """Write words along the scan of a window, beginning at a point; returns the point after the last one.
 
-        Where `dots` are given, only those are written.
+        If `dots` are given, only the words at which they are true are written.
         """
         along, runs = order.inner_and_outer(window)
         size = along * runs
@@ -77,7 +77,7 @@ class FrameBuffer:
         inner, outer = order.entry(window, start)
         count, rest = divmod(len(words), along)
         if dots is None and inner == rest == 0 and 0 <= outer < outer + count <= runs:
-            # The plain case: whole runs, none of them twice.
+            # The common case: whole lines of the window, none of them twice.
             corner = order.corner(window)
             entered = order.stepped(corner, 0, outer)
             self.write_block(entered, order, words.reshape(count, along), enable)
@@ -90,7 +90,7 @@ class FrameBuffer:
         after = order.after(window, start, len(words))
         if dots is not None and len(words) > size and not before:
             words, dots = last_around(words, dots, size)
-        # Only the last time around the window leaves anything behind.
+        # When the words go around the window several times, only the last time matters.
         skipped = 0 if before else max(0, len(words) - size)
         start = order.after(window, start, skipped)
         for block in blocks(window, order, start, len(words) - skipped):
@@ -102,7 +102,7 @@ class FrameBuffer:
         return after
 
     def read_run(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
-        """`count` words along the scan of a window from a point on, and the point after the last one."""
+        """`count` words along the scan of a window, beginning at a point, and the point after the last."""
         size = window.width * window.height
         if size == 0:
             return np.zeros(count, np.uint16), start
@@ -111,7 +111,7 @@ class FrameBuffer:
             head, entered = self.read_run(window, order, start, before)
             tail, after = self.read_run(window, order, entered, count - before)
             return np.concatenate((head, tail)), after
-        # Once around the window; what comes after is the same again.
+        # Read once around the window; after that the words repeat.
         words = np.zeros(count if before else min(count, size), np.uint16)
         for block in blocks(window, order, start, len(words)):
             out = words[block.first : block.first + block.inner * block.outer]
@@ -126,7 +126,7 @@ class FrameBuffer:
         enable: WriteEnable = EVERYTHING,
         dots: Dots | None = None,
     ) -> None:
-        """Write an [outer, inner] block from its first point on; where `dots` are given, only those."""
+        """Write an [outer, inner] block, its first word at `start`; with `dots`, only where they are true."""
         place = order.block_window(start, block.shape[1], block.shape[0])
         self._store(place, order, block, enable, dots)
 
@@ -137,7 +137,7 @@ class FrameBuffer:
         words: int | Words,
         enable: WriteEnable = EVERYTHING,
     ) -> None:
-        """Write a word, or each its own, to the points that lie inside; the last word of one stays."""
+        """Write one word to all points inside, or to each its own; of equal points the last one wins."""
         inside = enable.window.intersection(self.window)
         mask = enable.mask & self._every_plane
         if inside.is_empty or not mask or not len(elements):
@@ -204,7 +204,7 @@ def refuse_outside(place: Window, memory: Window) -> None:
 
 
 def part_of(place: Window, clipped: Window, order: ScanOrder) -> tuple[slice, slice]:
-    """The [outer, inner] part of a block at `place` that covers `clipped`."""
+    """The slices of an [outer, inner] block at `place` that cover `clipped`."""
     across = place.right - clipped.right if order.leftward else clipped.left - place.left
     down = place.bottom - clipped.bottom if order.upward else clipped.top - place.top
     elements, lines = slice(across, across + clipped.width), slice(down, down + clipped.height)
@@ -212,7 +212,7 @@ def part_of(place: Window, clipped: Window, order: ScanOrder) -> tuple[slice, sl
 
 
 def last_around(words: Words, dots: Dots, size: int) -> tuple[Words, Dots]:
-    """What a run of dots that goes around a window of `size` words more than once leaves behind."""
+    """The words and dots that remain when they go around a window of `size` words more than once."""
     around = -(-len(words) // size)
     rounds = np.zeros((around, size), np.uint16)
     rounds.reshape(-1)[: len(words)] = words

@@ -1,7 +1,7 @@
-"""LookupTable: the parallel video lookup table, entries that a word addresses.
+"""LookupTable: the parallel video lookup table, whose entries are addressed by the words of the picture.
 
-What is modeled: the two card formats, the address counter that goes on from load to load and wraps, reading
-back. What is **not**: the digital-to-analog converters, a change in the middle of a field.
+What is modeled: the two entry formats, the address counter, which advances with every load and wraps, and
+reading back. What is **not**: the digital-to-analog converters, a change in the middle of a field.
 
 Hardware: JPL, NCAR (24 bits: entry n at word address 2n, green << 8 | blue, then red); LIN, BTL (12 bits:
 entry n at word address n); LIN, JPL (the counter keeps its last value, and its upper bits pick the part of
@@ -19,26 +19,26 @@ from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
 
 
 class LookupTable:
-    """The memory of the colors: `entries` entries, kept packed as 0x00RRGGBB for scan-out."""
+    """The color memory: its entries, packed as 0x00RRGGBB for scan-out."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
         self.entry_format = configuration.entry_format
         self.size = configuration.entries
         self.word_count = self.size if self.entry_format is EntryFormat.WORD_12 else 2 * self.size
-        """How many words the whole table is on the wire."""
+        """How many words the host sends for the whole table."""
         self.address = 0
-        """The word address that comes next."""
+        """The address counter, in words."""
         self.written = 0
-        """Entry words ever written; it only grows."""
+        """The number of words of entries written since power-on; it never decreases."""
         self._last_run = 0, 0, 0
-        """Of the run written last: entry words written before it, its first entry, the one after its last."""
+        """The range of entries written last: `written` before it, its first entry, and the one after it."""
         self._packed: PackedColors = np.zeros(self.size, "<u4")
-        # In this byte order the two halves of a packed entry are the two words of the 24-bit format.
+        # In this byte order, the two halves of a packed entry are the two words of the 24-bit format.
         self._halves: Words = self._packed.view("<u2")
         self._unused: Bytes = self._packed.view(np.uint8)[3::4]
-        """The byte of each entry that no color is in."""
+        """The byte of each packed entry that holds no color."""
         self.packed: PackedColors = self._packed.view()
-        """The entries as 0x00RRGGBB, (entries,) uint32, read-only; always the present ones."""
+        """The entries as 0x00RRGGBB, (entries,) uint32; a read-only view that stays current."""
         self.packed.flags.writeable = False
 
     @property
@@ -48,28 +48,28 @@ class LookupTable:
 
     @property
     def entries(self) -> Colors:
-        """The colors, (entries, 3) uint8, read-only; a copy of this moment."""
+        """The colors, (entries, 3) uint8; a read-only copy."""
         colors = self._packed.view(np.uint8).reshape(-1, 4)[:, 2::-1].copy()
         colors.flags.writeable = False
         return colors
 
     def run_written_since(self, written: int) -> tuple[int, int] | None:
-        """The first entry of all that were written since the count stood so, and the one after the last.
+        """The first of the entries written since `self.written` had this value, and the one after the last.
 
-        None when they are not one run, or it is too long ago to tell.
+        None if they are not one range, or if more ranges were written since than are remembered.
         """
         since, first, end = self._last_run
         return (first, end) if written >= since else None
 
     def write(self, first: int, colors: object) -> None:
-        """Write (n, 3) colors from Python; ColorsError when a color or the place does not fit."""
+        """Write (n, 3) colors from Python; ColorsError if a color or the range does not fit."""
         checked = checked_colors(first, colors, self.size)
         first, end = int(first), int(first) + len(checked)
         self._packed.view(np.uint8).reshape(-1, 4)[first:end, 2::-1] = checked
         self._note(first, end, len(checked))
 
     def load(self, address: int, words: Words) -> None:
-        """Write words from the wire; the address is a word's, the counter goes on and wraps at the end."""
+        """Write words of the host from a word address on; the address counter advances and wraps."""
         count = self.word_count
         self.address = (address + len(words)) % count
         first, before_wrap = address % count, count - address % count
@@ -79,7 +79,7 @@ class LookupTable:
         self._store(first, words)
 
     def read(self, address: int, count: int) -> Words:
-        """`count` words for the wire from a word address on; the counter goes on and wraps at the end."""
+        """`count` words for the host from a word address on; the address counter advances and wraps."""
         if self.entry_format is EntryFormat.WORD_12:
             nibbles = (self._packed >> 4) & 0x0F0F0F
             table = ((nibbles >> 8) & 0xF00 | (nibbles >> 4) & 0xF0 | nibbles & 0xF).astype(np.uint16)
@@ -92,7 +92,7 @@ class LookupTable:
         if self.entry_format is EntryFormat.WORD_12:
             wide = words.astype(np.uint32)
             nibbles = (wide & 0xF00) << 8 | (wide & 0xF0) << 4 | wide & 0xF
-            # Full scale of four bits is full scale of eight: 15 becomes 255.
+            # The full scale of four bits becomes that of eight: 15 times 17 is 255.
             self._packed[first : first + len(words)] = nibbles * 17
             self._note(first, first + len(words), len(words))
             return
@@ -103,8 +103,8 @@ class LookupTable:
         self._note(first_entry, end_entry, len(words))
 
     def _note(self, first: int, end: int, words: int) -> None:
-        """Count words that were written to a run of entries."""
-        # A run that is written again and again, as while a color is dragged, stays one run.
+        """Count the words written to a range of entries, and remember the range."""
+        # A range that is written repeatedly, as while a color is dragged, counts as one.
         if words and self._last_run[1:] != (first, end):
             self._last_run = self.written, first, end
         self.written += words

@@ -1,4 +1,4 @@
-"""Parameters: the sticky operands, as they stand between instructions.
+"""Parameters: the current values of the sticky operands.
 
 Assumed: at power-on and after RSET and INIT the foreground is all ones (BTL's programs draw before they set
 one), the background 0, the mask all ones, the window the whole memory, the scan order 0, the cell 7 x 9
@@ -23,7 +23,7 @@ STANDARD_FONT: Final = 0xFF
 
 
 def signed(word: int) -> int:
-    """A word as a two's complement number: programs send coordinates below 0 (Hardware: PRG, chase)."""
+    """A word as a two's complement number: programs send negative coordinates (Hardware: PRG, chase)."""
     return word - 0x10000 if word & 0x8000 else word
 
 
@@ -31,8 +31,8 @@ def coefficients(words: tuple[int, ...]) -> tuple[int, ...]:
     """The six numbers of a conic: from six words of 16 bits, or from twelve, high word first.
 
     Hardware: LIN wc.c sends pairs whose high word is always 0.
-    Assumed: so a pair with a high word of 0 is the 16-bit number of its low word, which may be below 0; any
-    other pair is a number of 32 bits.
+    Assumed: a pair whose high word is 0 is therefore the 16-bit number in its low word, which may be
+    negative; any other pair is a number of 32 bits.
     """
     if len(words) == 6:
         return tuple(map(signed, words))
@@ -42,7 +42,7 @@ def coefficients(words: tuple[int, ...]) -> tuple[int, ...]:
 
 @dataclass(kw_only=True)
 class Parameters:
-    """Every sticky operand, by the name that the operand table gives it."""
+    """All sticky operands, by their names in the operand table."""
 
     mask: int
     foreground: int
@@ -61,7 +61,7 @@ class Parameters:
     base_line: int = 0
     scroll: int = 0
     start: Point = ORIGIN
-    """The current operating point: instructions move it on."""
+    """The current operating point, which instructions move."""
     read_mask: int
     write_window: Window
     write_offset: Point = ORIGIN
@@ -69,18 +69,18 @@ class Parameters:
     display_class: int = 0
     image_mode: int = 0
     zoom: tuple[int, int] = (1, 1)
-    """How often each element and each line is repeated."""
+    """How often each element, and each line, is repeated."""
     origin_at_bottom: bool = False
     """Whether lines are counted from the bottom of the screen."""
     font: int = 0
-    """The font that text is set in; STANDARD_FONT is the ROM's."""
+    """The font of text: the ROM if it is STANDARD_FONT, otherwise the loaded characters."""
     whole_window: Window = field(repr=False)
     whole_word: int = field(repr=False)
     """A word with every plane set."""
 
     @classmethod
     def at_reset(cls, configuration: Configuration) -> Parameters:
-        """What RSET and INIT restore."""
+        """The values that RSET and INIT restore."""
         window = Window(0, 0, configuration.elements - 1, configuration.lines - 1)
         return cls(
             mask=0xFFFF,
@@ -93,11 +93,11 @@ class Parameters:
         )
 
     def copy(self) -> Parameters:
-        """The same, on their own."""
+        """A copy that can be changed independently."""
         return replace(self)
 
     def operand(self, name: str) -> tuple[int, ...]:
-        """The words that an operand stands at."""
+        """The words of an operand."""
         value = getattr(self, name)
         if name == "conic":
             value = tuple(half for number in value for half in (number >> 16, number))
@@ -105,7 +105,7 @@ class Parameters:
 
     @property
     def order(self) -> ScanOrder:
-        """The present scan order.
+        """The current scan order.
 
         Assumed: only the lowest three bits count.
         """
@@ -113,14 +113,14 @@ class Parameters:
 
     @property
     def enable(self) -> WriteEnable:
-        """What a write may change now.
+        """What writes may change at present.
 
         Hardware: NCAR (the 9460 clips with its write-enable window; the image window clips no vector).
         """
         return WriteEnable(self.mask, self.write_window)
 
     def base(self, flags: int) -> Point:
-        """What coordinates are counted from: the memory's origin, an index register, the operating point.
+        """The point that coordinates are counted from: (0, 0), an index register or the operating point.
 
         Hardware: LIN, wtr() sends C0h where it means the operating point.
         """
@@ -135,9 +135,9 @@ class Parameters:
         """Set the operands of a normal instruction.
 
         Hardware: LIN, BTL, LONG: a window moves the operating point to the corner where the scan starts.
-        Assumed: registers are of 16 bits, so that what is counted from a base wraps there.
-        Assumed: a start point in the same instruction wins; window and start are counted from the base,
-        which is taken before either moves; the corner is that of the scan order after the instruction.
+        Assumed: registers have 16 bits, so that coordinates counted from a base wrap.
+        Assumed: a start point in the same instruction takes precedence; window and start are counted from the
+        base as it was before the instruction; the corner is that of the scan order after the instruction.
         """
         if not operands:
             return

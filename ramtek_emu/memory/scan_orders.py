@@ -1,14 +1,15 @@
-"""Windows, points and the eight scan orders: where the next word of an image goes.
+"""Windows, points and the eight scan orders: the place of each word of an image.
 
-A window is inclusive at both ends and may lie partly or wholly outside the memory. Within it words run along
-one direction (inner) and, at the window's edge, go on one step in the other direction (outer). Steps
-count words and runs from the corner where the scan starts.
+A window is inclusive at both ends and may lie partly or wholly outside the memory. Words follow each other in
+one direction (inner); at the edge of the window they continue one step further in the other direction
+(outer). A run is what lies between two edges: a line or a column of the window. Steps are counted from the
+corner where the scan starts: inner steps in words, outer steps in runs.
 
 Hardware: PRG, LONG, ASF (the eight codes); LIN, JPL (the run wraps at the window's edge to the next line).
-Assumed: a run that reaches the end of its window goes on at the corner where the scan starts, as counters
-do. A run that starts before its window goes on into it, for counters compare with the far edges only (JPL
-reads pairs of pixels from even elements on, also where its window begins at an odd one); a start beyond the
-far edges is at them: in the next run, or in the first one.
+Assumed: at the end of the window, words continue at the corner where the scan starts, as counters do. Words
+that start before the window continue into it, since counters compare with the far edges only (JPL reads pairs
+of pixels from even elements on, also where its window begins at an odd one). A start beyond the far edge of a
+run is at the next run, and one beyond the last run is at the first.
 Assumed: a window whose right is left of its left, or whose bottom is above its top, holds no word.
 """
 
@@ -37,12 +38,12 @@ class Window(NamedTuple):
 
     @property
     def width(self) -> int:
-        """Elements of a line of the window."""
+        """How many elements each of its lines has."""
         return max(0, self.right - self.left + 1)
 
     @property
     def height(self) -> int:
-        """Lines of the window."""
+        """How many lines it has."""
         return max(0, self.bottom - self.top + 1)
 
     @property
@@ -55,7 +56,7 @@ class Window(NamedTuple):
         return self.left <= point.element <= self.right and self.top <= point.line <= self.bottom
 
     def intersection(self, other: Window) -> Window:
-        """What the two windows share; it may be empty."""
+        """The part that both windows cover; it may be empty."""
         return Window(
             max(self.left, other.left),
             max(self.top, other.top),
@@ -64,19 +65,19 @@ class Window(NamedTuple):
         )
 
     def moved(self, elements: int, lines: int) -> Window:
-        """The window, that much to the right and down."""
+        """The window moved to the right and down."""
         return Window(self.left + elements, self.top + lines, self.right + elements, self.bottom + lines)
 
 
 class ScanOrder(NamedTuple):
-    """The two directions of one of the eight codes."""
+    """The directions of one of the eight codes."""
 
     vertical: bool
     leftward: bool
     upward: bool
 
     def oriented(self, raster: Raster[Item]) -> Raster[Item]:
-        """A view of [line, element] data as [outer, inner]; its own inverse is `raster`."""
+        """A view of [line, element] data as [outer, inner]."""
         if self.leftward:
             raster = raster[:, ::-1]
         if self.upward:
@@ -84,7 +85,7 @@ class ScanOrder(NamedTuple):
         return raster.T if self.vertical else raster
 
     def inner_and_outer(self, window: Window) -> tuple[int, int]:
-        """How many words a run takes along, and how many such runs the window holds."""
+        """How many words a run has, and how many runs the window has."""
         if self.vertical:
             return window.height, window.width
         return window.width, window.height
@@ -96,13 +97,13 @@ class ScanOrder(NamedTuple):
         )
 
     def steps(self, window: Window, point: Point) -> tuple[int, int]:
-        """Words along the scan and runs from the corner to a point, below 0 where it lies before it."""
+        """The inner and outer steps from the corner to a point; negative if the point lies before it."""
         across = window.right - point.element if self.leftward else point.element - window.left
         down = window.bottom - point.line if self.upward else point.line - window.top
         return (down, across) if self.vertical else (across, down)
 
     def stepped(self, corner: Point, inner: int, outer: int) -> Point:
-        """The point that lies some words along the scan and some runs further: the inverse of `steps`."""
+        """The point that is so many steps from the corner: the inverse of `steps`."""
         across, down = (outer, inner) if self.vertical else (inner, outer)
         return Point(
             corner.element + (-across if self.leftward else across),
@@ -110,7 +111,7 @@ class ScanOrder(NamedTuple):
         )
 
     def entry(self, window: Window, start: Point) -> tuple[int, int]:
-        """The `steps` at which a run from a start begins."""
+        """The inner and outer steps of the first word, if the words begin at `start`."""
         inner, outer = self.steps(window, start)
         along, runs = self.inner_and_outer(window)
         if inner >= along:
@@ -118,7 +119,7 @@ class ScanOrder(NamedTuple):
         return inner, 0 if outer >= runs else outer
 
     def words_before(self, window: Window, start: Point) -> int:
-        """How many words of a run from a start come before it is inside its window for good."""
+        """How many words from `start` on come before the scan stays inside the window."""
         inner, outer = self.entry(window, start)
         if inner >= 0 and outer >= 0:
             return 0
@@ -126,7 +127,7 @@ class ScanOrder(NamedTuple):
         return along * max(1, -outer) - inner
 
     def after(self, window: Window, start: Point, count: int) -> Point:
-        """The point after `count` words of a run from a start."""
+        """The point after `count` words that begin at `start`."""
         if not count:
             return start
         inner, outer = self.entry(window, start)
@@ -140,7 +141,7 @@ class ScanOrder(NamedTuple):
         return self.stepped(self.corner(window), inner, outer % runs if outer >= 0 else outer)
 
     def block_window(self, start: Point, inner: int, outer: int) -> Window:
-        """The window that a block of inner x outer words covers when its first word is at `start`."""
+        """The window that a block of inner x outer words covers if its first word is at `start`."""
         width, height = (outer, inner) if self.vertical else (inner, outer)
         left = start.element - width + 1 if self.leftward else start.element
         top = start.line - height + 1 if self.upward else start.line
@@ -160,7 +161,7 @@ SCAN_ORDERS: Final = (
 
 
 class Block(NamedTuple):
-    """A part of a run that fills a rectangle: its first point, its sizes, the number of its first word."""
+    """Consecutive words that fill a rectangle: its first point, its sizes, the number of its first word."""
 
     start: Point
     inner: int
@@ -169,7 +170,7 @@ class Block(NamedTuple):
 
 
 def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterator[Block]:
-    """The rectangles that `count` words fill from `start` on: at most three for each time around."""
+    """The rectangles that `count` words from `start` on fill: at most three each time around the window."""
     along, runs = order.inner_and_outer(window)
     corner = order.corner(window)
     inner, outer = order.entry(window, start)

@@ -1,4 +1,4 @@
-"""The monitor: the window that shows a field, what its user does there, and the pattern to judge it by.
+"""The monitor: the window that shows fields, its keys and mouse, and a test pattern.
 
 Only `window` knows pygame. Uses the ground, display, and what a host calls: instructions.
 """

@@ -1,9 +1,9 @@
-"""Console: what a user does at a window, as plain values for whoever drives the display.
+"""Console: keys and mouse of a window, passed as plain values to the program that uses the display.
 
-What is modeled: the joystick unit. The mouse moves the cursors that its device drives, the left button is
-ENTER, the right one TRACK while it is down. What is **not**: the joystick's feel.
+What is modeled: the joystick unit. The mouse moves the cursors that its device drives; the left button is
+ENTER, the right one is TRACK while it is down. What is **not**: how a joystick feels.
 
-Nothing here knows how the window is made.
+This module does not depend on the library that makes the window.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ MODIFIERS: Final = frozenset(
 
 
 class Key(NamedTuple):
-    """A key that went down: its name ("a", "f1", "return", "escape", ...), what it types, what was held."""
+    """A key that was pressed: its name ("a", "f1", "return", "escape", ...), its text, the modifiers held."""
 
     name: str
     text: str = ""
@@ -34,11 +34,11 @@ class Key(NamedTuple):
     shift: bool = False
     alt: bool = False
     repeated: bool = False
-    """Whether it was down already: what a key does while it is held can be one step."""
+    """Whether the key was down already and the event is a repeat."""
 
 
 class Pointer(NamedTuple):
-    """The mouse over the field, in elements and lines of the display; `enter` while its button is down."""
+    """The mouse over the field, in elements and lines of the display; `enter`: the left button is down."""
 
     element: int
     line: int
@@ -46,11 +46,11 @@ class Pointer(NamedTuple):
     action: str
     """"move", "press", "release", "wheel up" or "wheel down"."""
     button: int = 0
-    """0 none, 1 left, 2 middle, 3 right."""
+    """0: none, 1: left, 2: middle, 3: right."""
 
 
 class Console(ABC):
-    """Keys and pointer, shortcuts and messages of one window."""
+    """The keys, the mouse, the shortcuts and the messages of one window."""
 
     def __init__(
         self,
@@ -79,14 +79,14 @@ class Console(ABC):
 
     @abstractmethod
     def toggle_full_screen(self) -> None:
-        """Fill the screen, or go back to a window of the size before."""
+        """Switch to full screen, or back to a window of the previous size."""
 
     @abstractmethod
     def show_message(self, message: str) -> None:
-        """Show a sentence that nobody else takes."""
+        """Show a message for which there is no `on_message`."""
 
     def screenshot(self) -> Path:
-        """Save the field under the next free number, never over a file; WriteError when it cannot be."""
+        """Save the field under the next free number, never over a file; OutputError or WriteError."""
         from ramtek_emu.png import save_png
 
         number = 1
@@ -102,19 +102,19 @@ class Console(ABC):
             return path.resolve()
 
     def tell(self, message: str) -> None:
-        """Give a sentence to the user."""
+        """Show a message to the user."""
         if self.on_message is not None:
             self.on_message(message)
         else:
             self.show_message(message)
 
     def ask_to_close(self) -> None:
-        """Close the window if whoever drives it agrees."""
+        """Close the window, unless `on_close` returns False."""
         if self.on_close is None or self.on_close():
             self.close()
 
     def handle_key(self, key: Key) -> None:
-        """Do what a key asks for: the window's own shortcuts first, Esc last."""
+        """Handle a key: first the shortcuts of the window, then `on_key`, then Esc."""
         if key.name in MODIFIERS:
             return
         if key.name == "f11" or (key.name == "return" and key.alt):
@@ -135,7 +135,7 @@ class Console(ABC):
                 self.ask_to_close()
 
     def handle_pointer(self, element: int, line: int, action: str, button: int = 0) -> None:
-        """Move the joystick, set its switches, and tell whoever drives the display."""
+        """Move the joystick, set its switches, and call `on_pointer`."""
         joystick = self.display.joystick
         joystick.move_to(element, line)
         if button == LEFT:

@@ -1,7 +1,7 @@
 """The test pattern: a stream of instructions that shows what a display of any configuration can do.
 
-A disc with color bars, ramps of the words through gray, red, green, blue and around the hues, a grid to
-judge the raster, circles to judge its shape, and the characters.
+It shows color bars, ramps through gray, red, green, blue and the hues, a grid to check the raster, circles to
+check the geometry, and the characters.
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ SHADE: Final = 12
 
 
 def pattern(configuration: Configuration = GMR_9300) -> Words:
-    """The whole pattern as a stream of words for the host port."""
+    """The pattern as a stream of words for a host port."""
     parts = [instructions.reset(), load(configuration), instructions.write_image(picture(configuration))]
     parts += [circle_outline(configuration), labels(configuration)]
     return instructions.concatenate(*parts)
 
 
 def words_in_use(configuration: Configuration) -> int:
-    """How many words select different entries."""
+    """How many words there are that select different entries."""
     return min(configuration.entries, configuration.largest_word + 1)
 
 
 def ramp_words(configuration: Configuration) -> dict[str, Indices]:
-    """The words of each ramp: a quarter of the table for the grays, an eighth for each of the others."""
+    """The words of each ramp: a quarter of the table for gray, an eighth for each of the others."""
     total = words_in_use(configuration)
     starts = {"gray": 2, "red": 4, "green": 5, "blue": 6, "hue": 7}
     return {
@@ -83,13 +83,13 @@ def load(configuration: Configuration) -> Words:
 
 
 def middle(configuration: Configuration) -> tuple[int, int, int]:
-    """The disc's center (element, line) and its radius."""
+    """The element and the line of the center of the disc, and its radius."""
     width, height = configuration.shown_elements, configuration.shown_lines
     return width // 2, height // 2, min(width, height) * 5 // 12
 
 
 def picture(configuration: Configuration) -> Words:
-    """The words of ground, grid and disc, (lines, elements)."""
+    """The words of background, grid and disc, (lines, elements)."""
     width, height = configuration.shown_elements, configuration.shown_lines
     center, middle_line, radius = middle(configuration)
     words = np.full((height, width), GROUND, np.uint16)
@@ -107,7 +107,7 @@ def picture(configuration: Configuration) -> Words:
     for name in ("gray", "hue", "red", "green", "blue"):
         place = np.clip(across * len(ramps[name]) // (2 * radius), 0, len(ramps[name]) - 1)
         rows.append(ramps[name][place])
-    # The lowest part shows sixteen steps of gray: neighbors differ as much as they ever should.
+    # The lowest part shows sixteen steps of gray, which should be clearly distinct.
     rows.append(ramps["gray"][np.clip(across * 16 // (2 * radius), 0, 15) * (len(ramps["gray"]) - 1) // 15])
     for row, first, last in zip(rows, edges[:-1], edges[1:], strict=True):
         disc[middle_line + first * radius // 12 : middle_line + last * radius // 12] = row
@@ -118,7 +118,7 @@ def picture(configuration: Configuration) -> Words:
 
 
 def circle_outline(configuration: Configuration) -> Words:
-    """Vectors around the disc and around a small circle in each corner."""
+    """The vectors of the outline of the disc, and of a small circle in each corner."""
     center, middle_line, radius = middle(configuration)
     width, height = configuration.shown_elements, configuration.shown_lines
     small = min(width, height) // 12
@@ -137,7 +137,7 @@ def circle_outline(configuration: Configuration) -> Words:
 
 
 def labels(configuration: Configuration) -> Words:
-    """The name of the configuration, its sizes and the characters."""
+    """The instructions that write the name of the configuration, its sizes and the characters."""
     center, middle_line, radius = middle(configuration)
     height = configuration.shown_lines
     sizes = (

@@ -1,4 +1,4 @@
-"""Placement: where the field lies in a window, and which pixel of it lies under the mouse."""
+"""Placement: where a window shows the field, and which pixel of the field is under the mouse."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Placement(NamedTuple):
-    """Where the field lies in the window: left, top, width and height in pixels."""
+    """The rectangle of the window that shows the field: left, top, width and height in pixels."""
 
     left: int
     top: int
@@ -15,9 +15,9 @@ class Placement(NamedTuple):
 
 
 def placement(field: tuple[int, int], window: tuple[int, int], fit: bool = False) -> Placement:
-    """Where a (width, height) field lies in a (width, height) window: whole multiples unless `fit`.
+    """Where a (width, height) window shows a (width, height) field, enlarged by a whole number unless `fit`.
 
-    A window smaller than the field shows the middle of it.
+    A window that is smaller than the field shows its middle.
 
     >>> placement((640, 480), (1400, 1000))
     Placement(left=60, top=20, width=1280, height=960)
@@ -34,7 +34,7 @@ def placement(field: tuple[int, int], window: tuple[int, int], fit: bool = False
 def pixel_under(
     place: tuple[int, int], field: tuple[int, int], window: tuple[int, int], fit: bool = False
 ) -> tuple[int, int]:
-    """The element and line of the field at a place of the window; outside, the nearest one at its edge.
+    """The element and line of the field at a place of the window; outside the field, the nearest at its edge.
 
     >>> pixel_under((0, 999), (640, 480), (1400, 1000))
     (0, 479)

@@ -1,10 +1,11 @@
-"""Monitor: shows the field of a display in a window. The only place that knows pygame.
+"""Monitor: shows the field of a display in a window. The only module that uses pygame.
 
-What is modeled: a field at the largest whole multiple that fits, centered, every pixel one k x k block;
-the mouse as the joystick of the display's cursors. What is **not**: the phosphor, the beam.
+What is modeled: the field at the largest whole multiple that fits, centered, each pixel a k x k block; the
+mouse as the joystick of the display. What is **not**: the phosphor, the beam.
 
-The window shows, it never draws: everything to be seen is words in the frame buffer and cursors on top. Keys,
-drops and ticks are handed to whoever drives the display as plain values.
+The window shows fields and draws nothing itself: everything visible is words in the frame buffer, and
+cursors. Keys, the mouse, dropped files and ticks are passed as plain values to the program that uses the
+display.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from typing import Final
 
 import numpy as np
 
-# Before pygame is loaded: its greeting would mix with data on stdout, and on Windows a process that does
-# not speak up has its window enlarged by a blurring factor.
+# Set before pygame is imported: its greeting would mix with data on stdout, and Windows enlarges and blurs
+# the windows of a process that does not declare itself aware of the screen's resolution.
 os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
 os.environ["SDL_WINDOWS_DPI_AWARENESS"] = os.environ.get("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
 import pygame
@@ -35,7 +36,7 @@ from ramtek_emu.video.scan_out import Stamp
 
 TICK_MILLISECONDS: Final = 15
 BLINK_SECONDS: Final = 0.5
-"""How long a blinking cursor is seen, and then not seen. Assumed: as in the time model."""
+"""How long a blinking cursor is shown, and then hidden. Assumed: as in the time model."""
 KEY_DELAY: Final = 400
 KEY_INTERVAL: Final = 40
 """Milliseconds until a key that is held down repeats, and between its repeats."""
@@ -46,7 +47,7 @@ REDRAWN_ON: Final = frozenset(
 
 
 def open_screen() -> None:
-    """Start the screen; NoScreenError when there is none, or only one that nobody sees or asked for."""
+    """Start the video system; NoScreenError if there is no screen, or only a dummy that nobody asked for."""
     asked = os.environ.get("SDL_VIDEODRIVER", "")
     advice = "run it on a desktop, or ask for a picture file instead"
     served_by_x = sys.platform.startswith(("linux", "freebsd", "openbsd", "netbsd"))
@@ -69,7 +70,7 @@ def open_screen() -> None:
 
 
 class Monitor(Console):
-    """A window on a display. `run` holds it open; `step` does one round, for programs that work meanwhile."""
+    """A window that shows a display. `run` keeps it open; programs with a loop of their own call `step`."""
 
     def __init__(
         self,
@@ -87,11 +88,11 @@ class Monitor(Console):
         on_close: Callable[[], bool] | None = None,
         on_message: Callable[[str], object] | None = None,
     ) -> None:
-        """Prepare a window; nothing is opened yet.
+        """Prepare a window; `open` opens it.
 
-        `on_key` returns whether it took the key: Esc, when nobody took it, leaves full screen, then closes.
-        `on_close` returns whether the window may close. `on_message` is given sentences for the user, such as
-        where a screenshot went; without it they stand in the caption.
+        `on_key` returns whether it handled the key; Esc, if not handled, leaves full screen or else closes
+        the window. `on_close` returns whether the window may close. `on_message` takes messages for the user,
+        such as the path of a screenshot; without it they are shown in the caption.
         """
         super().__init__(
             display,
@@ -107,7 +108,7 @@ class Monitor(Console):
         self.on_drop = on_drop
         self.on_tick = on_tick
         self.refreshed = 0
-        """How often the field was shown; it only grows."""
+        """How often the field was shown; it never decreases."""
         self._caption = caption
         self._size = (display.scan_out.elements, display.scan_out.lines)
         self._window_size = self._size
@@ -117,7 +118,7 @@ class Monitor(Console):
 
     @property
     def is_open(self) -> bool:
-        """Whether the window is there."""
+        """Whether the window is open."""
         return self._open
 
     @property
@@ -132,14 +133,14 @@ class Monitor(Console):
             pygame.display.set_caption(text)
 
     def open(self) -> None:
-        """Open the window; NoScreenError when there is no screen."""
+        """Open the window; NoScreenError if there is no screen."""
         open_screen()
         desktop = pygame.display.get_desktop_sizes()[0]
         room = int(desktop[0] * 0.95), int(desktop[1] * 0.9)
         self._window_size = placement(self._size, room)[2:]
         self._field = pygame.Surface(self._size, 0, 32, FIELD_MASKS)
         self._held: tuple[pygame.Surface, Stamp] | None = None
-        """The surface that was last scanned out to, and what it holds."""
+        """The surface that was scanned out to last, and the stamp of the field that it holds."""
         self._open = True
         pygame.display.set_caption(self._caption)
         pygame.key.set_repeat(KEY_DELAY, KEY_INTERVAL)
@@ -155,12 +156,12 @@ class Monitor(Console):
         return self.display.scan_out.stamp, pygame.display.get_window_size(), self.fit
 
     def show_message(self, message: str) -> None:
-        """Show a sentence in the window's title bar."""
+        """Show a message in the title bar of the window."""
         if self._open:
             pygame.display.set_caption(f"{self._caption} - {message}")
 
     def run(self) -> None:
-        """Open the window and hold it open until it is closed."""
+        """Open the window and keep it open until it is closed."""
         self.open()
         try:
             while self._open:
@@ -169,7 +170,7 @@ class Monitor(Console):
             self.close()
 
     def step(self, wait: int = 0) -> bool:
-        """Handle what came in, waiting for it up to `wait` milliseconds; show the field if it changed.
+        """Handle events, waiting up to `wait` milliseconds for one, and show the field if it changed.
 
         Returns whether the window is still open.
         """
@@ -185,11 +186,11 @@ class Monitor(Console):
         return self._open
 
     def refresh(self) -> None:
-        """Show the present field."""
+        """Show the current field."""
         screen = pygame.display.get_surface()
         self._shown = self._to_be_shown()
         self.refreshed += 1
-        # The display's own cursor takes the place of the desktop's.
+        # Hide the mouse pointer while a cursor of the display follows the mouse.
         pygame.mouse.set_visible(not any(cursor.is_visible for cursor in self.display.joystick.driven))
         place = placement(self._size, screen.get_size(), self.fit)
         if screen.get_size() == self._size and screen.get_masks() == FIELD_MASKS:
@@ -205,7 +206,7 @@ class Monitor(Console):
         pygame.display.flip()
 
     def toggle_full_screen(self) -> None:
-        """Fill the screen, or go back to a window of the size before."""
+        """Switch to full screen, or back to a window of the previous size."""
         if not self.full_screen:
             self._window_size = pygame.display.get_window_size()
         self.full_screen = not self.full_screen
@@ -227,7 +228,7 @@ class Monitor(Console):
 
     def _scan_out(self, surface: pygame.Surface) -> None:
         held = self._held[1] if self._held is not None and self._held[0] is surface else None
-        # The surface stays locked as long as the array lives: it ends with this line.
+        # The surface is locked while the array exists, that is until the end of this statement.
         stamp = self.display.scan_out.scan_out_changes_into(np.asarray(surface.get_view("2")).T, held)
         self._held = surface, stamp
 

@@ -1,10 +1,11 @@
-"""The instructions of the cursors: write and read in three kinds of coordinates, shapes, connections.
+"""Executors for cursors: writing and reading in three kinds of coordinates, shapes, tracking devices.
 
 Hardware: LIN (screen coordinates: element; line with visible and blink; TRACK and ENTER when read); NCAR
 (pixel coordinates, the same words); JPL (global coordinates: element, line, a word of the state).
-Assumed: screen coordinates are those of the glass; pixel coordinates are those of the memory that is shown
-there, through origin, zoom and video origin; global coordinates are those of the glass, as on a system of one
-channel. A cursor that is not there takes nothing, reads as 0 and sets the illegal-instruction status.
+Assumed: screen coordinates are places on the screen; pixel coordinates are those of the memory shown there,
+by display origin, zoom and video origin; global coordinates equal screen coordinates, as on a system of one
+channel. Writing a cursor that does not exist has no effect and reading it gives 0; both set the
+illegal-instruction status.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ SHAPE_BYTES_PER_ROW: Final = 4
 
 
 def is_there(processor: Processor, instruction: Instruction) -> bool:
-    """Whether the display has the cursor that an instruction names."""
+    """Whether the display has the cursor of the instruction; if not, the illegal-instruction bit is set."""
     if instruction.low_byte in processor.cursors:
         return True
     processor.flag_illegal()
@@ -30,7 +31,7 @@ def is_there(processor: Processor, instruction: Instruction) -> bool:
 
 
 def element_bits(processor: Processor) -> int:
-    """The bits of an element; ten suffice for the 9300 (Hardware: LIN)."""
+    """The bits that hold an element: ten on the 9300 (Hardware: LIN), eleven on wider displays."""
     return 0x3FF if processor.configuration.elements <= 0x400 else 0x7FF
 
 
@@ -55,7 +56,7 @@ def write_cursor_at_pixel(processor: Processor, instruction: Instruction) -> Non
 
 @executes("WCSG")
 def write_global_cursor(processor: Processor, instruction: Instruction) -> None:
-    """Place a cursor in global coordinates, the state in a word of its own."""
+    """Place a cursor in global coordinates; the state is a separate word."""
     if is_there(processor, instruction):
         (element,), (line,), (state,) = instruction.operands.values()
         processor.cursors.place(instruction.low_byte, element & 0xFFF, line & 0xFFF, state)
@@ -63,7 +64,7 @@ def write_global_cursor(processor: Processor, instruction: Instruction) -> None:
 
 @executes("RCSS")
 def read_cursor(processor: Processor, instruction: Instruction) -> None:
-    """Give a cursor in screen coordinates, with its state and the switches."""
+    """Reply the place of a cursor in screen coordinates, with its state and the switches."""
     if not is_there(processor, instruction):
         return processor.reply(np.zeros(2, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
@@ -74,7 +75,7 @@ def read_cursor(processor: Processor, instruction: Instruction) -> None:
 
 @executes("RCSP")
 def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
-    """Give a cursor in pixel coordinates, with its state and the switches."""
+    """Reply the place of a cursor in pixel coordinates, with its state and the switches."""
     if not is_there(processor, instruction):
         return processor.reply(np.zeros(2, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
@@ -85,7 +86,7 @@ def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None
 
 @executes("RCSG")
 def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
-    """Give a cursor in global coordinates, the state in a word of its own."""
+    """Reply the place of a cursor in global coordinates; the state is a separate word."""
     if not is_there(processor, instruction):
         return processor.reply(np.zeros(3, np.uint16))
     cursor = processor.cursors[instruction.low_byte]
@@ -95,7 +96,7 @@ def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
 
 @executes("LCF")
 def load_cursor_shape(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: JPL (32 rows of two words, low byte first). Assumed: fewer rows change the upper ones."""
+    """Hardware: JPL (32 rows of two words, low byte first). Assumed: fewer rows replace the topmost ones."""
     if is_there(processor, instruction):
         data = instruction.data.astype("<u2").view(np.uint8)[: instruction.length]
         rows = data[: len(data) // SHAPE_BYTES_PER_ROW * SHAPE_BYTES_PER_ROW].reshape(-1, SHAPE_BYTES_PER_ROW)

@@ -1,7 +1,7 @@
-"""The instructions that draw: vectors, points, conics, circles and text.
+"""Executors of the instructions that draw: vectors, points, conics, circles and text.
 
-Assumed: the additive flag leaves what lies between dots as it is, in characters, rasters and textures, from
-its name; without it the background word is written there.
+Assumed: with the additive flag, the pixels between the dots of characters, rasters and textures stay
+unchanged, as its name suggests; without it the background word is written there.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ramtek_emu.processor.processor import Processor, executes
 
 
 def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
-    """What lines are written with now."""
+    """What the instruction writes lines with."""
     foreground, background = processor.colors(instruction)
     transparent = bool(instruction.low_byte & Flags.ADDITIVE)
     return vectors.Ink(foreground, background, processor.parameters.texture, transparent)
@@ -25,7 +25,7 @@ def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
 
 @executes("WVL")
 def write_linked_vectors(processor: Processor, instruction: Instruction) -> None:
-    """Link vertices to the operating point, which ends at the last.
+    """Draw from the operating point through all vertices; the operating point moves to the last.
 
     Hardware: LIN, BTL, JPL (from the operating point through every vertex, which it ends at); BTL (a
     vector to the operating point is a point); NCAR (texture, write window).
@@ -40,7 +40,7 @@ def write_linked_vectors(processor: Processor, instruction: Instruction) -> None
 
 @executes("WVU")
 def write_unlinked_vectors(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: four numbers a vector, its start and its end; the operating point ends at the last end."""
+    """Assumed: four numbers for each vector, start and end; the operating point moves to the last end."""
     parameters = processor.parameters
     points = processor.points(instruction, 4).reshape(-1, 2)
     if len(points):
@@ -52,7 +52,7 @@ def write_unlinked_vectors(processor: Processor, instruction: Instruction) -> No
 
 @executes("WPT")
 def write_points(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: NCAR (disabled code: two numbers a point). Assumed: the operating point ends at the last."""
+    """Hardware: NCAR (disabled code: two numbers a point). Assumed: the operating point moves to the last."""
     parameters = processor.parameters
     points = processor.placed(processor.points(instruction), instruction.low_byte)
     if len(points):
@@ -65,8 +65,8 @@ def write_points(processor: Processor, instruction: Instruction) -> None:
 def write_circles(processor: Processor, instruction: Instruction) -> None:
     """Hardware: NCAR (center and radius in elements; the operating point becomes the center).
 
-    Assumed: three numbers for each of several circles; radii are not below 0, their sixteen bits count up;
-    with relative addressing each center is counted from the one before.
+    Assumed: three numbers for each of several circles; radii are 16-bit numbers without a sign; with relative
+    addressing each center is counted from the one before.
     """
     parameters = processor.parameters
     circles = processor.points(instruction, 3)
@@ -83,8 +83,8 @@ def write_circles(processor: Processor, instruction: Instruction) -> None:
 def write_conic(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN (from the operating point to the data point, or for a number of pixels).
 
-    Assumed: the operating point ends at the last pixel; of several data points the first counts; without one
-    and without a number of pixels a closed curve is drawn once.
+    Assumed: the operating point moves to the last pixel; of several data points the first is used; without a
+    data point and without a number of pixels, a closed curve is drawn once.
     """
     parameters = processor.parameters
     points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)
@@ -119,7 +119,7 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
         start=parameters.start,
         enable=parameters.enable,
     )
-    # The operating point is a pair of registers of 16 bits.
+    # The coordinates of the operating point are registers of 16 bits.
     parameters.start = Point(signed(next_cell.element & 0xFFFF), signed(next_cell.line & 0xFFFF))
 
 
@@ -127,20 +127,20 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
 def load_character(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN (twelve rows, a byte each, the first in the high byte).
 
-    Assumed: the highest bit is the leftmost dot, as in rasters; the character of that code is replaced, and
-    stays so until power-on, for RSET leaves the lookup table too.
+    Assumed: the highest bit is the leftmost dot, as in rasters; the character of that code is replaced until
+    the display is switched off, since RSET keeps the lookup table too.
     """
     load_rows(processor, instruction, ">u2")
 
 
 @executes("LPFRP")
 def load_reversed_character(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: LPF with the low byte first, from its name."""
+    """Assumed: as LPF with the low byte first, from its name."""
     load_rows(processor, instruction, "<u2")
 
 
 def load_rows(processor: Processor, instruction: Instruction, packing: str) -> None:
-    """Give the character of a code its rows."""
+    """Replace the character whose code is in the low byte; `packing` is the byte order of its rows."""
     words = [word for (word,) in instruction.operands.values()]
     rows = np.array(words, packing).view(np.uint8)
     shape = np.unpackbits(rows[:, np.newaxis], axis=1).astype(np.bool_)
@@ -149,5 +149,5 @@ def load_rows(processor: Processor, instruction: Instruction, packing: str) -> N
 
 @executes("ATTPF")
 def attach_font(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: NCAR (FFh: the standard font). Assumed: any other: the characters that may be loaded."""
+    """Hardware: NCAR (FFh: the standard font). Assumed: any other number: the loaded characters."""
     processor.parameters.font = instruction.low_byte

@@ -1,4 +1,4 @@
-"""The instructions of the environment: reset, parameters, status, what is shown, waiting; and none."""
+"""Executors for reset, parameters, status, view and waiting, and for words that are no instruction."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.processor.processor import Processor, Status, executes
 
 MOST_SAVED: Final = 16
-"""Environments that PUSHE puts aside at most. Assumed: one more sets the illegal-instruction status."""
+"""How many environments PUSHE can save. Assumed: one more sets the illegal-instruction status."""
 
 
 @executes("???")
@@ -23,7 +23,7 @@ def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
 
 
 def consume(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: an instruction known by name only is consumed whole and sets the illegal status."""
+    """Assumed: an instruction known by name only is consumed and sets the illegal-instruction status."""
     processor.flag_illegal()
     processor.unimplemented += 1
 
@@ -37,7 +37,7 @@ for _form in FORMATS:
 def reset(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN libdoc (clears interrupts, parameters and screen); BTL (the lookup table stays).
 
-    Assumed: an ENTER that nobody has read is an interrupt too: the next program must not take it for its own.
+    Assumed: an ENTER that no host has read is such an interrupt; the next program must not read it.
     """
     initialize(processor, instruction)
     processor.clear_status()
@@ -47,7 +47,7 @@ def reset(processor: Processor, instruction: Instruction) -> None:
 
 @executes("INIT")
 def initialize(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: the parameters alone, since libdoc speaks of erasing for RSET only."""
+    """Assumed: only the parameters are reset, since libdoc mentions erasing for RSET only."""
     processor.parameters = Parameters.at_reset(processor.configuration)
     processor.saved.clear()
 
@@ -55,12 +55,12 @@ def initialize(processor: Processor, instruction: Instruction) -> None:
 @executes("NOP")
 @executes("SET")
 def do_nothing(processor: Processor, instruction: Instruction) -> None:
-    """Nothing beyond taking the operands."""
+    """Do nothing; the operands were set already."""
 
 
 @executes("PUSHE")
 def save_environment(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: every parameter is put aside, the zoom and the font among them."""
+    """Assumed: all parameters are saved, zoom and font included."""
     if len(processor.saved) < MOST_SAVED:
         processor.saved.append(processor.parameters.copy())
     else:
@@ -69,7 +69,7 @@ def save_environment(processor: Processor, instruction: Instruction) -> None:
 
 @executes("POPE")
 def restore_environment(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: the parameters last put aside; none left sets the illegal-instruction status."""
+    """Assumed: restores the parameters saved last; without any, sets the illegal-instruction status."""
     if processor.saved:
         processor.parameters = processor.saved.pop()
     else:
@@ -78,9 +78,9 @@ def restore_environment(processor: Processor, instruction: Instruction) -> None:
 
 @executes("READP")
 def read_parameters(processor: Processor, instruction: Instruction) -> None:
-    """Give the operands that the flag words name, in the order in which they would be sent.
+    """Reply the operands that the flag words name, in the order in which they would be sent.
 
-    Assumed: all of it; without flag words every operand comes, those of the second word last.
+    Assumed: all of it; without flag words every operand is replied, those of the second word last.
     """
     names = instruction.operands or OPERANDS
     words = [word for name in names for word in processor.parameters.operand(name)]
@@ -89,7 +89,7 @@ def read_parameters(processor: Processor, instruction: Instruction) -> None:
 
 @executes("RERR")
 def read_error_status(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: one word, the request bits of the status register, which reading clears."""
+    """Assumed: the reply is one word, the request bits of the status register, which are then cleared."""
     processor.reply(np.array([processor.status & ~Status.READY], np.uint16))
     processor.clear_status()
 
@@ -98,7 +98,7 @@ def read_error_status(processor: Processor, instruction: Instruction) -> None:
 def zoom(processor: Processor, instruction: Instruction) -> None:
     """Hardware: JPL, NCAR (line factor less one in the high byte, element factor less one in the low byte).
 
-    Assumed: four bits count of each.
+    Assumed: four bits of each are used.
     """
     word = instruction.operands["zoom"][0]
     processor.parameters.zoom = 1 + (word & 0x0F), 1 + (word >> 8 & 0x0F)
@@ -106,20 +106,20 @@ def zoom(processor: Processor, instruction: Instruction) -> None:
 
 @executes("SELVO")
 def select_video_origin(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: NCAR (1: at the bottom). Assumed: the lowest bit counts."""
+    """Hardware: NCAR (1: at the bottom). Assumed: only the lowest bit is used."""
     processor.parameters.origin_at_bottom = bool(instruction.low_byte & 1)
 
 
 @executes("WAITVR")
 def wait_for_retrace(processor: Processor, instruction: Instruction) -> None:
-    """Hardware: NCAR (before a table is loaded). Assumed: its number is a channel's; all retrace at once."""
+    """Hardware: NCAR (before a table is loaded). Assumed: the number is a channel; all retrace together."""
     if processor.beam is not None:
         processor.beam.wait_for_line(processor.beam.lines)
 
 
 @executes("WAITL")
 def wait_for_line(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: a word with the line of the screen, from the top; a line that is not there: no wait."""
+    """Assumed: the word is a line of the screen, from the top; for one that does not exist no time passes."""
     line = instruction.operands["line"][0]
     if processor.beam is not None and line < processor.beam.lines:
         processor.beam.wait_for_line(line)

@@ -1,6 +1,6 @@
-"""The registry of executors: importing it enters the function of every instruction in the processor's table.
+"""The registry: importing this module enters the executors of all instructions in EXECUTORS.
 
-A new instruction is a row of the instruction table and one function in one of these modules.
+A new instruction is one row of the instruction table and one function in one of these modules.
 """
 
 from __future__ import annotations
@@ -23,4 +23,4 @@ SUBJECTS: Final = (
     cursor_executors,
     environment_executors,
 )
-"""The modules whose functions stand in EXECUTORS."""
+"""The modules of the executors, one for each subject."""

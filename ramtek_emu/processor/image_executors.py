@@ -1,4 +1,4 @@
-"""The instructions that write and read the words of areas: erasing, images, rasters, filling, copying."""
+"""Executors of the instructions for images: erase, write, read, raster, fill and copy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def erase(processor: Processor, instruction: Instruction) -> None:
 
 @executes("BERS")
 def erase_everything(processor: Processor, instruction: Instruction) -> None:
-    """Assumed: as ERS, but the whole memory whatever the windows are: in bulk."""
+    """Assumed: as ERS, but the whole memory, whatever the windows are: the B stands for bulk."""
     parameters = processor.parameters
     _, background = processor.colors(instruction)
     enable = parameters.enable._replace(window=parameters.whole_window)
@@ -32,7 +32,7 @@ def erase_everything(processor: Processor, instruction: Instruction) -> None:
 def write_image(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN, PIC (one word a pixel); JPL, NCAR (mode 1, two pixels a word; a run goes on).
 
-    Assumed: of an odd number of bytes in mode 0 the last is no pixel; in mode 1 the upper planes become 0.
+    Assumed: of an odd number of bytes in mode 0 the last is dropped; in mode 1 the upper planes become 0.
     """
     parameters = processor.parameters
     if parameters.image_mode & 1:
@@ -48,8 +48,8 @@ def write_image(processor: Processor, instruction: Instruction) -> None:
 def read_image(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN (one word a pixel), NCAR (the read mask).
 
-    Assumed: planes that are not there read as 0; the run moves the operating point as writing does; a byte
-    that fills up the last word is 0.
+    Assumed: planes that do not exist read as 0; reading moves the operating point as writing does; the byte
+    that pads the last word is 0.
     """
     parameters = processor.parameters
     length = instruction.length or 0
@@ -71,8 +71,8 @@ def write_raster(processor: Processor, instruction: Instruction) -> None:
 
     Hardware: PRG rast.c, LIN wr.c (one bit a pixel into the window in scan order, bytes as in text, highest
     bit first).
-    Assumed: 1 is the foreground; a line of the window need not end with a byte; the additive flag leaves
-    pixels of 0 as they are.
+    Assumed: 1 is the foreground; a line of the window need not end with a byte; with the additive flag,
+    pixels of 0 are not written.
     """
     parameters = processor.parameters
     bits = np.unpackbits(np.frombuffer(instruction.data_bytes(), np.uint8))
@@ -102,9 +102,10 @@ def fill(processor: Processor, instruction: Instruction) -> None:
 
     Hardware: NCAR (disabled code: mode 0 is "fill until"; a circle was drawn in the foreground before; words
     are compared through the read mask).
-    Assumed: in mode 0, or without data, the area ends at pixels of the foreground; in every other mode it is
-    that of the operating point's own word. It hangs together up, down, left and right, within the memory
-    and the write window; an operating point outside fills nothing; it stays where it is.
+    Assumed: in mode 0, or without data, the area ends at pixels of the foreground; in every other mode it
+    consists of pixels with the word at the operating point. Pixels are connected up, down, left and right,
+    within the memory and the write window. An operating point outside fills nothing. The operating point
+    does not move.
     """
     parameters = processor.parameters
     frame_buffer = processor.frame_buffer
@@ -127,9 +128,9 @@ def fill(processor: Processor, instruction: Instruction) -> None:
 def copy_image(processor: Processor, instruction: Instruction) -> None:
     """Copy the window to another place.
 
-    Assumed: the data are the element and the line of the corner where the copy's scan starts, the operating
-    point if there are none; the words are read through the read mask, all of them before any is written; what
-    lies outside the memory reads as 0; the operating point becomes that corner.
+    Assumed: the data are the element and the line of the corner where the scan of the copy starts; without
+    data it is the operating point. The words are read through the read mask, all of them before any is
+    written. Outside the memory nothing is copied. The operating point becomes that corner.
     """
     parameters = processor.parameters
     points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)

@@ -1,12 +1,12 @@
-"""Processor: executes instructions; owns the sticky parameters, the status and what is to be read back.
+"""Processor: executes instructions, and owns the parameters, the status and the replies.
 
-Each instruction is a row of the table and one function in a room of its subject: images, drawing, the lookup
-table, cursors, the environment.
+Each instruction has a row in the instruction table and an executor: a function in the module of its subject,
+which enters itself in EXECUTORS with the decorator `executes`.
 
 What is modeled: the parameters, the addressing modes, image modes, replies in order, the illegal-instruction
 bit. What is **not**: logical functions other than replacement; they replace (Assumed: FUNC, whose codes no
-source explains); write-enable offsets, which are kept and read back and move nothing (Assumed: WOF; its only
-client, NCAR, sends the corner of the window beside coordinates that contain it already).
+source explains); write-enable offsets, which are kept and read back but have no effect (Assumed: WOF; its
+only client, NCAR, sends the corner of the window along with coordinates that include it already).
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.video.beam import Beam
 
 MOST_WAITING: Final = 1 << 22
-"""Words of replies that wait for the host at most.
+"""The largest number of words of replies that wait for the host.
 
-Assumed: what a host never reads is dropped, newest first; hardware would stop the host.
+Assumed: further replies are dropped when the host does not read; hardware would stop the host.
 """
 
 
@@ -46,7 +46,7 @@ class Status(IntFlag):
 
 
 class Processor:
-    """The instruction processor between the decoder and the memories."""
+    """The instruction processor, between the decoder and the memories."""
 
     def __init__(
         self,
@@ -63,15 +63,15 @@ class Processor:
         self.beam = beam
         self.parameters = Parameters.at_reset(configuration)
         self.saved: list[Parameters] = []
-        """What PUSHE put aside, the newest last."""
+        """The parameters that PUSHE saved, the newest last."""
         self.characters = characters()
         """The dots of the ROM, (256, 9, 7)."""
         self.loaded_characters = loadable(self.characters)
-        """The dots of the characters that a host may load, (256, 12, 8); the ROM's until it does."""
+        """The dots of the characters that a host can load, (256, 12, 8); until then those of the ROM."""
         self.illegal_words = 0
-        """Words skipped because no instruction begins with them; it only grows."""
+        """How many words were skipped because no instruction begins with them; it never decreases."""
         self.unimplemented = 0
-        """Instructions consumed of which only the name is known; it only grows."""
+        """How many instructions without effect, known by name only, were consumed; it never decreases."""
         self._illegal = False
         self._replies: deque[Words] = deque()
         self._waiting = 0
@@ -89,33 +89,33 @@ class Processor:
         self._illegal = True
 
     def clear_status(self) -> None:
-        """Clear the requests of the status register."""
+        """Clear the request bits of the status register."""
         self._illegal = self.cursors.enter_is_pressed = False
 
     def clear_replies(self) -> None:
-        """Forget what no host has read."""
+        """Drop the replies that the host has not read."""
         self._replies.clear()
         self._waiting = 0
 
     @property
     def waiting(self) -> int:
-        """Words that the host may receive."""
+        """How many words the host can receive."""
         return self._waiting
 
     def execute(self, instruction: Instruction) -> None:
-        """Take an instruction's operands, then do it; nothing that a host sends raises."""
+        """Set the operands of an instruction, then execute it; no instruction raises an error."""
         if instruction.format.is_normal and instruction.operands and not instruction.format.asks:
             self.parameters.take(instruction.operands, instruction.low_byte)
         EXECUTORS[instruction.format.name](self, instruction)
 
     def points(self, instruction: Instruction, numbers_each: int = 2) -> Numbers:
-        """The data as (n, numbers_each) signed numbers; what is left over at the end is no point."""
+        """The data as (n, numbers_each) signed numbers; an incomplete row at the end is dropped."""
         size = 2 * numbers_each
         words = instruction.data[: (instruction.length or 0) // size * numbers_each]
         return words.view(np.int16).reshape(-1, numbers_each).astype(np.int64)
 
     def placed(self, points: Numbers, flags: int) -> Numbers:
-        """(n, 2) points as the addressing mode counts them.
+        """The (n, 2) points in absolute coordinates, by the addressing mode in the flags.
 
         Assumed: with relative addressing each point is counted from the one before, the first from the
         operating point. Coordinates are registers of 16 bits.
@@ -130,14 +130,14 @@ class Processor:
         return wrapped
 
     def reply(self, words: Words) -> None:
-        """Hold words for the host."""
+        """Keep words until the host receives them."""
         words = words[: MOST_WAITING - self._waiting]
         if len(words):
             self._replies.append(words)
             self._waiting += len(words)
 
     def take_reply(self, count: int) -> Words:
-        """The next `count` words for the host; ReplyError when there are fewer."""
+        """The next `count` words of the replies; ReplyError if there are fewer."""
         if not 0 <= count <= self._waiting:
             raise ReplyError(
                 f"the words received must be 0 to {self._waiting}, which wait, not {count}; "
@@ -156,7 +156,7 @@ class Processor:
         return np.concatenate(taken) if taken else NO_WORDS
 
     def colors(self, instruction: Instruction) -> tuple[int, int]:
-        """Foreground and background words, in the order that the swap flag asks for."""
+        """The foreground and the background word, exchanged if the swap flag is set."""
         pair = self.parameters.foreground, self.parameters.background
         return (pair[1], pair[0]) if instruction.low_byte & Flags.SWAP else pair
 
@@ -166,7 +166,7 @@ EXECUTORS: Final[dict[str, Executor]] = {}
 
 
 def executes(name: str) -> Callable[[Executor], Executor]:
-    """Enter a function as what does the instruction of that name."""
+    """Enter the decorated function in EXECUTORS, as the executor of the instruction of that name."""
 
     def enter(executor: Executor) -> Executor:
         EXECUTORS[name] = executor

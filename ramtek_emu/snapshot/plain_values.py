@@ -1,7 +1,7 @@
-"""Plain values: the state of a box as lists, names and numbers, and back again within bounds.
+"""Plain values: the state of a part of the display as values for JSON, and back with all values checked.
 
-A pattern, the same state of a display just switched on, says of every value what it must be: its type, its
-length, the fields that it has. So what is read from a file fits, or is refused by one sentence.
+A pattern tells what each value must be: its type, its length, its fields. It is the same state of a display
+that was just switched on. So a value that was read from a file fits, or raises an error that names it.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ LIMITS: Final = {
     "pixel": (0, 1 << 30),
     "address": (0, 0xFFFF),
 }
-"""Numbers that are no words, by the name of the field."""
+"""The limits of numbers that are not words, by the name of the field in the file."""
 
 
 def plain(value: Any) -> Any:
-    """The value in what JSON has: dots and words packed in base64, what has fields as an object."""
+    """The value as JSON can hold it: arrays of dots and words in base64, dataclasses as objects."""
     if isinstance(value, Enum):
         return value.name
     if isinstance(value, np.ndarray):
@@ -56,7 +56,7 @@ def plain(value: Any) -> Any:
 
 
 def restored(pattern: Any, value: Any, place: str) -> Any:
-    """The value as what the pattern is; SnapshotError names the place where it does not fit."""
+    """The value converted to the type of the pattern; SnapshotError names the place that does not fit."""
     if isinstance(pattern, Enum):
         return _named(pattern, value, place)
     if isinstance(pattern, np.ndarray):
@@ -88,12 +88,12 @@ def restored(pattern: Any, value: Any, place: str) -> Any:
 
 
 def packed(data: bytes) -> str:
-    """Many bytes as a text."""
+    """Bytes as compressed text."""
     return base64.b64encode(zlib.compress(data, 6)).decode("ascii")
 
 
 def unpacked(text: Any, size: int, place: str) -> bytes:
-    """So many bytes of such a text; no more than that are ever unpacked."""
+    """The bytes of such a text, which must be `size` many; never more than one byte beyond is unpacked."""
     unpacker = zlib.decompressobj()
     try:
         data = unpacker.decompress(base64.b64decode(text, validate=True), size + 1)
@@ -105,21 +105,21 @@ def unpacked(text: Any, size: int, place: str) -> bytes:
 
 
 def listed(pattern: Any, value: Any, place: str, most: int) -> list[Any]:
-    """A list of so many items at most, each as the pattern is."""
+    """A list of at most `most` items, each converted to the type of the pattern."""
     if not isinstance(value, list) or len(value) > most:
         raise refusal(place, f"a list of at most {most}", value)
     return [restored(pattern, item, f"{place}[{number}]") for number, item in enumerate(value)]
 
 
 def whole_number(value: Any, limits: tuple[int, int], place: str) -> int:
-    """The value, a whole number within limits."""
+    """The value, if it is a whole number within the limits; SnapshotError if not."""
     if isinstance(value, bool) or not isinstance(value, int) or not limits[0] <= value <= limits[1]:
         raise refusal(place, f"a whole number from {limits[0]} to {limits[1]}", value)
     return value
 
 
 def refusal(place: str, rule: str, value: Any) -> SnapshotError:
-    """The sentence for a value that does not fit."""
+    """The error for a value that does not fit."""
     text = repr(value)
     text = text if len(text) <= 60 else f"{text[:60]}..."
     return SnapshotError(f"{place} of a snapshot must be {rule}, not {text}; take a new one with --snapshot")

@@ -1,9 +1,9 @@
-"""PNG chunks: 16-bit gray pictures with texts beside them, written and read within bounds.
+"""PNG chunks: writes and reads 16-bit gray pictures with text chunks, with limits on all sizes.
 
-Snapshots are read from anywhere, so every size is checked before anything of that size is made: the file, the
-picture, each text, and what the pixels unpack to. Pillow, which writes the pictures for people, raises a
-dozen kinds of errors for such files and is kept in one place; this is the small part of the format that is
-needed, and it refuses the rest: other depths, interlacing, filters, critical chunks that it does not know.
+Snapshots may come from anywhere, so every size is checked before memory of that size is used: the file, the
+picture, each text and the unpacked pixels. Pillow is not used here: it raises a dozen kinds of errors for
+such files, and only one module is to import it. This module supports the small part of the format that is
+needed and refuses the rest: other depths, interlacing, filters, unknown critical chunks.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 MOST_FILE: Final = 48 << 20
 MOST_SIDE: Final = 4096
 MOST_TEXT: Final = 8 << 20
-"""Bytes of all texts together."""
+"""The largest number of bytes of all texts together."""
 MOST_CHUNKS: Final = 1 << 16
 
 
 def picture_bytes(words: Words, texts: Mapping[str, str]) -> bytes:
-    """A PNG file of (lines, elements) words, 16 bits gray, with ASCII texts by their keywords."""
+    """A PNG file of (lines, elements) words, 16 bits gray, and of ASCII texts by keyword."""
     lines, elements = words.shape
-    # Before each line stands the number of its filter, 0: none.
+    # Each line begins with the number of its filter; 0 is none.
     rows = np.zeros((lines, 1 + 2 * elements), np.uint8)
     rows[:, 1:] = words.astype(">u2").view(np.uint8).reshape(lines, -1)
     parts = [SIGNATURE, _chunk(b"IHDR", struct.pack(">IIBBBBB", elements, lines, 16, 0, 0, 0, 0))]
@@ -42,7 +42,7 @@ def picture_bytes(words: Words, texts: Mapping[str, str]) -> bytes:
 
 
 def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
-    """The words and the texts of such a file; SnapshotError when it is not one."""
+    """The words and the texts of such a file; SnapshotError if it is not valid."""
     if data[:8] != SIGNATURE:
         raise _refusal("begin as a PNG file does", "as something else")
     size: tuple[int, int] | None = None
@@ -72,12 +72,12 @@ def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
 
 
 def _chunk(kind: bytes, content: bytes) -> bytes:
-    """A chunk with its length and its checksum."""
+    """The bytes of a chunk, with length and checksum."""
     return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
 
 
 def _next_chunk(data: bytes, place: int) -> tuple[bytes, bytes, int]:
-    """A chunk's kind and content, and where the next one begins."""
+    """The kind and the content of a chunk, and where the next one begins."""
     if len(data) < place + 12:
         raise _refusal("have whole chunks", f"end in one, at byte {len(data)}")
     length, kind = struct.unpack_from(">I4s", data, place)

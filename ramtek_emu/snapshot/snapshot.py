@@ -1,12 +1,12 @@
 """Snapshots: a whole display in a 16-bit PNG file, its words as pixels, everything else in text chunks.
 
-What is kept: the configuration, the words, the lookup table and its address counter, the parameters and what
-PUSHE put aside, loaded characters, cursors and switches, the status, the time and what the glass shows. What
-is **not**: an instruction of which not all words have come, and replies that nobody has read; both belong to
-a host that is not in the file.
+What is kept: the configuration, the words, the lookup table and its address counter, the parameters and those
+that PUSHE saved, loaded characters, cursors and switches, the status, the time and the image on the monitor.
+What is **not**: the words of an incomplete instruction, and replies that were not read; both belong to a
+host, which is not in the file.
 
-The pixels are the words themselves, so that any program that reads 16-bit gray pictures reads them; they look
-dark, since ten bits of sixteen are used.
+The pixels are the words themselves, so that any program for 16-bit gray pictures can read them. The picture
+looks dark, since only ten of sixteen bits are used.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from ramtek_emu.video.beam import Beam
 from ramtek_emu.writing import write_atomically
 
 SOFTWARE: Final = "ramtek_emu snapshot 1"
-"""What the text `Software` says; the number is the format's."""
+"""The text chunk `Software`; the number is the version of the format."""
 
 
 def snapshot_bytes(display: Ramtek9300) -> bytes:
@@ -65,7 +65,7 @@ def snapshot_bytes(display: Ramtek9300) -> bytes:
 
 
 def display_of(data: bytes) -> Ramtek9300:
-    """The display that a snapshot's bytes hold; SnapshotError when they hold none."""
+    """The display of a snapshot; SnapshotError if the bytes are no valid snapshot."""
     words, texts = picture_of(data)
     if texts.get("Software") != SOFTWARE:
         raise SnapshotError(
@@ -103,12 +103,12 @@ def display_of(data: bytes) -> Ramtek9300:
 
 
 def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bool = True) -> None:
-    """Write a snapshot, wholly or not at all: OutputExistsError, OutputError or WriteError."""
+    """Write a snapshot to a file, whole or not at all; OutputExistsError, OutputError or WriteError."""
     write_atomically(path, snapshot_bytes(display), overwrite=overwrite)
 
 
 def read_snapshot(path: str | PathLike[str]) -> Ramtek9300:
-    """The display of a snapshot file; MissingInputError or SnapshotError when there is none in it."""
+    """The display of a snapshot file; MissingInputError if it cannot be read, SnapshotError if not valid."""
     try:
         if not Path(path).is_file():
             raise MissingInputError(
@@ -131,13 +131,13 @@ def read_snapshot(path: str | PathLike[str]) -> Ramtek9300:
 
 
 def configuration_state(configuration: Configuration) -> dict[str, Any]:
-    """A configuration in plain values."""
+    """A configuration as plain values."""
     state: dict[str, Any] = plain(configuration)
     return state
 
 
 def configuration_of(state: dict[str, Any]) -> Configuration:
-    """The configuration that plain values say."""
+    """The configuration of plain values; SnapshotError if they are not valid."""
     pattern = replace(
         GMR_9300,
         visible_elements=None if state.get("visible_elements") is None else 1,
@@ -202,7 +202,7 @@ def _restore_monitor_image(display: Ramtek9300, beam: Beam, state: dict[str, Any
 
 
 def _state(texts: dict[str, str], keyword: str, *names: str) -> dict[str, Any]:
-    """One text as an object; with names, of those fields."""
+    """A text chunk as an object; SnapshotError if it is none, or if its fields are not the given names."""
     try:
         state = json.loads(texts.get(keyword, "null"))
     except (ValueError, RecursionError):

@@ -1,4 +1,4 @@
-"""Which lines show an entry: the part of a field that a load of the lookup table changes."""
+"""Dirty lines: the part of a field that changes when entries of the lookup table are loaded."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 from ramtek_emu.arrays import Words
 
 STRIP: Final = 32
-"""Lines that are searched at once."""
+"""How many lines are searched at once."""
 
 
 def lines_with(words: Words, first: int, end: int) -> tuple[int, int]:
-    """The first line that has a word from `first` to before `end`, and the one after the last.
+    """The first line that contains a word from `first` to `end` - 1, and the line after the last such line.
 
-    (0, 0) when no line has one.
+    (0, 0) if no line contains one.
     """
-    # Search from the top and from the bottom; what lies in between is not read. Measured: looking at every
-    # line takes twice as long. To stop at whole strips would save a tenth of a scan-out once, and cost a
-    # twentieth of one for each field while a color is dragged.
+    # Search from the top and from the bottom, and skip what lies between. Measured: searching every line
+    # takes twice as long. Returning whole strips would save a tenth of a scan-out once, and cost a twentieth
+    # of one for each field while a color is dragged.
     top, bottom = 0, len(words)
     while top < bottom and least_above(words[top : top + STRIP], first) >= end - first:
         top += STRIP
@@ -34,6 +34,6 @@ def lines_with(words: Words, first: int, end: int) -> tuple[int, int]:
 
 
 def least_above(words: Words, first: int, axis: int | None = None) -> Any:
-    """How far above `first` the nearest word is, of all or of each line; a word below it is very far."""
-    # What is below wraps to far above.
+    """The smallest difference between a word and `first`, of all words or of each line, in 16 bits."""
+    # A word below `first` wraps to a difference that is larger than that of any word in the range.
     return (words - np.uint16(first)).min(axis=axis)

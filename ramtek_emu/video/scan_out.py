@@ -1,14 +1,14 @@
-"""ScanOut: words through the lookup table, one field at a time, with the cursors on top.
+"""ScanOut: makes fields. The words shown go through the lookup table, and the cursors are drawn on top.
 
-What is modeled: every visible word selects its entry; origin, zoom and video origin pick what is visible;
-with fewer planes than the table has address bits, the upper bits of the table's address counter pick the
-part that is shown; the cursors; a black-and-white monitor; with a beam, each line as the memories were when
-the beam passed it. What is **not**: interlace, the levels of blanking and border.
+What is modeled: each word selects its entry; display origin, zoom and video origin select the part of the
+memory that is shown; with fewer planes than the table has address bits, the upper bits of the table's address
+counter select the section that is shown; the cursors; a black-and-white monitor; with a beam, each line as
+the memories were when the beam passed it. What is **not**: interlace, the levels of blanking and border.
 
 Hardware: GM (one word selects all three components); LIN, JPL, BTL (parking the address counter); PRG cmap.c,
 introdoc (a black-and-white monitor sees the low eight bits of an entry).
-Assumed: a cursor is white where the picture is dark and black where it is light, so that it is always seen;
-how the 9300 mixed it into the video is in no source.
+Assumed: a cursor is white where the picture is dark and black where it is light, so that it is always
+visible; how the 9300 mixed it into the video is in no source.
 """
 
 from __future__ import annotations
@@ -31,7 +31,10 @@ from ramtek_emu.video.view import PLAIN_VIEW, View, copy_shown, pixel_at, view_o
 
 WHITE: Final = np.uint32(0xFFFFFF)
 Stamp = tuple[int, tuple[object, ...]]
-"""What a field is made from: entry words ever written, and all else. Fields with equal stamps are equal."""
+"""Identifies a field: the count of words of entries written, and all else that a field depends on.
+
+Fields with equal stamps are equal.
+"""
 
 
 class ScanOut:
@@ -49,7 +52,7 @@ class ScanOut:
         self.lines = configuration.shown_lines
         self.elements = configuration.shown_elements
         self.blink_is_on = True
-        """Whether blinking cursors are seen; with a beam it decides instead."""
+        """Whether blinking cursors are shown; with a beam, the beam decides instead."""
         self._configuration = configuration
         self._frame_buffer = frame_buffer
         self._lookup_table = lookup_table
@@ -58,22 +61,22 @@ class ScanOut:
         self._beam = beam
         self._words = configuration.largest_word + 1
         self._is_parted = self._words < lookup_table.size
-        # np.take is fastest with indices of the machine's own size; they are renewed when words were written.
-        # Measured: mode "clip" takes 1.3 times as long; words widened 32 lines at a time for each field, 1.8
-        # times; indices on huge pages 3 % less, which is not worth the memory.
+        # np.take is fastest with indices of type intp; they are renewed when words were written. Measured:
+        # mode "clip" takes 1.3 times as long; converting the words for each field, 32 lines at a time, 1.8
+        # times; indices on huge pages take 3 % less, which is not worth the memory.
         self._indices = np.zeros((self.lines, self.elements), np.intp)
         self._indices_of: tuple[int, View] = (-1, PLAIN_VIEW)
-        """Words ever written when the indices were made, and the view that they are of."""
+        """What the indices were made from: the count of words written, and the view."""
         shown_words = frame_buffer.words[: self.lines, : self.elements]
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
         self._gray: tuple[int, PackedColors] = (-1, lookup_table.packed)
-        # With a beam: what the monitor shows, and how far the beam has come since power-on.
+        # With a beam: the image on the monitor, and the number of lines painted since power-on.
         self._monitor_image: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
         self._painted = 0
 
     @property
     def stamp(self) -> Stamp:
-        """A value that moves whenever the field may have changed."""
+        """A value that changes whenever the field may have changed."""
         seen, beam = self._cursors.seen, self._beam
         return self._lookup_table.written, (
             self._frame_buffer.written,
@@ -86,7 +89,7 @@ class ScanOut:
 
     @property
     def monitor_image(self) -> tuple[int, PackedColors]:
-        """With a beam: the lines begun since power-on that are painted, and what the monitor shows."""
+        """With a beam: how many lines were painted since power-on, and the image on the monitor."""
         return self._painted, self._monitor_image
 
     @monitor_image.setter
@@ -104,10 +107,10 @@ class ScanOut:
         self._mark_cursors(pixels)
 
     def scan_out_changes_into(self, pixels: PackedColors, held: Stamp | None) -> Stamp:
-        """Make an array hold the present field, and return its stamp.
+        """Bring an array up to date with the current field, and return the stamp of that field.
 
-        `held` is the stamp of the field that the array holds, None where it holds something else: whoever
-        draws on a field must say None. After a load of entries only lines that show some of them are written.
+        `held` is the stamp of the field that the array holds, or None if it holds anything else, such as a
+        field that was drawn on. After a load of entries, only lines that show some of them are written.
         """
         stamp = self.stamp
         held_entries, held_rest = held or (0, None)
@@ -127,7 +130,7 @@ class ScanOut:
         return pixels.view(np.uint8).reshape(self.lines, self.elements, 4)[:, :, 2::-1].copy()
 
     def follow_beam(self) -> None:
-        """Put on the glass what the beam has passed since the last call, as the memories are now."""
+        """Paint the lines that the beam has passed since the last call, as the memories are now."""
         beam = self._beam
         if beam is None or beam.lines_done == self._painted:
             return
@@ -142,7 +145,7 @@ class ScanOut:
         self._painted = beam.lines_done
 
     def _finish_field(self, beam: Beam, pixels: PackedColors) -> None:
-        # What the beam has not come to yet is as the memories are now: in the retrace the whole next field.
+        # Lines that the beam has not reached show the memories as they are now; in the retrace, all lines do.
         self.follow_beam()
         line = beam.line if beam.line < self.lines else 0
         pixels[:line] = self._monitor_image[:line]
@@ -161,7 +164,7 @@ class ScanOut:
                 mark(pixels, cursor, first_line)
 
     def _lines_showing(self, run: tuple[int, int] | None) -> tuple[int, int]:
-        """The first line that shows an entry of a run, and the one after the last; all where not plain."""
+        """The first line that shows an entry of a range, and the one after the last; all lines if unknown."""
         is_plain = self._words == self._lookup_table.size and self._indices_of[1] == PLAIN_VIEW
         return self._lines_with(*run) if run and is_plain else (0, self.lines)
 
@@ -194,13 +197,13 @@ class ScanOut:
 
 
 def mark(pixels: PackedColors, cursor: Cursor, first_line: int = 0) -> None:
-    """Draw a cursor on the lines of a field from a first one on, clipped at the edges."""
+    """Draw a cursor, clipped at the edges, on lines of a field of which the first is `first_line`."""
     size = cursor.shape.shape[0]
     top, left = cursor.line - first_line - SHAPE_CENTER, cursor.element - SHAPE_CENTER
     up, across = max(0, -top), max(0, -left)
     part = pixels[max(0, top) : max(0, top + size), max(0, left) : max(0, left + size)]
     shape = cursor.shape[up : up + part.shape[0], across : across + part.shape[1]]
     if part.size:
-        # The green bit of 128 tells light from dark well enough, and is quick.
+        # The highest bit of green tells light from dark well enough, and is quick to test.
         light = (part >> 15 & 1).astype(np.bool_)
         part[shape] = np.where(light[shape], np.uint32(0), WHITE)
