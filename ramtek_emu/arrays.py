@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-Item = TypeVar("Item", bound=np.generic)
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 Words = NDArray[np.uint16]
 """16-bit words: a stream of them, or those of a picture as (lines, elements)."""
@@ -27,7 +27,7 @@ PackedColors = NDArray[np.uint32]
 """The same packed, 0x00RRGGBB: one number for an entry or a pixel."""
 Bytes = NDArray[np.uint8]
 """Bytes of memory."""
-Raster = NDArray[Item]
+Raster = NDArray[Scalar]
 """Anything as [line, element]; `Raster[np.uint16]` is a raster of words."""
 AnyArray = NDArray[Any]
 """An array of any kind."""

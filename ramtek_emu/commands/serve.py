@@ -98,8 +98,8 @@ def serve_stdio(session: HostSession, window: bool) -> None:
     if window:
         show(session.display, PolledPipe(session, read, write).serve_for)
         return
-    with until_told() as told:
-        serve_pipe(session, told.reading(read), write)
+    with end_signals() as signals:
+        serve_pipe(session, signals.until_received(read), write)
     tell_the_end(session.display, session.held_words, session.odd_byte)
 
 
@@ -133,9 +133,9 @@ def serve_port(server: Server, window: bool, once: bool) -> None:
         announce(server)
         show(server.display, server.serve_for)
         return
-    with until_told() as told:
+    with end_signals() as signals:
         announce(server)
-        while not told.given and not (once and server.served):
+        while not signals.received and not (once and server.served):
             server.step(STEP_SECONDS)
 
 
@@ -150,42 +150,42 @@ def announce(server: Server) -> None:
     sys.stdout.flush()
 
 
-class Told:
+class EndSignals:
     """Remembers Ctrl+C or a termination signal, which end a server without an error."""
 
     def __init__(self) -> None:
-        self.given = False
+        self.received = False
         self._waiting = False
 
-    def signal(self, *_: object) -> None:
+    def receive(self, *_: object) -> None:
         """Remember the signal, and interrupt a read that is waiting."""
-        self.given = True
+        self.received = True
         if self._waiting:
             raise InterruptedError
 
-    def reading(self, read: Read) -> Read:
+    def until_received(self, read: Read) -> Read:
         """A function like `read` that returns nothing after the signal, or if reading fails."""
 
-        def read_until_told(most: int) -> bytes:
+        def read_until_received(most: int) -> bytes:
             try:
                 self._waiting = True
-                return b"" if self.given else read(most)
+                return b"" if self.received else read(most)
             except OSError:
                 # Also raised by a terminal or a socket whose other end was closed.
                 return b""
             finally:
                 self._waiting = False
 
-        return read_until_told
+        return read_until_received
 
 
 @contextmanager
-def until_told() -> Iterator[Told]:
+def end_signals() -> Iterator[EndSignals]:
     """Handle Ctrl+C and termination signals within a `with` block."""
-    told = Told()
-    before = {number: signal.signal(number, told.signal) for number in (signal.SIGINT, signal.SIGTERM)}
+    signals = EndSignals()
+    before = {number: signal.signal(number, signals.receive) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        yield told
+        yield signals
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

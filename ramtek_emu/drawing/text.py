@@ -123,6 +123,6 @@ def write_text(
     return order.stepped(corner, inner, outer)
 
 
-def cells(room: int, size: int, step: int) -> int:
+def cells(extent: int, size: int, step: int) -> int:
     """How many cells of a size fit at a distance of `step`; at least one, since one is always written."""
-    return 1 + max(0, room - size) // step
+    return 1 + max(0, extent - size) // step

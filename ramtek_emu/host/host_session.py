@@ -30,13 +30,13 @@ PIECE: Final = 1 << 15
 LONG: Final = 0.004
 SHORT: Final = 0.001
 """Seconds: a piece that took longer than LONG makes the next one shorter, one below SHORT makes it longer."""
-ASKING_PIECE: Final = 64
+READING_PIECE: Final = 64
 """The size of a piece that may contain reading instructions: at most 32, each with at most 32,767 words."""
 REPLY_PIECE: Final = 1 << 15
 """The largest number of words of replies returned at once."""
 
 
-def asking() -> Booleans:
+def replying() -> Booleans:
     """Whether each of the 256 opcodes makes the display reply."""
     opcodes = np.zeros(256, np.bool_)
     opcodes[[format.opcode for format in FORMATS if format.replies]] = True
@@ -55,8 +55,8 @@ class HostSession:
         """How many words the host has sent; it never decreases."""
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
-        self._asking = asking()
-        self._size = ASKING_PIECE
+        self._replies = replying()
+        self._size = READING_PIECE
         self.leave()
 
     @property
@@ -77,7 +77,7 @@ class HostSession:
         data = self.odd_byte + data
         self.odd_byte = data[len(data) & ~1 :]
         words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
-        most = ASKING_PIECE if self._asking[words >> 8].any() else PIECE
+        most = READING_PIECE if self._replies[words >> 8].any() else PIECE
         place = 0
         while place < len(words):
             piece = words[place : place + min(self._size, most)]

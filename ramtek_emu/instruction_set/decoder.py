@@ -131,7 +131,7 @@ def words_needed(format: InstructionFormat, head: list[int]) -> int:
     count = FLAG_WORDS[flags & 6]
     if len(head) < count:
         return count
-    if count > 1 and not format.asks:
+    if count > 1 and not format.requests_operands:
         first, second = flag_words(head)
         count += sum(operand.words for operand in operands_named(first, second))
         if first & CONIC and flags & Flags.DATA and format.name == "WC":
@@ -164,7 +164,7 @@ def instruction_of(format: InstructionFormat, head: list[int], words: Words) -> 
         place = FLAG_WORDS[low_byte & 6]
         if place > 1:
             for operand in operands_named(*flag_words(head)):
-                size = 0 if format.asks else operand.words
+                size = 0 if format.requests_operands else operand.words
                 if operand.name == "conic" and format.name == "WC" and low_byte & Flags.DATA:
                     length_place = short_length_place(head)
                     size = 6 if length_place is not None and head[length_place] == 4 else 12

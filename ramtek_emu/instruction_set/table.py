@@ -91,7 +91,7 @@ class InstructionFormat:
     """Whether only the 9400 and the 9460 have it."""
     unimplemented: bool = False
     """Whether the sources give only its name, so that it has no effect here."""
-    asks: bool = False
+    requests_operands: bool = False
     """Whether the flag words name operands that the host asks for; then the instruction holds none."""
 
     @property
@@ -128,7 +128,7 @@ SUBSTANTIATED: Final = (
     InstructionFormat(0x16, "WCSS", "write a cursor, screen coordinates", ("element", "line_and_state")),
     InstructionFormat(0x17, "RCSS", "read a cursor, screen coordinates", ()),
     InstructionFormat(0x21, "LPFRP", "load a character, reverse packed", CHARACTER_ROWS, extended=True),
-    InstructionFormat(0x24, "READP", "read parameters", extended=True, asks=True),
+    InstructionFormat(0x24, "READP", "read parameters", extended=True, requests_operands=True),
     InstructionFormat(0x25, "RERR", "read and clear the error status", (), extended=True),
     InstructionFormat(0x26, "ZOOM", "repeat elements and lines", ("zoom",), extended=True),
     InstructionFormat(0x27, "SELVO", "select the video origin", (), extended=True),

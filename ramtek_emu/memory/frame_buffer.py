@@ -57,7 +57,7 @@ class FrameBuffer:
         """Write one word to every pixel of a window."""
         self._store(window, NORMAL_ORDER, np.uint16(word & 0xFFFF), enable)
 
-    def write_run(
+    def write_scan(
         self,
         window: Window,
         order: ScanOrder,
@@ -85,8 +85,8 @@ class FrameBuffer:
         before = order.words_before(window, start)
         if 0 < before < len(words):
             head, tail = (None, None) if dots is None else (dots[:before], dots[before:])
-            entered = self.write_run(window, order, start, words[:before], enable, head)
-            return self.write_run(window, order, entered, words[before:], enable, tail)
+            entered = self.write_scan(window, order, start, words[:before], enable, head)
+            return self.write_scan(window, order, entered, words[before:], enable, tail)
         after = order.after(window, start, len(words))
         if dots is not None and len(words) > size and not before:
             words, dots = last_around(words, dots, size)
@@ -101,15 +101,15 @@ class FrameBuffer:
             self.write_block(block.start, order, data, enable, chosen)
         return after
 
-    def read_run(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
+    def read_scan(self, window: Window, order: ScanOrder, start: Point, count: int) -> tuple[Words, Point]:
         """`count` words along the scan of a window, beginning at a point, and the point after the last."""
         size = window.width * window.height
         if size == 0:
             return np.zeros(count, np.uint16), start
         before = order.words_before(window, start)
         if 0 < before < count:
-            head, entered = self.read_run(window, order, start, before)
-            tail, after = self.read_run(window, order, entered, count - before)
+            head, entered = self.read_scan(window, order, start, before)
+            tail, after = self.read_scan(window, order, entered, count - before)
             return np.concatenate((head, tail)), after
         # Read once around the window; after that the words repeat.
         words = np.zeros(count if before else min(count, size), np.uint16)

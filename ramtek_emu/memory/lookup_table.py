@@ -30,7 +30,7 @@ class LookupTable:
         """The address counter, in words."""
         self.written = 0
         """The number of words of entries written since power-on; it never decreases."""
-        self._last_run = 0, 0, 0
+        self._last_range = 0, 0, 0
         """The range of entries written last: `written` before it, its first entry, and the one after it."""
         self._packed: PackedColors = np.zeros(self.size, "<u4")
         # In this byte order, the two halves of a packed entry are the two words of the 24-bit format.
@@ -53,12 +53,12 @@ class LookupTable:
         colors.flags.writeable = False
         return colors
 
-    def run_written_since(self, written: int) -> tuple[int, int] | None:
+    def entries_written_since(self, written: int) -> tuple[int, int] | None:
         """The first of the entries written since `self.written` had this value, and the one after the last.
 
         None if they are not one range, or if more ranges were written since than are remembered.
         """
-        since, first, end = self._last_run
+        since, first, end = self._last_range
         return (first, end) if written >= since else None
 
     def write(self, first: int, colors: object) -> None:
@@ -105,6 +105,6 @@ class LookupTable:
     def _note(self, first: int, end: int, words: int) -> None:
         """Count the words written to a range of entries, and remember the range."""
         # A range that is written repeatedly, as while a color is dragged, counts as one.
-        if words and self._last_run[1:] != (first, end):
-            self._last_run = self.written, first, end
+        if words and self._last_range[1:] != (first, end):
+            self._last_range = self.written, first, end
         self.written += words

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
-from ramtek_emu.arrays import Item, Raster
+from ramtek_emu.arrays import Raster, Scalar
 
 
 class Point(NamedTuple):
@@ -76,7 +76,7 @@ class ScanOrder(NamedTuple):
     leftward: bool
     upward: bool
 
-    def oriented(self, raster: Raster[Item]) -> Raster[Item]:
+    def oriented(self, raster: Raster[Scalar]) -> Raster[Scalar]:
         """A view of [line, element] data as [outer, inner]."""
         if self.leftward:
             raster = raster[:, ::-1]

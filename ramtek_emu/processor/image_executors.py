@@ -39,7 +39,7 @@ def write_image(processor: Processor, instruction: Instruction) -> None:
         words = np.frombuffer(instruction.data_bytes(), np.uint8).astype(np.uint16)
     else:
         words = instruction.data[: (instruction.length or 0) // 2]
-    parameters.start = processor.frame_buffer.write_run(
+    parameters.start = processor.frame_buffer.write_scan(
         parameters.window, parameters.order, parameters.start, words, parameters.enable
     )
 
@@ -54,7 +54,7 @@ def read_image(processor: Processor, instruction: Instruction) -> None:
     parameters = processor.parameters
     length = instruction.length or 0
     count = length if parameters.image_mode & 1 else length // 2
-    words, parameters.start = processor.frame_buffer.read_run(
+    words, parameters.start = processor.frame_buffer.read_scan(
         parameters.window, parameters.order, parameters.start, count
     )
     words &= np.uint16(parameters.read_mask)
@@ -79,7 +79,7 @@ def write_raster(processor: Processor, instruction: Instruction) -> None:
     foreground, background = processor.colors(instruction)
     words = np.array((background, foreground), np.uint16)[bits]
     dots = bits.astype(np.bool_) if instruction.low_byte & Flags.ADDITIVE else None
-    parameters.start = processor.frame_buffer.write_run(
+    parameters.start = processor.frame_buffer.write_scan(
         parameters.window, parameters.order, parameters.start, words, parameters.enable, dots
     )
 
@@ -140,7 +140,7 @@ def copy_image(processor: Processor, instruction: Instruction) -> None:
     parameters.start = corner
     if inside.is_empty:
         return
-    words, _ = processor.frame_buffer.read_run(
+    words, _ = processor.frame_buffer.read_scan(
         inside, order, order.corner(inside), inside.width * inside.height
     )
     words &= np.uint16(parameters.read_mask)

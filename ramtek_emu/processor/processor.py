@@ -104,7 +104,7 @@ class Processor:
 
     def execute(self, instruction: Instruction) -> None:
         """Set the operands of an instruction, then execute it; no instruction raises an error."""
-        if instruction.format.is_normal and instruction.operands and not instruction.format.asks:
+        if instruction.format.is_normal and instruction.operands and not instruction.format.requests_operands:
             self.parameters.take(instruction.operands, instruction.low_byte)
         EXECUTORS[instruction.format.name](self, instruction)
 

@@ -32,7 +32,10 @@ from ramtek_emu.video.beam import Beam
 from ramtek_emu.writing import write_atomically
 
 SOFTWARE: Final = "ramtek_emu snapshot 1"
-"""The text chunk `Software`; the number is the version of the format."""
+"""The text chunk `Software`; the number is the version of the format.
+
+The file keeps some names of that version: "glass" for the monitor image, "named_only" for `unimplemented`.
+"""
 
 
 def snapshot_bytes(display: Ramtek9300) -> bytes:

@@ -118,7 +118,7 @@ class ScanOut:
             self.scan_out_into(pixels)
             return stamp
         self._renew_indices()
-        first, end = self._lines_showing(self._lookup_table.run_written_since(held_entries))
+        first, end = self._lines_showing(self._lookup_table.entries_written_since(held_entries))
         self._table().take(self._indices[first:end], out=pixels[first:end], mode="wrap")
         self._mark_cursors(pixels[first:end], first)
         return stamp

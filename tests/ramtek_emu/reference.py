@@ -64,7 +64,7 @@ def away(place: Place, window: tuple[int, int, int, int], code: int) -> tuple[in
     return across * step[0] + down * step[1], across * run[0] + down * run[1]
 
 
-def write_run(
+def write_scan(
     raster: Raster,
     window: tuple[int, int, int, int],
     code: int,
@@ -80,7 +80,7 @@ def write_run(
     return places[-1]
 
 
-def read_run(
+def read_scan(
     raster: Raster, window: tuple[int, int, int, int], code: int, start: Place, count: int
 ) -> tuple[list[int], Place]:
     places = walk(window, code, start, count)
@@ -192,7 +192,7 @@ def split(stream: list[int]) -> list[list[int]]:
                 before = sum(
                     count for bit, count in enumerate(OPERAND_WORDS[0][:12]) if flag_words[0] & 1 << bit
                 )
-                if format.asks:
+                if format.requests_operands:
                     following = 0
                 elif format.name == "WC" and first & 1 and flag_words[0] & 1 << 12:
                     # Six coefficients are those after which a length of 4 follows that is half a coefficient.

@@ -36,8 +36,8 @@ def test_a_run_writes_what_a_walk_word_by_word_writes(
     buffer = filled(raster)
     twin = raster.tolist()
     enable = WriteEnable(mask) if clip is None else WriteEnable(mask, clip)
-    after = buffer.write_run(window, SCAN_ORDERS[code], start, np.array(words, np.uint16), enable)
-    twin_after = reference.write_run(twin, window, code, start, words, mask & 1023, enable.window)
+    after = buffer.write_scan(window, SCAN_ORDERS[code], start, np.array(words, np.uint16), enable)
+    twin_after = reference.write_scan(twin, window, code, start, words, mask & 1023, enable.window)
     assert buffer.words.tolist() == twin
     assert after == twin_after
 
@@ -52,8 +52,8 @@ def test_whole_runs_of_a_window_are_written_as_a_walk_writes_them(
     start = order.stepped(order.corner(window), 0, first % runs)
     words = [(number * 37) & 1023 for number in range(along * count)]
     buffer, twin = filled(raster), raster.tolist()
-    after = buffer.write_run(window, order, start, np.array(words, np.uint16), WriteEnable(mask))
-    assert after == reference.write_run(twin, window, code, start, words, mask & 1023, WriteEnable().window)
+    after = buffer.write_scan(window, order, start, np.array(words, np.uint16), WriteEnable(mask))
+    assert after == reference.write_scan(twin, window, code, start, words, mask & 1023, WriteEnable().window)
     assert buffer.words.tolist() == twin
 
 
@@ -62,8 +62,8 @@ def test_whole_runs_of_a_window_are_written_as_a_walk_writes_them(
 def test_a_run_reads_what_a_walk_word_by_word_reads(
     raster: NDArray[np.uint16], window: Window, code: int, start: Point, count: int
 ) -> None:
-    words, after = filled(raster).read_run(window, SCAN_ORDERS[code], start, count)
-    twin_words, twin_after = reference.read_run(raster.tolist(), window, code, start, count)
+    words, after = filled(raster).read_scan(window, SCAN_ORDERS[code], start, count)
+    twin_words, twin_after = reference.read_scan(raster.tolist(), window, code, start, count)
     assert words.tolist() == twin_words
     assert after == twin_after
 
@@ -76,7 +76,7 @@ def test_a_fill_is_a_run_of_one_word_over_the_window(
     buffer, twin = filled(raster), filled(raster)
     buffer.fill(window, word, WriteEnable(mask))
     size = window.width * window.height
-    twin.write_run(
+    twin.write_scan(
         window,
         SCAN_ORDERS[0],
         Point(window.left, window.top),
@@ -91,7 +91,7 @@ def test_a_window_without_words_takes_none_and_leaves_the_point(window: Window) 
     buffer = FrameBuffer(SMALL)
     buffer.fill(window, 7)
     corner = Point(window.left, window.top)
-    after = buffer.write_run(window, SCAN_ORDERS[0], corner, np.array([1, 2, 3], np.uint16))
+    after = buffer.write_scan(window, SCAN_ORDERS[0], corner, np.array([1, 2, 3], np.uint16))
     assert not buffer.words.any()
     if not (window.width and window.height):
         assert after == Point(5, 3)

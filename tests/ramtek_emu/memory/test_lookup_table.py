@@ -47,7 +47,7 @@ def test_all_that_was_written_since_a_count_lies_in_the_run(
         row = (np.arange(count) * 31 + number * 0x0101 + 1).astype(np.uint16)
         table.load(address, row)
         for written, packed in before:
-            run = table.run_written_since(written)
+            run = table.entries_written_since(written)
             first, end = run or (0, table.size)
             differing = np.flatnonzero(table.packed != packed)
             assert ((first <= differing) & (differing < end)).all()
@@ -61,10 +61,10 @@ def test_a_run_that_is_loaded_again_and_again_stays_the_run_of_all_that_was_writ
     for number in range(3):
         table.load(21, np.full(4, number, np.uint16))
         table.load(100, np.zeros(0, np.uint16))
-        assert table.run_written_since(written) == (10, 13)
+        assert table.entries_written_since(written) == (10, 13)
     table.write(13, [[1, 2, 3]])
-    assert table.run_written_since(written) is None
-    assert table.run_written_since(table.written - 1) == (13, 14)
+    assert table.entries_written_since(written) is None
+    assert table.entries_written_since(table.written - 1) == (13, 14)
 
 
 @quick

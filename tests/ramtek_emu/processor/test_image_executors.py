@@ -88,7 +88,7 @@ def test_images_of_every_kind_are_those_of_the_twin(
     begin = reference.corner(moved, code) if start is None else (start.element + across, start.line + down)
     words = list(data) if bytes_for_pixels else packed(data, low_first)[: len(data) // 2]
     twin = raster.tolist()
-    after = reference.write_run(twin, moved, code, begin, words, mask & 1023, clip)
+    after = reference.write_scan(twin, moved, code, begin, words, mask & 1023, clip)
     assert display.words.tolist() == twin
     assert display.processor.parameters.start == after
 
@@ -96,7 +96,7 @@ def test_images_of_every_kind_are_those_of_the_twin(
     display.send(sent_words([0x0B03 | low, 0x8000, begin[0], begin[1], len(data)]))
     if addressing:
         return
-    read, _ = reference.read_run(twin, moved, code, begin, len(words))
+    read, _ = reference.read_scan(twin, moved, code, begin, len(words))
     read = [word & 0x2F5 for word in read]
     if bytes_for_pixels:
         read = packed(bytes(word & 0xFF for word in read), low_first)
@@ -296,12 +296,12 @@ def test_images_follow_the_scan_order_and_are_read_back(
     twin = [[0] * 13 for _ in range(9)]
     left, top, right, bottom = window
     corners = (left, top, right, bottom)
-    reference.write_run(
+    reference.write_scan(
         twin, corners, code, reference.corner(corners, code), row, 1023, (-(10**6), -(10**6), 10**6, 10**6)
     )
     assert display.words.tolist() == twin
     display.send(np.array([0x0B03, 0x0040, *(number & 0xFFFF for number in window), 2 * len(row)], np.uint16))
-    read, _ = reference.read_run(twin, corners, code, reference.corner(corners, code), len(row))
+    read, _ = reference.read_scan(twin, corners, code, reference.corner(corners, code), len(row))
     assert display.receive(len(row)).tolist() == read
 
 
