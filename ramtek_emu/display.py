@@ -18,7 +18,7 @@ from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.cursors import Cursors, Joystick
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
-from ramtek_emu.processor.executors import EXECUTORS as EXECUTORS
+from ramtek_emu.processor.executors import EXECUTORS as EXECUTORS  # This import enters the executors.
 from ramtek_emu.processor.processor import Processor, Status
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.scan_out import ScanOut

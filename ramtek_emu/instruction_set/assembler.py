@@ -134,13 +134,9 @@ class Draft:
         elif self.format.is_normal and upper in OPERAND_OF_WORD:
             operand = OPERAND_OF_WORD[upper]
             words = numbers_of(value, self.number) if value else ()
-            allowed = (
-                (0,)
-                if self.format.requests_operands
-                else (6, 12)
-                if operand.name == "conic"
-                else (operand.words,)
-            )
+            allowed: tuple[int, ...] = (6, 12) if operand.name == "conic" else (operand.words,)
+            if self.format.requests_operands:
+                allowed = (0,)
             if len(words) not in allowed:
                 raise refusal(
                     self.number,
