@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ramtek_emu.command_line import run_command
-from ramtek_emu.commands import ramtek
+from ramtek_emu.commands.ramtek import ramtek
 
 
 def main() -> None:

@@ -168,6 +168,13 @@ def test_every_wing_has_its_place_in_the_order(package: str) -> None:
     assert {wing_of(name) for name in MODULES if outer(name) == package} == {"", *WINGS[package]}
 
 
+@pytest.mark.parametrize("package", WINGS)
+def test_a_wing_says_what_it_is_and_imports_nothing(package: str) -> None:
+    for path in (ROOT / package).glob("*/__init__.py"):
+        (statement,) = ast.parse(path.read_text("utf-8")).body
+        assert isinstance(statement, ast.Expr), f"{path} must hold a docstring and nothing else"
+
+
 @pytest.mark.parametrize("name", [name for name in MODULES if outer(name) in WINGS and name not in WINGS])
 def test_no_module_imports_from_a_wing_below_its_own(name: str) -> None:
     package, order = outer(name), WINGS[outer(name)]

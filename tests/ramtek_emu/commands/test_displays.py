@@ -42,7 +42,7 @@ def test_what_cannot_be_done_is_refused_in_words(arguments: list[str], code: int
 @pytest.mark.parametrize("command", ["play", "list", "assemble", "serve"])
 def test_help_has_examples_and_loads_nothing_heavy(command: str) -> None:
     script = (
-        "import sys; from ramtek_emu.commands import ramtek\n"
+        "import sys; from ramtek_emu.commands.ramtek import ramtek\n"
         f"try: ramtek(['{command}', '--help'])\n"
         "except SystemExit: pass\n"
         "print(*sorted({'numpy', 'pygame', 'PIL'} & set(sys.modules)), file=sys.stderr)"

@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.ramtek_emu.processes import ROOT
 
 
 def ramtek(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
