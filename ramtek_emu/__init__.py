@@ -20,6 +20,10 @@ What is **not** modeled
     the UNIBUS registers: a host port of two methods stands for them
     interrupts: the request bits can be read, but nothing is interrupted
 
+The parts of the package, each of which uses only those before it: the basic modules (errors, arrays, checks,
+timing, configuration, writing, png, command_line), instruction_set, memory, drawing, video, processor,
+instructions, display, host, monitor, snapshot, commands.
+
 The sources are named by keys: LIN (Linton's C library for the Princeton RM-9300, 1978), PRG (the Princeton
 and Cincinnati programs), BTL (the Bell Labs plot library), PIC (Bell Labs pico and rebecca), V8K (the Bell
 Labs VAX driver), JPL (the VICAR driver of the RM-9460), NCAR (its opcode header and client), LONG (the

@@ -1,4 +1,4 @@
-"""The video: what of the memories is shown, through which entries, and where the beam of the monitor is.
+"""The video: which part of the memory is shown, in which colors, and where the beam of the monitor is.
 
-Reads the memories and never writes them. Uses the ground and memory.
+Reads the memories and never writes them. Uses the basic modules and memory.
 """
