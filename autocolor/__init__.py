@@ -9,6 +9,8 @@ Paper: D. R. Warn, "Lighting Controls for Synthetic Images", SIGGRAPH 1983.
     display.save_png("coupe.png")
 """
 
+from __future__ import annotations
+
 from importlib import import_module
 from typing import TYPE_CHECKING
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autocolor.commands import autocolor
+from autocolor.commands.autocolor import autocolor
 from ramtek_emu.command_line import run_command
 
 

@@ -19,7 +19,7 @@ from autocolor.scene.scene import scene_of
 from benchmarks.cases import Case
 from benchmarks.hills import hills, side_of
 from ramtek_emu import Configuration, Ramtek9300
-from ramtek_emu.scan_out import Stamp
+from ramtek_emu.video.scan_out import Stamp
 
 COUPE = Path(__file__).parents[1] / "scenes" / "coupe"
 LINES = 480

@@ -1,14 +1,14 @@
 """An emulator of the RAMTEK RM-9300 raster display, driven by the 16-bit words that its programs sent.
 
 What is modeled
-    the instruction stream: one continuous row of words, cut anywhere, with its sticky operands
+    the instruction stream: one continuous stream of words, cut anywhere, with its sticky operands
     the instructions: instruction_set names their sources; those known by name only are consumed and flagged
     the frame buffer: planes behind a write mask, a write window, image windows, scan orders, bytes or words
     drawing: text, rasters, vectors with texture, points, conics, circles, areas, copies
     the video lookup table: 1024 parallel entries of 24 bits, or of 12; the section that is shown
-    the characters: a 7 x 9 cell, dots of our own drawing, and those that a host loads
-    cursors and the joystick unit: positions, shapes, blinking, TRACK and ENTER, on the glass, not in memory
-    scan-out: words through the table to a field of colors, from an origin on, zoomed; also black and white
+    the characters: cells of 7 x 9 with dots that were drawn for this emulator, and those that a host loads
+    cursors and the joystick unit: positions, shapes, blinking, TRACK and ENTER, over the field, not in memory
+    scan-out: words through the table to a field of colors, with display origin and zoom; also black and white
     time, if the configuration has it: a beam, retrace, waiting (timing holds every rate; all are assumed)
     the status bits of the interface: illegal instruction, cursor interrupt
 
@@ -18,7 +18,11 @@ What is **not** modeled
     the alphanumeric overlay of the 9460: the words of its table go nowhere
     interlace, blanking levels, phosphor
     the UNIBUS registers: a host port of two methods stands for them
-    interrupts: their request bits can be read, nothing is interrupted
+    interrupts: the request bits can be read, but nothing is interrupted
+
+The parts of the package, each of which uses only those before it: the basic modules (errors, arrays, checks,
+timing, configuration, writing, png, command_line), instruction_set, memory, drawing, video, processor,
+instructions, display, host, monitor, snapshot, commands.
 
 The sources are named by keys: LIN (Linton's C library for the Princeton RM-9300, 1978), PRG (the Princeton
 and Cincinnati programs), BTL (the Bell Labs plot library), PIC (Bell Labs pico and rebecca), V8K (the Bell
@@ -27,49 +31,51 @@ LONGLIB manual), ASF (the Alaska SAR facility) and GM (Warn, "Lighting Controls 
 SIGGRAPH 1983).
 """
 
+from __future__ import annotations
+
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from .configuration import GMR_9300 as GMR_9300
-    from .configuration import JPL_9460 as JPL_9460
-    from .configuration import NCAR_9460 as NCAR_9460
-    from .configuration import PRINCETON_9300 as PRINCETON_9300
-    from .configuration import Configuration as Configuration
-    from .configuration import EntryFormat as EntryFormat
-    from .cursors import Joystick as Joystick
-    from .display import Ramtek9300 as Ramtek9300
-    from .errors import ColorsError as ColorsError
-    from .errors import ConfigurationError as ConfigurationError
-    from .errors import InstructionError as InstructionError
-    from .errors import ListingError as ListingError
-    from .errors import MissingInputError as MissingInputError
-    from .errors import NoScreenError as NoScreenError
-    from .errors import OutputError as OutputError
-    from .errors import OutputExistsError as OutputExistsError
-    from .errors import PortError as PortError
-    from .errors import RamtekError as RamtekError
-    from .errors import ReplyError as ReplyError
-    from .errors import SnapshotError as SnapshotError
-    from .errors import WordsError as WordsError
-    from .errors import WriteError as WriteError
-    from .host_port import HostPort as HostPort
-    from .host_port import Recorder as Recorder
-    from .host_port import TcpPort as TcpPort
-    from .snapshot import read_snapshot as read_snapshot
-    from .snapshot import write_snapshot as write_snapshot
-    from .timing import Timing as Timing
+    from ramtek_emu.configuration import GMR_9300 as GMR_9300
+    from ramtek_emu.configuration import JPL_9460 as JPL_9460
+    from ramtek_emu.configuration import NCAR_9460 as NCAR_9460
+    from ramtek_emu.configuration import PRINCETON_9300 as PRINCETON_9300
+    from ramtek_emu.configuration import Configuration as Configuration
+    from ramtek_emu.configuration import EntryFormat as EntryFormat
+    from ramtek_emu.display import Ramtek9300 as Ramtek9300
+    from ramtek_emu.errors import ColorsError as ColorsError
+    from ramtek_emu.errors import ConfigurationError as ConfigurationError
+    from ramtek_emu.errors import InstructionError as InstructionError
+    from ramtek_emu.errors import ListingError as ListingError
+    from ramtek_emu.errors import MissingInputError as MissingInputError
+    from ramtek_emu.errors import NoScreenError as NoScreenError
+    from ramtek_emu.errors import OutputError as OutputError
+    from ramtek_emu.errors import OutputExistsError as OutputExistsError
+    from ramtek_emu.errors import PortError as PortError
+    from ramtek_emu.errors import RamtekError as RamtekError
+    from ramtek_emu.errors import ReplyError as ReplyError
+    from ramtek_emu.errors import SnapshotError as SnapshotError
+    from ramtek_emu.errors import WordsError as WordsError
+    from ramtek_emu.errors import WriteError as WriteError
+    from ramtek_emu.host.host_port import HostPort as HostPort
+    from ramtek_emu.host.host_port import Recorder as Recorder
+    from ramtek_emu.host.host_port import TcpPort as TcpPort
+    from ramtek_emu.memory.cursors import Joystick as Joystick
+    from ramtek_emu.snapshot.snapshot import read_snapshot as read_snapshot
+    from ramtek_emu.snapshot.snapshot import write_snapshot as write_snapshot
+    from ramtek_emu.timing import Timing as Timing
 
-_HOME = {
+_HOME: Final = {
     "ColorsError": "errors",
     "Configuration": "configuration",
     "ConfigurationError": "errors",
     "EntryFormat": "configuration",
     "GMR_9300": "configuration",
-    "HostPort": "host_port",
+    "HostPort": "host.host_port",
     "InstructionError": "errors",
     "JPL_9460": "configuration",
-    "Joystick": "cursors",
+    "Joystick": "memory.cursors",
     "ListingError": "errors",
     "MissingInputError": "errors",
     "NCAR_9460": "configuration",
@@ -80,25 +86,25 @@ _HOME = {
     "PortError": "errors",
     "Ramtek9300": "display",
     "RamtekError": "errors",
-    "Recorder": "host_port",
+    "Recorder": "host.host_port",
     "ReplyError": "errors",
     "SnapshotError": "errors",
-    "TcpPort": "host_port",
+    "TcpPort": "host.host_port",
     "Timing": "timing",
     "WordsError": "errors",
     "WriteError": "errors",
-    "read_snapshot": "snapshot",
-    "write_snapshot": "snapshot",
+    "read_snapshot": "snapshot.snapshot",
+    "write_snapshot": "snapshot.snapshot",
 }
 
 __all__ = list(_HOME)
 
 
 def __getattr__(name: str) -> object:
-    """A public name, from the module that defines it; loaded when it is first asked for."""
+    """A public name from the module that defines it, which is loaded when the name is first used."""
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value: object = getattr(import_module(f".{_HOME[name]}", __name__), name)
+    value: object = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
     globals()[name] = value
     return value
 

@@ -1,7 +1,9 @@
 """The `ramtek` command."""
 
+from __future__ import annotations
+
 from ramtek_emu.command_line import run_command
-from ramtek_emu.commands import ramtek
+from ramtek_emu.commands.ramtek import ramtek
 
 
 def main() -> None:

@@ -1,20 +1,21 @@
-"""The checks at the door for Python callers: words, colors and places.
+"""Checks of what Python callers pass in: words, streams and colors.
 
-Hardware drops what does not fit; a program that hands over numbers is better told which one is wrong.
+The hardware drops bits that do not fit. A Python program is told instead which number is wrong.
 """
 
+from __future__ import annotations
+
+from typing import Final
+
 import numpy as np
-from numpy.typing import NDArray
 
-from .errors import ColorsError, WordsError
-from .scan_orders import Window
+from ramtek_emu.arrays import Colors, WholeNumbers, Words
+from ramtek_emu.errors import ColorsError, WordsError
 
-BYTE = np.dtype(np.uint8)
+BYTE: Final = np.dtype(np.uint8)
 
 
-def whole_numbers(
-    values: object, thing: str, error: type[WordsError] | type[ColorsError]
-) -> NDArray[np.integer]:
+def whole_numbers(values: object, thing: str, error: type[WordsError] | type[ColorsError]) -> WholeNumbers:
     """The values as an array of whole numbers; `error` when they are anything else."""
     try:
         array = np.asarray(values)
@@ -29,8 +30,8 @@ def whole_numbers(
     return array
 
 
-def checked_words(words: object, planes: int = 10) -> NDArray[np.uint16]:
-    """(lines, elements) words as uint16, none of them beyond the planes.
+def checked_words(words: object, planes: int = 10) -> Words:
+    """The words as a (lines, elements) uint16 array; WordsError if one has more bits than there are planes.
 
     >>> checked_words([[1024]])
     Traceback (most recent call last):
@@ -52,8 +53,8 @@ def checked_words(words: object, planes: int = 10) -> NDArray[np.uint16]:
     return array.astype(np.uint16, copy=False)
 
 
-def checked_stream(words: object) -> NDArray[np.uint16]:
-    """A flat row of 16-bit words as a host sends them; uint16 arrays are taken as they are."""
+def checked_stream(words: object) -> Words:
+    """A stream of 16-bit words as a flat uint16 array; one that is that already is returned unchanged."""
     if isinstance(words, np.ndarray) and words.dtype == np.uint16 and words.ndim == 1:
         return words
     array = whole_numbers(words, "a stream of words", WordsError)
@@ -67,8 +68,8 @@ def checked_stream(words: object) -> NDArray[np.uint16]:
     return array.astype(np.uint16)
 
 
-def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[np.uint8]:
-    """(n, 3) colors as uint8, for the entries from `first` on."""
+def checked_colors(first: int, colors: object, entries: int = 1024) -> Colors:
+    """The (n, 3) colors as uint8; ColorsError if one does not fit, or the table ends before the last."""
     array = whole_numbers(colors, "colors", ColorsError)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ColorsError(
@@ -93,12 +94,3 @@ def checked_colors(first: int, colors: object, entries: int = 1024) -> NDArray[n
             f"(entry {first + row}, {('red', 'green', 'blue')[column]}); clip it first"
         )
     return array.astype(np.uint8)
-
-
-def checked_place(place: Window, memory: Window, thing: str) -> None:
-    """Refuse a window that is not wholly in the memory."""
-    if place.intersection(memory) != place:
-        raise WordsError(
-            f"{thing} must lie within elements 0 to {memory.right} and lines 0 to {memory.bottom}, "
-            f"not {place.left} to {place.right} and {place.top} to {place.bottom}; move it or cut it"
-        )

@@ -1,20 +1,25 @@
-"""Running a command: what it answers on stdout, everything else on stderr, an exit code, never a traceback.
+"""What the commands `autocolor` and `ramtek` have in common: loading a command by name, and running it.
 
-Both commands of this distribution run through here, so that they end alike.
+A command writes its result to stdout and all messages to stderr. It ends with an exit code, and shows no
+traceback unless --debug is given.
 """
 
+from __future__ import annotations
+
+import difflib
 import os
 import sys
 import traceback
 from contextlib import suppress
+from importlib import import_module
 from io import TextIOWrapper
-from typing import NoReturn
+from typing import ClassVar, Final, NoReturn
 
 import click
 
-FAULT = 70
-INTERRUPTED = 130
-WRITING_FAILED = 74
+FAULT: Final = 70
+INTERRUPTED: Final = 130
+WRITING_FAILED: Final = 74
 
 
 def _show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
@@ -37,20 +42,61 @@ version_option = click.option(
     callback=_show_version,
     help="Show the version and leave.",
 )
-"""`--version`, which a checkout that was never installed answers too."""
+"""`--version`; it also works in a checkout that was never installed."""
+
+
+class CommandGroup(click.Group):
+    """A group of commands that are imported only when they are used, so that help is shown at once.
+
+    Each command is a function in a module, and both have the name of the command. Where that name is a
+    built-in of Python (`list`), the function's name ends in `_command`.
+    """
+
+    package: ClassVar[str]
+    """The package that holds the modules of the commands."""
+    table: ClassVar[dict[str, str]]
+    """What each command does, in the order of the help."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names in the order of the table."""
+        return list(self.table)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of that name, or None."""
+        if cmd_name not in self.table:
+            return None
+        module = import_module(f"{self.package}.{cmd_name}")
+        command: click.Command = getattr(module, f"{cmd_name}_command", None) or getattr(module, cmd_name)
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command that the arguments name; for an unknown name the error suggests the nearest one."""
+        if args and args[0] not in self.table and not args[0].startswith("-"):
+            near = difflib.get_close_matches(args[0], self.table, n=1)
+            advice = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(self.table)}"
+            ctx.fail(f"there is no command {args[0]!r}; {advice}")
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the table of commands; no command is imported for it."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(self.table.items()))
 
 
 def run_command(command: click.Command, name: str) -> None:
-    """Run a command and leave the process with its exit code.
+    """Run a command and end the process with its exit code.
 
-    An error with an `exit_code` is a refusal: its sentence is shown and that code is given. Anything else is
-    a fault of ours. With `--debug`, anywhere on the line before a `--`, the traceback is shown.
+    An error with an attribute `exit_code` is one that the user can act on: its message is shown, and the code
+    is that attribute. Any other error is a fault of the program. With `--debug`, anywhere before a `--`, the
+    traceback is shown.
     """
     debug, arguments = _without_debug(sys.argv[1:])
     if sys.stdout is None:
         sys.stdout = _closed_pipe()
     if isinstance(sys.stdout, TextIOWrapper):
-        # A file's name may hold what is no text at all.
+        # File names may contain bytes that are no valid text.
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
         code = _done(command, name, arguments)
@@ -81,7 +127,7 @@ def run_command(command: click.Command, name: str) -> None:
 
 
 def _done(command: click.Command, name: str, arguments: list[str]) -> object:
-    """The exit code of a command, or None; its `main` would end a broken pipe silently with a code 1."""
+    """The exit code of a command, or None. Click's own `main` would end silently with 1 at a broken pipe."""
     completion = f"_{name.upper()}_COMPLETE"
     if completion in os.environ:
         from click.shell_completion import shell_complete
@@ -95,36 +141,36 @@ def _done(command: click.Command, name: str, arguments: list[str]) -> object:
 
 
 def _without_debug(arguments: list[str]) -> tuple[bool, list[str]]:
-    """Whether `--debug` is among the options, and the arguments without it."""
+    """Whether `--debug` is among the arguments, and the arguments without it."""
     end = arguments.index("--") if "--" in arguments else len(arguments)
     rest = [argument for argument in arguments[:end] if argument != "--debug"]
     return len(rest) < end, rest + arguments[end:]
 
 
 def _closed_pipe() -> TextIOWrapper:
-    """A pipe that nobody reads, for a process that was started without a stdout."""
+    """The write end of a pipe that nobody reads, for a process that was started without a stdout."""
     read_end, write_end = os.pipe()
     os.close(read_end)
     return open(write_end, "w", encoding="utf-8")
 
 
 def _end(name: str, message: str, code: int) -> NoReturn:
-    """Say what happened, each line under the command's name, and leave."""
+    """Print the message, each line after the name of the command, and end the process."""
     for line in message.splitlines():
-        # A name of a file may hold what the terminal's encoding does not.
+        # A file name may contain characters that the terminal cannot encode.
         with suppress(OSError, ValueError):
             click.echo(f"{name}: {line}", err=True)
     _leave(code)
 
 
 def _leave(code: int) -> NoReturn:
-    """Leave with the code, whatever is left in the buffers: it can't be written, or it is written now."""
+    """End the process with the code; what is left in the buffers is written now, or dropped."""
     for stream in (sys.stdout, sys.stderr):
         try:
             if stream is not None:
                 stream.flush()
         except (OSError, ValueError):
-            # Give the rest to nobody; else leaving would fail with another code.
+            # Send the rest to the null device; otherwise the exit would fail and change the code.
             with suppress(OSError, ValueError):
                 os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
     sys.exit(code)

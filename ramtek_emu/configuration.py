@@ -1,18 +1,21 @@
-"""Configuration: the sizes and formats of one display; the named ones carry the source of every number.
+"""Configuration: the sizes and formats of a display, and the four displays that the sources describe.
 
 >>> GMR_9300.elements, GMR_9300.lines, GMR_9300.largest_word
 (640, 480, 1023)
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import Enum
+from typing import Final
 
-from .errors import ConfigurationError
-from .timing import Timing
+from ramtek_emu.errors import ConfigurationError
+from ramtek_emu.timing import Timing
 
 
 class EntryFormat(Enum):
-    """How an entry of the lookup table travels in words."""
+    """How the host sends an entry of the lookup table."""
 
     PAIR_24 = "two words an entry: green << 8 | blue, then red"
     """Hardware: JPL, NCAR."""
@@ -22,7 +25,7 @@ class EntryFormat(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Configuration:
-    """The sizes of a display; the part of the memory that is shown starts at line 0, element 0."""
+    """The sizes of a display. The part of the memory that is shown starts at line 0, element 0."""
 
     name: str
     elements: int
@@ -33,12 +36,12 @@ class Configuration:
     entries: int = 1024
     entry_format: EntryFormat = EntryFormat.PAIR_24
     extended: bool = True
-    """Whether the 9400/9460 instructions and the second operand flag word are there."""
+    """Whether the display has the instructions of the 9400/9460 and the second operand flag word."""
     cursors: int = 2
     monochrome: bool = False
-    """Whether the monitor is black and white: it sees the low eight bits of an entry."""
+    """Whether the monitor is black and white; it then shows the low eight bits of an entry."""
     timing: Timing | None = None
-    """How fast everything is; None: no time passes."""
+    """How long everything takes; None means that no time passes."""
 
     def __post_init__(self) -> None:
         limits = {
@@ -63,21 +66,21 @@ class Configuration:
 
     @property
     def shown_elements(self) -> int:
-        """Elements of a line on the screen, before any zoom."""
+        """How many elements of a line the screen shows, without zoom."""
         return self.elements if self.visible_elements is None else self.visible_elements
 
     @property
     def shown_lines(self) -> int:
-        """Lines on the screen, before any zoom."""
+        """How many lines the screen shows, without zoom."""
         return self.lines if self.visible_lines is None else self.visible_lines
 
     @property
     def largest_word(self) -> int:
-        """The largest number that a pixel holds; its bits are the planes."""
+        """The largest number that a pixel holds: a word with every plane set."""
         return (1 << self.planes) - 1
 
 
-GMR_9300 = Configuration(name="GMR_9300", elements=640, lines=480, planes=10)
+GMR_9300: Final = Configuration(name="GMR_9300", elements=640, lines=480, planes=10)
 """The display of the paper.
 
 Hardware: GM, 640 x 480 words of ten bits, one parallel table of 1024 x 24 bits.
@@ -87,7 +90,7 @@ Departs: the 9300 had no second operand flag word and no 9460 instructions; this
 the programs of the whole family run on it. PRINCETON_9300 is the strict one.
 """
 
-PRINCETON_9300 = Configuration(
+PRINCETON_9300: Final = Configuration(
     name="PRINCETON_9300",
     elements=640,
     lines=512,
@@ -101,19 +104,19 @@ Hardware: LIN and PRG, 640 x 512 memory, 1024 entries of 12 bits, words of ten b
 Assumed: all 640 elements are shown; the programs kept to 620, probably because the monitor cut the rest.
 """
 
-JPL_9460 = Configuration(name="JPL_9460", elements=640, lines=480, planes=8)
+JPL_9460: Final = Configuration(name="JPL_9460", elements=640, lines=480, planes=8)
 """The RM-9460 of the Jet Propulsion Laboratory, in its low resolution.
 
 Hardware: JPL, 640 x 480, bytes for pixels, four sections of 256 entries of 24 bits, two cursors.
 Assumed: eight planes, since its masks are FFh and its images bytes.
 """
 
-NCAR_9460 = Configuration(name="NCAR_9460", elements=1280, lines=1024, planes=8, cursors=4)
+NCAR_9460: Final = Configuration(name="NCAR_9460", elements=1280, lines=1024, planes=8, cursors=4)
 """The RM-9460 of the National Center for Atmospheric Research.
 
 Hardware: NCAR and LONG, 1280 x 1024, bytes for pixels, 24-bit entries; LONG, cursors 0 to 3.
 Assumed: eight planes, since its masks are FFh; four sections of 256 entries, as JPL's.
 """
 
-CONFIGURATIONS = {each.name: each for each in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)}
-"""The named configurations, by name."""
+CONFIGURATIONS: Final = {each.name: each for each in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)}
+"""The four displays above, by name."""

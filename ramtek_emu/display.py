@@ -1,31 +1,31 @@
-"""Ramtek9300: the display, its boxes wired together.
+"""Ramtek9300: the display, with all its parts connected.
 
 host port -> decoder -> processor -> frame buffer, lookup table, cursors -> scan-out -> field
 """
 
+from __future__ import annotations
+
 from os import PathLike
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .checks import checked_stream
-from .configuration import GMR_9300, Configuration
-from .cursors import Cursors, Joystick
-from .decoder import Decoder
-from .executors import EXECUTORS as EXECUTORS
-from .frame_buffer import FrameBuffer
-from .instruction import Instruction
-from .instruction_set import FORM_OF_NAME
-from .lookup_table import LookupTable
-from .processor import Processor, Status
-from .scan_out import ScanOut
-from .timing import Beam
-
-Words = NDArray[np.uint16]
+from ramtek_emu.arrays import Colors, Words
+from ramtek_emu.checks import checked_stream
+from ramtek_emu.configuration import GMR_9300, Configuration
+from ramtek_emu.instruction_set.decoder import Decoder
+from ramtek_emu.instruction_set.instruction import Instruction
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
+from ramtek_emu.memory.cursors import Cursors, Joystick
+from ramtek_emu.memory.frame_buffer import FrameBuffer
+from ramtek_emu.memory.lookup_table import LookupTable
+from ramtek_emu.processor.executors import EXECUTORS as EXECUTORS  # This import enters the executors.
+from ramtek_emu.processor.processor import Processor, Status
+from ramtek_emu.video.beam import Beam
+from ramtek_emu.video.scan_out import ScanOut
 
 
 class Ramtek9300:
-    """A display in this process; itself the host port that a host sends to."""
+    """A display in this process. It is a host port: a host sends words to it and receives its replies."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
         self.configuration = configuration
@@ -49,7 +49,7 @@ class Ramtek9300:
         )
 
     def send(self, words: Words) -> None:
-        """Send 16-bit words as a host does, cut anywhere; WordsError when they are no words at all."""
+        """Send 16-bit words; instructions may be cut anywhere. WordsError if they are not 16-bit words."""
         stream = checked_stream(words)
         if self.beam is None:
             for instruction in self.decoder.feed(stream, in_rows=True):
@@ -59,7 +59,7 @@ class Ramtek9300:
                 self._execute_in_time(instruction, self.beam)
 
     def _execute_in_time(self, instruction: Instruction, beam: Beam) -> None:
-        # What the beam has passed keeps the look of before; what it has not will have that of after.
+        # Lines that the beam has passed show the state before the instruction, all others the state after.
         self.scan_out.follow_beam()
         written = self.frame_buffer.written
         self.processor.execute(instruction)
@@ -68,7 +68,7 @@ class Ramtek9300:
         beam.charge(words, self.frame_buffer.written - written)
 
     def reset(self) -> None:
-        """Press RESET on the control unit: parameters, screen, cursors, and what a host left unfinished.
+        """Press RESET on the control unit: reset parameters, screen, cursors; drop words held and replies.
 
         Hardware: PRG introdoc (the switch), DRIVER.c (the interface's hard reset).
         Assumed: the lookup table and loaded characters stay, as after the instruction RSET.
@@ -76,24 +76,24 @@ class Ramtek9300:
         self.decoder.clear()
         self.processor.clear_replies()
         self.cursors.hide()
-        self.send(np.array([FORM_OF_NAME["RSET"].opcode << 8], np.uint16))
+        self.send(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16))
 
     def receive(self, count: int) -> Words:
-        """The next `count` words that a reading instruction left, uint16; ReplyError when there are fewer."""
+        """The next `count` words of the replies, uint16; ReplyError when there are fewer."""
         return self.processor.take_reply(count)
 
-    def field(self) -> NDArray[np.uint8]:
-        """What the monitor shows, (lines, elements, 3) uint8."""
+    def field(self) -> Colors:
+        """The field that the monitor shows, (lines, elements, 3) uint8."""
         return self.scan_out.field()
 
     @property
     def words(self) -> Words:
-        """The words, (lines, elements) uint16, read-only; always the present ones."""
+        """The words of the frame buffer, (lines, elements) uint16; a read-only view that stays current."""
         return self.frame_buffer.words
 
     @property
-    def entries(self) -> NDArray[np.uint8]:
-        """The entries of the lookup table, (1024, 3) uint8, read-only; a copy of this moment."""
+    def entries(self) -> Colors:
+        """The entries of the lookup table, (entries, 3) uint8; a read-only copy."""
         return self.lookup_table.entries
 
     @property
@@ -102,13 +102,13 @@ class Ramtek9300:
         return self.processor.status
 
     def save_png(self, path: str | PathLike[str], overwrite: bool = True) -> None:
-        """Write the field to a PNG file, wholly or not at all; OutputExistsError or WriteError if not."""
-        from .png import save_png
+        """Write the field to a PNG file, whole or not at all; OutputError or WriteError if it fails."""
+        from ramtek_emu.png import save_png
 
         save_png(self.field(), path, overwrite)
 
     def _repr_png_(self) -> bytes:
         """The field for a notebook."""
-        from .png import png_bytes
+        from ramtek_emu.png import png_bytes
 
         return png_bytes(self.field())

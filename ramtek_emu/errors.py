@@ -1,11 +1,13 @@
-"""The refusals of the display: one tree, each sentence naming thing, rule, not value, place and what to do.
+"""The errors of the display. Each message says what must hold, what was found and what to do about it.
 
-They are raised to Python callers only. Words that arrive on the wire never raise anything.
+They are raised to Python callers only. Words that a host sends never raise anything.
 """
+
+from __future__ import annotations
 
 
 class RamtekError(Exception):
-    """Every refusal of this package; `exit_code` is what a command leaves with."""
+    """The base of all errors of this package; a command that fails with one ends with its `exit_code`."""
 
     exit_code = 70
 
@@ -17,13 +19,13 @@ class ConfigurationError(RamtekError, ValueError):
 
 
 class WordsError(RamtekError, ValueError):
-    """Words that do not fit: their type, their range or their shape."""
+    """Words of a wrong type, range or shape."""
 
     exit_code = 65
 
 
 class ColorsError(RamtekError, ValueError):
-    """Colors that do not fit the lookup table: their type, their range, their shape or their number."""
+    """Colors of a wrong type, range or shape, or more than the lookup table takes."""
 
     exit_code = 65
 
@@ -35,7 +37,7 @@ class InstructionError(RamtekError, ValueError):
 
 
 class ReplyError(RamtekError, LookupError):
-    """More words asked of the display than it has to give."""
+    """A host asked for more words than the display has replied."""
 
     exit_code = 65
 
@@ -47,7 +49,7 @@ class NoScreenError(RamtekError, RuntimeError):
 
 
 class MissingInputError(RamtekError, OSError):
-    """A file to be read that is not there, or that cannot be read."""
+    """An input file that does not exist or cannot be read."""
 
     exit_code = 66
 
@@ -59,19 +61,19 @@ class ListingError(RamtekError, ValueError):
 
 
 class SnapshotError(RamtekError, ValueError):
-    """A file that is no snapshot of a display."""
+    """A file that is not a valid snapshot."""
 
     exit_code = 65
 
 
 class PortError(RamtekError, ConnectionError):
-    """A display that is not reached, or no longer."""
+    """A display that cannot be reached, or whose connection was lost."""
 
     exit_code = 69
 
 
 class OutputError(RamtekError, OSError):
-    """A place where no output can be made."""
+    """A place where no output file can be created."""
 
     exit_code = 73
 

@@ -1,56 +1,67 @@
-"""The encoders that a host calls: each returns the words of one instruction, or of as many as it takes.
+"""Encoders for hosts: each function returns the words of an instruction, or of several if one is too short.
 
 >>> " ".join(f"{word:04X}" for word in set_parameters(foreground=1))
 '0802 0002 0001'
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from struct import Struct
+from typing import Final
 
 import numpy as np
 
-from .checks import checked_colors, checked_words, whole_numbers
-from .errors import InstructionError, WordsError
-from .instruction import MOST_BYTES, NO_WORDS, Instruction, Numbers, Words, encode, normal
-from .instruction_set import FORM_OF_NAME, Flags
+from ramtek_emu.arrays import Words
+from ramtek_emu.checks import checked_colors, checked_words, whole_numbers
+from ramtek_emu.errors import InstructionError, WordsError
+from ramtek_emu.instruction_set.instruction import (
+    MOST_BYTES,
+    NO_WORDS,
+    Instruction,
+    OperandValue,
+    encode,
+    normal,
+)
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, Flags
 
-LOW_BYTE_FIRST = np.dtype("<u2")
-THREE_WORDS = Struct("<3H")
-LOAD = FORM_OF_NAME["LAM"].opcode << 8
-"""The first word of the instruction that loads the lookup table."""
+LOW_BYTE_FIRST: Final = np.dtype("<u2")
+THREE_WORDS: Final = Struct("<3H")
+LOAD: Final = FORMAT_OF_NAME["LAM"].opcode << 8
+"""The instruction word of LAM for table 0."""
 
 
 def reset() -> Words:
-    """RSET: every parameter as at power-on, the screen erased; the lookup table stays."""
-    return encode(Instruction(FORM_OF_NAME["RSET"]))
+    """RSET: set every parameter as at power-on and erase the screen; the lookup table is kept."""
+    return encode(Instruction(FORMAT_OF_NAME["RSET"]))
 
 
 def initialize() -> Words:
-    """INIT: every parameter as at power-on; screen and lookup table stay."""
-    return encode(Instruction(FORM_OF_NAME["INIT"]))
+    """INIT: set every parameter as at power-on; screen and lookup table are kept."""
+    return encode(Instruction(FORMAT_OF_NAME["INIT"]))
 
 
 def no_operation() -> Words:
-    """NOP."""
-    return encode(Instruction(FORM_OF_NAME["NOP"]))
+    """NOP: do nothing."""
+    return encode(Instruction(FORMAT_OF_NAME["NOP"]))
 
 
-def set_parameters(**operands: Numbers | None) -> Words:
-    """SET: operands by name (`foreground=3`, `window=(0, 0, 639, 479)`), kept until set again."""
+def set_parameters(**operands: OperandValue | None) -> Words:
+    """SET: set operands by name (`foreground=3`, `window=(0, 0, 639, 479)`); they stay until set again."""
     return encode(normal("SET", operands))
 
 
 def erase(window: Sequence[int] | None = None, word: int | None = None) -> Words:
-    """ERS: fill a window with a word, which stays the background."""
+    """ERS: fill a window with a word. Both stay set, the word as the background."""
     return encode(normal("ERS", {"window": window, "background": word}))
 
 
 def write_image(words: object, left: int = 0, top: int = 0, planes: int = 10) -> Words:
-    """WI: write a (lines, elements) array of words with its first one at (left, top).
+    """WI: write a (lines, elements) array of words with its top-left corner at (left, top).
 
-    The window is set by the first instruction; as many as the length in bytes asks for go on from there.
-    The words are checked against the planes: WordsError names the first that does not fit.
+    The first instruction sets the window. An image that is too long for one instruction goes on in further
+    ones. WordsError names the first word that has more bits than there are planes.
     """
     image = checked_words(words, planes)
     lines, elements = image.shape
@@ -64,7 +75,7 @@ def write_image(words: object, left: int = 0, top: int = 0, planes: int = 10) ->
     place = 0
     for start in starts:
         part = flat[start : start + most]
-        first = head if start == 0 else (FORM_OF_NAME["WI"].opcode << 8 | Flags.DATA, 2 * part.size)
+        first = head if start == 0 else (FORMAT_OF_NAME["WI"].opcode << 8 | Flags.DATA, 2 * part.size)
         stream[place : place + len(first)] = first
         place += len(first)
         stream[place : place + part.size] = part
@@ -81,7 +92,7 @@ def image_head(left: int, top: int, right: int, bottom: int, length: int) -> Wor
 
 
 def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple[Words, int]]:
-    """RI: instructions that read a window, each with the number of words to receive for it."""
+    """RI: read a window, in as many instructions as needed, each with the number of words to receive."""
     most = MOST_BYTES // 2
     if elements <= most:
         most -= most % elements
@@ -93,7 +104,7 @@ def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple
 
 
 def load_entries(first: int, colors: object, entries: int = 1024) -> Words:
-    """LAM: (n, 3) colors, 0 to 255, for the entries from `first` on, in the 24-bit format."""
+    """LAM: load (n, 3) colors, 0 to 255, into the entries from `first` on, in the 24-bit format."""
     checked = checked_colors(first, colors, entries)
     data = checked.tobytes()
     # In the memory of a VAX the two words of an entry are the bytes blue, green, red, 0.
@@ -104,9 +115,9 @@ def load_entries(first: int, colors: object, entries: int = 1024) -> Words:
 
 
 def load_short_entries(first: int, colors: object, entries: int = 1024) -> Words:
-    """LAM: (n, 3) colors, 0 to 255, for the entries from `first` on, in the 12-bit format.
+    """LAM: load (n, 3) colors, 0 to 255, into the entries from `first` on, in the 12-bit format.
 
-    The upper four bits of each are sent.
+    Only the upper four bits of each component are sent.
     """
     checked = checked_colors(first, colors, entries)
     red, green, blue = checked.astype(np.uint16).T >> 4
@@ -115,7 +126,7 @@ def load_short_entries(first: int, colors: object, entries: int = 1024) -> Words
 
 
 def park_table(address: int = 0) -> Words:
-    """LAM without data: set the table's address counter, whose upper bits pick the part that is shown.
+    """LAM without data: set the address counter of the table, whose upper bits select the section shown.
 
     Hardware: LIN, JPL, NCAR send it after a load; it matters with fewer planes than address bits.
     """
@@ -123,8 +134,8 @@ def park_table(address: int = 0) -> Words:
 
 
 def read_entries(address: int = 0, words: int = 2048) -> Words:
-    """RAM: ask for words of the lookup table from a word address on; receive as many."""
-    return np.array((FORM_OF_NAME["RAM"].opcode << 8, address, 2 * words), np.uint16)
+    """RAM: ask for words of the lookup table from a word address on; then receive that many words."""
+    return np.array((FORMAT_OF_NAME["RAM"].opcode << 8, address, 2 * words), np.uint16)
 
 
 def write_text(
@@ -136,17 +147,18 @@ def write_text(
     size: int | tuple[int, int] = 1,
     transparent: bool = False,
 ) -> Words:
-    """WT: characters of 7 x 9 dots with the first cell's top-left corner at (left, top).
+    """WT: write text in cells of 7 x 9 dots, the top-left corner of the first cell at (left, top).
 
-    `size` repeats the dots, across and down; `transparent` leaves the pixels between the dots as they are.
-    The window, the words and the size stay set. Characters that are not ASCII become question marks.
+    `size` repeats each dot, as one number or as (across, down); `transparent` leaves the pixels between the
+    dots unchanged. The window, the words and the size stay set. Characters that are not ASCII become question
+    marks.
     """
     data = text if isinstance(text, bytes) else text.encode("ascii", "replace")
     across, down = (size, size) if isinstance(size, int) else size
     if not (1 <= across <= 16 and 1 <= down <= 16):
         raise InstructionError(f"the size of text must be 1 to 16, not {size!r}; write it smaller")
     window = (left, top, left + 7 * across * max(1, len(data)) - 1, top + 9 * down - 1)
-    operands: dict[str, Numbers | None] = {
+    operands: dict[str, OperandValue | None] = {
         "foreground": word,
         "background": background,
         "window": window,
@@ -160,9 +172,9 @@ def write_text(
 
 
 def write_vectors(vertices: object, word: int | None = None, start: Sequence[int] | None = None) -> Words:
-    """WVL: lines that link (n, 2) vertices (element, line), from `start` or the first vertex on.
+    """WVL: draw the lines that link (n, 2) vertices (element, line), from `start` or the first vertex on.
 
-    More vertices than one instruction takes are sent in several, which go on from each other.
+    Vertices that do not fit in one instruction go on in the next.
     """
     numbers = whole_numbers(vertices, "vertices", WordsError)
     if numbers.ndim != 2 or numbers.shape[1] != 2 or not len(numbers):
@@ -179,7 +191,7 @@ def write_vectors(vertices: object, word: int | None = None, start: Sequence[int
     if start is None:
         start = words[0].tolist()
         words = words[1:] if len(words) > 1 else words
-    operands: dict[str, Numbers | None] = {"foreground": word, "start": start}
+    operands: dict[str, OperandValue | None] = {"foreground": word, "start": start}
     parts = []
     for first in range(0, len(words), MOST_BYTES // 4):
         parts.append(encode(normal("WVL", operands, words[first : first + MOST_BYTES // 4].reshape(-1))))
@@ -188,7 +200,7 @@ def write_vectors(vertices: object, word: int | None = None, start: Sequence[int
 
 
 def write_circles(circles: Sequence[Sequence[int]], word: int | None = None) -> Words:
-    """CIRC: outlines of circles, each an element, a line and a radius, from one center to the last."""
+    """CIRC: draw the outlines of (n, 3) circles: element and line of the center, and radius."""
     numbers = whole_numbers(circles, "circles", WordsError)
     if numbers.ndim != 2 or numbers.shape[1] != 3 or not 0 < len(numbers) <= MOST_BYTES // 6:
         raise WordsError(
@@ -200,17 +212,17 @@ def write_circles(circles: Sequence[Sequence[int]], word: int | None = None) -> 
 
 
 def fill(element: int, line: int, word: int | None = None) -> Words:
-    """FILL: the area around a place, up to pixels of the foreground, with the foreground."""
-    operands: dict[str, Numbers | None] = {"foreground": word, "start": (element, line)}
+    """FILL: fill the area around a pixel with the foreground, up to pixels that have it already."""
+    operands: dict[str, OperandValue | None] = {"foreground": word, "start": (element, line)}
     return encode(normal("FILL", operands, np.zeros(1, np.uint16)))
 
 
 def zoom(across: int = 1, down: int | None = None) -> Words:
-    """ZOOM: show every pixel as `across` elements and `down` lines, 1 to 16; `down` as `across` if absent."""
+    """ZOOM: show each pixel `across` elements wide and `down` lines high, 1 to 16; `down` may be left out."""
     factors = (across, across if down is None else down)
     if not all(isinstance(each, int) and 1 <= each <= 16 for each in factors):
         raise InstructionError(f"zoom factors must be 1 to 16, not {factors}; choose smaller ones")
-    return np.array((FORM_OF_NAME["ZOOM"].opcode << 8, factors[1] - 1 << 8 | factors[0] - 1), np.uint16)
+    return np.array((FORMAT_OF_NAME["ZOOM"].opcode << 8, factors[1] - 1 << 8 | factors[0] - 1), np.uint16)
 
 
 def write_cursor(
@@ -222,16 +234,16 @@ def write_cursor(
         if not 0 <= value <= most:
             raise InstructionError(f"a cursor's {each} must be 0 to {most}, not {value}; keep to the screen")
     state = (0x0400 if visible else 0) | (0x0800 if blinking else 0)
-    return np.array((FORM_OF_NAME["WCSS"].opcode << 8 | number, element, line | state), np.uint16)
+    return np.array((FORMAT_OF_NAME["WCSS"].opcode << 8 | number, element, line | state), np.uint16)
 
 
 def read_cursor(number: int) -> Words:
-    """RCSS: ask for a cursor; receive two words, the element, and the line with the state above ten bits."""
+    """RCSS: ask for a cursor; then receive two words: element, and line with the state above ten bits."""
     if not 0 <= number <= 255:
         raise InstructionError(f"a cursor's number must be 0 to 255, not {number}; choose one there is")
-    return np.array([FORM_OF_NAME["RCSS"].opcode << 8 | number], np.uint16)
+    return np.array([FORMAT_OF_NAME["RCSS"].opcode << 8 | number], np.uint16)
 
 
 def concatenate(*parts: Words) -> Words:
-    """One stream of several."""
+    """Several streams, one after the other, as one."""
     return np.concatenate(parts) if parts else NO_WORDS

@@ -1,18 +1,21 @@
-"""Writing that leaves the old file or the new one, whole, whatever happens in between.
+"""Atomic writing: whatever happens, a path names either the whole old file or the whole new one.
 
-The bytes go into a file beside, which is synced and then renamed. Both packages of this distribution write
-their files through here.
+The bytes go into a temporary file in the same folder, which is synced and then renamed. Both packages write
+their files with this module.
 """
+
+from __future__ import annotations
 
 import errno
 import os
 import secrets
 from contextlib import suppress
 from pathlib import Path
+from typing import Final
 
-from .errors import OutputError, OutputExistsError, WriteError
+from ramtek_emu.errors import OutputError, OutputExistsError, WriteError
 
-NO_PLACE = (
+NO_PLACE: Final = (
     errno.ENOENT,
     errno.ENOTDIR,
     errno.EACCES,
@@ -21,25 +24,25 @@ NO_PLACE = (
     errno.ENAMETOOLONG,
     errno.EISDIR,
 )
-"""What says that there is no place for an output, rather than that writing failed midway."""
+"""Errors which mean that no file can be created there, rather than that writing failed midway."""
 
-NO_LINKS = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EMLINK)
-"""What a file system without hard links answers."""
+NO_LINKS: Final = (errno.EPERM, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EMLINK)
+"""The errors of file systems without hard links."""
 
 
 class Output:
-    """A file that comes to be piece by piece, beside its place, and is there when it is kept, wholly."""
+    """A file that is written piece by piece under a temporary name, and gets its own name from `keep`."""
 
     def __init__(self, path: str | os.PathLike[str], *, overwrite: bool) -> None:
-        """Begin the file; OutputExistsError or OutputError where it cannot be."""
+        """Create the temporary file; OutputExistsError or OutputError when the output cannot be there."""
         self.overwrite = overwrite
         refuse_output(path, overwrite)
-        # Through a link, so that the link stays and what it names is replaced.
+        # Follow links: the file that a link names is replaced, and the link is kept.
         self.path = Path(os.path.realpath(path))
         self._beside = self.path.with_name(f".{self.path.name[:100]}.{secrets.token_hex(6)}.part")
         flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
         try:
-            # Closed by `keep` or at the end of the with statement that this is used in.
+            # `keep` or the end of the with statement closes it.
             self._file = open(os.open(self._beside, flags, 0o666), "wb")  # noqa: SIM115
         except OSError as error:
             raise _refusal(self.path, error) from None
@@ -64,11 +67,11 @@ class Output:
         except OSError as error:
             raise _refusal(self.path, error) from None
 
-    def __enter__(self) -> "Output":
+    def __enter__(self) -> Output:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Leave nothing behind that was not kept."""
+        """Remove the temporary file if it was not kept."""
         with suppress(OSError):
             self._file.close()
         with suppress(OSError):
@@ -76,10 +79,10 @@ class Output:
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
-    """Write the bytes beside the path, sync them, and give them its name.
+    """Write the bytes to the path, whole or not at all.
 
-    Raises OutputExistsError where the path exists and may not be overwritten, OutputError where nothing can
-    be put, WriteError where writing failed. Nothing but a whole old or new file is left in any case.
+    Raises OutputExistsError when the path exists and may not be overwritten, OutputError when no file can be
+    created there, and WriteError when writing failed.
     """
     with Output(path, overwrite=overwrite) as output:
         output.write(data)
@@ -87,7 +90,7 @@ def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bo
 
 
 def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
-    """Refuse a place where no output can be put, before anything is computed for it."""
+    """Refuse a path that cannot be written; called before anything is computed for it."""
     target = Path(path)
     try:
         if target.is_dir():
@@ -112,7 +115,7 @@ def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
 
 
 def _name(beside: Path, target: Path, overwrite: bool) -> None:
-    """Give the finished file its name; a link refuses one that came to exist meanwhile."""
+    """Give the finished file its name. A hard link fails if a file of that name was created meanwhile."""
     if overwrite:
         with suppress(OSError):
             os.chmod(beside, os.stat(target).st_mode & 0o777)
@@ -148,7 +151,7 @@ def _refusal(path: Path, error: OSError) -> OutputError | WriteError:
 
 
 def _sync_folder(folder: Path) -> None:
-    # Not every system opens folders; the file itself is synced already.
+    # Not every system can open folders; the file itself is already synced.
     with suppress(OSError):
         number = os.open(folder, os.O_RDONLY)
         try:

@@ -31,17 +31,36 @@ PUBLIC_NAMES = {
     ],
 }  # fmt: skip
 
+WINGS = {
+    "autocolor": (
+        "errors", "arrays", "checks", "scene", "visibility", "lighting", "mapping", "files", "rendering",
+        "studio", "images", "screens", "commands", "__main__",
+    ),
+    "ramtek_emu": (
+        "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "command_line",
+        "instruction_set", "memory", "drawing", "video", "processor", "instructions", "display",
+        "host", "monitor", "snapshot", "commands", "__main__",
+    ),
+}  # fmt: skip
+"""The wings of a package in the order of its data: each may use those before it and no other."""
+
+IN_THE_DIALECT = ("ramtek_emu",)
+"""The packages whose constants are Final and whose array types are all in arrays.py."""
+
+TESTED_ROOM_BY_ROOM = ("ramtek_emu",)
+"""The packages of which every module has a file of tests at the mirrored place."""
+
 KNOWING_THE_DISPLAY = (
     "autocolor.__main__", "autocolor.files.writing", "autocolor.images", "autocolor.lighting.picture",
     "autocolor.studio",
 )  # fmt: skip
 ROOMS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
 DOORS_OF_THE_DISPLAY = {
-    "ramtek_emu", "ramtek_emu.command_group", "ramtek_emu.command_line", "ramtek_emu.configuration",
-    "ramtek_emu.errors", "ramtek_emu.host_port", "ramtek_emu.instructions", "ramtek_emu.png",
-    "ramtek_emu.window", "ramtek_emu.writing",
+    "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration",
+    "ramtek_emu.errors", "ramtek_emu.host.host_port", "ramtek_emu.instructions", "ramtek_emu.png",
+    "ramtek_emu.monitor.window", "ramtek_emu.writing",
 }  # fmt: skip
-OUTSIDE = {"numpy", "click", "pydantic", "PIL", "pygame"}
+OUTSIDE = {"numpy", "click", "PIL", "pygame"}
 
 
 class Import(NamedTuple):
@@ -111,7 +130,7 @@ def test_the_renderer_knows_the_display_only_where_they_meet_and_only_by_its_doo
 
 def test_pygame_is_in_one_file() -> None:
     having = {name for name in MODULES for each in imports_of(name) if outer(each.target) == "pygame"}
-    assert having == {"ramtek_emu.window"}
+    assert having == {"ramtek_emu.monitor.window"}
 
 
 def test_pillow_is_in_one_file() -> None:
@@ -124,8 +143,62 @@ def test_nothing_is_imported_that_is_no_dependency() -> None:
     assert used <= {*PUBLIC_NAMES, *OUTSIDE, *sys.stdlib_module_names}
 
 
+@pytest.mark.parametrize("name", [name for name in MODULES if outer(name) in IN_THE_DIALECT])
+def test_constants_are_final_and_array_types_stand_in_one_module(name: str) -> None:
+    source = MODULES[name].read_text("utf-8")
+    for node in ast.parse(source).body:
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        names = [
+            each.id for target in targets if target for each in ast.walk(target) if isinstance(each, ast.Name)
+        ]
+        if any(each.strip("_").isupper() for each in names):
+            assert isinstance(node, ast.AnnAssign), f"{names} must be Final"
+            assert ast.unparse(node.annotation).startswith("Final"), f"{names} must be Final"
+    assert ("NDArray" in source) == (name == f"{outer(name)}.arrays")
+
+
+@pytest.mark.parametrize("package", TESTED_ROOM_BY_ROOM)
+def test_every_room_has_its_tests_at_the_mirrored_place(package: str) -> None:
+    rooms = [path for path in (ROOT / package).rglob("*.py") if not path.stem.startswith("__")]
+    mirrored = {ROOT / "tests" / path.relative_to(ROOT).with_name(f"test_{path.name}") for path in rooms}
+    assert sorted(str(path.relative_to(ROOT)) for path in mirrored if not path.is_file()) == []
+
+
+def wing_of(name: str) -> str:
+    return [*name.split("."), ""][1]
+
+
+@pytest.mark.parametrize("package", WINGS)
+def test_every_wing_has_its_place_in_the_order(package: str) -> None:
+    assert {wing_of(name) for name in MODULES if outer(name) == package} == {"", *WINGS[package]}
+
+
+@pytest.mark.parametrize("package", WINGS)
+def test_a_wing_says_what_it_is_and_imports_nothing(package: str) -> None:
+    for path in (ROOT / package).glob("*/__init__.py"):
+        (statement,) = ast.parse(path.read_text("utf-8")).body
+        assert isinstance(statement, ast.Expr), f"{path} must hold a docstring and nothing else"
+
+
+@pytest.mark.parametrize("name", [name for name in MODULES if outer(name) in WINGS and name not in WINGS])
+def test_no_module_imports_from_a_wing_below_its_own(name: str) -> None:
+    package, order = outer(name), WINGS[outer(name)]
+    above = ("", *order[: order.index(wing_of(name)) + 1])
+    used = {each.target for each in imports_of(name) if outer(each.target) == package}
+    # The package itself names all of its modules: it stands below every wing.
+    assert package not in used
+    assert {target for target in used if wing_of(target) not in above} == set()
+
+
 def test_no_modules_import_each_other_in_a_circle() -> None:
     state: dict[str, str] = {}
+
+    def counts(name: str, each: Import) -> bool:
+        """Whether an import links two files: in a package with wings also one that is made later."""
+        if each.target not in MODULES or name.startswith(f"{each.target}."):
+            # A module of a package loads the package before it; that is no circle of theirs.
+            return False
+        return each.at_once or (outer(name) in WINGS and name not in WINGS)
 
     def visit(name: str, path: tuple[str, ...]) -> None:
         assert state.get(name) != "open", f"circle: {' -> '.join((*path, name))}"
@@ -133,8 +206,7 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
             return
         state[name] = "open"
         for each in imports_of(name):
-            # A module of a package loads the package before it; that is no circle of theirs.
-            if each.at_once and each.target in MODULES and not name.startswith(f"{each.target}."):
+            if counts(name, each):
                 visit(each.target, (*path, name))
         state[name] = "done"
 
@@ -158,9 +230,9 @@ for name in {names!r}:
     child = os.fork()
     if child == 0:
         importlib.import_module(name)
-        if ("pygame" in sys.modules) != (name == "ramtek_emu.window"):
+        if ("pygame" in sys.modules) != (name == "ramtek_emu.monitor.window"):
             print(name, "and pygame", flush=True)
-        if "PIL" in sys.modules and name not in ("ramtek_emu.png", "ramtek_emu.window"):
+        if "PIL" in sys.modules and name not in ("ramtek_emu.png", "ramtek_emu.monitor.window"):
             print(name, "and Pillow", flush=True)
         os._exit(0)
     if os.waitpid(child, 0)[1]:

@@ -5,17 +5,37 @@ import pytest
 from tests.fidelity_ledger import KINDS, ROOT, document, lines_of_packages, lines_of_source
 
 BEARING_FORMULAS = [
-    "autocolor.lighting.light_controls", "autocolor.lighting.light_mix", "autocolor.lighting.picture",
-    "autocolor.lighting.shading", "autocolor.mapping.color_blending", "autocolor.mapping.intensity_mapping",
-    "autocolor.mapping.level_ranges", "autocolor.scene.defaults", "autocolor.scene.lights",
-    "autocolor.scene.node_normals", "autocolor.scene.reflection_models", "autocolor.scene.scene",
-    "autocolor.scene.surfaces", "autocolor.scene.view", "autocolor.visibility.camera_space",
-    "autocolor.visibility.visible_spans", "autocolor.visibility.visible_surfaces",
+    "autocolor.lighting.light_controls",
+    "autocolor.lighting.light_mix",
+    "autocolor.lighting.picture",
+    "autocolor.lighting.shading",
+    "autocolor.mapping.color_blending",
+    "autocolor.mapping.intensity_mapping",
+    "autocolor.mapping.level_ranges",
+    "autocolor.scene.defaults",
+    "autocolor.scene.lights",
+    "autocolor.scene.node_normals",
+    "autocolor.scene.reflection_models",
+    "autocolor.scene.scene",
+    "autocolor.scene.surfaces",
+    "autocolor.scene.view",
+    "autocolor.visibility.camera_space",
+    "autocolor.visibility.visible_spans",
+    "autocolor.visibility.visible_surfaces",
     "autocolor.visibility.watkins",
-    "ramtek_emu.character_rom", "ramtek_emu.configuration", "ramtek_emu.decoder", "ramtek_emu.vectors",
-    "ramtek_emu.curves", "ramtek_emu.timing", "ramtek_emu.frame_buffer", "ramtek_emu.host_port",
-    "ramtek_emu.lookup_table", "ramtek_emu.parameters", "ramtek_emu.processor", "ramtek_emu.scan_out",
-]  # fmt: skip
+    "ramtek_emu.configuration",
+    "ramtek_emu.drawing.curves",
+    "ramtek_emu.drawing.vectors",
+    "ramtek_emu.host.host_port",
+    "ramtek_emu.instruction_set.decoder",
+    "ramtek_emu.memory.character_rom",
+    "ramtek_emu.memory.frame_buffer",
+    "ramtek_emu.memory.lookup_table",
+    "ramtek_emu.memory.parameters",
+    "ramtek_emu.processor.processor",
+    "ramtek_emu.timing",
+    "ramtek_emu.video.scan_out",
+]
 
 
 @pytest.mark.parametrize("module", BEARING_FORMULAS)

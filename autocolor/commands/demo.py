@@ -8,7 +8,7 @@ from typing import Final
 from autocolor.errors import MissingInputError
 
 PACKAGE: Final = Path(__file__).resolve().parents[1]
-PLACES: Final = (PACKAGE / "demo", PACKAGE.parent / "scenes" / "coupe")
+PLACES: Final = (PACKAGE / "demo_scene", PACKAGE.parent / "scenes" / "coupe")
 
 
 def demo_folder() -> Path:

@@ -44,7 +44,7 @@ def show(scene: Scene, full_screen: bool = False, fit: bool = False) -> None:
     from autocolor.errors import UnavailableError
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import NoScreenError, Ramtek9300
-    from ramtek_emu.window import Key, Monitor, open_screen
+    from ramtek_emu.monitor.window import Key, Monitor, open_screen
 
     try:
         # Say so before anything is rendered.

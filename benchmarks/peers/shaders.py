@@ -1,5 +1,7 @@
 """The shaders of the OpenGL peer, GLSL 4.00; those that compute light want LIGHTS and SURFACES defined."""
 
+from __future__ import annotations
+
 MESH_VERTEX = """
 #version 400
 uniform mat4 projection;

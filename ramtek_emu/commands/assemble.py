@@ -1,15 +1,18 @@
 """`ramtek assemble`: a listing back into its stream."""
 
+from __future__ import annotations
+
 import io
 import sys
 from collections.abc import Iterator
+from typing import Final
 
 import click
 
 from ramtek_emu.commands.displays import open_stream, tell
 from ramtek_emu.writing import refuse_output, write_atomically
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   ramtek assemble drawing.txt -o drawing.ramtek
   ramtek list drawing.ramtek | ramtek assemble - -o same.ramtek
@@ -29,8 +32,8 @@ def assemble(listing: str, output: str, force: bool) -> None:
         refuse_output(output, force)
     file = io.TextIOWrapper(open_stream(listing), encoding="latin-1")
 
-    from ramtek_emu.assembly import assemble as assembled
-    from ramtek_emu.listing_tokens import MOST_LINE
+    from ramtek_emu.instruction_set.assembler import assemble as assembled
+    from ramtek_emu.instruction_set.listing_tokens import MOST_LINE
 
     def lines() -> Iterator[str]:
         while line := file.readline(MOST_LINE + 1):

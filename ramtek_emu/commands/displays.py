@@ -1,4 +1,6 @@
-"""What the commands share: the display, the streams that are read, and what is written at the end."""
+"""What the commands have in common: the display, the streams to read, and the output files."""
+
+from __future__ import annotations
 
 import difflib
 import os
@@ -6,7 +8,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, TypeVar
+from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
@@ -19,12 +21,12 @@ if TYPE_CHECKING:
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
-TICK_SECONDS = 0.01
-"""How long a host is served between two looks at the window."""
+TICK_SECONDS: Final = 0.01
+"""How long a host is served before the window is handled again."""
 
 
 def display_options(function: Function) -> Function:
-    """The options of every command that has a display: which one, and what is written of it at the end."""
+    """Add the options of all commands with a display: the configuration, and the files to write."""
     for option in (
         click.option("--force", is_flag=True, help="Overwrite what exists."),
         click.option("--configuration", metavar="NAME", help="The display; GMR_9300 if not given."),
@@ -41,8 +43,8 @@ def display_options(function: Function) -> Function:
     return function
 
 
-def configuration_named(name: str | None) -> "Configuration":
-    """The configuration of that name, capitals or not; ConfigurationError names those there are."""
+def configuration_named(name: str | None) -> Configuration:
+    """The configuration of that name, in upper or lower case; ConfigurationError lists all names."""
     from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
 
     if name is None:
@@ -58,12 +60,12 @@ def configuration_named(name: str | None) -> "Configuration":
     return CONFIGURATIONS[asked]
 
 
-def display_asked_for(configuration: str | None, start: str | None) -> "Ramtek9300":
-    """A display of that configuration just switched on, or the one of a snapshot."""
+def display_asked_for(configuration: str | None, start: str | None) -> Ramtek9300:
+    """A new display of that configuration, or the one of a snapshot."""
     if start is not None:
         if configuration is not None:
             raise click.UsageError("a display must be given by --configuration or --start; leave one out")
-        from ramtek_emu.snapshot import read_snapshot
+        from ramtek_emu.snapshot.snapshot import read_snapshot
 
         return read_snapshot(start)
     from ramtek_emu.display import Ramtek9300
@@ -72,7 +74,7 @@ def display_asked_for(configuration: str | None, start: str | None) -> "Ramtek93
 
 
 def refuse_outputs(force: bool, *paths: str | None) -> None:
-    """Refuse outputs that cannot be made, before anything is done; None is no output."""
+    """Refuse outputs that cannot be written, before anything is done; None stands for no output."""
     for path in paths:
         if path is not None:
             if path in ("", "-"):
@@ -82,7 +84,7 @@ def refuse_outputs(force: bool, *paths: str | None) -> None:
 
 @contextmanager
 def recording(path: str | None, force: bool) -> Iterator[Callable[[bytes], object] | None]:
-    """What is to be given the words of whole instructions; their file is there once all went well."""
+    """A function that records words in a file, or None; the file gets its name if nothing fails."""
     if path is None:
         yield None
         return
@@ -92,22 +94,22 @@ def recording(path: str | None, force: bool) -> Iterator[Callable[[bytes], objec
     tell(f"wrote {path}")
 
 
-def write_outputs(display: "Ramtek9300", output: str | None, snapshot: str | None, force: bool) -> None:
-    """Write the picture and the snapshot, whichever is asked for, and say so on stderr."""
+def write_outputs(display: Ramtek9300, output: str | None, snapshot: str | None, force: bool) -> None:
+    """Write the picture and the snapshot, if asked for, and report it on stderr."""
     if output is not None:
         from ramtek_emu.png import png_bytes
 
         write_atomically(output, png_bytes(display.field()), overwrite=force)
         tell(f"wrote {output}")
     if snapshot is not None:
-        from ramtek_emu.snapshot import write_snapshot
+        from ramtek_emu.snapshot.snapshot import write_snapshot
 
         write_snapshot(display, snapshot, overwrite=force)
         tell(f"wrote {snapshot}")
 
 
 def open_stream(path: str) -> BinaryIO:
-    """A file of words to read, `-` for stdin; MissingInputError when there is none."""
+    """The input file, stdin for `-`; MissingInputError if it cannot be read."""
     if path == "-":
         if sys.stdin is None:
             raise MissingInputError("a stream must come from stdin, which is closed; name a file instead")
@@ -126,7 +128,7 @@ def open_stream(path: str) -> BinaryIO:
 
 
 def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
-    """What gives the bytes that are there, at most so many, without waiting for more; nothing at the end."""
+    """A function that reads the bytes available, up to a number; it returns none at the end of the file."""
     number = file.fileno()
 
     def read(most: int) -> bytes:
@@ -142,26 +144,26 @@ def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
 
 
 def tell(message: str) -> None:
-    """Say something that is no answer: on stderr."""
+    """Print a message on stderr, since stdout is for results."""
     click.echo(message, err=True)
 
 
-def show(display: "Ramtek9300", serve_for: Callable[[float], None]) -> None:
-    """Show the display in a window until it is closed; `serve_for` is called between its fields."""
-    from ramtek_emu.window import Monitor
+def show(display: Ramtek9300, serve_for: Callable[[float], None]) -> None:
+    """Show the display in a window until that is closed; `serve_for` is called at each tick."""
+    from ramtek_emu.monitor.window import Monitor
 
     name = display.configuration.name.replace("_", " ")
-    # Ctrl+C closes the window; what is to be written at the end is written.
+    # Ctrl+C closes the window; the output files are still written.
     with suppress(KeyboardInterrupt):
         Monitor(display, f"RAMTEK {name}", on_tick=lambda: serve_for(TICK_SECONDS)).run()
 
 
-def tell_the_end(display: "Ramtek9300", held_words: int, odd_byte: bytes) -> None:
-    """Say what of a stream was not done: what is no instruction or has no effect, and what is not whole."""
+def tell_the_end(display: Ramtek9300, held_words: int, odd_byte: bytes) -> None:
+    """Report what was not executed: illegal words, instructions without effect, an incomplete end."""
     illegal = display.processor.illegal_words
     if illegal:
         tell(f"{illegal} {'word begins' if illegal == 1 else 'words begin'} no instruction: skipped")
-    unknown = display.processor.named_only
+    unknown = display.processor.unimplemented
     if unknown:
         plural = "instruction is" if unknown == 1 else "instructions are"
         tell(f"{unknown} {plural} known by name only: without effect")

@@ -1,20 +1,23 @@
 """`ramtek list`: a stream as instructions with named operands."""
 
+from __future__ import annotations
+
 import json
 from collections.abc import Iterator
+from typing import Final
 
 import click
 
 from ramtek_emu.commands.displays import configuration_named, open_stream
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   ramtek list drawing.ramtek
   ramtek list drawing.ramtek --json | jq '.[].name'
   ramtek list drawing.ramtek > drawing.txt; ramtek assemble drawing.txt -o again.ramtek
 """
 
-PIECE = 1 << 18
+PIECE: Final = 1 << 18
 
 
 @click.command(name="list", epilog=EXAMPLES)
@@ -33,7 +36,7 @@ def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
         while data := file.read(PIECE):
             yield data
 
-    from ramtek_emu.listing import items
+    from ramtek_emu.instruction_set.disassembler import items
 
     found = items(pieces(), chosen)
     if not as_json:

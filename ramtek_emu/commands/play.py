@@ -1,5 +1,9 @@
 """`ramtek play`: a stream of instructions from a file, in a window or into a picture."""
 
+from __future__ import annotations
+
+from typing import Final
+
 import click
 
 from ramtek_emu.commands.displays import (
@@ -14,7 +18,7 @@ from ramtek_emu.commands.displays import (
     write_outputs,
 )
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   ramtek play drawing.ramtek
   ramtek play drawing.ramtek -o drawing.png --configuration princeton_9300
@@ -44,8 +48,8 @@ def play(
     file = open_stream(stream)
     display = display_asked_for(configuration, start)
 
-    from ramtek_emu.host_session import HostSession
-    from ramtek_emu.pipe import PolledPipe, serve_pipe
+    from ramtek_emu.host.host_session import HostSession
+    from ramtek_emu.host.pipe import PolledPipe, serve_pipe
 
     read = reader_of(file)
     with recording(record, force) as kept:

@@ -1,11 +1,13 @@
 """`ramtek serve`: a display for programs, over TCP or on a pipe."""
 
+from __future__ import annotations
+
 import os
 import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -21,11 +23,11 @@ from ramtek_emu.commands.displays import (
 )
 
 if TYPE_CHECKING:
-    from ramtek_emu.host_session import HostSession
-    from ramtek_emu.pipe import Read, Write
-    from ramtek_emu.server import Server
+    from ramtek_emu.host.host_session import HostSession
+    from ramtek_emu.host.pipe import Read, Write
+    from ramtek_emu.host.server import Server
 
-EXAMPLES = """\b
+EXAMPLES: Final = """\b
 Examples:
   ramtek serve --port 9300                          a display at tcp://127.0.0.1:9300
   ramtek serve --port 0 --window                    any free port, which is printed, and a window
@@ -33,7 +35,7 @@ Examples:
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
 """
 
-STEP_SECONDS = 0.25
+STEP_SECONDS: Final = 0.25
 
 
 @click.command(epilog=EXAMPLES)
@@ -76,8 +78,8 @@ def serve(
     refuse_outputs(force, output, snapshot, record)
     display = display_asked_for(configuration, start)
 
-    from ramtek_emu.host_session import HostSession
-    from ramtek_emu.server import Server
+    from ramtek_emu.host.host_session import HostSession
+    from ramtek_emu.host.server import Server
 
     with recording(record, force) as kept:
         if stdio:
@@ -88,21 +90,21 @@ def serve(
     write_outputs(display, output, snapshot, force)
 
 
-def serve_stdio(session: "HostSession", window: bool) -> None:
-    """Serve the program on the other ends of stdin and stdout until it sends no more."""
-    from ramtek_emu.pipe import PolledPipe, serve_pipe
+def serve_stdio(session: HostSession, window: bool) -> None:
+    """Serve the program at the other ends of stdin and stdout until it closes its end."""
+    from ramtek_emu.host.pipe import PolledPipe, serve_pipe
 
     read, write = standard_streams()
     if window:
         show(session.display, PolledPipe(session, read, write).serve_for)
         return
-    with until_told() as told:
-        serve_pipe(session, told.reading(read), write)
+    with end_signals() as signals:
+        serve_pipe(session, signals.until_received(read), write)
     tell_the_end(session.display, session.held_words, session.odd_byte)
 
 
-def standard_streams() -> "tuple[Read, Write | None]":
-    """What reads stdin and what writes all of its bytes to stdout; nothing else gets there from here on."""
+def standard_streams() -> tuple[Read, Write | None]:
+    """Functions that read stdin and write stdout. From here on, nothing else can write to stdout."""
     if sys.stdin is None:
         return lambda _: b"", None
     number = sys.stdin.fileno()
@@ -112,7 +114,7 @@ def standard_streams() -> "tuple[Read, Write | None]":
 
     try:
         kept = os.dup(sys.stdout.fileno())
-        # Whatever prints from here on must not come between the words.
+        # Redirect what is printed from here on, so that it does not mix with the words.
         os.dup2(sys.stderr.fileno() if sys.stderr is not None else kept, sys.stdout.fileno())
     except OSError:
         return read, None
@@ -125,20 +127,20 @@ def standard_streams() -> "tuple[Read, Write | None]":
     return read, write
 
 
-def serve_port(server: "Server", window: bool, once: bool) -> None:
-    """Serve hosts over TCP until Ctrl+C, until the window is closed, or until the first one has left."""
+def serve_port(server: Server, window: bool, once: bool) -> None:
+    """Serve hosts over TCP until Ctrl+C, until the window is closed, or, with `once`, until a host leaves."""
     if window:
         announce(server)
         show(server.display, server.serve_for)
         return
-    with until_told() as told:
+    with end_signals() as signals:
         announce(server)
-        while not told.given and not (once and server.served):
+        while not signals.received and not (once and server.served):
             server.step(STEP_SECONDS)
 
 
-def announce(server: "Server") -> None:
-    """Print the address that hosts are to be given, with a warning if it is more than this machine's own."""
+def announce(server: Server) -> None:
+    """Print the address for hosts, with a warning if other machines can reach it."""
     if server.host not in ("127.0.0.1", "localhost", "::1"):
         tell(
             f"warning: whoever reaches {server.address} can draw on this display and read it back; "
@@ -148,42 +150,42 @@ def announce(server: "Server") -> None:
     sys.stdout.flush()
 
 
-class Told:
-    """Whether Ctrl+C or a termination signal came: how a display that serves is ended, no failure."""
+class EndSignals:
+    """Remembers Ctrl+C or a termination signal, which end a server without an error."""
 
     def __init__(self) -> None:
-        self.given = False
+        self.received = False
         self._waiting = False
 
-    def signal(self, *_: object) -> None:
-        """Note the signal, and end what waits for input."""
-        self.given = True
+    def receive(self, *_: object) -> None:
+        """Remember the signal, and interrupt a read that is waiting."""
+        self.received = True
         if self._waiting:
             raise InterruptedError
 
-    def reading(self, read: "Read") -> "Read":
-        """The same as `read`, which gives nothing more once the signal came, or when reading fails."""
+    def until_received(self, read: Read) -> Read:
+        """A function like `read` that returns nothing after the signal, or if reading fails."""
 
-        def read_until_told(most: int) -> bytes:
+        def read_until_received(most: int) -> bytes:
             try:
                 self._waiting = True
-                return b"" if self.given else read(most)
+                return b"" if self.received else read(most)
             except OSError:
-                # Also a terminal or a socket whose other side has gone.
+                # Also raised by a terminal or a socket whose other end was closed.
                 return b""
             finally:
                 self._waiting = False
 
-        return read_until_told
+        return read_until_received
 
 
 @contextmanager
-def until_told() -> Iterator[Told]:
-    """Take note of Ctrl+C and termination signals for a while."""
-    told = Told()
-    before = {number: signal.signal(number, told.signal) for number in (signal.SIGINT, signal.SIGTERM)}
+def end_signals() -> Iterator[EndSignals]:
+    """Handle Ctrl+C and termination signals within a `with` block."""
+    signals = EndSignals()
+    before = {number: signal.signal(number, signals.receive) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
-        yield told
+        yield signals
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

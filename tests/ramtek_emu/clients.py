@@ -3,6 +3,8 @@
 `Library` has the calls of a C library of 1978: one write for each instruction, parameters that stay set.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np

@@ -3,6 +3,8 @@
 Each is what a real program of 1978 to 1990 gave to its display, in hexadecimal words.
 """
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,6 +1,8 @@
 """Slow, obvious twins of the display: one pixel, one word at a time."""
 
-from ramtek_emu.instruction_set import FORMS
+from __future__ import annotations
+
+from ramtek_emu.instruction_set.table import FORMATS
 
 # Scan code -> step to the next word, step to the next run: (element, line) each.
 STEPS = {
@@ -62,7 +64,7 @@ def away(place: Place, window: tuple[int, int, int, int], code: int) -> tuple[in
     return across * step[0] + down * step[1], across * run[0] + down * run[1]
 
 
-def write_run(
+def write_scan(
     raster: Raster,
     window: tuple[int, int, int, int],
     code: int,
@@ -78,7 +80,7 @@ def write_run(
     return places[-1]
 
 
-def read_run(
+def read_scan(
     raster: Raster, window: tuple[int, int, int, int], code: int, start: Place, count: int
 ) -> tuple[list[int], Place]:
     places = walk(window, code, start, count)
@@ -160,7 +162,7 @@ OPERAND_WORDS = (
 
 def split(stream: list[int]) -> list[list[int]]:
     """The words of each whole instruction of a stream, read one word after the other."""
-    forms = {form.opcode: form for form in FORMS}
+    formats = {format.opcode: format for format in FORMATS}
     parts: list[list[int]] = []
     words = iter(stream)
     while True:
@@ -173,13 +175,13 @@ def split(stream: list[int]) -> list[list[int]]:
 
         try:
             first = take(1)
-            form = forms.get(first >> 8)
-            if form is not None and form.fixed is not None:
-                for name in form.fixed:
+            format = formats.get(first >> 8)
+            if format is not None and format.fixed is not None:
+                for name in format.fixed:
                     value = take(1)
-                    if name == "length" and not form.replies:
+                    if name == "length" and not format.replies:
                         take((value + 1) // 2)
-            elif form is not None:
+            elif format is not None:
                 flag_words = [take(1) if first & flag else 0 for flag in (2, 4)]
                 following = sum(
                     count
@@ -190,9 +192,9 @@ def split(stream: list[int]) -> list[list[int]]:
                 before = sum(
                     count for bit, count in enumerate(OPERAND_WORDS[0][:12]) if flag_words[0] & 1 << bit
                 )
-                if form.asks:
+                if format.requests_operands:
                     following = 0
-                elif form.name == "WC" and first & 1 and flag_words[0] & 1 << 12:
+                elif format.name == "WC" and first & 1 and flag_words[0] & 1 << 12:
                     # Six coefficients are those after which a length of 4 follows that is half a coefficient.
                     half = following - 6 - before
                     if half < 12 and half % 2 == 0 and take(following - 6 + 1) == 4:
@@ -203,7 +205,7 @@ def split(stream: list[int]) -> list[list[int]]:
                 take(following)
                 if first & 1:
                     length = take(1)
-                    if not form.replies:
+                    if not format.replies:
                         take((length + 1) // 2)
         except StopIteration:
             return parts

@@ -1,5 +1,7 @@
 """Words, windows, entries and streams for the display's tests."""
 
+from __future__ import annotations
+
 import itertools
 from collections.abc import Iterable
 
@@ -10,8 +12,8 @@ from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
 from ramtek_emu import Configuration
-from ramtek_emu.instruction_set import FORMS, SUBSTANTIATED
-from ramtek_emu.scan_orders import Point, Window
+from ramtek_emu.instruction_set.table import FORMATS, SUBSTANTIATED
+from ramtek_emu.memory.scan_orders import Point, Window
 
 quick = settings(deadline=None, max_examples=60)
 thorough = settings(deadline=None, max_examples=150)
@@ -34,8 +36,8 @@ def windows(draw: st.DrawFn) -> Window:
 
 def streams(most: int = 60) -> st.SearchStrategy[list[int]]:
     """Words at random, many of which begin an instruction."""
-    opcodes = st.sampled_from([form.opcode for form in SUBSTANTIATED]) | st.sampled_from(
-        [form.opcode for form in FORMS]
+    opcodes = st.sampled_from([format.opcode for format in SUBSTANTIATED]) | st.sampled_from(
+        [format.opcode for format in FORMATS]
     )
     begins = st.builds(lambda opcode, low: opcode << 8 | low, opcodes, st.integers(0, 255))
     small = st.integers(0, 12)

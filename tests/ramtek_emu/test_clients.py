@@ -1,5 +1,7 @@
 """Programs that draw, read back and draw from what they read; and the habits of the drivers of the time."""
 
+from __future__ import annotations
+
 import itertools
 from collections.abc import Iterator
 
@@ -16,7 +18,7 @@ from ramtek_emu import (
     Ramtek9300,
     instructions,
 )
-from ramtek_emu.processor import Status
+from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.clients import (
     VISIBLE,

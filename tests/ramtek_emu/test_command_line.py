@@ -5,12 +5,13 @@ from __future__ import annotations
 import errno
 import sys
 from collections.abc import Callable
-from typing import NamedTuple
+from types import ModuleType
+from typing import ClassVar, NamedTuple
 
 import click
 import pytest
 
-from ramtek_emu.command_line import run_command
+from ramtek_emu.command_line import CommandGroup, run_command
 from ramtek_emu.errors import OutputExistsError
 
 
@@ -113,3 +114,47 @@ def test_a_process_without_a_stdout_is_told_when_it_answers(
     assert left.code == 74
     assert "stdout must stay open" in left.err
     sys.stdout.close()
+
+
+class TwoCommands(CommandGroup):
+    """Commands that are looked for in a module of this test."""
+
+    package = "tests_of_command_line"
+    table: ClassVar[dict[str, str]] = {"paint": "paint the house", "list": "list the rooms"}
+
+
+@pytest.fixture
+def group(monkeypatch: pytest.MonkeyPatch) -> TwoCommands:
+    paint, rooms = ModuleType("paint"), ModuleType("list")
+    paint.paint = click.Command("paint", callback=lambda: click.echo("red"))  # type: ignore[attr-defined]
+    rooms.list_command = click.Command("list", callback=lambda: click.echo("hall"))  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "tests_of_command_line", ModuleType("tests_of_command_line"))
+    monkeypatch.setitem(sys.modules, "tests_of_command_line.paint", paint)
+    monkeypatch.setitem(sys.modules, "tests_of_command_line.list", rooms)
+    return TwoCommands("house")
+
+
+def run_group(group: TwoCommands, *arguments: str) -> tuple[int, str]:
+    from click.testing import CliRunner
+
+    result = CliRunner().invoke(group, arguments)
+    return result.exit_code, result.output
+
+
+def test_a_command_is_loaded_from_the_module_of_its_name(group: TwoCommands) -> None:
+    assert run_group(group, "paint") == (0, "red\n")
+    assert run_group(group, "list") == (0, "hall\n")
+
+
+def test_help_shows_the_table_in_its_order_and_loads_no_command(
+    group: TwoCommands, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(sys.modules, "tests_of_command_line.paint")
+    code, shown = run_group(group, "--help")
+    assert code == 0
+    assert shown.index("paint the house") < shown.index("list the rooms")
+
+
+def test_a_wrong_name_is_told_the_nearest_right_one(group: TwoCommands) -> None:
+    assert "there is no command 'pant'; did you mean 'paint'?" in run_group(group, "pant")[1]
+    assert "there is no command 'xyz'; known are paint, list" in run_group(group, "xyz")[1]

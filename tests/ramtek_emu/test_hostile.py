@@ -1,5 +1,7 @@
 """Streams of real programs with faults in them, as bad lines and bad programs make them."""
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 import numpy as np
@@ -7,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ramtek_emu import GMR_9300, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
-from ramtek_emu.pattern import pattern
+from ramtek_emu.monitor.pattern import pattern
 from tests.ramtek_emu.clients import Library, chase, fill_polygon, mirror_image
 from tests.ramtek_emu.strategies import sent_words
 

@@ -1,12 +1,13 @@
+from __future__ import annotations
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import InstructionError, WordsError, instructions
-from ramtek_emu.decoder import Decoder
-from ramtek_emu.instruction import encode, normal
-from tests.ramtek_emu.strategies import quick, streams
+from ramtek_emu.instruction_set.decoder import Decoder
+from tests.ramtek_emu.strategies import quick
 
 
 def hexadecimal(words: np.ndarray[tuple[int], np.dtype[np.uint16]]) -> str:
@@ -27,23 +28,6 @@ def test_encoders_send_the_words_of_the_time() -> None:
     assert hexadecimal(instructions.write_vectors([(0, 0), (639, 479)], 5)) == (
         "0E03 8002 0005 0000 0000 0004 027F 01DF"
     )
-
-
-@quick
-@given(streams())
-def test_an_instruction_is_equal_to_its_own_words_read_again(stream: list[int]) -> None:
-    for instruction in Decoder().feed(np.array(stream, np.uint16)):
-        (again,) = Decoder().feed(encode(instruction))
-        assert again == instruction
-        assert hash(again) == hash(instruction)
-        assert str(again) == str(instruction)
-
-
-def test_a_listing_names_operands_and_flags() -> None:
-    assert str(normal("SET", {"mask": 15, "window": (0, 0, 9, 9)})) == "SET  mask 15; window 0, 0, 9, 9"
-    (text,) = Decoder().feed(np.array([0x0C13, 0x0040, 0, 0, 32, 32, 3, 0x3030, 0x3400], np.uint16))
-    assert str(text) == "WT   BK; window 0, 0, 32, 32; 3 bytes"
-    assert text.data_bytes() == b"004"
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,11 @@
+from __future__ import annotations
+
 import os
 from pathlib import Path
 
 import numpy as np
-import pytest
 from PIL import Image
 
-from ramtek_emu import OutputError, OutputExistsError, Ramtek9300, WriteError, instructions
 from ramtek_emu.png import png_bytes, save_png
 
 FIELD = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
@@ -18,70 +18,3 @@ def test_a_saved_field_is_read_back_as_it_was(tmp_path: Path) -> None:
         assert (np.asarray(picture) == FIELD).all()
     assert path.read_bytes() == png_bytes(FIELD)
     assert os.listdir(tmp_path) == ["field.png"]
-
-
-def test_saving_again_replaces_the_file_unless_told_otherwise(tmp_path: Path) -> None:
-    path = tmp_path / "field.png"
-    path.write_bytes(b"old")
-    with pytest.raises(OutputExistsError) as refusal:
-        save_png(FIELD, path, overwrite=False)
-    assert str(refusal.value) == (
-        f"an output must be a new file, not {path}, which exists; choose another name or add --force"
-    )
-    assert path.read_bytes() == b"old"
-    save_png(FIELD, path)
-    assert path.read_bytes() == png_bytes(FIELD)
-    assert os.listdir(tmp_path) == ["field.png"]
-
-
-def test_a_folder_that_is_not_there_is_refused_by_name(tmp_path: Path) -> None:
-    with pytest.raises(OutputError) as refusal:
-        save_png(FIELD, tmp_path / "none" / "field.png")
-    assert str(refusal.value) == (
-        f"an output must have a folder to be in, and there is no folder {tmp_path / 'none'}; make it, or "
-        "choose another place"
-    )
-
-
-def test_saving_through_a_link_keeps_the_link(tmp_path: Path) -> None:
-    target, link = tmp_path / "target.png", tmp_path / "link.png"
-    target.write_bytes(b"old")
-    link.symlink_to(target)
-    save_png(FIELD, link)
-    assert link.is_symlink()
-    assert target.read_bytes() == png_bytes(FIELD)
-
-
-def test_a_file_system_without_links_gets_the_picture_all_the_same(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuse(*_: object) -> None:
-        raise OSError(1, "no links here")
-
-    monkeypatch.setattr(os, "link", refuse)
-    save_png(FIELD, tmp_path / "field.png", overwrite=False)
-    assert os.listdir(tmp_path) == ["field.png"]
-
-
-def test_after_a_failed_write_the_old_file_is_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "field.png"
-    path.write_bytes(b"old")
-
-    def full_disk(handle: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", full_disk)
-    with pytest.raises(WriteError, match="no space left on device"):
-        save_png(FIELD, path)
-    assert path.read_bytes() == b"old"
-    assert os.listdir(tmp_path) == ["field.png"]
-
-
-def test_a_display_shows_itself_in_a_notebook_and_in_a_file(tmp_path: Path) -> None:
-    display = Ramtek9300()
-    display.send(instructions.load_entries(0, [[10, 20, 30]]))
-    display.save_png(tmp_path / "display.png")
-    assert (tmp_path / "display.png").read_bytes() == display._repr_png_()
-    with Image.open(tmp_path / "display.png") as picture:
-        assert picture.size == (640, 480)
-        assert picture.getpixel((5, 5)) == (10, 20, 30)

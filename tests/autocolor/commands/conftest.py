@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from autocolor.commands import autocolor
+from autocolor.commands.autocolor import autocolor
 from ramtek_emu.command_line import run_command
 
 ROOT = Path(__file__).parents[3]

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from autocolor.commands import AutocolorGroup, autocolor
+from autocolor.commands.autocolor import AutocolorGroup, autocolor
 from tests.autocolor.commands.conftest import Run
 
 SLOW = ("numpy", "pygame", "pydantic", "PIL")

@@ -15,7 +15,7 @@ pygame = pytest.importorskip("pygame")
 @pytest.fixture
 def monitors(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The monitors that a command opens; each is driven by `script` instead of by a user."""
-    from ramtek_emu import window
+    from ramtek_emu.monitor import window
 
     opened: list[Any] = []
 
@@ -54,7 +54,7 @@ def test_repairs_count_under_strict(folder: Path, run: Run, monitors: list[Any])
 
 
 def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
-    from ramtek_emu.window import Key
+    from ramtek_emu.monitor.window import Key
 
     captions = []
 

@@ -8,7 +8,7 @@ from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS
 from autocolor.screens.drawing import HEIGHT, NIGHT, ORANGE, WHITE, WIDTH
 from autocolor.screens.help_screen import LIMITS, MIDDLE, STEP, TOP, draw_help
 from ramtek_emu import HostPort, Ramtek9300
-from ramtek_emu.character_rom import CELL_ELEMENTS, CELL_LINES
+from ramtek_emu.memory.character_rom import CELL_ELEMENTS, CELL_LINES
 
 ROWS = [(str(binding), binding.does) for binding in BINDINGS] + list(WINDOW_KEYS)
 

@@ -1,0 +1,33 @@
+"""The array types of this package, each with one meaning; every other module imports them from here."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+Words = NDArray[np.uint16]
+"""16-bit words: a stream of them, or those of a picture as (lines, elements)."""
+Dots = NDArray[np.bool_]
+"""Whether each pixel, or each dot of a character or a cursor, is meant."""
+Booleans = NDArray[np.bool_]
+"""One truth value for each row of a table."""
+Numbers = NDArray[np.int64]
+"""Signed numbers: coordinates and distances."""
+Indices = NDArray[np.intp]
+"""Places in another array."""
+WholeNumbers = NDArray[np.integer]
+"""Whole numbers of a size that has not been checked yet."""
+Colors = NDArray[np.uint8]
+"""Red, green and blue along the last axis, 0 to 255: of entries, or of the pixels of a field."""
+PackedColors = NDArray[np.uint32]
+"""The same packed, 0x00RRGGBB: one number for an entry or a pixel."""
+Bytes = NDArray[np.uint8]
+"""Bytes of memory."""
+Raster = NDArray[Scalar]
+"""Anything as [line, element]; `Raster[np.uint16]` is a raster of words."""
+AnyArray = NDArray[Any]
+"""An array of any kind."""

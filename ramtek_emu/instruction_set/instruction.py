@@ -1,0 +1,136 @@
+"""Instruction: an instruction as one value, and the words that it is sent as.
+
+>>> str(normal("SET", {"foreground": 1}))
+'SET  foreground 1'
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from ramtek_emu.arrays import Words
+from ramtek_emu.errors import InstructionError
+from ramtek_emu.instruction_set.table import (
+    ADDRESSING_NAMES,
+    FLAG_NAMES,
+    FORMAT_OF_NAME,
+    ILLEGAL,
+    OPERANDS,
+    OPERANDS_1,
+    OPERANDS_2,
+    Flags,
+    InstructionFormat,
+)
+
+OperandValue = int | Sequence[int]
+"""The value of an operand: one number, or one for each of its words."""
+NO_WORDS: Final[Words] = np.zeros(0, np.uint16)
+MOST_BYTES: Final = 0xFFFF
+"""The longest data field: its length is one word."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Instruction:
+    """An instruction: its format, its low byte, its operands as words, and its data."""
+
+    format: InstructionFormat
+    low_byte: int = 0
+    operands: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    length: int | None = None
+    """The number of bytes of data; None if there is no data field."""
+    data: Words = field(default_factory=lambda: NO_WORDS)
+
+    def data_bytes(self) -> bytes:
+        """The data as bytes without padding: high byte first, or low byte first with reverse packing."""
+        packed = self.data.astype("<u2" if self.low_byte & Flags.REVERSE_PACKING else ">u2")
+        return packed.tobytes()[: self.length]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Instruction) and np.array_equal(encode(self), encode(other))
+
+    def __hash__(self) -> int:
+        return hash(encode(self).tobytes())
+
+    def __str__(self) -> str:
+        operands = [f"{name} {', '.join(map(str, words))}" for name, words in self.operands.items()]
+        if self.format.is_normal:
+            low = [name for flag, name in FLAG_NAMES.items() if self.low_byte & flag]
+            low += filter(None, [ADDRESSING_NAMES.get(self.low_byte & Flags.ADDRESSING)])
+        else:
+            low = [str(self.low_byte)] if self.low_byte else []
+        length = [] if self.length is None else [f"{self.length} bytes"]
+        return f"{self.format.name:<5}{'; '.join(low + operands + length)}".rstrip()
+
+
+def encode(instruction: Instruction) -> Words:
+    """The words of an instruction."""
+    format = instruction.format
+    if format is ILLEGAL:
+        return np.concatenate((np.array(instruction.operands.get("word", ()), np.uint16), instruction.data))
+    head = [format.opcode << 8 | instruction.low_byte]
+    if format.is_normal:
+        flag_words = [
+            sum(1 << bit for bit, operand in enumerate(operands) if operand.name in instruction.operands)
+            for operands in (OPERANDS_1, OPERANDS_2)
+        ]
+        # A flag that is set has its flag word, even if that word names no operand.
+        for flag, word in zip((Flags.OPERANDS_1, Flags.OPERANDS_2), flag_words, strict=True):
+            if instruction.low_byte & flag:
+                head.append(word)
+        for operand in OPERANDS_1 + OPERANDS_2:
+            head.extend(instruction.operands.get(operand.name, ()))
+        if instruction.length is not None:
+            head.append(instruction.length)
+    else:
+        for name in format.fixed or ():
+            head.extend((instruction.length or 0,) if name == "length" else instruction.operands[name])
+    return np.concatenate((np.array(head, np.uint16), instruction.data))
+
+
+def normal(
+    name: str,
+    operands: Mapping[str, OperandValue | None],
+    data: Words = NO_WORDS,
+    length: int | None = None,
+    flags: int = 0,
+) -> Instruction:
+    """A normal instruction with these operands; numbers from -32768 to 65535 become words of 16 bits."""
+    named = {key: operand_words(key, value) for key, value in operands.items() if value is not None}
+    if any(operand.name in named for operand in OPERANDS_1):
+        flags |= Flags.OPERANDS_1
+    if any(operand.name in named for operand in OPERANDS_2):
+        flags |= Flags.OPERANDS_2
+    if length is None and len(data):
+        length = 2 * len(data)
+    if length is not None:
+        flags |= Flags.DATA
+        if not 0 <= length <= MOST_BYTES:
+            raise InstructionError(
+                f"the data of {name} must be 0 to {MOST_BYTES} bytes, not {length}; "
+                "send them in several instructions"
+            )
+    return Instruction(FORMAT_OF_NAME[name], int(flags), named, length, data)
+
+
+def operand_words(name: str, value: OperandValue) -> tuple[int, ...]:
+    """The words of an operand; InstructionError if their number or range is wrong."""
+    if name not in OPERANDS:
+        raise InstructionError(
+            f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; choose one of them"
+        )
+    numbers = tuple(value) if isinstance(value, Sequence | np.ndarray) else (value,)
+    if len(numbers) != OPERANDS[name].words:
+        raise InstructionError(
+            f"{name} must be {OPERANDS[name].words} numbers, not {len(numbers)}; give all of them"
+        )
+    for number in numbers:
+        whole = isinstance(number, int | np.integer) and not isinstance(number, bool)
+        if not whole or not -0x8000 <= number <= 0xFFFF:
+            raise InstructionError(
+                f"{name} must be whole numbers from -32768 to 65535, not {number!r}; round or clip it"
+            )
+    return tuple(int(number) & 0xFFFF for number in numbers)

@@ -1,0 +1,176 @@
+"""Cursors and the joystick unit: marks on the screen that a host places and reads, and that a user moves.
+
+What is modeled: positions, visible and blinking cursors, their shapes, TRACK and ENTER, the connection of
+joysticks to cursors. What is **not**: the joystick's speed and spring, how a cursor was mixed into the video.
+
+A position is an element and a line of the screen, whatever part of the memory is shown there. Otherwise a
+program that moves the display origin with the cursor would lose it (Hardware: PRG, orig.c).
+
+Hardware: LIN (words in screen coordinates, TRACK and ENTER); NCAR (in pixel coordinates); JPL (in global
+coordinates; the shape of 32 x 32 around (15, 15), which device drives which cursor).
+Assumed: reading a cursor clears its ENTER, so that one press is read once; every cursor reports the switches,
+since the unit has one set; positions beyond the screen are kept, and the shape is clipped; RSET and INIT
+leave the cursors as they are, like the lookup table; the joystick drives cursor 0 until the host connects it
+to others.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from ramtek_emu.arrays import Bytes, Dots
+
+VISIBLE: Final = 1 << 10
+BLINK: Final = 1 << 11
+TRACK: Final = 1 << 12
+ENTER: Final = 1 << 13
+"""The bits of the state in the word that holds the line as well (Hardware: LIN)."""
+LINE_BITS: Final = 0x3FF
+"""The bits of the line in that word."""
+SHAPE_SIZE: Final = 32
+SHAPE_CENTER: Final = 15
+
+
+def cross() -> Dots:
+    """The shape of a cursor until a host loads another, (32, 32).
+
+    Assumed: an upright cross of 15 x 15 pixels, open in the middle so that the pixel it points at is visible;
+    the 9300's shape is in no source.
+    """
+    shape = np.zeros((SHAPE_SIZE, SHAPE_SIZE), np.bool_)
+    arm = [*range(SHAPE_CENTER - 7, SHAPE_CENTER - 1), *range(SHAPE_CENTER + 2, SHAPE_CENTER + 8)]
+    shape[arm, SHAPE_CENTER] = shape[SHAPE_CENTER, arm] = True
+    return shape
+
+
+@dataclass
+class Cursor:
+    """A cursor: its place on the screen and how it is shown."""
+
+    element: int = 0
+    line: int = 0
+    state: int = 0
+    """VISIBLE, BLINK and any other bits that the host wrote above those of the line."""
+    enter: bool = False
+    """Whether ENTER was pressed since the host last read this cursor."""
+    shape: Dots = field(default_factory=cross, repr=False)
+
+    @property
+    def is_visible(self) -> bool:
+        """Whether the cursor is shown."""
+        return bool(self.state & VISIBLE)
+
+    @property
+    def blinks(self) -> bool:
+        """Whether the cursor is shown and hidden in turns."""
+        return bool(self.state & BLINK)
+
+
+class Cursors:
+    """The cursors of a display, and the switches of its joystick unit."""
+
+    def __init__(self, count: int) -> None:
+        self.all = tuple(Cursor() for _ in range(count))
+        self.track = False
+        """The TRACK switch."""
+        self.enter_is_pressed = False
+        """Whether ENTER was pressed since the interface's status was last cleared."""
+        self.driven = {0: 1}
+        """The cursors that each tracking device drives, one bit for each cursor."""
+        self.changed = 0
+        """How often a shape was changed; it never decreases."""
+
+    def __len__(self) -> int:
+        return len(self.all)
+
+    def __getitem__(self, number: int) -> Cursor:
+        return self.all[number]
+
+    def __contains__(self, number: int) -> bool:
+        return 0 <= number < len(self.all)
+
+    def place(self, number: int, element: int, line: int, state: int) -> None:
+        """Move a cursor and set its state, as the host does."""
+        cursor = self.all[number]
+        cursor.element, cursor.line, cursor.state = element, line, state
+
+    def state_of(self, number: int) -> int:
+        """The state bits as the host reads them; reading clears the ENTER of this cursor."""
+        cursor = self.all[number]
+        state = (
+            cursor.state & ~(TRACK | ENTER) | (TRACK if self.track else 0) | (ENTER if cursor.enter else 0)
+        )
+        cursor.enter = False
+        return state
+
+    def shape(self, number: int, rows: Bytes) -> None:
+        """Change the shape of a cursor: up to 32 rows of four bytes, the highest bit leftmost."""
+        dots = np.unpackbits(rows, axis=1).astype(np.bool_)
+        self.all[number].shape = self.all[number].shape.copy()
+        self.all[number].shape[: len(dots)] = dots
+        self.changed += 1
+
+    @property
+    def seen(self) -> tuple[tuple[int, int, int], ...]:
+        """Element, line and state of every cursor that is visible."""
+        return tuple([(each.element, each.line, each.state) for each in self.all if each.state & VISIBLE])
+
+    def forget_enter(self) -> None:
+        """Clear the ENTER of every cursor, so that no read reports it."""
+        for cursor in self.all:
+            cursor.enter = False
+
+    def hide(self) -> None:
+        """Hide every cursor."""
+        for cursor in self.all:
+            cursor.state = 0
+
+
+class Joystick:
+    """A tracking device that a user moves: `display.joystick` in Python, the mouse in a window."""
+
+    def __init__(self, cursors: Cursors, elements: int, lines: int, device: int = 0) -> None:
+        self._cursors = cursors
+        self._limits = elements - 1, lines - 1
+        self._device = device
+
+    @property
+    def driven(self) -> tuple[Cursor, ...]:
+        """The cursors that this device moves."""
+        mask = self._cursors.driven.get(self._device, 0)
+        return tuple(cursor for number, cursor in enumerate(self._cursors.all) if mask >> number & 1)
+
+    @property
+    def position(self) -> tuple[int, int]:
+        """The element and line of the first cursor that it moves; (0, 0) if it moves none."""
+        driven = self.driven
+        return (driven[0].element, driven[0].line) if driven else (0, 0)
+
+    def move_to(self, element: int, line: int) -> None:
+        """Move its cursors to a place; they stop at the edges of the screen."""
+        place = min(max(int(element), 0), self._limits[0]), min(max(int(line), 0), self._limits[1])
+        for cursor in self.driven:
+            cursor.element, cursor.line = place
+
+    def move_by(self, elements: int, lines: int) -> None:
+        """Move its cursors by some elements and lines."""
+        element, line = self.position
+        self.move_to(element + elements, line + lines)
+
+    @property
+    def track(self) -> bool:
+        """The TRACK switch: programs draw while it is on."""
+        return self._cursors.track
+
+    @track.setter
+    def track(self, is_on: bool) -> None:
+        self._cursors.track = bool(is_on)
+
+    def press_enter(self) -> None:
+        """Press ENTER: each cursor reports it at its next read, and the interface requests an interrupt."""
+        for cursor in self._cursors.all:
+            cursor.enter = True
+        self._cursors.enter_is_pressed = True

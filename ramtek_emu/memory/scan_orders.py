@@ -1,0 +1,189 @@
+"""Windows, points and the eight scan orders: the place of each word of an image.
+
+A window is inclusive at both ends and may lie partly or wholly outside the memory. Words follow each other in
+one direction (inner); at the edge of the window they continue one step further in the other direction
+(outer). A run is what lies between two edges: a line or a column of the window. Steps are counted from the
+corner where the scan starts: inner steps in words, outer steps in runs.
+
+Hardware: PRG, LONG, ASF (the eight codes); LIN, JPL (the run wraps at the window's edge to the next line).
+Assumed: at the end of the window, words continue at the corner where the scan starts, as counters do. Words
+that start before the window continue into it, since counters compare with the far edges only (JPL reads pairs
+of pixels from even elements on, also where its window begins at an odd one). A start beyond the far edge of a
+run is at the next run, and one beyond the last run is at the first.
+Assumed: a window whose right is left of its left, or whose bottom is above its top, holds no word.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+from ramtek_emu.arrays import Raster, Scalar
+
+
+class Point(NamedTuple):
+    """An element (x) and a line (y)."""
+
+    element: int
+    line: int
+
+
+class Window(NamedTuple):
+    """Left, top, right and bottom, all inclusive."""
+
+    left: int
+    top: int
+    right: int
+    bottom: int
+
+    @property
+    def width(self) -> int:
+        """How many elements each of its lines has."""
+        return max(0, self.right - self.left + 1)
+
+    @property
+    def height(self) -> int:
+        """How many lines it has."""
+        return max(0, self.bottom - self.top + 1)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the window holds no word."""
+        return self.right < self.left or self.bottom < self.top
+
+    def holds(self, point: Point) -> bool:
+        """Whether the point lies inside."""
+        return self.left <= point.element <= self.right and self.top <= point.line <= self.bottom
+
+    def intersection(self, other: Window) -> Window:
+        """The part that both windows cover; it may be empty."""
+        return Window(
+            max(self.left, other.left),
+            max(self.top, other.top),
+            min(self.right, other.right),
+            min(self.bottom, other.bottom),
+        )
+
+    def moved(self, elements: int, lines: int) -> Window:
+        """The window moved to the right and down."""
+        return Window(self.left + elements, self.top + lines, self.right + elements, self.bottom + lines)
+
+
+class ScanOrder(NamedTuple):
+    """The directions of one of the eight codes."""
+
+    vertical: bool
+    leftward: bool
+    upward: bool
+
+    def oriented(self, raster: Raster[Scalar]) -> Raster[Scalar]:
+        """A view of [line, element] data as [outer, inner]."""
+        if self.leftward:
+            raster = raster[:, ::-1]
+        if self.upward:
+            raster = raster[::-1]
+        return raster.T if self.vertical else raster
+
+    def inner_and_outer(self, window: Window) -> tuple[int, int]:
+        """How many words a run has, and how many runs the window has."""
+        if self.vertical:
+            return window.height, window.width
+        return window.width, window.height
+
+    def corner(self, window: Window) -> Point:
+        """Where the scan of the window starts."""
+        return Point(
+            window.right if self.leftward else window.left, window.bottom if self.upward else window.top
+        )
+
+    def steps(self, window: Window, point: Point) -> tuple[int, int]:
+        """The inner and outer steps from the corner to a point; negative if the point lies before it."""
+        across = window.right - point.element if self.leftward else point.element - window.left
+        down = window.bottom - point.line if self.upward else point.line - window.top
+        return (down, across) if self.vertical else (across, down)
+
+    def stepped(self, corner: Point, inner: int, outer: int) -> Point:
+        """The point that is so many steps from the corner: the inverse of `steps`."""
+        across, down = (outer, inner) if self.vertical else (inner, outer)
+        return Point(
+            corner.element + (-across if self.leftward else across),
+            corner.line + (-down if self.upward else down),
+        )
+
+    def entry(self, window: Window, start: Point) -> tuple[int, int]:
+        """The inner and outer steps of the first word, if the words begin at `start`."""
+        inner, outer = self.steps(window, start)
+        along, runs = self.inner_and_outer(window)
+        if inner >= along:
+            inner, outer = 0, outer + 1
+        return inner, 0 if outer >= runs else outer
+
+    def words_before(self, window: Window, start: Point) -> int:
+        """How many words from `start` on come before the scan stays inside the window."""
+        inner, outer = self.entry(window, start)
+        if inner >= 0 and outer >= 0:
+            return 0
+        along = self.inner_and_outer(window)[0]
+        return along * max(1, -outer) - inner
+
+    def after(self, window: Window, start: Point, count: int) -> Point:
+        """The point after `count` words that begin at `start`."""
+        if not count:
+            return start
+        inner, outer = self.entry(window, start)
+        along, runs = self.inner_and_outer(window)
+        first = along - inner
+        if count < first:
+            inner += count
+        else:
+            more, inner = divmod(count - first, along)
+            outer += 1 + more
+        return self.stepped(self.corner(window), inner, outer % runs if outer >= 0 else outer)
+
+    def block_window(self, start: Point, inner: int, outer: int) -> Window:
+        """The window that a block of inner x outer words covers if its first word is at `start`."""
+        width, height = (outer, inner) if self.vertical else (inner, outer)
+        left = start.element - width + 1 if self.leftward else start.element
+        top = start.line - height + 1 if self.upward else start.line
+        return Window(left, top, left + width - 1, top + height - 1)
+
+
+SCAN_ORDERS: Final = (
+    ScanOrder(False, False, False),  # 0: left to right, top to bottom
+    ScanOrder(False, True, False),  # 1: right to left, top to bottom
+    ScanOrder(False, False, True),  # 2: left to right, bottom to top
+    ScanOrder(False, True, True),  # 3: right to left, bottom to top
+    ScanOrder(True, False, False),  # 4: top to bottom, left to right
+    ScanOrder(True, False, True),  # 5: bottom to top, left to right
+    ScanOrder(True, True, False),  # 6: top to bottom, right to left
+    ScanOrder(True, True, True),  # 7: bottom to top, right to left
+)
+
+
+class Block(NamedTuple):
+    """Consecutive words that fill a rectangle: its first point, its sizes, the number of its first word."""
+
+    start: Point
+    inner: int
+    outer: int
+    first: int
+
+
+def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterator[Block]:
+    """The rectangles that `count` words from `start` on fill: at most three each time around the window."""
+    along, runs = order.inner_and_outer(window)
+    corner = order.corner(window)
+    inner, outer = order.entry(window, start)
+    done = 0
+    while done < count:
+        left = count - done
+        point = order.stepped(corner, inner, outer)
+        if inner or left < along:
+            block = Block(point, min(along - inner, left), 1, done)
+        else:
+            block = Block(point, along, min(left // along, runs - outer), done)
+        yield block
+        done += block.inner * block.outer
+        inner, outer = 0, outer + block.outer
+        if outer == runs:
+            outer = 0

@@ -1,0 +1,109 @@
+"""Executors for cursors: writing and reading in three kinds of coordinates, shapes, tracking devices.
+
+Hardware: LIN (screen coordinates: element; line with visible and blink; TRACK and ENTER when read); NCAR
+(pixel coordinates, the same words); JPL (global coordinates: element, line, a word of the state).
+Assumed: screen coordinates are places on the screen; pixel coordinates are those of the memory shown there,
+by display origin, zoom and video origin; global coordinates equal screen coordinates, as on a system of one
+channel. Writing a cursor that does not exist has no effect and reading it gives 0; both set the
+illegal-instruction status.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from ramtek_emu.instruction_set.instruction import Instruction
+from ramtek_emu.memory.cursors import LINE_BITS
+from ramtek_emu.processor.processor import Processor, executes
+from ramtek_emu.video.view import pixel_at, screen_at
+
+SHAPE_BYTES_PER_ROW: Final = 4
+
+
+def is_there(processor: Processor, instruction: Instruction) -> bool:
+    """Whether the display has the cursor of the instruction; if not, the illegal-instruction bit is set."""
+    if instruction.low_byte in processor.cursors:
+        return True
+    processor.flag_illegal()
+    return False
+
+
+def element_bits(processor: Processor) -> int:
+    """The bits that hold an element: ten on the 9300 (Hardware: LIN), eleven on wider displays."""
+    return 0x3FF if processor.configuration.elements <= 0x400 else 0x7FF
+
+
+@executes("WCSS")
+def write_cursor(processor: Processor, instruction: Instruction) -> None:
+    """Place a cursor in screen coordinates."""
+    if is_there(processor, instruction):
+        (element,), (line,) = instruction.operands.values()
+        place = element & element_bits(processor), line & LINE_BITS
+        processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
+
+
+@executes("WCSP")
+def write_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
+    """Place a cursor in pixel coordinates."""
+    if is_there(processor, instruction):
+        (element,), (line,) = instruction.operands.values()
+        pixel = element & element_bits(processor), line & LINE_BITS
+        place = screen_at(processor.parameters, processor.configuration, *pixel)
+        processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
+
+
+@executes("WCSG")
+def write_global_cursor(processor: Processor, instruction: Instruction) -> None:
+    """Place a cursor in global coordinates; the state is a separate word."""
+    if is_there(processor, instruction):
+        (element,), (line,), (state,) = instruction.operands.values()
+        processor.cursors.place(instruction.low_byte, element & 0xFFF, line & 0xFFF, state)
+
+
+@executes("RCSS")
+def read_cursor(processor: Processor, instruction: Instruction) -> None:
+    """Reply the place of a cursor in screen coordinates, with its state and the switches."""
+    if not is_there(processor, instruction):
+        return processor.reply(np.zeros(2, np.uint16))
+    cursor = processor.cursors[instruction.low_byte]
+    state = processor.cursors.state_of(instruction.low_byte)
+    words = cursor.element & element_bits(processor), cursor.line & LINE_BITS | state & ~LINE_BITS
+    processor.reply(np.array(words, np.uint16))
+
+
+@executes("RCSP")
+def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
+    """Reply the place of a cursor in pixel coordinates, with its state and the switches."""
+    if not is_there(processor, instruction):
+        return processor.reply(np.zeros(2, np.uint16))
+    cursor = processor.cursors[instruction.low_byte]
+    element, line = pixel_at(processor.parameters, processor.configuration, cursor.element, cursor.line)
+    state = processor.cursors.state_of(instruction.low_byte)
+    processor.reply(np.array((element, line & LINE_BITS | state & ~LINE_BITS), np.uint16))
+
+
+@executes("RCSG")
+def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
+    """Reply the place of a cursor in global coordinates; the state is a separate word."""
+    if not is_there(processor, instruction):
+        return processor.reply(np.zeros(3, np.uint16))
+    cursor = processor.cursors[instruction.low_byte]
+    state = processor.cursors.state_of(instruction.low_byte)
+    processor.reply(np.array((cursor.element & 0xFFFF, cursor.line & 0xFFFF, state), np.uint16))
+
+
+@executes("LCF")
+def load_cursor_shape(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: JPL (32 rows of two words, low byte first). Assumed: fewer rows replace the topmost ones."""
+    if is_there(processor, instruction):
+        data = instruction.data.astype("<u2").view(np.uint8)[: instruction.length]
+        rows = data[: len(data) // SHAPE_BYTES_PER_ROW * SHAPE_BYTES_PER_ROW].reshape(-1, SHAPE_BYTES_PER_ROW)
+        processor.cursors.shape(instruction.low_byte, rows[:32])
+
+
+@executes("DDCC")
+def connect_device(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: JPL (bit c: the device drives cursor c)."""
+    processor.cursors.driven[instruction.low_byte] = instruction.operands["cursors"][0]

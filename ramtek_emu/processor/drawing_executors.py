@@ -1,0 +1,153 @@
+"""Executors of the instructions that draw: vectors, points, conics, circles and text.
+
+Assumed: with the additive flag, the pixels between the dots of characters, rasters and textures stay
+unchanged, as its name suggests; without it the background word is written there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ramtek_emu.drawing import curves, text, vectors
+from ramtek_emu.instruction_set.instruction import Instruction
+from ramtek_emu.instruction_set.table import Flags
+from ramtek_emu.memory.parameters import STANDARD_FONT, signed
+from ramtek_emu.memory.scan_orders import Point
+from ramtek_emu.processor.processor import Processor, executes
+
+
+def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
+    """What the instruction writes lines with."""
+    foreground, background = processor.colors(instruction)
+    transparent = bool(instruction.low_byte & Flags.ADDITIVE)
+    return vectors.Ink(foreground, background, processor.parameters.texture, transparent)
+
+
+@executes("WVL")
+def write_linked_vectors(processor: Processor, instruction: Instruction) -> None:
+    """Draw from the operating point through all vertices; the operating point moves to the last.
+
+    Hardware: LIN, BTL, JPL (from the operating point through every vertex, which it ends at); BTL (a
+    vector to the operating point is a point); NCAR (texture, write window).
+    """
+    parameters = processor.parameters
+    vertices = processor.placed(processor.points(instruction), instruction.low_byte)
+    if len(vertices):
+        linked = np.concatenate(([parameters.start], vertices))
+        vectors.write_linked(processor.frame_buffer, linked, ink(processor, instruction), parameters.enable)
+        parameters.start = Point(*vertices[-1].tolist())
+
+
+@executes("WVU")
+def write_unlinked_vectors(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: four numbers for each vector, start and end; the operating point moves to the last end."""
+    parameters = processor.parameters
+    points = processor.points(instruction, 4).reshape(-1, 2)
+    if len(points):
+        points = processor.placed(points, instruction.low_byte)
+        lines = points[0::2], points[1::2]
+        vectors.write_lines(processor.frame_buffer, *lines, ink(processor, instruction), parameters.enable)
+        parameters.start = Point(*points[-1].tolist())
+
+
+@executes("WPT")
+def write_points(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (disabled code: two numbers a point). Assumed: the operating point moves to the last."""
+    parameters = processor.parameters
+    points = processor.placed(processor.points(instruction), instruction.low_byte)
+    if len(points):
+        word, _ = processor.colors(instruction)
+        processor.frame_buffer.write_points(points[:, 0], points[:, 1], word, parameters.enable)
+        parameters.start = Point(*points[-1].tolist())
+
+
+@executes("CIRC")
+def write_circles(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (center and radius in elements; the operating point becomes the center).
+
+    Assumed: three numbers for each of several circles; radii are 16-bit numbers without a sign; with relative
+    addressing each center is counted from the one before.
+    """
+    parameters = processor.parameters
+    circles = processor.points(instruction, 3)
+    if not len(circles):
+        return
+    word, _ = processor.colors(instruction)
+    centers = processor.placed(circles[:, :2], instruction.low_byte).tolist()
+    for center, radius in zip(centers, (circles[:, 2] & 0xFFFF).tolist(), strict=True):
+        curves.write_circle(processor.frame_buffer, Point(*center), radius, word, parameters.enable)
+    parameters.start = Point(*centers[-1])
+
+
+@executes("WC")
+def write_conic(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: LIN (from the operating point to the data point, or for a number of pixels).
+
+    Assumed: the operating point moves to the last pixel; of several data points the first is used; without a
+    data point and without a number of pixels, a closed curve is drawn once.
+    """
+    parameters = processor.parameters
+    points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)
+    stop = Point(*points[0].tolist()) if len(points) else None
+    elements, lines = curves.conic_pixels(parameters.conic, parameters.start, stop)
+    word, _ = processor.colors(instruction)
+    processor.frame_buffer.write_points(elements, lines, word, parameters.enable)
+    parameters.start = Point(int(elements[-1]), int(lines[-1]))
+
+
+@executes("WT")
+def write_text(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: BTL, LIN, JPL (cells of 7 x 9); LIN (the swap flag); JPL (size factors)."""
+    parameters = processor.parameters
+    foreground, background = processor.colors(instruction)
+    style = text.TextStyle(
+        dimensions=parameters.dimensions,
+        spacing=parameters.spacing,
+        size=(1 + (parameters.scale & 0x0F), 1 + (parameters.scale >> 8 & 0x0F)),
+        foreground=foreground,
+        background=background,
+        transparent=bool(instruction.low_byte & Flags.ADDITIVE),
+    )
+    is_standard = parameters.font == STANDARD_FONT
+    next_cell = text.write_text(
+        processor.frame_buffer,
+        processor.characters if is_standard else processor.loaded_characters,
+        instruction.data_bytes(),
+        style,
+        window=parameters.window,
+        order=parameters.order,
+        start=parameters.start,
+        enable=parameters.enable,
+    )
+    # The coordinates of the operating point are registers of 16 bits.
+    parameters.start = Point(signed(next_cell.element & 0xFFFF), signed(next_cell.line & 0xFFFF))
+
+
+@executes("LPF")
+def load_character(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: LIN (twelve rows, a byte each, the first in the high byte).
+
+    Assumed: the highest bit is the leftmost dot, as in rasters; the character of that code is replaced until
+    the display is switched off, since RSET keeps the lookup table too.
+    """
+    load_rows(processor, instruction, ">u2")
+
+
+@executes("LPFRP")
+def load_reversed_character(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: as LPF with the low byte first, from its name."""
+    load_rows(processor, instruction, "<u2")
+
+
+def load_rows(processor: Processor, instruction: Instruction, packing: str) -> None:
+    """Replace the character whose code is in the low byte; `packing` is the byte order of its rows."""
+    words = [word for (word,) in instruction.operands.values()]
+    rows = np.array(words, packing).view(np.uint8)
+    shape = np.unpackbits(rows[:, np.newaxis], axis=1).astype(np.bool_)
+    processor.loaded_characters[instruction.low_byte] = shape
+
+
+@executes("ATTPF")
+def attach_font(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (FFh: the standard font). Assumed: any other number: the loaded characters."""
+    processor.parameters.font = instruction.low_byte

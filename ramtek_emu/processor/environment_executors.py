@@ -1,0 +1,125 @@
+"""Executors for reset, parameters, status, view and waiting, and for words that are no instruction."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from ramtek_emu.instruction_set.instruction import Instruction
+from ramtek_emu.instruction_set.table import FORMATS, OPERANDS
+from ramtek_emu.memory.parameters import Parameters
+from ramtek_emu.processor.processor import Processor, Status, executes
+
+MOST_SAVED: Final = 16
+"""How many environments PUSHE can save. Assumed: one more sets the illegal-instruction status."""
+
+
+@executes("???")
+def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: PRG (the status bit). Assumed: each word alone is skipped."""
+    processor.flag_illegal()
+    processor.illegal_words += max(1, len(instruction.data))
+
+
+def consume(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: an instruction known by name only is consumed and sets the illegal-instruction status."""
+    processor.flag_illegal()
+    processor.unimplemented += 1
+
+
+for _form in FORMATS:
+    if _form.unimplemented:
+        executes(_form.name)(consume)
+
+
+@executes("RSET")
+def reset(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: LIN libdoc (clears interrupts, parameters and screen); BTL (the lookup table stays).
+
+    Assumed: an ENTER that no host has read is such an interrupt; the next program must not read it.
+    """
+    initialize(processor, instruction)
+    processor.clear_status()
+    processor.cursors.forget_enter()
+    processor.frame_buffer.fill(processor.parameters.whole_window, processor.parameters.background)
+
+
+@executes("INIT")
+def initialize(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: only the parameters are reset, since libdoc mentions erasing for RSET only."""
+    processor.parameters = Parameters.at_reset(processor.configuration)
+    processor.saved.clear()
+
+
+@executes("NOP")
+@executes("SET")
+def do_nothing(processor: Processor, instruction: Instruction) -> None:
+    """Do nothing; the operands were set already."""
+
+
+@executes("PUSHE")
+def save_environment(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: all parameters are saved, zoom and font included."""
+    if len(processor.saved) < MOST_SAVED:
+        processor.saved.append(processor.parameters.copy())
+    else:
+        processor.flag_illegal()
+
+
+@executes("POPE")
+def restore_environment(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: restores the parameters saved last; without any, sets the illegal-instruction status."""
+    if processor.saved:
+        processor.parameters = processor.saved.pop()
+    else:
+        processor.flag_illegal()
+
+
+@executes("READP")
+def read_parameters(processor: Processor, instruction: Instruction) -> None:
+    """Reply the operands that the flag words name, in the order in which they would be sent.
+
+    Assumed: all of it; without flag words every operand is replied, those of the second word last.
+    """
+    names = instruction.operands or OPERANDS
+    words = [word for name in names for word in processor.parameters.operand(name)]
+    processor.reply(np.array(words, np.uint16))
+
+
+@executes("RERR")
+def read_error_status(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: the reply is one word, the request bits of the status register, which are then cleared."""
+    processor.reply(np.array([processor.status & ~Status.READY], np.uint16))
+    processor.clear_status()
+
+
+@executes("ZOOM")
+def zoom(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: JPL, NCAR (line factor less one in the high byte, element factor less one in the low byte).
+
+    Assumed: four bits of each are used.
+    """
+    word = instruction.operands["zoom"][0]
+    processor.parameters.zoom = 1 + (word & 0x0F), 1 + (word >> 8 & 0x0F)
+
+
+@executes("SELVO")
+def select_video_origin(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (1: at the bottom). Assumed: only the lowest bit is used."""
+    processor.parameters.origin_at_bottom = bool(instruction.low_byte & 1)
+
+
+@executes("WAITVR")
+def wait_for_retrace(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (before a table is loaded). Assumed: the number is a channel; all retrace together."""
+    if processor.beam is not None:
+        processor.beam.wait_for_line(processor.beam.lines)
+
+
+@executes("WAITL")
+def wait_for_line(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: the word is a line of the screen, from the top; for one that does not exist no time passes."""
+    line = instruction.operands["line"][0]
+    if processor.beam is not None and line < processor.beam.lines:
+        processor.beam.wait_for_line(line)

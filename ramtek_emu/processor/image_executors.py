@@ -1,0 +1,150 @@
+"""Executors of the instructions for images: erase, write, read, raster, fill and copy."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ramtek_emu.drawing.areas import area
+from ramtek_emu.instruction_set.instruction import Instruction
+from ramtek_emu.instruction_set.table import Flags
+from ramtek_emu.memory.scan_orders import Point
+from ramtek_emu.processor.processor import Processor, executes
+
+
+@executes("ERS")
+def erase(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag)."""
+    parameters = processor.parameters
+    _, background = processor.colors(instruction)
+    processor.frame_buffer.fill(parameters.window, background, parameters.enable)
+
+
+@executes("BERS")
+def erase_everything(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: as ERS, but the whole memory, whatever the windows are: the B stands for bulk."""
+    parameters = processor.parameters
+    _, background = processor.colors(instruction)
+    enable = parameters.enable._replace(window=parameters.whole_window)
+    processor.frame_buffer.fill(parameters.whole_window, background, enable)
+
+
+@executes("WI")
+def write_image(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: LIN, PIC (one word a pixel); JPL, NCAR (mode 1, two pixels a word; a run goes on).
+
+    Assumed: of an odd number of bytes in mode 0 the last is dropped; in mode 1 the upper planes become 0.
+    """
+    parameters = processor.parameters
+    if parameters.image_mode & 1:
+        words = np.frombuffer(instruction.data_bytes(), np.uint8).astype(np.uint16)
+    else:
+        words = instruction.data[: (instruction.length or 0) // 2]
+    parameters.start = processor.frame_buffer.write_scan(
+        parameters.window, parameters.order, parameters.start, words, parameters.enable
+    )
+
+
+@executes("RI")
+def read_image(processor: Processor, instruction: Instruction) -> None:
+    """Hardware: LIN (one word a pixel), NCAR (the read mask).
+
+    Assumed: planes that do not exist read as 0; reading moves the operating point as writing does; the byte
+    that pads the last word is 0.
+    """
+    parameters = processor.parameters
+    length = instruction.length or 0
+    count = length if parameters.image_mode & 1 else length // 2
+    words, parameters.start = processor.frame_buffer.read_scan(
+        parameters.window, parameters.order, parameters.start, count
+    )
+    words &= np.uint16(parameters.read_mask)
+    if parameters.image_mode & 1:
+        data = words.astype(np.uint8).tobytes() + bytes(length % 2)
+        reverse = instruction.low_byte & Flags.REVERSE_PACKING
+        words = np.frombuffer(data, "<u2" if reverse else ">u2").astype(np.uint16)
+    processor.reply(words)
+
+
+@executes("WR")
+def write_raster(processor: Processor, instruction: Instruction) -> None:
+    """Write one bit a pixel: foreground for 1, background for 0.
+
+    Hardware: PRG rast.c, LIN wr.c (one bit a pixel into the window in scan order, bytes as in text, highest
+    bit first).
+    Assumed: 1 is the foreground; a line of the window need not end with a byte; with the additive flag,
+    pixels of 0 are not written.
+    """
+    parameters = processor.parameters
+    bits = np.unpackbits(np.frombuffer(instruction.data_bytes(), np.uint8))
+    foreground, background = processor.colors(instruction)
+    words = np.array((background, foreground), np.uint16)[bits]
+    dots = bits.astype(np.bool_) if instruction.low_byte & Flags.ADDITIVE else None
+    parameters.start = processor.frame_buffer.write_scan(
+        parameters.window, parameters.order, parameters.start, words, parameters.enable, dots
+    )
+
+
+@executes("WRP")
+def write_random_pixels(processor: Processor, instruction: Instruction) -> None:
+    """Assumed: three numbers a pixel, element, line and word; the operating point ends at the last."""
+    parameters = processor.parameters
+    pixels = processor.points(instruction, 3)
+    if len(pixels):
+        points = processor.placed(pixels[:, :2], instruction.low_byte)
+        words = (pixels[:, 2] & 0xFFFF).astype(np.uint16)
+        processor.frame_buffer.write_points(points[:, 0], points[:, 1], words, parameters.enable)
+        parameters.start = Point(*points[-1].tolist())
+
+
+@executes("FILL")
+def fill(processor: Processor, instruction: Instruction) -> None:
+    """Fill the area around the operating point with the foreground.
+
+    Hardware: NCAR (disabled code: mode 0 is "fill until"; a circle was drawn in the foreground before; words
+    are compared through the read mask).
+    Assumed: in mode 0, or without data, the area ends at pixels of the foreground; in every other mode it
+    consists of pixels with the word at the operating point. Pixels are connected up, down, left and right,
+    within the memory and the write window. An operating point outside fills nothing. The operating point
+    does not move.
+    """
+    parameters = processor.parameters
+    frame_buffer = processor.frame_buffer
+    inside = parameters.write_window.intersection(frame_buffer.window)
+    if not inside.holds(parameters.start):
+        return
+    mask = np.uint16(parameters.read_mask)
+    part = frame_buffer.words[inside.top : inside.bottom + 1, inside.left : inside.right + 1] & mask
+    line, element = parameters.start.line - inside.top, parameters.start.element - inside.left
+    foreground, _ = processor.colors(instruction)
+    if (instruction.length or 0) >= 2 and instruction.data[0]:
+        open_pixels = part == part[line, element]
+    else:
+        open_pixels = part != np.uint16(foreground & parameters.whole_word) & mask
+    lines, elements = np.nonzero(area(open_pixels, line, element))
+    frame_buffer.write_points(elements + inside.left, lines + inside.top, foreground, parameters.enable)
+
+
+@executes("COPY")
+def copy_image(processor: Processor, instruction: Instruction) -> None:
+    """Copy the window to another place.
+
+    Assumed: the data are the element and the line of the corner where the scan of the copy starts; without
+    data it is the operating point. The words are read through the read mask, all of them before any is
+    written. Outside the memory nothing is copied. The operating point becomes that corner.
+    """
+    parameters = processor.parameters
+    points = processor.placed(processor.points(instruction)[:1], instruction.low_byte)
+    corner = Point(*points[0].tolist()) if len(points) else parameters.start
+    order = parameters.order
+    inside = parameters.window.intersection(processor.frame_buffer.window)
+    parameters.start = corner
+    if inside.is_empty:
+        return
+    words, _ = processor.frame_buffer.read_scan(
+        inside, order, order.corner(inside), inside.width * inside.height
+    )
+    words &= np.uint16(parameters.read_mask)
+    first, origin = order.corner(inside), order.corner(parameters.window)
+    place = Point(corner.element + first.element - origin.element, corner.line + first.line - origin.line)
+    along, runs = order.inner_and_outer(inside)
+    processor.frame_buffer.write_block(place, order, words.reshape(runs, along), parameters.enable)

@@ -1,0 +1,175 @@
+"""Processor: executes instructions, and owns the parameters, the status and the replies.
+
+Each instruction has a row in the instruction table and an executor: a function in the module of its subject,
+which enters itself in EXECUTORS with the decorator `executes`.
+
+What is modeled: the parameters, the addressing modes, image modes, replies in order, the illegal-instruction
+bit. What is **not**: logical functions other than replacement; they replace (Assumed: FUNC, whose codes no
+source explains); write-enable offsets, which are kept and read back but have no effect (Assumed: WOF; its
+only client, NCAR, sends the corner of the window along with coordinates that include it already).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from enum import IntFlag
+from typing import Final
+
+import numpy as np
+
+from ramtek_emu.arrays import Numbers, Words
+from ramtek_emu.configuration import Configuration
+from ramtek_emu.errors import ReplyError
+from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
+from ramtek_emu.instruction_set.table import Flags
+from ramtek_emu.memory.character_rom import characters, loadable
+from ramtek_emu.memory.cursors import Cursors
+from ramtek_emu.memory.frame_buffer import FrameBuffer
+from ramtek_emu.memory.lookup_table import LookupTable
+from ramtek_emu.memory.parameters import Parameters
+from ramtek_emu.video.beam import Beam
+
+MOST_WAITING: Final = 1 << 22
+"""The largest number of words of replies that wait for the host.
+
+Assumed: further replies are dropped when the host does not read; hardware would stop the host.
+"""
+
+
+class Status(IntFlag):
+    """Bits of the interface's status register (Hardware: PRG, DRIVER.c, gpst)."""
+
+    CURSOR = 0o000001
+    ILLEGAL = 0o000002
+    READY = 0o000100
+
+
+class Processor:
+    """The instruction processor, between the decoder and the memories."""
+
+    def __init__(
+        self,
+        configuration: Configuration,
+        frame_buffer: FrameBuffer,
+        lookup_table: LookupTable,
+        cursors: Cursors | None = None,
+        beam: Beam | None = None,
+    ) -> None:
+        self.configuration = configuration
+        self.frame_buffer = frame_buffer
+        self.lookup_table = lookup_table
+        self.cursors = Cursors(configuration.cursors) if cursors is None else cursors
+        self.beam = beam
+        self.parameters = Parameters.at_reset(configuration)
+        self.saved: list[Parameters] = []
+        """The parameters that PUSHE saved, the newest last."""
+        self.characters = characters()
+        """The dots of the ROM, (256, 9, 7)."""
+        self.loaded_characters = loadable(self.characters)
+        """The dots of the characters that a host can load, (256, 12, 8); until then those of the ROM."""
+        self.illegal_words = 0
+        """How many words were skipped because no instruction begins with them; it never decreases."""
+        self.unimplemented = 0
+        """How many instructions without effect, known by name only, were consumed; it never decreases."""
+        self._illegal = False
+        self._replies: deque[Words] = deque()
+        self._waiting = 0
+
+    @property
+    def status(self) -> Status:
+        """The bits of the interface's status register."""
+        status = Status.READY
+        if self._illegal:
+            status |= Status.ILLEGAL
+        return status | Status.CURSOR if self.cursors.enter_is_pressed else status
+
+    def flag_illegal(self) -> None:
+        """Set the illegal-instruction bit."""
+        self._illegal = True
+
+    def clear_status(self) -> None:
+        """Clear the request bits of the status register."""
+        self._illegal = self.cursors.enter_is_pressed = False
+
+    def clear_replies(self) -> None:
+        """Drop the replies that the host has not read."""
+        self._replies.clear()
+        self._waiting = 0
+
+    @property
+    def waiting(self) -> int:
+        """How many words the host can receive."""
+        return self._waiting
+
+    def execute(self, instruction: Instruction) -> None:
+        """Set the operands of an instruction, then execute it; no instruction raises an error."""
+        if instruction.format.is_normal and instruction.operands and not instruction.format.requests_operands:
+            self.parameters.take(instruction.operands, instruction.low_byte)
+        EXECUTORS[instruction.format.name](self, instruction)
+
+    def points(self, instruction: Instruction, numbers_each: int = 2) -> Numbers:
+        """The data as (n, numbers_each) signed numbers; an incomplete row at the end is dropped."""
+        size = 2 * numbers_each
+        words = instruction.data[: (instruction.length or 0) // size * numbers_each]
+        return words.view(np.int16).reshape(-1, numbers_each).astype(np.int64)
+
+    def placed(self, points: Numbers, flags: int) -> Numbers:
+        """The (n, 2) points in absolute coordinates, by the addressing mode in the flags.
+
+        Assumed: with relative addressing each point is counted from the one before, the first from the
+        operating point. Coordinates are registers of 16 bits.
+        """
+        if flags & Flags.ADDRESSING == Flags.RELATIVE:
+            points = np.cumsum(points, axis=0) + self.parameters.start
+        elif flags & Flags.ADDRESSING:
+            points = points + self.parameters.base(flags)
+        else:
+            return points
+        wrapped: Numbers = (points + 0x8000) % 0x10000 - 0x8000
+        return wrapped
+
+    def reply(self, words: Words) -> None:
+        """Keep words until the host receives them."""
+        words = words[: MOST_WAITING - self._waiting]
+        if len(words):
+            self._replies.append(words)
+            self._waiting += len(words)
+
+    def take_reply(self, count: int) -> Words:
+        """The next `count` words of the replies; ReplyError if there are fewer."""
+        if not 0 <= count <= self._waiting:
+            raise ReplyError(
+                f"the words received must be 0 to {self._waiting}, which wait, not {count}; "
+                "send an instruction that reads them first"
+            )
+        taken = []
+        left = count
+        while left:
+            words = self._replies.popleft()
+            if len(words) > left:
+                self._replies.appendleft(words[left:])
+                words = words[:left]
+            taken.append(words)
+            left -= len(words)
+        self._waiting -= count
+        return np.concatenate(taken) if taken else NO_WORDS
+
+    def colors(self, instruction: Instruction) -> tuple[int, int]:
+        """The foreground and the background word, exchanged if the swap flag is set."""
+        pair = self.parameters.foreground, self.parameters.background
+        return (pair[1], pair[0]) if instruction.low_byte & Flags.SWAP else pair
+
+
+Executor = Callable[[Processor, Instruction], None]
+EXECUTORS: Final[dict[str, Executor]] = {}
+
+
+def executes(name: str) -> Callable[[Executor], Executor]:
+    """Enter the decorated function in EXECUTORS, as the executor of the instruction of that name."""
+
+    def enter(executor: Executor) -> Executor:
+        EXECUTORS[name] = executor
+        return executor
+
+    return enter

@@ -1,0 +1,56 @@
+"""Beam: the clock of a display, and the line that the beam of its monitor is on.
+
+What is modeled: a clock that only instructions advance, and a beam that moves line by line from the top of a
+field to its bottom and is then blanked for some lines. So the same stream always gives the same field. What
+is **not**: interlace, real time, pauses of the host.
+"""
+
+from __future__ import annotations
+
+from ramtek_emu.timing import Timing
+
+
+class Beam:
+    """The clock and the beam of one display."""
+
+    def __init__(self, timing: Timing, lines: int) -> None:
+        self.timing = timing
+        self.lines = lines
+        self.nanoseconds = 0
+        """The time since power-on; it never decreases."""
+
+    @property
+    def lines_done(self) -> int:
+        """How many lines were begun since power-on, blanked lines included."""
+        return self.nanoseconds // self.timing.line
+
+    @property
+    def lines_per_field(self) -> int:
+        """How many lines a field has, blanked lines included."""
+        return self.lines + self.timing.blanked_lines
+
+    @property
+    def field_number(self) -> int:
+        """How many whole fields were shown since power-on."""
+        return self.lines_done // self.lines_per_field
+
+    @property
+    def line(self) -> int:
+        """The line that the beam is on; `lines` and above are blanked lines."""
+        return self.lines_done % self.lines_per_field
+
+    @property
+    def blink_is_on(self) -> bool:
+        """Whether blinking cursors are shown in this field."""
+        return self.field_number // self.timing.blink_fields % 2 == 0
+
+    def charge(self, words: int, pixels: int) -> None:
+        """Advance the clock by the time of an instruction."""
+        timing = self.timing
+        self.nanoseconds += timing.instruction + words * timing.word + pixels * timing.pixel
+
+    def wait_for_line(self, line: int) -> None:
+        """Advance the clock until the beam begins a line; not at all if it is on that line."""
+        ahead = (line - self.line) % self.lines_per_field
+        if ahead:
+            self.nanoseconds = (self.lines_done + ahead) * self.timing.line

@@ -1,0 +1,209 @@
+"""ScanOut: makes fields. The words shown go through the lookup table, and the cursors are drawn on top.
+
+What is modeled: each word selects its entry; display origin, zoom and video origin select the part of the
+memory that is shown; with fewer planes than the table has address bits, the upper bits of the table's address
+counter select the section that is shown; the cursors; a black-and-white monitor; with a beam, each line as
+the memories were when the beam passed it. What is **not**: interlace, the levels of blanking and border.
+
+Hardware: GM (one word selects all three components); LIN, JPL, BTL (parking the address counter); PRG cmap.c,
+introdoc (a black-and-white monitor sees the low eight bits of an entry).
+Assumed: a cursor is white where the picture is dark and black where it is light, so that it is always
+visible; how the 9300 mixed it into the video is in no source.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+
+from ramtek_emu.arrays import Colors, PackedColors
+from ramtek_emu.configuration import Configuration, EntryFormat
+from ramtek_emu.memory.cursors import BLINK, SHAPE_CENTER, VISIBLE, Cursor, Cursors
+from ramtek_emu.memory.frame_buffer import FrameBuffer
+from ramtek_emu.memory.lookup_table import LookupTable
+from ramtek_emu.memory.parameters import Parameters
+from ramtek_emu.video.beam import Beam
+from ramtek_emu.video.dirty_lines import lines_with
+from ramtek_emu.video.view import PLAIN_VIEW, View, copy_shown, pixel_at, view_of
+
+WHITE: Final = np.uint32(0xFFFFFF)
+Stamp = tuple[int, tuple[object, ...]]
+"""Identifies a field: the count of words of entries written, and all else that a field depends on.
+
+Fields with equal stamps are equal.
+"""
+
+
+class ScanOut:
+    """Makes fields from a frame buffer, a lookup table and cursors."""
+
+    def __init__(
+        self,
+        configuration: Configuration,
+        frame_buffer: FrameBuffer,
+        lookup_table: LookupTable,
+        cursors: Cursors,
+        parameters: Callable[[], Parameters],
+        beam: Beam | None = None,
+    ) -> None:
+        self.lines = configuration.shown_lines
+        self.elements = configuration.shown_elements
+        self.blink_is_on = True
+        """Whether blinking cursors are shown; with a beam, the beam decides instead."""
+        self._configuration = configuration
+        self._frame_buffer = frame_buffer
+        self._lookup_table = lookup_table
+        self._cursors = cursors
+        self._parameters = parameters
+        self._beam = beam
+        self._words = configuration.largest_word + 1
+        self._is_parted = self._words < lookup_table.size
+        # np.take is fastest with indices of type intp; they are renewed when words were written. Measured:
+        # mode "clip" takes 1.3 times as long; converting the words for each field, 32 lines at a time, 1.8
+        # times; indices on huge pages take 3 % less, which is not worth the memory.
+        self._indices = np.zeros((self.lines, self.elements), np.intp)
+        self._indices_of: tuple[int, View] = (-1, PLAIN_VIEW)
+        """What the indices were made from: the count of words written, and the view."""
+        shown_words = frame_buffer.words[: self.lines, : self.elements]
+        self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
+        self._gray: tuple[int, PackedColors] = (-1, lookup_table.packed)
+        # With a beam: the image on the monitor, and the number of lines painted since power-on.
+        self._monitor_image: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
+        self._painted = 0
+
+    @property
+    def stamp(self) -> Stamp:
+        """A value that changes whenever the field may have changed."""
+        seen, beam = self._cursors.seen, self._beam
+        return self._lookup_table.written, (
+            self._frame_buffer.written,
+            view_of(self._parameters()),
+            self._is_parted and self._partition(),
+            seen,
+            seen and (self._cursors.changed, any(state & BLINK for _, _, state in seen) and self._blink()),
+            beam and beam.lines_done,
+        )
+
+    @property
+    def monitor_image(self) -> tuple[int, PackedColors]:
+        """With a beam: how many lines were painted since power-on, and the image on the monitor."""
+        return self._painted, self._monitor_image
+
+    @monitor_image.setter
+    def monitor_image(self, shown: tuple[int, PackedColors]) -> None:
+        self._painted = shown[0]
+        self._monitor_image[...] = shown[1]
+
+    def scan_out_into(self, pixels: PackedColors) -> None:
+        """Write the field as 0x00RRGGBB into a (lines, elements) uint32 array."""
+        if self._beam is not None:
+            self._finish_field(self._beam, pixels)
+        else:
+            self._renew_indices()
+            self._table().take(self._indices, out=pixels, mode="wrap")
+        self._mark_cursors(pixels)
+
+    def scan_out_changes_into(self, pixels: PackedColors, held: Stamp | None) -> Stamp:
+        """Bring an array up to date with the current field, and return the stamp of that field.
+
+        `held` is the stamp of the field that the array holds, or None if it holds anything else, such as a
+        field that was drawn on. After a load of entries, only lines that show some of them are written.
+        """
+        stamp = self.stamp
+        held_entries, held_rest = held or (0, None)
+        if held_rest != stamp[1] or self._beam is not None:
+            self.scan_out_into(pixels)
+            return stamp
+        self._renew_indices()
+        first, end = self._lines_showing(self._lookup_table.entries_written_since(held_entries))
+        self._table().take(self._indices[first:end], out=pixels[first:end], mode="wrap")
+        self._mark_cursors(pixels[first:end], first)
+        return stamp
+
+    def field(self) -> Colors:
+        """The field, (lines, elements, 3) uint8: red, green, blue."""
+        pixels = np.empty((self.lines, self.elements), "<u4")
+        self.scan_out_into(pixels)
+        return pixels.view(np.uint8).reshape(self.lines, self.elements, 4)[:, :, 2::-1].copy()
+
+    def follow_beam(self) -> None:
+        """Paint the lines that the beam has passed since the last call, as the memories are now."""
+        beam = self._beam
+        if beam is None or beam.lines_done == self._painted:
+            return
+        total = beam.lines_per_field
+        start = max(self._painted, beam.lines_done - total)
+        begun = start // total * total
+        while begun < beam.lines_done:
+            first, last = max(start - begun, 0), min(beam.lines_done - begun, self.lines)
+            if first < last:
+                self._paint(first, last, self._monitor_image)
+            begun += total
+        self._painted = beam.lines_done
+
+    def _finish_field(self, beam: Beam, pixels: PackedColors) -> None:
+        # Lines that the beam has not reached show the memories as they are now; in the retrace, all lines do.
+        self.follow_beam()
+        line = beam.line if beam.line < self.lines else 0
+        pixels[:line] = self._monitor_image[:line]
+        self._paint(line, self.lines, pixels)
+
+    def _paint(self, first: int, last: int, pixels: PackedColors) -> None:
+        elements, lines = pixel_at(
+            self._parameters(), self._configuration, np.arange(self.elements), np.arange(first, last)
+        )
+        words = self._frame_buffer.words[np.ix_(lines, elements)]
+        self._table().take(words, out=pixels[first:last], mode="wrap")
+
+    def _mark_cursors(self, pixels: PackedColors, first_line: int = 0) -> None:
+        for cursor in self._cursors.all:
+            if cursor.state & VISIBLE and (self._blink() or not cursor.blinks):
+                mark(pixels, cursor, first_line)
+
+    def _lines_showing(self, run: tuple[int, int] | None) -> tuple[int, int]:
+        """The first line that shows an entry of a range, and the one after the last; all lines if unknown."""
+        is_plain = self._words == self._lookup_table.size and self._indices_of[1] == PLAIN_VIEW
+        return self._lines_with(*run) if run and is_plain else (0, self.lines)
+
+    def _renew_indices(self) -> None:
+        # This is `view_of` without the call: with cold caches it would take a fiftieth of a scan-out.
+        parameters = self._parameters()
+        view = parameters.origin, parameters.zoom, parameters.origin_at_bottom
+        now = self._frame_buffer.written, view
+        if self._indices_of == now:
+            return
+        self._indices_of = now
+        self._lines_with.cache_clear()
+        copy_shown(self._indices, self._frame_buffer.words, view)
+
+    def _blink(self) -> bool:
+        return self.blink_is_on if self._beam is None else self._beam.blink_is_on
+
+    def _table(self) -> PackedColors:
+        table = self._lookup_table.packed
+        if self._configuration.monochrome:
+            if self._gray[0] != self._lookup_table.written:
+                short = self._configuration.entry_format is EntryFormat.WORD_12
+                low = (table >> 4 & 0xF0 | table & 0x0F) if short else table & 0xFF
+                self._gray = self._lookup_table.written, (low * 0x010101).astype(np.uint32)
+            table = self._gray[1]
+        return table[self._partition() :] if self._is_parted else table
+
+    def _partition(self) -> int:
+        return self._lookup_table.addressed_entry // self._words * self._words if self._is_parted else 0
+
+
+def mark(pixels: PackedColors, cursor: Cursor, first_line: int = 0) -> None:
+    """Draw a cursor, clipped at the edges, on lines of a field of which the first is `first_line`."""
+    size = cursor.shape.shape[0]
+    top, left = cursor.line - first_line - SHAPE_CENTER, cursor.element - SHAPE_CENTER
+    up, across = max(0, -top), max(0, -left)
+    part = pixels[max(0, top) : max(0, top + size), max(0, left) : max(0, left + size)]
+    shape = cursor.shape[up : up + part.shape[0], across : across + part.shape[1]]
+    if part.size:
+        # The highest bit of green tells light from dark well enough, and is quick to test.
+        light = (part >> 15 & 1).astype(np.bool_)
+        part[shape] = np.where(light[shape], np.uint32(0), WHITE)

@@ -1,0 +1,100 @@
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, read_snapshot
+from tests.ramtek_emu.processes import environment, run, started, stream
+from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, words
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (["serve"], 2),
+        (["serve", "--stdio", "--port", "1"], 2),
+        (["serve", "--port", "70000"], 2),
+        (["serve", "--stdio", "--configuration", "gmr_9301"], 2),
+        (["serve", "--stdio", "-o", "/none/at/all.png"], 73),
+        (["serve", "--stdio", "-o", "-"], 2),
+        (["play"], 2),
+        (["play", "none.ramtek"], 66),
+        (["play", "."], 66),
+        (["list", "none.ramtek"], 66),
+        (["assemble", "none.txt", "-o", "/none/at/all"], 73),
+        (["plai"], 2),
+    ],
+)
+def test_what_cannot_be_done_is_refused_in_words(arguments: list[str], code: int) -> None:
+    refused = run(*arguments)
+    assert refused.returncode == code
+    assert refused.stdout == b""
+    assert refused.stderr
+    assert b"Traceback" not in refused.stderr
+
+
+@pytest.mark.parametrize("command", ["play", "list", "assemble", "serve"])
+def test_help_has_examples_and_loads_nothing_heavy(command: str) -> None:
+    script = (
+        "import sys; from ramtek_emu.commands.ramtek import ramtek\n"
+        f"try: ramtek(['{command}', '--help'])\n"
+        "except SystemExit: pass\n"
+        "print(*sorted({'numpy', 'pygame', 'PIL'} & set(sys.modules)), file=sys.stderr)"
+    )
+    shown = subprocess.run(
+        [sys.executable, "-c", script], env=environment(), capture_output=True, text=True, check=True
+    )
+    assert "Examples:" in shown.stdout
+    assert f"ramtek {command}" in shown.stdout
+    assert shown.stderr.strip() == ""
+
+
+def test_what_hosts_sent_is_recorded_in_whole_instructions(tmp_path: Path) -> None:
+    record = tmp_path / "hosts.ramtek"
+    with started("serve", "--port", 0, "--record", record) as process:
+        assert process.stdout is not None
+        address = process.stdout.readline().decode().strip()
+        for part in (OUTLINE, words("0A03 0040 0 0"), COLOR_MAP):
+            with TcpPort(address) as port:
+                port.send(part)
+                port.send(words("0B01 0002"))
+                if part[0] != 0x0A03:
+                    port.receive(1)
+            time.sleep(0.3)
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(10) == 0
+    read = words("0B01 0002")
+    assert record.read_bytes() == stream(np.concatenate((OUTLINE, read, COLOR_MAP, read)))
+
+
+def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
+    first, second = tmp_path / "first.png", tmp_path / "second.png"
+    halves = np.split(OUTLINE, [11])
+    arguments = ("--configuration", "PRINCETON_9300", "--snapshot", first)
+    assert run("play", "-", *arguments, data=stream(halves[0])).returncode == 0
+    served = run("serve", "--stdio", "--start", first, "--snapshot", second, data=stream(halves[1]))
+    assert served.returncode == 0
+    twin = Ramtek9300(PRINCETON_9300)
+    twin.send(OUTLINE)
+    assert (read_snapshot(second).words == twin.words).all()
+    assert run("play", "-", "--start", first, *arguments, "--force").returncode == 2
+    (tmp_path / "none.png").write_bytes(b"no picture")
+    refused = run("play", "-", "--start", tmp_path / "none.png", "-o", tmp_path / "o.png")
+    assert refused.returncode == 65
+    assert refused.stderr == (
+        b"ramtek: a snapshot must begin as a PNG file does, not as something else; "
+        b"take a new one with --snapshot\n"
+    )
+
+
+def test_a_configuration_that_is_not_known_is_told_the_nearest() -> None:
+    refused = run("play", "-", "-o", "x.png", "--configuration", "gmr")
+    assert refused.returncode == 2
+    assert b"must be one of GMR_9300, " in refused.stderr
+    assert b"not 'gmr'; did you mean GMR_9300?" in refused.stderr

@@ -1,0 +1,285 @@
+"""`ramtek serve` as other programs see it: real processes, pipes and sockets."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ramtek_emu import Ramtek9300, TcpPort, instructions, read_snapshot
+from ramtek_emu.host.server import Server
+from ramtek_emu.monitor.window import Monitor
+from tests.ramtek_emu.processes import ROOT, PipedHost, environment, field_of, run, started, stream
+from tests.ramtek_emu.recorded_streams import BARS, OUTLINE, words
+from tests.ramtek_emu.screens import shown
+
+pygame = pytest.importorskip("pygame")
+
+
+def fill_polygon(host: PipedHost | TcpPort, left: int, top: int, width: int, height: int) -> None:
+    """Fill what is outlined: read each line, write between its first and last word that is not 0."""
+    for line in range(top, top + height):
+        host.send(words(f"0B03 0040 {left:X} {line:X} {left + width - 1:X} {line:X} {2 * width:X}"))
+        row = np.flatnonzero(host.receive(width))
+        if len(row):
+            host.send(words(f"0902 0044 0005 {left + row[0]:X} {line:X} {left + row[-1]:X} {line:X}"))
+
+
+TRIANGLE = instructions.write_vectors([[20, 10], [60, 45], [5, 40], [20, 10]], 9)
+
+
+def test_a_polygon_filler_works_on_a_pipe_and_over_tcp(tmp_path: Path) -> None:
+    twin = Ramtek9300()
+    twin.send(TRIANGLE)
+    expected = twin.words.copy()
+    for line in expected:
+        row = np.flatnonzero(line)
+        if len(row):
+            line[row[0] : row[-1] + 1] = 5
+    assert np.count_nonzero(expected) > 500
+    with started("serve", "--stdio", "--snapshot", tmp_path / "pipe.png") as process:
+        host = PipedHost(process)
+        host.send(TRIANGLE)
+        fill_polygon(host, 0, 0, 80, 50)
+        host.into.close()
+        assert host.out.read() == b""
+        assert process.wait(10) == 0
+    assert (read_snapshot(tmp_path / "pipe.png").words == expected).all()
+    with started("serve", "--port", "0", "--once", "--snapshot", tmp_path / "tcp.png") as process:
+        assert process.stdout is not None
+        with TcpPort(process.stdout.readline().decode().strip()) as port:
+            port.send(TRIANGLE)
+            fill_polygon(port, 0, 0, 80, 50)
+        assert process.wait(10) == 0
+    assert (read_snapshot(tmp_path / "tcp.png").words == expected).all()
+
+
+def test_a_program_that_changes_the_table_it_read_works_on_a_pipe(tmp_path: Path) -> None:
+    with started("serve", "--stdio", "-o", tmp_path / "table.png") as process:
+        host = PipedHost(process)
+        host.send(instructions.load_entries(0, [[10, 20, 30], [40, 50, 60]]))
+        host.send(instructions.read_entries(0, 4))
+        table = host.receive(4)
+        host.send(np.concatenate((words("0300 0000 0008"), table[[2, 3, 0, 1]])))
+        host.into.close()
+        assert process.wait(10) == 0
+    assert field_of(tmp_path / "table.png")[0, 0].tolist() == [40, 50, 60]
+
+
+def test_a_reply_comes_before_the_next_word_is_sent_and_dribbled_bytes_are_words(tmp_path: Path) -> None:
+    with started("serve", "--stdio", "-o", tmp_path / "dribbled.png") as process:
+        host = PipedHost(process)
+        for byte in stream(OUTLINE):
+            host.into.write(bytes((byte,)))
+        for column in (100, 101):
+            host.send(words(f"0B03 0040 {column:X} 64 {column:X} 64 2"))
+            assert host.receive(1).tolist() in ([128], [256])
+        host.into.write(b"\x07")
+        host.into.close()
+        assert process.wait(10) == 0
+        assert process.stderr is not None
+        assert b"within a word: its last byte was dropped" in process.stderr.read()
+    twin = Ramtek9300()
+    twin.send(OUTLINE)
+    assert (field_of(tmp_path / "dribbled.png") == twin.field()).all()
+
+
+def test_only_replies_are_on_stdout_and_the_rest_is_said_on_stderr() -> None:
+    answered = run("serve", "--stdio", data=stream(words("A3FF 0B03 0040 0 0 0 0 2 0A01 0008")))
+    assert answered.returncode == 0
+    assert answered.stdout == b"\0\0"
+    assert answered.stderr.decode().splitlines() == [
+        "1 word begins no instruction: skipped",
+        "the stream ends within an instruction: its 2 words were dropped",
+    ]
+    named = run("serve", "--stdio", data=stream(words("1100 1200 0500")))
+    assert named.stderr == b"2 instructions are known by name only: without effect\n"
+    nothing = run("serve", "--stdio")
+    assert (nothing.returncode, nothing.stdout, nothing.stderr) == (0, b"", b"")
+
+
+def test_a_host_that_takes_no_replies_still_gets_its_picture(tmp_path: Path) -> None:
+    with started("serve", "--stdio", "--snapshot", tmp_path / "late.png") as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdout.close()
+        process.stdin.write(stream(np.concatenate((words("0B03 0040 0 0 9 9 64"), OUTLINE))))
+        process.stdin.close()
+        assert process.wait(10) == 0
+    assert read_snapshot(tmp_path / "late.png").words.any()
+
+
+def test_the_shell_s_pipes_put_any_program_on_the_display(tmp_path: Path) -> None:
+    program = "import sys; sys.stdout.buffer.write(bytes.fromhex('020802000500'))"
+    command = f'{sys.executable} -c "{program}" | {sys.executable} -m ramtek_emu serve --stdio -o out.png'
+    done = subprocess.run(
+        command, shell=True, cwd=tmp_path, env=environment(), capture_output=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out.png").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_program_that_never_ends_is_interrupted_and_its_picture_is_there(
+    tmp_path: Path, number: signal.Signals
+) -> None:
+    with started("serve", "--stdio", "--snapshot", tmp_path / "s.png") as process:
+        host = PipedHost(process)
+        host.send(OUTLINE)
+        host.send(words("0B03 0040 64 64 64 64 2 0A01"))
+        assert host.receive(1).tolist() == [128]
+        process.send_signal(number)
+        assert process.wait(10) == 0
+    assert read_snapshot(tmp_path / "s.png").words.any()
+
+
+def test_two_pipes_put_a_program_that_reads_back_on_the_display(tmp_path: Path) -> None:
+    program = (
+        "import os\n"
+        "def send(*words): os.write(1, b''.join(word.to_bytes(2, 'little') for word in words))\n"
+        "send(0x0902, 0x0044, 7, 3, 3, 3, 3)\n"
+        "send(0x0B03, 0x0040, 3, 3, 3, 3, 2)\n"
+        "word = int.from_bytes(os.read(0, 2), 'little')\n"
+        "send(0x0902, 0x0044, word + 1, 4, 4, 4, 4)\n"
+    )
+    (tmp_path / "host.py").write_text(program)
+    python = sys.executable
+    command = (
+        "mkfifo replies; "
+        f"{python} host.py < replies | {python} -m ramtek_emu serve --stdio --snapshot s.png > replies"
+    )
+    done = subprocess.run(
+        command, shell=True, cwd=tmp_path, env=environment(), capture_output=True, check=False, timeout=20
+    )
+    assert done.returncode == 0, done.stderr
+    assert read_snapshot(tmp_path / "s.png").words[[3, 4], [3, 4]].tolist() == [7, 8]
+
+
+def test_a_server_prints_its_port_serves_one_host_after_the_other_and_ends_when_told(tmp_path: Path) -> None:
+    with started("serve", "--port", 0, "-o", tmp_path / "end.png", "--configuration", "jpl-9460") as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        address = process.stdout.readline().decode().strip()
+        assert address.startswith("tcp://127.0.0.1:")
+        for number in range(3):
+            with TcpPort(address) as port:
+                port.send(words(f"0902 0044 {number + 1:X} {number:X} 0 {number:X} 0 0B03 0040 0 0 2 0 6"))
+                assert port.receive(3).tolist()[: number + 1] == list(range(1, number + 2))
+            time.sleep(0.1)
+        process.send_signal(signal.SIGTERM)
+        begin = time.monotonic()
+        assert process.wait(10) == 0
+        assert time.monotonic() - begin < 5
+        assert f"wrote {tmp_path / 'end.png'}" in process.stderr.read().decode()
+
+
+def test_a_host_address_other_than_loopback_is_served_with_a_warning() -> None:
+    with started("serve", "--port", 0, "--host", "0.0.0.0") as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        port = int(process.stdout.readline().decode().strip().rpartition(":")[2])
+        socket.create_connection(("127.0.0.1", port), 5).close()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(10) == 0
+        assert b"whoever reaches tcp://0.0.0.0" in process.stderr.read()
+
+
+def test_the_window_shows_what_a_remote_host_draws_as_it_draws(on_screen: str) -> None:
+    with Server(Ramtek9300()) as server:
+        monitor = Monitor(server.display, on_tick=lambda: server.serve_for(0.01))
+        monitor.open()
+        with TcpPort(server.address) as host:
+            host.send(instructions.load_entries(0, [[n % 256, n // 4, 0] for n in range(1024)]))
+            counts = []
+            for part in np.split(BARS, 8):
+                host.send(part)
+                for _ in range(20):
+                    monitor.step(2)
+                counts.append(monitor.refreshed)
+                multiple = len(shown()) // 480
+                assert (shown()[::multiple, ::multiple] == server.display.field()).all()
+            assert len(set(counts)) == 8
+        assert server.display.words.max() == 319
+        monitor.close()
+
+
+def test_a_window_closes_at_once_while_a_host_is_still_sending(on_screen: str) -> None:
+    slow = np.tile(np.concatenate((instructions.write_image(np.full((480, 640), 5)), OUTLINE)), 200)
+    with Server(Ramtek9300()) as server:
+        monitor = Monitor(server.display, on_tick=lambda: server.serve_for(0.01))
+        monitor.open()
+        program = (
+            "import sys, socket; s = socket.create_connection(('127.0.0.1', int(sys.argv[1])))\n"
+            "d = sys.stdin.buffer.read()\n"
+            "try: s.sendall(d)\nexcept OSError: pass"
+        )
+        host = subprocess.Popen([sys.executable, "-c", program, str(server.port)], stdin=subprocess.PIPE)
+        assert host.stdin is not None
+        host.stdin.write(slow.astype("<u2").tobytes())
+        host.stdin.close()
+        while not server.display.words.any():
+            monitor.step(5)
+        for _ in range(5):
+            monitor.step(5)
+        assert server.busy
+        pygame.event.post(pygame.event.Event(pygame.QUIT))
+        begin = time.monotonic()
+        while monitor.is_open:
+            monitor.step(5)
+        server.close()
+        assert time.monotonic() - begin < 0.25
+        host.wait(10)
+
+
+@pytest.mark.parametrize(
+    "arguments", [["play", "-"], ["serve", "--stdio", "--window", "--snapshot", "s.png"]]
+)
+def test_a_command_with_a_window_stays_until_it_is_told(
+    on_screen: str, tmp_path: Path, arguments: list[str]
+) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "ramtek_emu", *arguments],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    assert process.stdin is not None
+    process.stdin.write(OUTLINE.astype("<u2").tobytes())
+    process.stdin.flush()
+    time.sleep(1.2)
+    assert process.poll() is None
+    # The window's manager would send this as a request to close it.
+    process.send_signal(signal.SIGINT)
+    begin = time.monotonic()
+    _, said = process.communicate(timeout=10)
+    assert time.monotonic() - begin < 2
+    assert process.returncode == 0
+    assert b"Traceback" not in said
+
+
+def test_the_server_s_window_is_a_command(on_screen: str, tmp_path: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "ramtek_emu", "serve", "--port", "0", "--window"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    assert process.stdout is not None
+    with TcpPort(process.stdout.readline().decode().strip()) as host:
+        host.send(instructions.write_image(np.full((4, 4), 9), 3, 3))
+        stream, count = next(instructions.read_image(3, 3, 4, 4))
+        host.send(stream)
+        assert (host.receive(count) == 9).all()
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=10)
+    assert process.returncode == 0

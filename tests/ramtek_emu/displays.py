@@ -1,0 +1,41 @@
+"""Displays that were sent something, and what is read off them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ramtek_emu import (
+    Configuration,
+    Ramtek9300,
+    instructions,
+)
+from tests.ramtek_emu.strategies import sent_words
+
+
+def sent(*texts: str, configuration: Configuration | None = None) -> Ramtek9300:
+    """A display that was sent these words, in hexadecimal."""
+    display = Ramtek9300() if configuration is None else Ramtek9300(configuration)
+    for text in texts:
+        display.send(np.array([int(word, 16) for word in text.split()], np.uint16))
+    return display
+
+
+def box(display: Ramtek9300) -> tuple[int, int, int, int]:
+    """Left, top, right and bottom of the words that are not 0."""
+    lines, elements = np.nonzero(display.words)
+    return (int(elements.min()), int(lines.min()), int(elements.max()), int(lines.max()))
+
+
+def read(display: Ramtek9300, *words: int) -> list[int]:
+    """What the display answers to these words."""
+    display.send(sent_words(words))
+    answer: list[int] = display.receive(display.processor.waiting).tolist()
+    return answer
+
+
+def colored(display: Ramtek9300) -> Ramtek9300:
+    """The display with a dark picture."""
+    entries = display.configuration.largest_word + 1
+    display.send(instructions.load_entries(0, np.full((entries, 3), 40)))
+    display.send(instructions.park_table())
+    return display

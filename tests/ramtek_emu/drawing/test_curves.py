@@ -1,0 +1,141 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu import Ramtek9300
+from ramtek_emu.drawing.curves import MOST_PIXELS, conic_pixels
+from ramtek_emu.memory.scan_orders import Point, Window
+from tests.ramtek_emu import reference
+from tests.ramtek_emu.strategies import SMALL, masks, quick, sent_words, thorough, windows
+
+far = st.integers(-40, 60)
+
+
+def circle_places(center: tuple[int, int], radius: int) -> set[tuple[int, int]]:
+    """Of each column and each row the pixel nearest to the circle, where the circle is flat there."""
+    places = set()
+    for across in range(-radius, radius + 1):
+        away = np.abs(np.sqrt(radius**2 - across**2) - np.arange(radius + 1))
+        down = int(away.argmin())
+        if abs(across) <= down:
+            for x, y in ((across, down), (across, -down), (down, across), (-down, across)):
+                places.add((center[0] + x, center[1] + y))
+    return places
+
+
+@thorough
+@given(
+    st.lists(st.tuples(far, far, st.integers(0, 60)), min_size=1, max_size=3),
+    st.sampled_from([0x00, 0x40, 0xC0]),
+    masks,
+    windows(),
+)
+def test_circles_are_the_nearest_pixels(
+    circles: list[tuple[int, int, int]], addressing: int, mask: int, clip: Window
+) -> None:
+    display = Ramtek9300(SMALL)
+    display.send(sent_words([0x0806, 0x800B, 0x0002, mask, 999, 4, -3, 5, 6, *clip]))
+    display.send(
+        sent_words([0x6D01 | addressing, 6 * len(circles), *(n for circle in circles for n in circle)])
+    )
+    twin = [[0] * 13 for _ in range(9)]
+    base = {0x00: (0, 0), 0x40: (4, -3), 0xC0: (5, 6)}[addressing]
+    for across, down, radius in circles:
+        center = (base[0] + across, base[1] + down)
+        base = center if addressing == 0xC0 else base
+        for place in circle_places(center, radius):
+            reference.write_pixel(twin, place, 999, mask & 1023, clip)
+    assert display.words.tolist() == twin
+    assert display.processor.parameters.start == center
+
+
+def test_a_circle_that_was_drawn_is_filled_from_its_center() -> None:
+    display = Ramtek9300()
+    # The disabled code of the weather driver: circle, then fill until the foreground.
+    display.send(sent_words([0x6D0B, 0x0002, 9, 6, 300, 200, 50, 0x3A0D, 0x0001, 0xFF, 2, 0]))
+    lines, elements = np.ogrid[:480, :640]
+    away = np.sqrt((lines - 200) ** 2 + (elements - 300) ** 2)
+    assert (display.words[away < 49.5] == 9).all()
+    assert not display.words[away > 50.5].any()
+
+
+def trace(conic: tuple[int, ...], stop: Point | None = None) -> list[tuple[int, int]]:
+    elements, lines = conic_pixels((*conic, 0) if len(conic) == 5 else conic, Point(0, 0), stop)
+    return list(zip(elements.tolist(), lines.tolist(), strict=True))
+
+
+def is_connected(pixels: list[tuple[int, int]]) -> bool:
+    steps = np.diff(np.array(pixels), axis=0)
+    return bool((np.abs(steps).max(axis=1) == 1).all())
+
+
+@quick
+@given(st.integers(2, 120), st.integers(0, 3))
+def test_a_closed_conic_is_a_circle_once_around(radius: int, quarter: int) -> None:
+    across, down = [(1, 0), (0, 1), (-1, 0), (0, -1)][quarter]
+    pixels = trace((1, 1, 0, -2 * radius * across, -2 * radius * down))
+    center = (radius * across, radius * down)
+    assert set(pixels) <= {
+        (x + i, y + j) for x, y in circle_places(center, radius) for i in (-1, 0, 1) for j in (-1, 0, 1)
+    }
+    away = [abs(np.hypot(x - center[0], y - center[1]) - radius) for x, y in pixels]
+    assert max(away) <= 0.75
+    assert is_connected([*pixels, pixels[0]])
+    assert len(set(pixels)) == len(pixels)
+    # Clockwise on the screen, whose lines count down.
+    turned = sum(
+        (x - center[0]) * (n - center[1]) - (y - center[1]) * (m - center[0])
+        for (x, y), (m, n) in zip(pixels, [*pixels[1:], pixels[0]], strict=True)
+    )
+    assert turned > 0
+
+
+@quick
+@given(
+    st.integers(1, 9), st.integers(1, 9), st.integers(-4, 4), st.integers(-900, 900), st.integers(-900, 900)
+)
+def test_every_pixel_of_a_conic_lies_beside_the_curve(a: int, b: int, c: int, d: int, e: int) -> None:
+    if c * c >= 4 * a * b or (d, e) == (0, 0):
+        return
+    pixels = trace((a, b, c, d, e))
+    assert pixels[0] == (0, 0)
+    assert len(pixels) < 2 or is_connected(pixels)
+    for x, y in pixels:
+        slope = np.hypot(2 * a * x + c * y + d, 2 * b * y + c * x + e)
+        value = abs(a * x * x + b * y * y + c * x * y + d * x + e * y)
+        # Within about a pixel, or where the whole ellipse is no wider than that.
+        assert value <= 1.01 * slope + 4 * (a + b)
+
+
+@pytest.mark.parametrize("stop", [Point(100, 100), Point(200, 0), Point(100, -100), Point(30, -71)])
+def test_a_conic_stops_at_its_point_or_beside_it(stop: Point) -> None:
+    clockwise = trace((1, 1, 0, -200, 0), stop)
+    assert max(abs(clockwise[-1][0] - stop[0]), abs(clockwise[-1][1] - stop[1])) <= 1
+    other_way = trace((-1, -1, 0, 200, 0), stop)
+    assert max(abs(other_way[-1][0] - stop[0]), abs(other_way[-1][1] - stop[1])) <= 1
+    assert 560 <= len(clockwise) + len(other_way) <= 572
+
+
+def test_a_conic_stops_after_its_number_of_pixels() -> None:
+    assert len(trace((1, 1, 0, -200, 0, 17))) == 17
+    assert trace((0, 0, 0, 0, 0)) == [(0, 0)]
+    # A straight line has no end of its own.
+    assert len(trace((0, 0, 0, 0, 1))) == MOST_PIXELS
+    assert trace((0, 0, 0, 1, 1, 4)) == [(0, 0), (-1, 1), (-2, 2), (-3, 3)]
+
+
+def test_a_conic_comes_as_pairs_of_words_or_as_single_ones() -> None:
+    pairs, singles = Ramtek9300(), Ramtek9300()
+    pairs.send(sent_words([0x0F03, 0x9002, 7, 0, 1, 0, 1, 0, 0, 0, -80, 0, 0, 0, 0, 100, 100, 4, 140, 60]))
+    singles.send(sent_words([0x0F03, 0x9002, 7, 1, 1, 0, -80, 0, 0, 100, 100, 4, 140, 60]))
+    assert (pairs.words == singles.words).all()
+    assert pairs.processor.parameters.start == (140, 60)
+    assert np.count_nonzero(pairs.words) > 40
+    lines, elements = np.nonzero(pairs.words)
+    assert np.abs(np.hypot(elements - 140, lines - 100) - 40).max() < 0.75
+    # The coefficients stay: another quarter with a number of pixels, as extended pairs.
+    pairs.send(sent_words([0x0F02, 0x9000, 0, 1, 0, 1, 0, 0, -1, -80, 0, 0, 0, 5, 300, 300]))
+    assert np.count_nonzero(pairs.words[250:350, 250:350]) == 5

@@ -1,0 +1,152 @@
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu import NCAR_9460, Ramtek9300, instructions
+from ramtek_emu.memory.scan_orders import Window
+from tests.ramtek_emu import reference
+from tests.ramtek_emu.strategies import SMALL, masks, quick, sent_words, thorough, windows
+
+far = st.integers(-40, 60)
+
+
+@thorough
+@given(st.lists(st.tuples(far, far), min_size=2, max_size=6))
+def test_vectors_are_the_nearest_pixels_with_both_ends(vertices: list[tuple[int, int]]) -> None:
+    display = Ramtek9300(SMALL)
+    display.send(instructions.write_vectors(vertices, 9))
+    twin = np.zeros((9, 13), int)
+    for start, end in itertools.pairwise(vertices):
+        for element, line in reference.line_places(start, end):
+            if 0 <= element < 13 and 0 <= line < 9:
+                twin[line, element] = 9
+    assert (display.words == twin).all()
+    assert display.processor.parameters.start == vertices[-1]
+
+
+def test_a_vector_to_the_operating_point_is_a_point() -> None:
+    display = Ramtek9300(SMALL)
+    display.send(instructions.write_vectors([(4, 5)], 3))
+    assert np.argwhere(display.words).tolist() == [[5, 4]]
+
+
+def test_relative_vertices_count_from_the_one_before() -> None:
+    display = Ramtek9300(SMALL)
+    display.send(np.array([0x0EC3, 0x8002, 1, 2, 2, 8, 3, 0, 0xFFFF, 2], np.uint16))
+    assert np.argwhere(display.words).tolist() == [[2, 2], [2, 3], [2, 4], [2, 5], [3, 4], [4, 4]]
+    assert display.processor.parameters.start == (4, 4)
+
+
+def test_many_vectors_across_the_whole_range_take_little_time_and_memory() -> None:
+    display = Ramtek9300()
+    ends = np.tile([[-0x8000, -0x8000], [0x7FFF, 0x7FFF]], (4000, 1))
+    display.send(instructions.write_vectors(ends, 5))
+    assert (np.diagonal(display.words) == 5).all()
+
+
+vertex_lists = st.lists(st.tuples(far, far), min_size=1, max_size=12)
+addressings = st.sampled_from([0x00, 0x40, 0x80, 0xC0])
+
+
+@thorough
+@given(
+    vertex_lists,
+    st.tuples(far, far),
+    addressings,
+    st.integers(0, 0xFFFF) | st.just(0xFFFF),
+    st.integers(0, 15),
+    st.booleans(),
+    st.booleans(),
+    masks,
+    windows(),
+    st.booleans(),
+)
+def test_vectors_of_every_kind_are_those_of_the_twin(
+    vertices: list[tuple[int, int]],
+    start: tuple[int, int],
+    addressing: int,
+    pattern: int,
+    repeat: int,
+    swapped: bool,
+    additive: bool,
+    mask: int,
+    clip: Window,
+    linked: bool,
+) -> None:
+    bases = {0x00: (0, 0), 0x40: (3, -2), 0x80: (-5, 4), 0xC0: start}
+    if not linked and len(vertices) % 2:
+        vertices = [*vertices, (1, 2)]
+    display = Ramtek9300(SMALL)
+    display.send(instructions.erase(word=170))
+    display.send(instructions.set_parameters(index_1=bases[0x40], index_2=bases[0x80], start=start))
+    display.send(instructions.set_parameters(mask=mask, foreground=600, background=421))
+    display.send(instructions.set_parameters(write_window=clip, texture=(pattern, 0x1000 | repeat)))
+    opcode = 0x0E if linked else 0x35
+    flags = 0x01 | addressing | (0x10 if swapped else 0) | (0x20 if additive else 0)
+    numbers = [number for vertex in vertices for number in vertex]
+    display.send(sent_words([opcode << 8 | flags, 2 * len(numbers), *numbers]))
+
+    twin = [[170] * 13 for _ in range(9)]
+    places, last = [], bases[addressing]
+    for across, down in vertices:
+        here = (last[0] + across, last[1] + down)
+        places.append(here)
+        last = here if addressing == 0xC0 else last
+    lines = (
+        list(itertools.pairwise([start, *places]))
+        if linked
+        else list(zip(places[::2], places[1::2], strict=True))
+    )
+    one, zero = (421, 600) if swapped else (600, 421)
+    before = 0
+    for begin, end in lines:
+        row = reference.line_places(begin, end)
+        for number, place in enumerate(row):
+            bit = pattern >> (15 - (before + number) // (repeat + 1) % 16) & 1
+            if bit or not additive:
+                reference.write_pixel(twin, place, one if bit else zero, mask & 1023, clip)
+        before += len(row) - 1 if linked else 0
+    assert display.words.tolist() == twin
+    assert display.processor.parameters.start == places[-1]
+
+
+@quick
+@given(st.lists(st.tuples(far, far, st.integers(0, 0xFFFF)), min_size=1, max_size=30), masks)
+def test_random_pixels_and_points_land_where_they_say(pixels: list[tuple[int, int, int]], mask: int) -> None:
+    display = Ramtek9300(SMALL)
+    display.send(instructions.set_parameters(mask=mask, foreground=77))
+    display.send(sent_words([0x3901, 6 * len(pixels), *itertools.chain(*pixels)]))
+    twin = [[0] * 13 for _ in range(9)]
+    everywhere = (-99, -99, 99, 99)
+    for element, line, word in pixels:
+        reference.write_pixel(twin, (element, line), word, mask & 1023, everywhere)
+    assert display.words.tolist() == twin
+    places = [number for pixel in pixels for number in pixel[:2]]
+    display.send(sent_words([0x3801, 4 * len(pixels), *places]))
+    for element, line, _ in pixels:
+        reference.write_pixel(twin, (element, line), 77, mask & 1023, everywhere)
+    assert display.words.tolist() == twin
+    assert display.processor.parameters.start == pixels[-1][:2]
+
+
+def test_the_recorded_polyline_of_the_weather_driver_has_gaps() -> None:
+    display = Ramtek9300(NCAR_9460)
+    display.send(sent_words([0x0E0F, 0x8002, 8, 7, 10, 532, 0xFF00, 0x1000, 8, 100, 532, 100, 602]))
+    assert display.words[532, 10:42].tolist() == ([7] * 8 + [0] * 8) * 2
+    # The pattern runs on around the corner: 90 pixels before it, 5 more eights and 10.
+    assert display.words[533:541, 100].tolist() == [0] * 5 + [7] * 3
+
+
+@pytest.mark.parametrize("count", [1, 4, 5, 3000])
+def test_few_and_many_lines_are_drawn_alike(count: int) -> None:
+    ends = np.random.default_rng(count).integers(-300, 900, (count + 1, 2))
+    together, apart = Ramtek9300(), Ramtek9300()
+    together.send(instructions.write_vectors(ends, 9))
+    for start, end in itertools.pairwise(ends.tolist()):
+        apart.send(instructions.write_vectors([end], 9, start=start))
+    assert (together.words == apart.words).all()

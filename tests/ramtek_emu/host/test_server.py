@@ -1,0 +1,200 @@
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from contextlib import suppress
+
+import numpy as np
+import pytest
+
+from ramtek_emu import HostPort, PortError, Ramtek9300, TcpPort, instructions
+from ramtek_emu.host.server import REPLY_BYTES, Server
+from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
+from tests.ramtek_emu.serving import READ_EVERYTHING, serving, until
+
+
+def connected(server: Server) -> socket.socket:
+    return socket.create_connection(("127.0.0.1", server.port), 5)
+
+
+def closed(connection: socket.socket) -> bool:
+    """Whether the other side closes the connection within five seconds."""
+    connection.settimeout(5)
+    with suppress(ConnectionError):
+        return connection.recv(1) == b""
+    return True
+
+
+def test_a_host_draws_reads_back_and_draws_from_what_it_read() -> None:
+    here = Ramtek9300()
+    with serving() as server, TcpPort(server.address) as there:
+        ports: tuple[HostPort, ...] = (here, there)
+        for port in ports:
+            port.send(OUTLINE)
+            read = instructions.read_image(90, 40, 300, 200)
+            lines = []
+            for stream, count in read:
+                port.send(stream)
+                lines.append(port.receive(count))
+            image = np.concatenate(lines).reshape(200, 300)
+            assert image.any()
+            port.send(instructions.write_image(image[::-1], 90, 250))
+            port.send(instructions.read_entries(0, 4))
+            assert port.receive(4).tolist() == [0, 0, 0, 0]
+        there.send(instructions.read_image(0, 0, 1, 1).__next__()[0])
+        there.receive(1)
+        assert (server.display.words == here.words).all()
+
+
+def test_everything_can_be_asked_before_anything_is_read() -> None:
+    with serving() as server, TcpPort(server.address) as port:
+        port.send(instructions.write_image(np.arange(480 * 640).reshape(480, 640) % 1024))
+        for _ in range(8):
+            port.send(READ_EVERYTHING)
+        for _ in range(8):
+            assert (port.receive(480 * 640) == np.arange(480 * 640) % 1024).all()
+
+
+def test_a_host_that_takes_no_replies_is_read_no_further() -> None:
+    with serving() as server, connected(server) as host:
+        asked = np.tile(READ_EVERYTHING, 300_000).astype("<u2").tobytes()
+        host.settimeout(0.5)
+        with pytest.raises(TimeoutError):
+            host.sendall(asked)
+        assert server.busy
+        # What waits is bounded: what the socket holds, one full buffer, and the replies of one piece.
+        assert server._client is not None
+        assert len(server._client._replies) < REPLY_BYTES + (1 << 17)
+
+
+def test_words_come_whole_however_the_bytes_are_cut() -> None:
+    data = np.concatenate([OUTLINE, instructions.read_image(100, 100, 2, 1).__next__()[0]])
+    with serving() as server, connected(server) as host:
+        host.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        for byte in data.astype("<u2").tobytes():
+            host.sendall(bytes((byte,)))
+        host.settimeout(5)
+        reply = b""
+        while len(reply) < 4:
+            reply += host.recv(4)
+        twin = Ramtek9300()
+        twin.send(OUTLINE)
+        assert (server.display.words == twin.words).all()
+        assert reply == twin.words[100, 100:102].astype("<u2").tobytes()
+
+
+@pytest.mark.parametrize("partial", ["0A", "0A01", "0A03 0040 0000", "0A01 FFFE 0001 0002", "0E01 0008 0001"])
+@pytest.mark.parametrize("rudely", [False, True])
+def test_a_host_that_vanishes_in_mid_instruction_leaves_the_display_to_the_next(
+    partial: str, rudely: bool
+) -> None:
+    with serving() as server:
+        with TcpPort(server.address) as first:
+            first.send(words("0802 0002 0007"))
+            first.send(OUTLINE)
+            first.send(READ_EVERYTHING)
+            data = words(partial).astype("<u2").tobytes() + b"\x01"
+            until(server.display.words.any)
+            with suppress(PortError):
+                first._socket.setblocking(True)
+                first._socket.sendall(data)
+            if rudely:
+                # Closed with a reset instead of a farewell.
+                first._socket.setsockopt(
+                    socket.SOL_SOCKET, socket.SO_LINGER, b"\x01\x00\x00\x00\x00\x00\x00\x00"
+                )
+        until(lambda: not server.busy)
+        assert server.display.decoder.held_words == 0
+        assert server.display.processor.waiting == 0
+        before = server.display.words.copy()
+        assert before.any()
+        with TcpPort(server.address) as second:
+            stream, count = next(instructions.read_image(100, 100, 1, 1))
+            second.send(stream)
+            assert second.receive(count).tolist() == [before[100, 100]]
+            assert (server.display.words == before).all()
+
+
+def test_a_second_host_is_shown_out_and_the_first_stays() -> None:
+    with serving() as server, TcpPort(server.address) as first:
+        first.send(instructions.no_operation())
+        until(lambda: server.busy)
+        with connected(server) as second:
+            assert closed(second)
+        with TcpPort(server.address, timeout=5) as third, pytest.raises(PortError) as refusal:
+            third.receive(1)
+        assert "serves one host at a time" in str(refusal.value)
+        assert server.refused == 2
+        first.send(words("0B03 0040 0 0 0 0 2"))
+        assert first.receive(1).tolist() == [0]
+    assert server.served == 1
+
+
+def test_a_silent_host_is_shown_out_and_one_that_leaves_an_instruction_unfinished_sooner() -> None:
+    with serving(idle_seconds=0.3) as server:
+        with connected(server) as host:
+            assert closed(host)
+        until(lambda: server.served == 1)
+    with serving(partial_seconds=0.3) as server:
+        with connected(server) as host:
+            until(lambda: server.busy)
+            time.sleep(0.5)
+            host.sendall(b"\x00\x07")
+            time.sleep(0.5)
+            assert server.busy
+            host.sendall(b"\x00")
+            assert closed(host)
+        until(lambda: server.served == 1)
+
+
+def test_a_host_that_takes_no_replies_is_shown_out_after_a_while() -> None:
+    with serving(idle_seconds=0.4) as server, connected(server) as host:
+        asked = np.tile(READ_EVERYTHING, 1000).astype("<u2").tobytes()
+        host.sendall(asked)
+        until(lambda: server.served == 1)
+        assert server.display.processor.waiting == 0
+
+
+def test_random_bytes_over_tcp_leave_the_display_that_they_leave_here() -> None:
+    draw = np.random.default_rng(9400)
+    noise = draw.integers(0, 0x10000, 60_000).astype(np.uint16)
+    twin = Ramtek9300()
+    twin.send(noise)
+    twin.decoder.clear()
+    with serving() as server:
+        with connected(server) as host:
+            data = noise.astype("<u2").tobytes() + b"?"
+            reader = threading.Thread(target=lambda: [None for _ in iter(lambda: host.recv(1 << 16), b"")])
+            reader.start()
+            for place in range(0, len(data), 4999):
+                host.sendall(data[place : place + 4999])
+            host.shutdown(socket.SHUT_WR)
+            reader.join(20)
+        until(lambda: server.served == 1)
+        assert (server.display.words == twin.words).all()
+        assert (server.display.entries == twin.entries).all()
+        assert server.display.processor.parameters == twin.processor.parameters
+
+
+def test_a_host_that_ends_its_side_still_gets_its_replies() -> None:
+    with serving() as server, connected(server) as host:
+        host.sendall(READ_EVERYTHING.astype("<u2").tobytes())
+        host.shutdown(socket.SHUT_WR)
+        host.settimeout(5)
+        received = 0
+        while data := host.recv(1 << 16):
+            received += len(data)
+        assert received == 2 * 640 * 480
+
+
+@pytest.mark.parametrize("number", range(len(RECORDED)))
+def test_a_recorded_stream_over_tcp_gives_the_same_display(number: int) -> None:
+    twin = Ramtek9300()
+    twin.send(RECORDED[number])
+    with serving() as server, TcpPort(server.address) as port:
+        port.send(RECORDED[number])
+        port.send(words("0B03 0040 0 0 0 0 2"))
+        port.receive(1)
+        assert (server.display.words == twin.words).all()
+        assert (server.display.entries == twin.entries).all()

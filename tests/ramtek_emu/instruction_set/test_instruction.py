@@ -1,0 +1,25 @@
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+
+from ramtek_emu.instruction_set.decoder import Decoder
+from ramtek_emu.instruction_set.instruction import encode, normal
+from tests.ramtek_emu.strategies import quick, streams
+
+
+@quick
+@given(streams())
+def test_an_instruction_is_equal_to_its_own_words_read_again(stream: list[int]) -> None:
+    for instruction in Decoder().feed(np.array(stream, np.uint16)):
+        (again,) = Decoder().feed(encode(instruction))
+        assert again == instruction
+        assert hash(again) == hash(instruction)
+        assert str(again) == str(instruction)
+
+
+def test_a_listing_names_operands_and_flags() -> None:
+    assert str(normal("SET", {"mask": 15, "window": (0, 0, 9, 9)})) == "SET  mask 15; window 0, 0, 9, 9"
+    (text,) = Decoder().feed(np.array([0x0C13, 0x0040, 0, 0, 32, 32, 3, 0x3030, 0x3400], np.uint16))
+    assert str(text) == "WT   BK; window 0, 0, 32, 32; 3 bytes"
+    assert text.data_bytes() == b"004"

@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu.instruction_set.table import (
+    FORMAT_OF_NAME,
+    FORMATS,
+    OPERANDS,
+    OPERANDS_1,
+    OPERANDS_2,
+    SUBSTANTIATED,
+    operands_named,
+)
+from tests.ramtek_emu.strategies import quick
+
+ARGNO = [1, 1, 1, 2, 2, 2, 4, 1, 2, 2, 1, 1, 12, 1, 1, 2]
+"""Words of each operand of the first flag word (Hardware: LIN, Argno; 12 for CONE as its client sends)."""
+
+
+def test_no_two_rows_have_an_opcode_or_a_name_in_common() -> None:
+    assert len({format.opcode for format in FORMATS}) == len(FORMATS) == len(FORMAT_OF_NAME)
+    assert all(0 <= format.opcode <= 0xFF for format in FORMATS)
+
+
+def test_the_operands_are_as_long_as_the_library_of_1978_sends_them() -> None:
+    assert [operand.words for operand in OPERANDS_1] == ARGNO
+
+
+def test_an_operand_is_known_by_one_name_and_one_mnemonic() -> None:
+    operands = OPERANDS_1 + OPERANDS_2
+    assert len(operands) == len(OPERANDS) == 22
+    words = [word for each in operands for word in {each.name.upper(), each.mnemonic}]
+    assert len(words) == len(set(words))
+
+
+@quick
+@given(st.integers(0, 0xFFFF), st.integers(0, 0xFFFF))
+def test_flag_words_name_operands_in_the_order_of_their_bits(first: int, second: int) -> None:
+    expected = []
+    for word, operands in ((first, OPERANDS_1), (second, OPERANDS_2)):
+        expected += [operands[bit] for bit in range(16) if word >> bit & 1 and bit < len(operands)]
+    assert list(operands_named(first, second)) == expected
+
+
+def test_a_9300_has_no_instruction_that_only_the_later_models_know() -> None:
+    plain = [format.name for format in FORMATS if not format.extended]
+    assert plain == [
+        "LAM", "RAM", "RSET", "INIT", "NOP", "SET", "ERS", "WI", "RI", "WT", "WR", "WVL", "WC",
+        "LPF", "WCSS", "RCSS",
+    ]  # fmt: skip
+    assert not any(format.unimplemented for format in SUBSTANTIATED)

@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu.processor.processor import Status
+from tests.ramtek_emu.displays import read
+from tests.ramtek_emu.strategies import sent_words
+
+
+def test_track_stands_and_enter_is_told_once() -> None:
+    display = Ramtek9300()
+    display.joystick.move_to(320, 200)
+    display.joystick.track = True
+    display.joystick.press_enter()
+    assert display.status == Status.READY | Status.CURSOR
+    assert read(display, 0x1700) == [320, 200 | 0x3000]
+    assert read(display, 0x1700) == [320, 200 | 0x1000]
+    # The other cursor tells of it as well, each on its own.
+    assert read(display, 0x1701) == [0, 0x3000]
+    display.joystick.track = False
+    assert read(display, 0x1701) == [0, 0]
+    assert read(display, 0x2500) == [Status.CURSOR]
+    assert display.status == Status.READY
+
+
+def test_reset_forgets_an_enter_that_nobody_read_and_leaves_the_cursors() -> None:
+    display = Ramtek9300()
+    display.send(sent_words([0x1600, 5, 0x406]))
+    display.joystick.press_enter()
+    display.send(instructions.reset())
+    assert display.status == Status.READY
+    assert read(display, 0x1700) == [5, 0x406]
+
+
+def test_the_joystick_stays_on_the_screen_and_moves_what_it_is_connected_to() -> None:
+    display = Ramtek9300()
+    display.joystick.move_to(10_000, -5)
+    assert display.joystick.position == (639, 0)
+    display.joystick.move_by(-9, 7)
+    assert read(display, 0x1700, 0x1701) == [630, 7, 0, 0]
+    display.send(sent_words([0x3300, 0x0002]))
+    display.joystick.move_to(5, 6)
+    assert read(display, 0x1700, 0x1701) == [630, 7, 5, 6]
+    display.send(sent_words([0x3300, 0x0000]))
+    display.joystick.move_to(50, 60)
+    assert display.joystick.position == (0, 0)
+    assert read(display, 0x1700, 0x1701) == [630, 7, 5, 6]

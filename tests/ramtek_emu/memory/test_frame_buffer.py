@@ -1,0 +1,146 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from ramtek_emu import WordsError
+from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window
+from tests.ramtek_emu import reference
+from tests.ramtek_emu.strategies import SMALL, masks, points, quick, rasters, scan_codes, thorough, windows
+from tests.ramtek_emu.strategies import words as any_words
+
+
+def filled(raster: NDArray[np.uint16]) -> FrameBuffer:
+    buffer = FrameBuffer(SMALL)
+    buffer.write(raster)
+    return buffer
+
+
+@thorough
+@given(
+    rasters(), windows(), scan_codes, points, st.lists(any_words, max_size=300), masks, windows() | st.none()
+)
+def test_a_run_writes_what_a_walk_word_by_word_writes(
+    raster: NDArray[np.uint16],
+    window: Window,
+    code: int,
+    start: Point,
+    words: list[int],
+    mask: int,
+    clip: Window | None,
+) -> None:
+    buffer = filled(raster)
+    twin = raster.tolist()
+    enable = WriteEnable(mask) if clip is None else WriteEnable(mask, clip)
+    after = buffer.write_scan(window, SCAN_ORDERS[code], start, np.array(words, np.uint16), enable)
+    twin_after = reference.write_scan(twin, window, code, start, words, mask & 1023, enable.window)
+    assert buffer.words.tolist() == twin
+    assert after == twin_after
+
+
+@quick
+@given(rasters(), windows(), scan_codes, st.integers(0, 12), st.integers(0, 14), masks)
+def test_whole_runs_of_a_window_are_written_as_a_walk_writes_them(
+    raster: NDArray[np.uint16], window: Window, code: int, first: int, count: int, mask: int
+) -> None:
+    order = SCAN_ORDERS[code]
+    along, runs = order.inner_and_outer(window)
+    start = order.stepped(order.corner(window), 0, first % runs)
+    words = [(number * 37) & 1023 for number in range(along * count)]
+    buffer, twin = filled(raster), raster.tolist()
+    after = buffer.write_scan(window, order, start, np.array(words, np.uint16), WriteEnable(mask))
+    assert after == reference.write_scan(twin, window, code, start, words, mask & 1023, WriteEnable().window)
+    assert buffer.words.tolist() == twin
+
+
+@quick
+@given(rasters(), windows(), scan_codes, points, st.integers(0, 300))
+def test_a_run_reads_what_a_walk_word_by_word_reads(
+    raster: NDArray[np.uint16], window: Window, code: int, start: Point, count: int
+) -> None:
+    words, after = filled(raster).read_scan(window, SCAN_ORDERS[code], start, count)
+    twin_words, twin_after = reference.read_scan(raster.tolist(), window, code, start, count)
+    assert words.tolist() == twin_words
+    assert after == twin_after
+
+
+@quick
+@given(rasters(), windows(), any_words, masks)
+def test_a_fill_is_a_run_of_one_word_over_the_window(
+    raster: NDArray[np.uint16], window: Window, word: int, mask: int
+) -> None:
+    buffer, twin = filled(raster), filled(raster)
+    buffer.fill(window, word, WriteEnable(mask))
+    size = window.width * window.height
+    twin.write_scan(
+        window,
+        SCAN_ORDERS[0],
+        Point(window.left, window.top),
+        np.full(size, word, np.uint16),
+        WriteEnable(mask),
+    )
+    assert buffer.words.tolist() == twin.words.tolist()
+
+
+@pytest.mark.parametrize("window", [Window(5, 3, 4, 3), Window(5, 3, 5, 2), Window(20, 20, 30, 30)])
+def test_a_window_without_words_takes_none_and_leaves_the_point(window: Window) -> None:
+    buffer = FrameBuffer(SMALL)
+    buffer.fill(window, 7)
+    corner = Point(window.left, window.top)
+    after = buffer.write_scan(window, SCAN_ORDERS[0], corner, np.array([1, 2, 3], np.uint16))
+    assert not buffer.words.any()
+    if not (window.width and window.height):
+        assert after == Point(5, 3)
+
+
+def test_written_counts_the_words_that_reached_the_memory() -> None:
+    buffer = FrameBuffer(SMALL)
+    buffer.fill(Window(-2, 0, 1, 0), 5)
+    assert buffer.written == 2
+    buffer.fill(Window(0, 0, 3, 3), 5, WriteEnable(mask=0))
+    assert buffer.written == 2
+    buffer.write_points(np.array([0, 50]), np.array([0, 0]), 9)
+    assert buffer.written == 3
+
+
+def test_the_words_handed_out_are_read_only_and_always_the_present_ones() -> None:
+    buffer = FrameBuffer(SMALL)
+    words = buffer.words
+    buffer.fill(buffer.window, 3)
+    assert (words == 3).all()
+    with pytest.raises(ValueError, match="read-only"):
+        words[0, 0] = 1
+
+
+@pytest.mark.parametrize(
+    ("words", "place", "sentence"),
+    [
+        ([[0, 1024]], (0, 0), "a word must be 0 to 1023, not 1024 (line 0, element 1); use fewer levels"),
+        ([[0], [-1]], (0, 0), "a word must be 0 to 1023, not -1 (line 1, element 0); use fewer levels"),
+        ([[0.5]], (0, 0), "words must be whole numbers, not float64; convert them first, rounding half up"),
+        (
+            [1, 2],
+            (0, 0),
+            "words must be a (lines, elements) array with at least one of each, not of shape (2,); "
+            "pass words[np.newaxis] for one line",
+        ),
+        (
+            [[1, 2]],
+            (12, 0),
+            "the words' window must lie within elements 0 to 12 and lines 0 to 8, not 12 to 13 and 0 to 0; "
+            "move it or cut it",
+        ),
+    ],
+)
+def test_words_that_do_not_fit_are_refused_by_name(
+    words: object, place: tuple[int, int], sentence: str
+) -> None:
+    buffer = FrameBuffer(SMALL)
+    with pytest.raises(WordsError) as refusal:
+        buffer.write(words, *place)
+    assert str(refusal.value) == sentence
+    assert buffer.written == 0

@@ -1,0 +1,163 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu import GMR_9300, PRINCETON_9300, ColorsError, Configuration, Ramtek9300, instructions
+from ramtek_emu.memory.lookup_table import LookupTable
+from tests.ramtek_emu.strategies import quick, words
+
+
+@quick
+@given(st.integers(0, 0xFFFF), st.lists(words, max_size=40), st.integers(1, 70))
+def test_a_load_lands_word_by_word_at_the_counter_and_wraps(first: int, row: list[int], repeats: int) -> None:
+    row = (row * repeats)[:2300]
+    table = LookupTable()
+    twin = [0] * 2048
+    for number, word in enumerate(row):
+        address = (first + number) % 2048
+        twin[address] = word & 0xFF if address % 2 else word
+    table.load(first, np.array(row, np.uint16))
+    assert table.read(0, 2048).tolist() == twin
+    assert table.entries.tolist() == [
+        [twin[2 * entry + 1], twin[2 * entry] >> 8, twin[2 * entry] & 0xFF] for entry in range(1024)
+    ]
+
+
+runs = st.tuples(st.integers(0, 2047), st.sampled_from([0, 1, 2, 3, 50, 2048, 2049]))
+
+
+@quick
+@given(
+    st.sampled_from([GMR_9300, PRINCETON_9300]),
+    st.lists(runs, min_size=1, max_size=4),
+    st.lists(st.integers(0, 3), min_size=1, max_size=8),
+)
+def test_all_that_was_written_since_a_count_lies_in_the_run(
+    configuration: Configuration, choice: list[tuple[int, int]], loads: list[int]
+) -> None:
+    table = LookupTable(configuration)
+    before = [(0, table.packed.copy())]
+    for number, which in enumerate(loads):
+        address, count = choice[which % len(choice)]
+        row = (np.arange(count) * 31 + number * 0x0101 + 1).astype(np.uint16)
+        table.load(address, row)
+        for written, packed in before:
+            run = table.entries_written_since(written)
+            first, end = run or (0, table.size)
+            differing = np.flatnonzero(table.packed != packed)
+            assert ((first <= differing) & (differing < end)).all()
+        before.append((table.written, table.packed.copy()))
+
+
+def test_a_run_that_is_loaded_again_and_again_stays_the_run_of_all_that_was_written() -> None:
+    table = LookupTable()
+    table.load(0, np.zeros(2048, np.uint16))
+    written = table.written
+    for number in range(3):
+        table.load(21, np.full(4, number, np.uint16))
+        table.load(100, np.zeros(0, np.uint16))
+        assert table.entries_written_since(written) == (10, 13)
+    table.write(13, [[1, 2, 3]])
+    assert table.entries_written_since(written) is None
+    assert table.entries_written_since(table.written - 1) == (13, 14)
+
+
+@quick
+@given(st.integers(0, 0xFFFF), st.integers(0, 5000))
+def test_a_read_wraps_and_moves_the_counter(first: int, count: int) -> None:
+    table = LookupTable()
+    table.load(0, np.arange(2048, dtype=np.uint16) & np.uint16(0xFF))
+    row = table.read(first, count)
+    assert row.tolist() == [(first + number) % 2048 & 0xFF for number in range(count)]
+    assert table.address == (first + count) % 2048
+
+
+@quick
+@given(st.integers(0, 0xFFFF), st.lists(words, min_size=1, max_size=30))
+def test_twelve_bit_words_come_back_as_they_were_sent(first: int, row: list[int]) -> None:
+    table = LookupTable(PRINCETON_9300)
+    table.load(first, np.array(row, np.uint16))
+    assert table.read(first, len(row)).tolist() == [word & 0xFFF for word in row]
+
+
+def test_full_scale_of_four_bits_is_full_scale_of_eight() -> None:
+    table = LookupTable(PRINCETON_9300)
+    table.load(0, np.array([0x0F08, 0xF000], np.uint16))
+    assert table.entries[:2].tolist() == [[255, 0, 136], [0, 0, 0]]
+
+
+@pytest.mark.parametrize("first", [0, 1, 500, 1021])
+def test_loaded_entries_are_read_back_in_the_same_packing(first: int) -> None:
+    display = Ramtek9300()
+    stream = instructions.load_entries(first, [[1, 2, 3], [250, 251, 252], [0, 255, 0]])
+    display.send(stream)
+    assert display.entries[first : first + 3].tolist() == [[1, 2, 3], [250, 251, 252], [0, 255, 0]]
+    display.send(instructions.read_entries(2 * first, 6))
+    assert display.receive(6).tolist() == stream[3:].tolist()
+
+
+def test_the_word_pair_is_green_and_blue_then_red() -> None:
+    assert instructions.load_entries(1, [[0x11, 0x22, 0x33]]).tolist() == [0x0300, 2, 4, 0x2233, 0x0011]
+
+
+def test_entries_are_read_only_and_written_only_grows() -> None:
+    table = LookupTable()
+    table.write(3, np.array([[1, 2, 3]]))
+    assert table.written == 1
+    with pytest.raises(ValueError, match="read-only"):
+        table.entries[0, 0] = 1
+    with pytest.raises(ValueError, match="read-only"):
+        table.packed[0] = 1
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.int8, np.int64])
+def test_the_first_entry_may_be_a_number_of_numpy_s(kind: Any) -> None:
+    colors = [[1, 2, 3]] * 10
+    assert (
+        instructions.load_entries(kind(120), colors).tolist()
+        == instructions.load_entries(120, colors).tolist()
+    )
+    short = instructions.load_short_entries(kind(120), colors)
+    assert short.tolist() == instructions.load_short_entries(120, colors).tolist()
+    one, other = LookupTable(), LookupTable()
+    one.write(kind(120), colors)
+    other.write(120, colors)
+    assert one.packed.tolist() == other.packed.tolist()
+
+
+@pytest.mark.parametrize(
+    ("first", "colors", "sentence"),
+    [
+        (1024, [[0, 0, 0]], "the first entry must be 0 to 1023, not 1024; choose an entry of the table"),
+        (-1, [[0, 0, 0]], "the first entry must be 0 to 1023, not -1; choose an entry of the table"),
+        (1.0, [[0, 0, 0]], "the first entry must be 0 to 1023, not 1.0; choose an entry of the table"),
+        (1023, [[0, 0, 0]] * 2, "a run of entries must end at 1023, not 1024 (2 from 1023 on); send fewer"),
+        (7, [[0, 0, 0], [0, 256, 0]], "a color must be 0 to 255, not 256 (entry 8, green); clip it first"),
+        (7, [[0, 0, -1]], "a color must be 0 to 255, not -1 (entry 7, blue); clip it first"),
+        (
+            0,
+            [[0.0, 0.0, float("nan")]],
+            "colors must be whole numbers, not float64; convert them first, rounding half up",
+        ),
+        (0, [0, 0, 0], "colors must be an (n, 3) array of red, green, blue, not of shape (3,); reshape it"),
+    ],
+)
+def test_colors_that_do_not_fit_are_refused_by_name(first: int, colors: object, sentence: str) -> None:
+    table = LookupTable()
+    for door in (table.write, instructions.load_entries):
+        with pytest.raises(ColorsError) as refusal:
+            door(first, colors)
+        assert str(refusal.value) == sentence
+    assert table.written == 0
+
+
+def test_the_12_bit_table_is_read_back_as_it_was_loaded() -> None:
+    display = Ramtek9300(PRINCETON_9300)
+    display.send(np.array([0x0300, 5, 6, 0x0F00, 0x00F0, 0x0ABC], np.uint16))
+    display.send(np.array([0x0400, 5, 6], np.uint16))
+    assert display.receive(3).tolist() == [0x0F00, 0x00F0, 0x0ABC]

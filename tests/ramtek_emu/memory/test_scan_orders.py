@@ -1,0 +1,35 @@
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window, blocks
+from tests.ramtek_emu import reference
+from tests.ramtek_emu.strategies import points, quick, scan_codes, windows
+
+
+@quick
+@given(windows(), scan_codes, points, st.integers(0, 400))
+def test_a_run_steps_along_the_scan(window: Window, code: int, start: Point, count: int) -> None:
+    order = SCAN_ORDERS[code]
+    places = reference.walk(window, code, start, count)
+    assert [order.after(window, start, number) for number in range(1, count + 1)] == places[1:]
+    corner = order.corner(window)
+    assert [order.stepped(corner, *order.steps(window, Point(*place))) for place in places] == places
+    before = order.words_before(window, start)
+    assert all(reference.inside(place, window) for place in places[before:] if count)
+    assert not 0 < before <= count or not reference.inside(places[0], window)
+
+
+@quick
+@given(windows(), scan_codes, points, st.integers(0, 400))
+def test_blocks_take_every_word_once_and_in_order(
+    window: Window, code: int, start: Point, count: int
+) -> None:
+    done = 0
+    for block in blocks(window, SCAN_ORDERS[code], start, count):
+        assert block.first == done
+        assert block.inner > 0
+        assert block.outer > 0
+        done += block.inner * block.outer
+    assert done == count

@@ -1,0 +1,266 @@
+"""The window on a real screen, Xvfb's."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ramtek_emu import NoScreenError, Ramtek9300, instructions
+from ramtek_emu.monitor.pattern import pattern
+from ramtek_emu.monitor.window import Key, Monitor, Pointer, placement
+from tests.ramtek_emu.screens import shown
+
+pygame = pytest.importorskip("pygame")
+
+
+@pytest.fixture
+def display(screen: str, monkeypatch: pytest.MonkeyPatch) -> Ramtek9300:
+    """A display with the test pattern, and a screen to show it on."""
+    monkeypatch.setenv("DISPLAY", screen)
+    monkeypatch.setenv("XDG_RUNTIME_DIR", "/tmp")
+    monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
+    ramtek = Ramtek9300()
+    ramtek.send(pattern())
+    return ramtek
+
+
+@pytest.fixture
+def monitor(display: Ramtek9300, tmp_path: Path) -> Iterator[Monitor]:
+    """An open window on the test pattern."""
+    monitor = Monitor(display, screenshots=tmp_path)
+    monitor.open()
+    settle(monitor)
+    yield monitor
+    monitor.close()
+
+
+def settle(monitor: Monitor) -> None:
+    for _ in range(10):
+        monitor.step(5)
+
+
+def press(monitor: Monitor, key: int, text: str = "", mod: int = 0) -> None:
+    pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key, unicode=text, mod=mod))
+    monitor.step()
+
+
+@pytest.mark.parametrize(
+    ("size", "multiple"),
+    [((640, 480), 1), ((641, 487), 1), ((1280, 960), 2), ((1399, 1001), 2), ((500, 300), 1)],
+)
+def test_every_pixel_is_a_block_at_every_window_size(
+    monitor: Monitor, size: tuple[int, int], multiple: int
+) -> None:
+    pygame.display.set_mode(size, pygame.RESIZABLE)
+    settle(monitor)
+    field = monitor.display.field()
+    blocks = np.repeat(np.repeat(field, multiple, axis=0), multiple, axis=1)
+    left, top, *_ = placement((640, 480), size)
+    expected = np.zeros((size[1], size[0], 3), np.uint8)
+    cut_left, cut_top = max(0, -left), max(0, -top)
+    part = blocks[cut_top : cut_top + size[1], cut_left : cut_left + size[0]]
+    expected[max(0, top) : max(0, top) + part.shape[0], max(0, left) : max(0, left) + part.shape[1]] = part
+    assert shown().shape == expected.shape
+    assert (shown() == expected).all()
+
+
+def test_the_window_refreshes_only_when_something_was_written(monitor: Monitor) -> None:
+    before = monitor.refreshed
+    settle(monitor)
+    assert monitor.refreshed == before
+    monitor.display.send(instructions.load_entries(9, [[200, 100, 50]]))
+    monitor.step()
+    assert monitor.refreshed == before + 1
+    monitor.display.send(instructions.no_operation())
+    monitor.step()
+    assert monitor.refreshed == before + 1
+
+
+@pytest.mark.parametrize("scale", [1, 2])
+def test_a_field_that_is_recolored_again_and_again_is_shown(monitor: Monitor, scale: int) -> None:
+    pygame.display.set_mode((640 * scale, 480 * scale), pygame.RESIZABLE)
+    settle(monitor)
+    for number in range(4):
+        if number == 2:
+            monitor.display.send(instructions.erase((100, 400, 200, 450), 9))
+        monitor.display.send(instructions.load_entries(9, [[200, 100, 50 + number]]))
+        monitor.step()
+        assert (shown()[::scale, ::scale] == monitor.display.field()).all()
+
+
+def test_full_screen_keeps_whole_multiples_and_the_window_s_size(monitor: Monitor) -> None:
+    size = pygame.display.get_window_size()
+    press(monitor, pygame.K_F11)
+    settle(monitor)
+    assert pygame.display.get_window_size() == (1400, 1100)
+    assert (shown()[70 : 70 + 960, 60 : 60 + 1280][::2, ::2] == monitor.display.field()).all()
+    press(monitor, pygame.K_RETURN, "\r", pygame.KMOD_LALT)
+    settle(monitor)
+    assert pygame.display.get_window_size() == size
+
+
+def test_escape_leaves_full_screen_first_and_closes_then(monitor: Monitor) -> None:
+    press(monitor, pygame.K_F11)
+    press(monitor, pygame.K_ESCAPE)
+    assert monitor.is_open
+    assert not monitor.full_screen
+    press(monitor, pygame.K_ESCAPE)
+    assert not monitor.is_open
+
+
+def test_keys_are_handed_over_as_plain_values(monitor: Monitor) -> None:
+    keys: list[Key] = []
+
+    def take(key: Key) -> bool:
+        keys.append(key)
+        return True
+
+    monitor.on_key = take
+    press(monitor, pygame.K_a, "a")
+    press(monitor, pygame.K_z, "\x1a", pygame.KMOD_LCTRL | pygame.KMOD_LSHIFT)
+    press(monitor, pygame.K_LSHIFT)
+    press(monitor, pygame.K_ESCAPE)
+    assert keys == [
+        Key("a", "a"),
+        Key("z", "\x1a", control=True, shift=True),
+        Key("escape"),
+    ]
+    assert monitor.is_open
+
+
+def test_closing_asks_whoever_drives_the_display(monitor: Monitor) -> None:
+    answers = [False, False, True]
+    monitor.on_close = lambda: answers.pop(0)
+    press(monitor, pygame.K_q, "\x11", pygame.KMOD_CTRL)
+    pygame.event.post(pygame.event.Event(pygame.QUIT))
+    monitor.step()
+    assert monitor.is_open
+    press(monitor, pygame.K_q, "\x11", pygame.KMOD_CTRL)
+    assert not monitor.is_open
+    assert not answers
+
+
+def test_screenshots_are_numbered_and_never_overwritten(monitor: Monitor, tmp_path: Path) -> None:
+    messages: list[str] = []
+    monitor.on_message = messages.append
+    (tmp_path / "ramtek-0001.png").write_bytes(b"mine")
+    press(monitor, pygame.K_F12)
+    press(monitor, pygame.K_F12)
+    assert (tmp_path / "ramtek-0001.png").read_bytes() == b"mine"
+    assert (tmp_path / "ramtek-0002.png").read_bytes() == monitor.display._repr_png_()
+    assert messages == [f"saved {tmp_path / f'ramtek-000{number}.png'}" for number in (2, 3)]
+
+
+def test_a_screenshot_that_cannot_be_saved_is_a_message(monitor: Monitor, tmp_path: Path) -> None:
+    messages: list[str] = []
+    monitor.on_message = messages.append
+    monitor.screenshots = tmp_path / "none"
+    press(monitor, pygame.K_F12)
+    assert monitor.is_open
+    assert "there is no folder" in messages[0]
+
+
+def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
+    told: list[Pointer] = []
+    monitor.on_pointer = told.append
+    pygame.display.set_mode((1380, 960), pygame.RESIZABLE)
+    settle(monitor)
+    told.clear()
+    for place, kind in (
+        ((50, 0), pygame.MOUSEBUTTONDOWN),
+        ((53, 3), pygame.MOUSEMOTION),
+        ((2000, 959), pygame.MOUSEBUTTONUP),
+    ):
+        pygame.event.post(pygame.event.Event(kind, pos=place, button=1, rel=(0, 0), buttons=(1, 0, 0)))
+    monitor.step()
+    assert told == [
+        Pointer(0, 0, True, "press", 1),
+        Pointer(1, 1, True, "move"),
+        Pointer(639, 479, False, "release", 1),
+    ]
+
+
+def test_the_mouse_is_the_joystick_of_the_cursors(monitor: Monitor) -> None:
+    display = monitor.display
+    display.send(np.array([0x1600, 5, 0x400 | 6], np.uint16))
+    pygame.display.set_mode((640, 480), pygame.RESIZABLE)
+    settle(monitor)
+    for kind, button in ((pygame.MOUSEBUTTONDOWN, 1), (pygame.MOUSEBUTTONUP, 1), (pygame.MOUSEBUTTONDOWN, 3)):
+        pygame.event.post(pygame.event.Event(kind, pos=(300, 200), button=button))
+    monitor.step()
+    display.send(np.array([0x1700, 0x1700], np.uint16))
+    assert display.receive(4).tolist() == [300, 0x3400 | 200, 300, 0x1400 | 200]
+    assert (shown() == display.field()).all()
+    pygame.event.post(pygame.event.Event(pygame.MOUSEBUTTONUP, pos=(301, 200), button=3))
+    monitor.step()
+    display.send(np.array([0x1700], np.uint16))
+    assert display.receive(2).tolist() == [301, 0x400 | 200]
+
+
+def test_a_blinking_cursor_comes_and_goes(monitor: Monitor, monkeypatch: pytest.MonkeyPatch) -> None:
+    monitor.display.send(np.array([0x1600, 50, 0xC00 | 60], np.uint16))
+    pygame.display.set_mode((640, 480), pygame.RESIZABLE)
+    settle(monitor)
+    seen = []
+    for seconds in (10.1, 10.6):
+        monkeypatch.setattr("time.monotonic", lambda now=seconds: now)
+        monitor.step()
+        seen.append(shown().copy())
+    assert (seen[0] != seen[1]).any()
+
+
+def test_dropped_files_are_handed_over_as_paths(monitor: Monitor) -> None:
+    dropped: list[Path] = []
+    monitor.on_drop = dropped.append
+    pygame.event.post(pygame.event.Event(pygame.DROPFILE, file="/some/scene.toml"))
+    monitor.step()
+    assert dropped == [Path("/some/scene.toml")]
+
+
+def test_a_running_window_ticks_until_it_is_closed(display: Ramtek9300) -> None:
+    ticks = 0
+
+    def tick() -> None:
+        nonlocal ticks
+        ticks += 1
+        if ticks == 3:
+            window.close()
+
+    window = Monitor(display, on_tick=tick)
+    window.run()
+    assert ticks == 3
+    assert not pygame.display.get_init()
+
+
+def test_a_real_key_of_a_real_screen_arrives(monitor: Monitor) -> None:
+    if shutil.which("xdotool") is None:
+        pytest.skip("xdotool is not installed; no key can be pressed for real")
+    keys: list[Key] = []
+    monitor.on_key = keys.append
+    subprocess.run(["xdotool", "key", "b"], check=True)
+    for _ in range(100):
+        if keys:
+            break
+        monitor.step(10)
+    assert keys == [Key("b", "b")]
+
+
+def test_no_screen_is_refused_and_a_driver_that_was_asked_for_is_taken(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
+    monitor = Monitor(Ramtek9300())
+    with pytest.raises(NoScreenError):
+        monitor.run()
+    assert not monitor.is_open
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monitor.open()
+    assert monitor.step()
+    monitor.close()

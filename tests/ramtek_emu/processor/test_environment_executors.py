@@ -1,0 +1,119 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu import (
+    PRINCETON_9300,
+    Ramtek9300,
+    instructions,
+)
+from ramtek_emu.instruction_set.table import FORMATS, OPERANDS
+from ramtek_emu.processor.processor import Status
+from tests.ramtek_emu.displays import sent
+from tests.ramtek_emu.strategies import quick, sent_words
+
+
+@quick
+@given(st.dictionaries(st.sampled_from(sorted(OPERANDS)), st.integers(0, 0xFFFF)))
+def test_parameters_are_read_as_they_were_set(chosen: dict[str, int]) -> None:
+    display = Ramtek9300()
+    operands = {
+        name: [(seed + 77 * place) & 0x7FFF for place in range(OPERANDS[name].words)]
+        for name, seed in chosen.items()
+    }
+    for name in ("conic",):
+        if name in operands:
+            operands[name] = [0, 9, 0, 8, 0xFFFF, 0xFFF0, 0, 4, 1, 2, 0, 1]
+    display.send(instructions.set_parameters(**operands))
+    flag_words = [
+        sum(1 << bit for bit, name in enumerate(names) if name in operands)
+        for names in (list(OPERANDS)[:16], list(OPERANDS)[16:])
+    ]
+    display.send(sent_words([0x2406, *flag_words]))
+    names = [name for name in OPERANDS if name in operands] or list(OPERANDS)
+    received = display.receive(display.processor.waiting).tolist()
+    if operands:
+        assert received == [word for name in names for word in operands[name]]
+    else:
+        assert len(received) == sum(operand.words for operand in OPERANDS.values())
+
+
+def test_saved_environments_come_back_in_reverse() -> None:
+    display = Ramtek9300()
+    display.send(sent_words([0x0802, 2, 5, 0x1300, 0x0802, 2, 6, 0x2600, 0x0101, 0x1300, 0x0802, 2, 7]))
+    assert display.processor.parameters.foreground == 7
+    display.send(sent_words([0x1400]))
+    assert (display.processor.parameters.foreground, display.processor.parameters.zoom) == (6, (2, 2))
+    display.send(sent_words([0x1400]))
+    assert (display.processor.parameters.foreground, display.processor.parameters.zoom) == (5, (1, 1))
+    assert display.status == Status.READY
+    display.send(sent_words([0x1400]))
+    assert display.processor.parameters.foreground == 5
+    assert display.processor.status == Status.READY | Status.ILLEGAL
+
+
+def test_environments_beyond_the_most_are_flagged_and_not_kept() -> None:
+    display = Ramtek9300()
+    display.send(np.full(5000, 0x1300, np.uint16))
+    assert len(display.processor.saved) == 16
+    assert Status.ILLEGAL in display.status
+    display.send(instructions.initialize())
+    assert not display.processor.saved
+
+
+def test_the_error_status_is_read_and_cleared() -> None:
+    display = Ramtek9300()
+    display.send(sent_words([0xFFFF, 0x2500, 0x2500]))
+    assert display.receive(2).tolist() == [Status.ILLEGAL, 0]
+    assert display.status == Status.READY
+
+
+@pytest.mark.parametrize(
+    "format", [format for format in FORMATS if format.unimplemented], ids=lambda format: format.name
+)
+def test_what_is_known_by_name_only_is_consumed_and_flagged(format: object) -> None:
+    display = Ramtek9300()
+    opcode = format.opcode  # type: ignore[attr-defined]
+    display.send(sent_words([opcode << 8 | 3, 2, 5, 4, 0x0500, 0x0600, 0x0902, 0x44, 3, 0, 0, 1, 1]))
+    assert display.status == Status.READY | Status.ILLEGAL
+    assert display.processor.unimplemented == 1
+    assert display.processor.parameters.foreground == 5
+    assert (display.words[:2, :2] == 3).all()
+
+
+@pytest.mark.parametrize(
+    "format", [format for format in FORMATS if format.extended], ids=lambda format: format.name
+)
+def test_what_the_9460_brought_is_illegal_on_the_9300(format: object) -> None:
+    display = Ramtek9300(PRINCETON_9300)
+    opcode = format.opcode  # type: ignore[attr-defined]
+    display.send(sent_words([opcode << 8]))
+    assert display.status == Status.READY | Status.ILLEGAL
+    assert display.processor.illegal_words == 1
+    assert not display.decoder.held_words
+
+
+def test_an_illegal_word_sets_the_status_and_reset_clears_it() -> None:
+    display = sent("FFFF 0700")
+    assert display.status == Status.READY | Status.ILLEGAL
+    assert display.processor.illegal_words == 1
+    display.send(instructions.reset())
+    assert display.status == Status.READY
+
+
+def test_initialize_restores_the_parameters_and_leaves_words_and_entries() -> None:
+    display = sent("0300 0000 0002 1234", "0902 0044 0009 0000 0000 0000 0000", "0600")
+    assert display.words[0, 0] == 9
+    assert display.processor.parameters.background == 0
+    assert display.processor.parameters.window == (0, 0, 639, 479)
+    display.send(instructions.reset())
+    assert display.words[0, 0] == 0
+    assert display.entries[0].tolist() == [0, 0x12, 0x34]
+
+
+def test_recorded_zp_clears_the_screen() -> None:
+    display = sent("0802 0004 0009", "0900", "0910 0500")
+    assert not display.words.any()

@@ -1,0 +1,79 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu.checks import checked_colors, checked_stream, checked_words, whole_numbers
+from ramtek_emu.errors import ColorsError, WordsError
+from tests.ramtek_emu.strategies import quick
+
+KINDS = st.sampled_from([np.uint16, np.int16, np.int64, np.uint64, ">u2"])
+
+
+@quick
+@given(st.lists(st.integers(-5, 1030), min_size=1, max_size=12), st.integers(1, 10))
+def test_words_are_taken_when_every_one_fits_the_planes(row: list[int], planes: int) -> None:
+    if all(0 <= word < 1 << planes for word in row):
+        checked = checked_words([row], planes)
+        assert checked.dtype == np.uint16
+        assert checked.tolist() == [row]
+        return
+    first = next(place for place, word in enumerate(row) if not 0 <= word < 1 << planes)
+    with pytest.raises(WordsError) as refusal:
+        checked_words([row], planes)
+    assert str(refusal.value) == (
+        f"a word must be 0 to {(1 << planes) - 1}, not {row[first]} "
+        f"(line 0, element {first}); use fewer levels"
+    )
+
+
+@pytest.mark.parametrize("shape", [(3,), (0, 3), (3, 0), (1, 2, 3)])
+def test_words_that_are_no_raster_are_refused_with_their_shape(shape: tuple[int, ...]) -> None:
+    with pytest.raises(WordsError) as refusal:
+        checked_words(np.zeros(shape, np.uint16))
+    assert str(refusal.value) == (
+        f"words must be a (lines, elements) array with at least one of each, not of shape {shape}; "
+        "pass words[np.newaxis] for one line"
+    )
+
+
+@quick
+@given(st.lists(st.integers(0, 0x7FFF), max_size=20), KINDS)
+def test_a_stream_of_any_whole_type_arrives_as_16_bit_words(row: list[int], kind: type[np.integer]) -> None:
+    checked = checked_stream(np.array(row, kind))
+    assert checked.dtype == np.uint16
+    assert checked.tolist() == row
+
+
+def test_a_stream_of_16_bit_words_is_taken_as_it_is() -> None:
+    words = np.arange(5, dtype=np.uint16)
+    assert checked_stream(words) is words
+
+
+@quick
+@given(st.integers(0, 1023), st.lists(st.tuples(*[st.integers(0, 255)] * 3), max_size=9), KINDS)
+def test_colors_are_taken_when_the_table_holds_them_all(
+    first: int, colors: list[tuple[int, int, int]], kind: type[np.integer]
+) -> None:
+    array = np.array(colors, kind).reshape(-1, 3)
+    if first + len(colors) <= 1024:
+        checked = checked_colors(first, array)
+        assert checked.dtype == np.uint8
+        assert checked.tolist() == [list(color) for color in colors]
+    else:
+        with pytest.raises(ColorsError, match="a run of entries must end at 1023"):
+            checked_colors(first, array)
+
+
+def test_what_is_no_array_of_whole_numbers_is_refused_by_the_error_of_its_door() -> None:
+    for error in (WordsError, ColorsError):
+        with pytest.raises(error) as refusal:
+            whole_numbers([[1], [2, 3]], "things", error)
+        assert str(refusal.value) == (
+            "things must be an array of whole numbers, not list; pass a numpy array"
+        )
+        with pytest.raises(error, match="things must be whole numbers, not bool; convert them first"):
+            whole_numbers([True], "things", error)
+    assert whole_numbers([], "things", WordsError).size == 0

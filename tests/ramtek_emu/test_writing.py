@@ -1,0 +1,121 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ramtek_emu import OutputError, OutputExistsError, WriteError
+from ramtek_emu.png import png_bytes, save_png
+from ramtek_emu.writing import Output, refuse_output, write_atomically
+
+FIELD = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
+
+
+def test_saving_again_replaces_the_file_unless_told_otherwise(tmp_path: Path) -> None:
+    path = tmp_path / "field.png"
+    path.write_bytes(b"old")
+    with pytest.raises(OutputExistsError) as refusal:
+        save_png(FIELD, path, overwrite=False)
+    assert str(refusal.value) == (
+        f"an output must be a new file, not {path}, which exists; choose another name or add --force"
+    )
+    assert path.read_bytes() == b"old"
+    save_png(FIELD, path)
+    assert path.read_bytes() == png_bytes(FIELD)
+    assert os.listdir(tmp_path) == ["field.png"]
+
+
+def test_a_folder_that_is_not_there_is_refused_by_name(tmp_path: Path) -> None:
+    with pytest.raises(OutputError) as refusal:
+        save_png(FIELD, tmp_path / "none" / "field.png")
+    assert str(refusal.value) == (
+        f"an output must have a folder to be in, and there is no folder {tmp_path / 'none'}; make it, or "
+        "choose another place"
+    )
+
+
+def test_saving_through_a_link_keeps_the_link(tmp_path: Path) -> None:
+    target, link = tmp_path / "target.png", tmp_path / "link.png"
+    target.write_bytes(b"old")
+    link.symlink_to(target)
+    save_png(FIELD, link)
+    assert link.is_symlink()
+    assert target.read_bytes() == png_bytes(FIELD)
+
+
+def test_a_file_system_without_links_gets_the_picture_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(1, "no links here")
+
+    monkeypatch.setattr(os, "link", refuse)
+    save_png(FIELD, tmp_path / "field.png", overwrite=False)
+    assert os.listdir(tmp_path) == ["field.png"]
+
+
+def test_after_a_failed_write_the_old_file_is_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "field.png"
+    path.write_bytes(b"old")
+
+    def full_disk(handle: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full_disk)
+    with pytest.raises(WriteError, match="no space left on device"):
+        save_png(FIELD, path)
+    assert path.read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["field.png"]
+
+
+def test_an_output_comes_piece_by_piece_and_is_there_when_it_is_kept(tmp_path: Path) -> None:
+    path = tmp_path / "words.ramtek"
+    with Output(path, overwrite=False) as output:
+        output.write(b"one ")
+        assert not path.exists()
+        output.write(b"two")
+        output.keep()
+    assert path.read_bytes() == b"one two"
+    assert os.listdir(tmp_path) == ["words.ramtek"]
+
+
+def test_an_output_that_is_not_kept_leaves_nothing_behind(tmp_path: Path) -> None:
+    path = tmp_path / "words.ramtek"
+    path.write_bytes(b"old")
+    with Output(path, overwrite=True) as output:
+        output.write(b"new")
+    assert path.read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["words.ramtek"]
+
+
+def test_a_file_that_came_to_exist_meanwhile_is_not_overwritten(tmp_path: Path) -> None:
+    path = tmp_path / "words.ramtek"
+    with Output(path, overwrite=False) as output:
+        path.write_bytes(b"another's")
+        with pytest.raises(OutputExistsError):
+            output.keep()
+    assert path.read_bytes() == b"another's"
+    assert os.listdir(tmp_path) == ["words.ramtek"]
+
+
+def test_a_file_that_is_replaced_keeps_its_permissions(tmp_path: Path) -> None:
+    path = tmp_path / "words.ramtek"
+    path.write_bytes(b"old")
+    path.chmod(0o640)
+    write_atomically(path, b"new", overwrite=True)
+    assert path.read_bytes() == b"new"
+    assert path.stat().st_mode & 0o777 == 0o640
+
+
+def test_places_where_no_output_can_be_are_refused_before_anything_is_done(tmp_path: Path) -> None:
+    refuse_output(tmp_path / "new.png", overwrite=False)
+    for place, sentence in (
+        (tmp_path, "an output must be a file, not the folder"),
+        (Path("/dev/null"), "an output must be a file, not the device"),
+        (Path("a\0b"), "a file name must be one that the system can hold"),
+        (tmp_path / ("x" * 300), "an output must have a place, and at"),
+    ):
+        with pytest.raises(OutputError, match=sentence):
+            refuse_output(place, overwrite=True)

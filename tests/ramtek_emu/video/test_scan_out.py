@@ -1,0 +1,401 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from ramtek_emu import (
+    GMR_9300,
+    JPL_9460,
+    NCAR_9460,
+    PRINCETON_9300,
+    Configuration,
+    EntryFormat,
+    Ramtek9300,
+    Timing,
+    instructions,
+)
+from ramtek_emu.memory.cursors import cross
+from ramtek_emu.video.scan_out import Stamp
+from tests.ramtek_emu import reference
+from tests.ramtek_emu.displays import colored
+from tests.ramtek_emu.strategies import (
+    SMALL,
+    cuts,
+    quick,
+    rasters,
+    sent_words,
+    streams,
+    ten_bit_words,
+    thorough,
+)
+
+
+@quick
+@given(rasters(), st.integers(0, 2**32 - 1))
+def test_the_field_is_each_word_s_entry(raster: NDArray[np.uint16], seed: int) -> None:
+    colors = np.random.default_rng(seed).integers(0, 256, (1024, 3))
+    display = Ramtek9300(SMALL)
+    display.send(instructions.write_image(raster))
+    display.send(instructions.load_entries(0, colors))
+    entries = [(int(red), int(green), int(blue)) for red, green, blue in colors]
+    twin = np.array(reference.field(raster.tolist(), entries))
+    assert (display.field() == twin).all()
+    pixels = np.zeros((9, 13), np.uint32)
+    display.scan_out.scan_out_into(pixels)
+    assert (pixels == (twin[..., 0] << 16 | twin[..., 1] << 8 | twin[..., 2])).all()
+
+
+def test_the_stamp_moves_with_every_word_and_every_entry_written() -> None:
+    display = Ramtek9300()
+    stamps = [display.scan_out.stamp]
+    for stream in (
+        instructions.write_image([[1]]),
+        instructions.load_entries(0, [[1, 2, 3]]),
+        instructions.erase(),
+    ):
+        display.send(stream)
+        stamps.append(display.scan_out.stamp)
+    assert len(set(stamps)) == 4
+    display.send(instructions.no_operation())
+    assert display.scan_out.stamp == stamps[-1]
+
+
+def test_recoloring_writes_no_word_and_changes_the_field() -> None:
+    display = Ramtek9300()
+    display.send(instructions.write_image(np.full((480, 640), 300)))
+    written = display.frame_buffer.written
+    display.send(instructions.load_entries(300, [[9, 8, 7]]))
+    assert display.frame_buffer.written == written
+    assert (display.field() == (9, 8, 7)).all()
+
+
+def test_only_the_visible_part_of_the_memory_is_shown() -> None:
+    display = Ramtek9300(Configuration(name="TALL", elements=8, lines=8, planes=10, visible_lines=5))
+    display.send(instructions.load_entries(0, np.repeat(np.arange(256)[:, None], 3, axis=1)))
+    display.send(instructions.write_image(np.arange(64).reshape(8, 8)))
+    assert display.words.shape == (8, 8)
+    assert display.field()[..., 0].tolist() == np.arange(40).reshape(5, 8).tolist()
+
+
+def test_with_fewer_planes_the_address_counter_picks_the_part_of_the_table() -> None:
+    display = Ramtek9300(Configuration(name="EIGHT", elements=2, lines=1, planes=8))
+    display.send(instructions.load_entries(256, np.full((256, 3), 50)))
+    park = np.array([0x0300, 0x0000, 0x0000], np.uint16)
+    display.send(park)
+    assert display.field().tolist() == [[[0, 0, 0], [0, 0, 0]]]
+    display.send(park + np.array([0, 0x200, 0], np.uint16))
+    assert display.field().tolist() == [[[50, 50, 50], [50, 50, 50]]]
+
+
+PLACES = st.tuples(st.integers(0, 8), st.integers(0, 12))
+
+
+LOADS = st.tuples(st.integers(0, 8), st.integers(-3, 18), st.sampled_from([0, 1, 5, 210, 2100]))
+"""The line that shows a run of entries, how far from its first one the run begins, and its words."""
+
+
+MEMORY_ACTIONS = st.one_of(
+    st.tuples(st.just("load"), LOADS),
+    st.tuples(st.just("load"), LOADS),
+    st.tuples(st.just("write entries"), LOADS),
+    st.tuples(st.just("write words"), st.tuples(PLACES, ten_bit_words)),
+    st.tuples(st.just("cursor"), st.tuples(PLACES, st.integers(0, 1), st.integers(0, 3))),
+    st.tuples(st.just("draw on it"), st.integers(0, 8)),
+)
+
+
+VIEW_ACTIONS = st.one_of(
+    st.tuples(st.just("origin"), PLACES),
+    st.tuples(st.just("origin"), st.just((0, 0))),
+    st.tuples(st.just("zoom"), st.sampled_from([1, 1, 2])),
+    st.tuples(st.just("count from the bottom"), st.booleans()),
+    st.tuples(st.just("shape"), st.integers(0, 255)),
+    st.tuples(st.just("blink"), st.booleans()),
+    st.tuples(st.just("scan out another"), st.none()),
+)
+
+
+SCANNED_OUT = st.sampled_from([True, True, False])
+"""Whether a field is made after the action."""
+
+
+STEPS = st.lists(st.tuples(MEMORY_ACTIONS, SCANNED_OUT), min_size=10, max_size=30) | st.lists(
+    st.tuples(MEMORY_ACTIONS | VIEW_ACTIONS, SCANNED_OUT), min_size=10, max_size=30
+)
+
+
+KINDS: list[dict[str, Any]] = [
+    {},
+    {"visible_lines": 7, "visible_elements": 10},
+    {"entry_format": EntryFormat.WORD_12},
+    {"monochrome": True},
+    {"planes": 8},
+    {"planes": 12},
+    {"timing": Timing()},
+]
+
+
+def do(display: Ramtek9300, name: str, value: Any) -> None:
+    """One thing that may change the field."""
+    if name in ("load", "write entries"):
+        line, offset, count = value
+        data = np.random.default_rng(display.lookup_table.written).integers(0, 0x10000, count)
+        address = 200 * line + offset
+        if name == "load":
+            display.send(np.array([0x0300, address & 0x7FF, 2 * count, *data], np.uint16))
+        else:
+            first = max(0, address // 2)
+            display.lookup_table.write(first, np.stack([data[: 1024 - first] & 0xFF] * 3, axis=1))
+    elif name == "write words":
+        (line, element), word = value
+        word &= display.configuration.largest_word
+        display.send(instructions.erase((element, line, element + 3, line), word))
+    elif name == "origin":
+        display.send(instructions.set_parameters(origin=value))
+    elif name == "zoom":
+        display.send(instructions.zoom(value))
+    elif name == "count from the bottom":
+        display.processor.parameters.origin_at_bottom = value
+    elif name == "cursor":
+        (line, element), number, look = value
+        visible, blinking = look != 0, look == 3
+        display.send(instructions.write_cursor(number, element, line, visible=visible, blinking=blinking))
+    elif name == "shape":
+        display.cursors.shape(0, np.full((32, 4), value, np.uint8))
+    elif name == "blink":
+        display.scan_out.blink_is_on = value
+
+
+@given(st.sampled_from(KINDS), st.integers(1, 4), STEPS)
+@thorough
+def test_a_field_that_is_kept_is_always_the_one_that_a_whole_scan_out_makes(
+    kind: dict[str, Any], strip: int, steps: list[tuple[tuple[str, Any], bool]]
+) -> None:
+    configuration = replace(SMALL, **kind)
+    display = Ramtek9300(configuration)
+    # Each line shows entries that no other does.
+    words = np.arange(9)[:, np.newaxis] * 100 + np.arange(13) % 8
+    display.send(instructions.write_image(words & configuration.largest_word))
+    scan_out, held = display.scan_out, None
+    kept, fresh = (np.zeros((scan_out.lines, scan_out.elements), np.uint32) for _ in range(2))
+    with patch("ramtek_emu.video.dirty_lines.STRIP", strip):
+        for (name, value), is_scanned_out in steps:
+            if name == "draw on it":
+                kept[value % len(kept)], held = 0xABCDEF, None
+            elif name == "scan out another":
+                scan_out.scan_out_into(fresh)
+            else:
+                do(display, name, value)
+            if is_scanned_out:
+                held = scan_out.scan_out_changes_into(kept, held)
+                assert held == scan_out.stamp
+                fresh[...] = 0x123456
+                scan_out.scan_out_into(fresh)
+                assert (kept == fresh).all()
+
+
+def test_after_a_load_only_lines_that_may_show_its_entries_are_written() -> None:
+    display = Ramtek9300()
+    display.send(instructions.write_image(np.repeat(np.arange(480), 640).reshape(480, 640)))
+    pixels = np.zeros((480, 640), np.uint32)
+    held = display.scan_out.scan_out_changes_into(pixels, None)
+    for blue in (1, 2):
+        pixels[...] = 0
+        display.send(instructions.load_entries(200, [[0, 0, blue]] * 3))
+        held = display.scan_out.scan_out_changes_into(pixels, held)
+        assert pixels[200:203].tolist() == [[blue] * 640] * 3
+        assert held == display.scan_out.stamp
+    pixels[...] = 7
+    display.scan_out.scan_out_changes_into(pixels, held)
+    assert (pixels[:100] == 7).all()
+    assert (pixels[300:] == 7).all()
+    display.scan_out.scan_out_changes_into(pixels, None)
+    assert set(pixels[:, 0].tolist()) == {0, 2}
+
+
+class KeptField:
+    """A field that is brought up to date, and compared with a whole one each time."""
+
+    def __init__(self, display: Ramtek9300) -> None:
+        self.scan_out = display.scan_out
+        self.pixels, self.fresh = (np.zeros((display.scan_out.lines, 13), np.uint32) for _ in range(2))
+        self.held: Stamp | None = None
+
+    def is_right(self) -> bool:
+        self.held = self.scan_out.scan_out_changes_into(self.pixels, self.held)
+        self.scan_out.scan_out_into(self.fresh)
+        return bool((self.pixels == self.fresh).all())
+
+
+@patch("ramtek_emu.video.dirty_lines.STRIP", 1)
+def test_words_that_were_written_meanwhile_show_the_next_load_of_the_same_entries() -> None:
+    display = Ramtek9300(SMALL)
+    kept = KeptField(display)
+    for blue, line in enumerate((2, 7, 4), 1):
+        display.send(instructions.erase((3, line, 5, line), 300))
+        assert kept.is_right()
+        display.send(instructions.load_entries(300, [[0, 0, blue]]))
+        assert kept.is_right()
+
+
+@patch("ramtek_emu.video.dirty_lines.STRIP", 1)
+def test_a_view_that_came_back_shows_the_next_load() -> None:
+    display = Ramtek9300(SMALL)
+    display.send(instructions.write_image(np.arange(117).reshape(9, 13)))
+    kept = KeptField(display)
+    assert kept.is_right()
+    display.send(instructions.set_parameters(origin=(0, 4)))
+    display.scan_out.scan_out_into(kept.fresh)
+    display.send(instructions.set_parameters(origin=(0, 0)))
+    display.send(instructions.load_entries(50, [[1, 2, 3]]))
+    assert kept.is_right()
+
+
+def test_a_part_of_the_table_that_is_parked_at_is_shown_by_a_field_that_is_kept() -> None:
+    display = Ramtek9300(replace(SMALL, planes=8))
+    kept = KeptField(display)
+    display.send(instructions.load_entries(256, [[1, 2, 3]]))
+    for address in (0, 0x200, 0, 0x400):
+        display.send(instructions.park_table(address))
+        assert kept.is_right()
+
+
+def test_a_black_and_white_monitor_sees_the_low_eight_bits() -> None:
+    display = Ramtek9300(replace(PRINCETON_9300, monochrome=True))
+    # The first table of cmap: each word its own number.
+    display.send(sent_words([0x0300, 0, 2048, *range(1024)]))
+    display.send(instructions.write_image(np.arange(1024).reshape(2, 512)))
+    field = display.field()[:2, :512].reshape(-1, 3)
+    assert (field == (np.arange(1024) & 0xFF)[:, np.newaxis]).all()
+    wide = Ramtek9300(replace(GMR_9300, monochrome=True))
+    wide.send(instructions.load_entries(0, [[10, 20, 30]]))
+    assert wide.field()[0, 0].tolist() == [30, 30, 30]
+
+
+@pytest.mark.parametrize("configuration", [JPL_9460, NCAR_9460])
+def test_four_sections_of_the_table_are_picked_by_the_pointer(configuration: Configuration) -> None:
+    display = Ramtek9300(configuration)
+    for section in range(4):
+        color = [10 * section + 1, 10 * section + 2, 10 * section + 3]
+        # Section s lies at word (s - 1) * 200h; 1024 bytes each.
+        display.send(
+            sent_words([0x2901, 0x0300, 0x200 * section, 1024, *([color[1] << 8 | color[2], color[0]] * 256)])
+        )
+    for section in (2, 0, 3, 1):
+        display.send(sent_words([0x0300, 0x200 * section, 0]))
+        assert display.field()[5, 5].tolist() == [10 * section + 1, 10 * section + 2, 10 * section + 3]
+
+
+def test_a_cursor_is_drawn_on_the_field_and_not_in_the_memory() -> None:
+    display = colored(Ramtek9300())
+    plain = display.field()
+    stamp = display.scan_out.stamp
+    display.send(sent_words([0x1600, 300, 0x400 | 200]))
+    assert display.scan_out.stamp != stamp
+    assert not display.words.any()
+    field = display.field()
+    changed = (field != plain).any(axis=2)
+    assert (changed[185:217, 285:317] == cross()).all()
+    assert np.count_nonzero(changed) == np.count_nonzero(cross())
+    assert (field[changed] == 255).all()
+    display.send(sent_words([0x1600, 300, 200]))
+    assert (display.field() == plain).all()
+
+
+def test_a_cursor_is_dark_on_a_light_picture_and_clipped_at_the_edges() -> None:
+    display = Ramtek9300()
+    display.send(instructions.load_entries(0, [[250, 250, 250]]))
+    for element, line in ((0, 0), (639, 479), (1023, 1023), (646, 100)):
+        display.send(sent_words([0x1600, element, 0x400 | line]))
+        field = display.field()
+        assert set(np.unique(field)) <= {0, 250}
+    display.send(sent_words([0x1600, 0, 0x400]))
+    assert np.count_nonzero(display.field()[..., 0] == 0) == 12
+
+
+def test_a_blinking_cursor_follows_the_monitor() -> None:
+    display = colored(Ramtek9300())
+    plain = display.field()
+    display.send(sent_words([0x1600, 300, 0xC00 | 200]))
+    assert (display.field() != plain).any()
+    stamp = display.scan_out.stamp
+    display.scan_out.blink_is_on = False
+    assert (display.field() == plain).all()
+    assert display.scan_out.stamp != stamp
+
+
+TIMED = replace(GMR_9300, timing=Timing())
+
+
+def colors(display: Ramtek9300) -> list[int]:
+    """The red of each line, which must be the same all along it."""
+    field = display.field()
+    assert (field == field[:, :1]).all()
+    reds: list[int] = field[:, 0, 0].tolist()
+    return reds
+
+
+def entry(red: int) -> NDArray[np.uint16]:
+    return instructions.load_entries(0, [[red, 0, 0]])
+
+
+def test_a_load_in_mid_field_shows_on_the_lines_below() -> None:
+    display = Ramtek9300(TIMED)
+    display.send(entry(50))
+    display.send(sent_words([0x2A00, 200]))
+    display.send(entry(90))
+    assert colors(display) == [50] * 200 + [90] * 280
+    # A field later it is everywhere.
+    display.send(sent_words([0x2A00, 100]))
+    assert colors(display) == [90] * 480
+
+
+def test_a_load_in_the_retrace_shows_on_the_whole_field() -> None:
+    display = Ramtek9300(TIMED)
+    display.send(entry(50))
+    display.send(sent_words([0x2A00, 300, 0x2901]))
+    assert display.beam is not None
+    assert display.beam.line == 480
+    display.send(entry(90))
+    assert colors(display) == [90] * 480
+
+
+def test_several_loads_in_a_field_make_as_many_stripes() -> None:
+    display = Ramtek9300(TIMED)
+    display.send(sent_words([0x2901]))
+    for number in range(8):
+        display.send(sent_words([0x2A00, 60 * number]))
+        display.send(entry(10 + number))
+    assert colors(display) == [10 + line // 60 for line in range(480)]
+
+
+def test_words_written_behind_the_beam_wait_for_the_next_field() -> None:
+    display = Ramtek9300(TIMED)
+    display.send(instructions.load_entries(0, [[0, 0, 0], [200, 0, 0]]))
+    display.send(sent_words([0x2A00, 240]))
+    display.send(instructions.erase((0, 200, 1, 299), 1))
+    assert display.field()[:, 0, 0].tolist() == [0] * 240 + [200] * 60 + [0] * 180
+    display.send(sent_words([0x2901]))
+    assert display.field()[:, 0, 0].tolist() == [0] * 200 + [200] * 100 + [0] * 180
+
+
+@quick
+@given(streams(200), st.lists(st.integers(0, 200), max_size=5))
+def test_the_same_stream_gives_the_same_field_however_it_is_cut(stream: list[int], places: list[int]) -> None:
+    slow = Timing(instruction=400_000, word=20_000, pixel=9_000)
+    configuration = replace(SMALL, timing=replace(slow, line=100_000, blanked_lines=2))
+    whole, cut = Ramtek9300(configuration), Ramtek9300(configuration)
+    whole.send(sent_words(stream))
+    for piece in cuts(stream, places):
+        cut.send(piece)
+    assert (whole.field() == cut.field()).all()
+    assert whole.scan_out.stamp == cut.scan_out.stamp
+    # Looking takes no time.
+    assert (whole.field() == cut.field()).all()

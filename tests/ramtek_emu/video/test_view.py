@@ -1,0 +1,106 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu.memory.parameters import Parameters
+from ramtek_emu.memory.scan_orders import Point
+from ramtek_emu.video.view import PLAIN_VIEW, copy_shown, pixel_at, screen_at, shown_at, view_of
+from tests.ramtek_emu.strategies import SMALL, quick, sent_words, thorough
+
+
+def twin_field(
+    words: NDArray[np.uint16],
+    shown: tuple[int, int],
+    origin: tuple[int, int],
+    zoom: tuple[int, int],
+    up: bool,
+) -> list[list[int]]:
+    """The word shown at each pixel of the screen, found one by one."""
+    lines, elements = words.shape
+    field = []
+    for line in range(shown[0]):
+        from_origin = shown[0] - 1 - line if up else line
+        row = (origin[1] + from_origin // zoom[1]) % lines
+        field.append([int(words[row, (origin[0] + x // zoom[0]) % elements]) for x in range(shown[1])])
+    return field
+
+
+@thorough
+@given(
+    st.integers(1, 13), st.integers(1, 9), st.tuples(*[st.integers(-0x8000, 0x7FFF)] * 2),
+    st.tuples(*[st.integers(1, 16)] * 2), st.booleans(),
+)  # fmt: skip
+def test_what_is_shown_follows_origin_zoom_and_video_origin(
+    elements: int, lines: int, origin: tuple[int, int], zoom: tuple[int, int], up: bool
+) -> None:
+    display = Ramtek9300(replace(SMALL, visible_elements=elements, visible_lines=lines))
+    words = np.arange(117).reshape(9, 13)
+    display.send(instructions.load_entries(0, np.repeat(np.arange(117)[:, np.newaxis], 3, axis=1)))
+    display.send(instructions.write_image(words))
+    display.field()
+    display.send(instructions.set_parameters(origin=origin))
+    display.send(sent_words([0x2600, zoom[1] - 1 << 8 | zoom[0] - 1, 0x2700 | up]))
+    twin = twin_field(display.words, (lines, elements), origin, zoom, up)
+    assert display.field()[..., 0].tolist() == twin
+    display.send(sent_words([0x0802, 0x0040, 3, 3, 9, 7, 0x0902, 4, 99]))
+    twin = twin_field(display.words, (lines, elements), origin, zoom, up)
+    assert display.field()[..., 0].tolist() == twin
+
+
+coordinates = st.integers(-0x8000, 0x7FFF)
+views = st.tuples(
+    st.builds(Point, coordinates, coordinates), st.tuples(*[st.integers(1, 16)] * 2), st.booleans()
+)
+
+
+def parameters_of(view: tuple[Point, tuple[int, int], bool]) -> Parameters:
+    parameters = Parameters.at_reset(SMALL)
+    parameters.origin, parameters.zoom, parameters.origin_at_bottom = view
+    return parameters
+
+
+@quick
+@given(views)
+def test_a_whole_screen_is_copied_as_pixel_after_pixel_is_found(
+    view: tuple[Point, tuple[int, int], bool],
+) -> None:
+    parameters = parameters_of(view)
+    words = np.arange(117, dtype=np.uint16).reshape(9, 13)
+    screen = np.full((9, 13), -1, np.intp)
+    copy_shown(screen, words, view_of(parameters))
+    for line in range(9):
+        for element in range(13):
+            across, down = pixel_at(parameters, SMALL, element, line)
+            assert screen[line, element] == words[down, across]
+
+
+@quick
+@given(views)
+def test_lines_and_elements_are_found_together_as_one_by_one(
+    view: tuple[Point, tuple[int, int], bool],
+) -> None:
+    parameters = parameters_of(view)
+    elements, lines = pixel_at(parameters, SMALL, np.arange(13), np.arange(2, 9))
+    assert elements.tolist() == [pixel_at(parameters, SMALL, element, 0)[0] for element in range(13)]
+    assert lines.tolist() == [pixel_at(parameters, SMALL, 0, line)[1] for line in range(2, 9)]
+
+
+@quick
+@given(views, st.integers(0, 12), st.integers(0, 8))
+def test_where_a_pixel_is_shown_that_pixel_is_found(
+    view: tuple[Point, tuple[int, int], bool], element: int, line: int
+) -> None:
+    parameters = parameters_of(view)
+    assert pixel_at(parameters, SMALL, *screen_at(parameters, SMALL, element, line)) == (element, line)
+
+
+def test_after_reset_the_screen_shows_the_memory_as_it_lies() -> None:
+    parameters = Parameters.at_reset(SMALL)
+    assert view_of(parameters) == PLAIN_VIEW
+    assert [shown_at(place, 0, 1, 13) for place in range(13)] == list(range(13))
