@@ -12,13 +12,14 @@ every control of a light the same three questions, each with a default that leav
 - `factor`: what is left of the light elsewhere, 0 to 1, as a function of cos(L); factors are multiplied.
 
 To add one, give `Light` a field and write its class. A soft cone has the cosine of its outer angle as
-`least_cosine` and a ramp up to the inner angle as its `factor`. A flap at any plane has the one row of
-`FlapSides` for that plane.
+`least_cosine` and a ramp up to the inner angle as its `factor`. A flap along any plane is a `FlapSides` with
+the row of that plane.
 """
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
@@ -37,7 +38,7 @@ ABOVE_ZERO: Final = float(np.finfo(np.float32).smallest_subnormal)
 """The least positive float32."""
 
 
-class LightControl:
+class LightControl(ABC):
     """One control of one light, ready for the visible points of one view.
 
     A control with a `least_cosine` or a `factor` is `directed`: the light must have a direction.
@@ -47,9 +48,9 @@ class LightControl:
     least_cosine: float = -math.inf
 
     @classmethod
+    @abstractmethod
     def of(cls, light: Light, points: VisiblePoints) -> LightControl | None:
         """The control of a light, or None where the light does not use it."""
-        raise NotImplementedError
 
     def lit_points(self, rows: Singles) -> Flags | None:
         """Whether the points in some columns of `VisiblePoints.rows` may be lit; None for all of them."""

@@ -1,8 +1,8 @@
 """The virtual picture array: unscaled floating-point intensities and the surface number at each pixel.
 
 Paper: "The Lighting Model": the intensity at a point is the sum of the contributions of all lights plus an
-ambient term, held as an unscaled floating-point value; the surface number stands in an auxiliary array, and
-minima and maxima of the whole picture and of each surface are found on the way.
+ambient term, held as an unscaled floating-point value; the surface number is held in an auxiliary array, and
+minima and maxima are found for the whole picture and for each surface.
 """
 
 from __future__ import annotations

@@ -93,7 +93,7 @@ def shade(
 
 
 def _lit_points(controls: Sequence[LightControl], rows: Singles) -> Flags | None:
-    """Whether each point may be lit under all controls; None where no control tells by the points."""
+    """Whether each point may be lit under all controls; None where no control decides by the points."""
     lit: Flags | None = None
     for control in controls:
         allowed = control.lit_points(rows)

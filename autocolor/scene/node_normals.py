@@ -27,7 +27,7 @@ POLYGONS_AT_ONCE: Final = 1 << 13
 
 @dataclass(frozen=True, eq=False)
 class NodeNormals:
-    """Unit normals, and which of them stands at each corner of a polygon.
+    """Unit normals, and which of them is at each corner of a polygon.
 
     `vectors` is (normals, 3) float32, `numbers` (polygons, 4) intp: rows of `vectors`. Both are stored by
     columns, so that `.T` is the contiguous array that the renderer works on.

@@ -1,17 +1,18 @@
 """Reflection models: the specular factor at a point, as a function of cosines between unit vectors.
 
 Paper: Figure 2. light(j) = intensity(j) (D cos(I) + S cos^N(E)). The diffuse term is cos(I) under every
-model. The specular factor stands in the place of cos^N(E), without S, and each model is 1 where light and eye
-are both in the direction of the normal, so that S means the same to all of them.
+model. The specular factor takes the place of cos^N(E), without S. It is 1 where light and eye are both in the
+direction of the normal, so that S means the same under every model.
 
-A model is a row with its parameters and one function of cosines. To add one, write its class here and
-register it under its name.
+A model is a row: its parameters and one function of cosines. To add one, write its class and register it.
 
-With the normal N, the direction to the light L and to the eye V, all other cosines follow from the three
-given, as cos(E) = L . R of the reflected view R = 2 (N.V) N - V:
+N is the normal, L the direction to the light, V the direction to the eye, R = 2 (N.V) N - V the reflected
+view, and H the unit vector halfway between L and V. Given N.L, N.V and cos(E) = L.R, the other cosines are
 
     L.V = 2 (N.V) (N.L) - cos(E)
-    N.H = (N.L + N.V) / |L + V| and V.H = |L + V| / 2, where H halves the angle, |L + V|^2 = 2 + 2 L.V
+    |L + V|^2 = 2 + 2 L.V
+    N.H = (N.L + N.V) / |L + V|
+    V.H = |L + V| / 2
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ and 18.
 """
 
 LEAST_SQUARE: Final = np.float32(1e-6)
-"""The least |L + V|^2, just above the rounding of float32; less only where L and V are opposite."""
+"""The least |L + V|^2, above the rounding of float32; only where L and V are opposite is it less."""
 
 
 class Cosines(NamedTuple):
@@ -56,13 +57,13 @@ class ReflectionModel(Row):
 
     @property
     def largest(self) -> float:
-        """A bound of the specular factor from above."""
+        """An upper bound of the specular factor."""
         return 1.0
 
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
         """The specular factor, written to `out`, which may be one of the arrays of cosines.
 
-        It is finite and at least 0 for any cosines, and counts where N.L > 0.
+        It is finite and at least 0 for any cosines, and used where N.L > 0.
         """
         raise NotImplementedError
 
@@ -135,11 +136,11 @@ class CookTorrance(ReflectionModel):
 
     @property
     def largest(self) -> float:
-        """Where F is 1, G is 1, and D is largest: 4 / e for a roughness of 1."""
+        """The factor if F and G were 1 and D at its maximum, which is 4 / e for a roughness of 1."""
         return 4 / math.e / self.normal_reflectance / LEAST_FACING
 
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
-        """The factor."""
+        """F D G / (N.V), relative to normal incidence and view."""
         view = cosines.view()
         half = _half_vector(cosines.incidence, view, cosines.eye)
         np.multiply(self._distribution(half.normal), self._fresnel(half.view), out=out)
@@ -194,7 +195,7 @@ def _half_vector(incidence: Singles, view: Singles, eye: Singles) -> _HalfVector
 
 
 def _attenuation(incidence: Singles, view: Singles, half: _HalfVector) -> Singles:
-    """G, what microfacets do not shadow or mask of each other: min(1, 2 N.H N.V / V.H, 2 N.H N.L / V.H)."""
+    """G, what the microfacets leave unshadowed: min(1, 2 (N.H) (N.V) / V.H, 2 (N.H) (N.L) / V.H)."""
     attenuation: Singles = np.minimum(incidence, view)
     attenuation *= half.normal
     attenuation *= 2

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -73,6 +74,18 @@ def test_the_factor_is_that_of_the_slow_twin(
         assert factor_at(model, light, eye) == pytest.approx(expected, rel=error, abs=1e-6 * model.largest)
     else:
         assert factor_at(model, light, eye) == pytest.approx(expected, rel=2e-3, abs=2e-5)
+
+
+@pytest.mark.parametrize("roughness", [0.15, 0.3, 0.6, 1.0])
+@pytest.mark.parametrize("normal_reflectance", [0.02, 0.3, 1.0])
+def test_cook_torrance_is_the_slow_twin_all_around(roughness: float, normal_reflectance: float) -> None:
+    model = CookTorrance(roughness, normal_reflectance)
+    for polar, eye_polar, turn in itertools.product(
+        (0.1, 0.5, 0.9, 1.3), (0.0, 0.3, 0.7, 1.1, 1.5), (0, 1, 2, 3)
+    ):
+        light, eye = directions(polar, turn), directions(eye_polar, 0.0)
+        expected = reference.specular_factor(model, light, [0.0, 0.0, 1.0], eye)
+        assert factor_at(model, light, eye) == pytest.approx(expected, rel=1e-3, abs=1e-6)
 
 
 @given(models)

@@ -5,8 +5,6 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View, render, scene_of
-from autocolor.visibility.camera_space import camera_space
-from autocolor.visibility.clipping import clipped_at_near_plane
 from autocolor.visibility.projection import focal_length, projection
 from tests.autocolor.meshes import cube, grid
 from tests.autocolor.reference import ray
@@ -63,18 +61,6 @@ def test_a_polygon_is_seen_from_behind_when_it_runs_clockwise_to_the_eye(
 ) -> None:
     panel = grid(1, 1, (-1, 0, -1), (2, 0, 0), (0, 0, 2))
     assert projection(panel, View(eye, target=(0, 0, 0)), 10, 10).from_behind.tolist() == [from_behind]
-
-
-def test_polygons_that_share_an_edge_through_the_near_plane_share_its_new_node() -> None:
-    floor = grid(4, 4, (-2, -2, 0), (4, 0, 0), (0, 4, 0))
-    view = View((0.1, 0.05, 0.7), direction=(0.05, 1.0, -0.2), field_of_view=80)
-    clipped = clipped_at_near_plane(camera_space(floor, view))
-    on_plane = np.isclose(clipped.positions[2, np.unique(clipped.corners)], clipped.near, rtol=1e-9)
-    # One node for each edge of the floor that runs through the near plane, and no more.
-    before = (floor.coordinates - np.array(view.eye)) @ view.axes[2] / clipped.unit < clipped.near
-    ends = np.stack([floor.node_numbers, np.roll(floor.node_numbers, -1, axis=1)], axis=2).reshape(-1, 2)
-    edges = {tuple(sorted(edge)) for edge in ends.tolist() if before[edge[0]] != before[edge[1]]}
-    assert on_plane.sum() == len(edges) > 4
 
 
 def test_a_node_that_no_polygon_uses_changes_nothing() -> None:

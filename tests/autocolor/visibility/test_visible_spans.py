@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.visibility.visible_surfaces import visible_surfaces
+from autocolor.visibility.depth import depth_scale
+from autocolor.visibility.projection import projection
+from autocolor.visibility.visible_spans import DEPTH, POINTS, RAY, along_spans, visible_spans
+from autocolor.visibility.visible_surfaces import depth_test, visible_surfaces
 from autocolor.visibility.watkins import watkins
-from tests.autocolor.strategies import numbers
+from tests.autocolor.strategies import meshes, numbers, outside_views, rasters, views
 
 tenths = st.integers(-20, 20).map(lambda number: number / 10)
 
@@ -63,3 +68,49 @@ def test_of_coincident_polygons_of_opposite_winding_the_later_is_visible(
     for algorithm in (visible_surfaces, watkins):
         polygons = algorithm(mesh, view, (1, 2), 40, 53).polygon_numbers
         assert (polygons == 1).all()
+
+
+@given(meshes(), views() | outside_views(), rasters)
+def test_spans_are_the_runs_of_pixels_at_which_one_segment_is_visible(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    projected = projection(mesh, view, *raster)
+    scale = depth_scale(projected)
+    segment_at_pixel = np.zeros(raster[0] * raster[1], np.int64)
+    segment_edges = np.zeros((2, scale.segment_limit), np.int32)
+    polygons = np.arange(projected.corners.shape[1])
+    depth_test(segment_at_pixel, segment_edges, projected, scale, polygons)
+    segment_at_pixel &= scale.segment_limit - 1
+    spans = visible_spans(projected, segment_at_pixel, segment_edges, (2, 1))
+
+    expected = []
+    pixel = 0
+    for segment, run in itertools.groupby(segment_at_pixel.tolist()):
+        count = len(list(run))
+        if segment:
+            polygon = int(np.searchsorted(projected.first_segment, segment - 1, side="right")) - 1
+            row = int(projected.polygon_numbers[polygon])
+            surface = (2, 1)[mesh.part_numbers[row]]
+            expected.append((pixel, count, polygon, row, surface, *segment_edges[:, segment].tolist()))
+        pixel += count
+    found = list(zip(*(table.tolist() for table in vars(spans).values()), strict=True))
+    assert sorted(found) == expected
+    assert (np.diff(spans.surface.astype(int)) >= 0).all()
+
+    # At the first pixel of a span the point is the ray over the inverse depth.
+    start, step = along_spans(projected, spans)
+    assert start.dtype == step.dtype == np.float32
+    depth = 1 / start[DEPTH].astype(np.float64)
+    in_camera = start[POINTS] + projected.middle[:, None]
+    assert in_camera == pytest.approx(start[RAY] * depth, rel=1e-5, abs=1e-6)
+
+
+def test_a_segment_that_another_divides_is_visible_in_two_spans() -> None:
+    far = [(-2.0, 1.0, -1.0), (2.0, 1.0, -1.0), (2.0, 1.0, 1.0), (-2.0, 1.0, 1.0)]
+    near = [(-0.2, 0.0, -1.0), (0.2, 0.0, -1.0), (0.2, 0.0, 1.0), (-0.2, 0.0, 1.0)]
+    mesh = Mesh(np.array(far + near), np.arange(8).reshape(2, 4), np.array([0, 1]), ("far", "near"))
+    view = View((0.0, -4.0, 0.0), direction=(0, 1, 0), field_of_view=20)
+    points = visible_surfaces(mesh, view, (1, 2), 10, 20)
+    # Twenty spans of the far wall, two on each line, and ten of the near one.
+    assert points.span_polygons.tolist() == [0] * 20 + [1] * 10
+    assert sum(points.span_lengths) == len(points.pixels)

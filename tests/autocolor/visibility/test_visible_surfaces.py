@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,7 +13,15 @@ from autocolor import Mesh, View
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.reference import first_hit, ray
-from tests.autocolor.strategies import outside_views, rasters, soups, views
+from tests.autocolor.strategies import (
+    directions,
+    numbers,
+    outside_views,
+    rasters,
+    soups,
+    vectors,
+    views,
+)
 
 
 def assert_as_ray_casting(mesh: Mesh, view: View, lines: int, elements: int) -> None:
@@ -101,3 +111,47 @@ def test_more_polygons_than_one_chunk_are_as_ray_casting_finds_them() -> None:
         column, row = (x + 1) / 2 * 90, (up + 1) / 2 * 70
         if 1e-6 < column % 1 < 1 - 1e-6 and 1e-6 < row % 1 < 1 - 1e-6:
             assert polygon == int(row) * 90 + int(column)
+
+
+@pytest.mark.parametrize("mesh", [cube(4), sphere(12, 8, 2.0), cube(4e-15), sphere(12, 8, 2e15)], ids=repr)
+@given(st.data())
+def test_a_closed_mesh_has_no_crack_from_within(mesh: Mesh, data: st.DataObject) -> None:
+    low, high = mesh.bounds
+    middle, size = (low + high) / 2, (high - low)[0]
+    place = np.array(data.draw(vectors(numbers(-0.2, 0.2))))
+    view = View(
+        tuple((middle + place * size).tolist()),
+        direction=data.draw(directions),
+        field_of_view=data.draw(st.sampled_from([20.0, 60.0, 120.0])),
+    )
+    lines, elements = data.draw(rasters)
+    points = visible_surfaces(mesh, view, (1,), lines, elements)
+    assert sorted(points.pixels.tolist()) == list(range(lines * elements))
+
+
+@given(st.integers(0, 1 << 32), st.integers(1, 30))
+def test_a_wall_of_uneven_polygons_has_no_crack(seed: int, lines: int) -> None:
+    flat = grid(6, 5, (-3, 0, -3), (6, 0, 0), (0, 0, 6))
+    moved = flat.coordinates.copy()
+    inner = (np.abs(moved[:, 0]) < 2.9) & (np.abs(moved[:, 2]) < 2.9)
+    moved[inner] += np.random.default_rng(seed).uniform(-0.3, 0.3, (inner.sum(), 3))
+    uneven = Mesh(moved, flat.node_numbers, flat.part_numbers, flat.part_names)
+    view = View((0.1, -4.0, 0.2), target=(0.0, 0.0, 0.0), field_of_view=30.0)
+    points = visible_surfaces(uneven, view, (1,), lines, lines)
+    assert len(points.pixels) == lines * lines
+
+
+def test_every_pixel_whose_center_is_inside_is_covered_and_no_other() -> None:
+    # The eye is as far as the lens is long: one unit of the plane is one pixel.
+    lines = elements = 8
+    view = View((4.0, -4 / math.tan(math.radians(15)), 4.0), direction=(0.0, 1.0, 0.0), field_of_view=30.0)
+    for left, right, bottom, top in ((1.4, 4.6, 2.4, 5.6), (1.6, 4.4, 2.6, 5.4), (0.0, 8.0, 0.0, 8.0)):
+        panel = grid(1, 1, (left, 0, bottom), (right - left, 0, 0), (0, 0, top - bottom))
+        points = visible_surfaces(panel, view, (1,), lines, elements)
+        inside = [
+            line * elements + element
+            for line in range(lines)
+            for element in range(elements)
+            if left < element + 0.5 < right and bottom < lines - line - 0.5 < top
+        ]
+        assert sorted(points.pixels.tolist()) == inside

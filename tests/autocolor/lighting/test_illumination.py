@@ -1,0 +1,155 @@
+from __future__ import annotations
+
+from typing import Any
+from unittest import mock
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Light, Mesh, Scene, Surface, View, scene_of
+from autocolor.lighting import illumination
+from autocolor.lighting.illumination import Previous, illuminate
+from autocolor.lighting.picture import Picture
+from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
+from autocolor.visibility.visible_points import VisiblePoints
+from autocolor.visibility.visible_surfaces import visible_surfaces
+from tests.autocolor.meshes import cube, sphere
+from tests.autocolor.strategies import lights, scenes
+
+RASTER = (12, 16)
+SOME_MODELS: list[ReflectionModel] = [Phong(5.0), Phong(30.0), BlinnPhong(5.0), CookTorrance(0.4)]
+
+
+def points_of(scene: Scene) -> VisiblePoints:
+    one_sided = frozenset(number for number, surface in enumerate(scene.surfaces, 1) if not surface.two_sided)
+    return visible_surfaces(scene.mesh, scene.view, scene.surface_number_of_part, *RASTER, one_sided)
+
+
+def two_surfaces() -> Scene:
+    return scene_of(
+        Mesh.joined([sphere(12, 8), cube(1.2)]),
+        surfaces=[Surface("sphere"), Surface("cube")],
+        view=View((3, -4, 2), target=(0.3, 0.3, 0.3)),
+    )
+
+
+def with_models(*models: ReflectionModel) -> Any:
+    """Give a surface the model of the number that its exponent is."""
+    return mock.patch.object(
+        illumination, "model_of", lambda surface: models[int(surface.reflectance.exponent)]
+    )
+
+
+def numbered(sphere: int, cube: int) -> Scene:
+    """The two surfaces with models of these numbers."""
+    return two_surfaces().with_surface("sphere", exponent=sphere).with_surface("cube", exponent=cube)
+
+
+@given(scenes())
+def test_the_picture_is_the_weighted_sum_of_the_planes(scene: Scene) -> None:
+    points = points_of(scene)
+    picture = illuminate(scene, points)
+    expected = np.full(len(points.pixels), scene.ambient)
+    for light in scene.lights:
+        if light.on and light.intensity > 0:
+            diffuse, specular = picture.light_planes[light.name].values.astype(np.float64)
+            for surface in points.slices:
+                reflectance = scene.surfaces[surface.surface_number - 1].reflectance
+                both = reflectance.diffuse * diffuse + reflectance.specular * specular
+                expected[surface.pixels] += light.intensity * both[surface.pixels]
+    assert picture.relative * picture.scale == pytest.approx(expected, abs=4e-6 * max([*expected, 1e-30]))
+
+
+def same(one: Picture, other: Picture) -> bool:
+    return one.relative.tobytes() == other.relative.tobytes() and one.scale == other.scale
+
+
+@given(scenes(), st.data())
+def test_any_other_lights_after_any_lights_give_the_same_picture_as_without_reuse(
+    scene: Scene, data: st.DataObject
+) -> None:
+    points = points_of(scene)
+    names = st.lists(st.sampled_from(["key", "fill", "rim"]), max_size=3, unique=True)
+    previous = Previous(scene, illuminate(scene, points))
+    for _ in range(3):
+        drawn = tuple(data.draw(lights(name)) for name in data.draw(names))
+        changed = previous.scene.replace(lights=drawn, ambient=data.draw(st.sampled_from([0.0, 0.5])))
+        picture = illuminate(changed, points, previous)
+        assert same(picture, illuminate(changed, points))
+        previous = Previous(changed, picture)
+
+
+numbers_of_models = st.integers(0, len(SOME_MODELS) - 1)
+
+
+@given(numbers_of_models, numbers_of_models, numbers_of_models)
+def test_a_change_of_a_model_gives_the_same_picture_as_without_reuse(old: int, new: int, cube: int) -> None:
+    scene, changed = numbered(old, cube), numbered(new, cube)
+    points = points_of(scene)
+    with with_models(*SOME_MODELS):
+        before = illuminate(scene, points)
+        after = illuminate(changed, points, Previous(scene, before))
+        assert same(after, illuminate(changed, points))
+    for name, planes in after.light_planes.items():
+        assert (planes.values is before.light_planes[name].values) == (old == new)
+
+
+def test_another_model_computes_its_own_surface_again_and_no_other() -> None:
+    scene, changed = numbered(0, 0), numbered(0, 1)
+    points = points_of(scene)
+    of_sphere, of_cube = points.slices
+    with with_models(Phong(20.0), CookTorrance()):
+        before = illuminate(scene, points)
+        after = illuminate(changed, points, Previous(scene, before))
+    for name, planes in after.light_planes.items():
+        old = before.light_planes[name].values
+        assert planes.values[:, of_sphere.pixels].tobytes() == old[:, of_sphere.pixels].tobytes()
+        assert planes.values[0, of_cube.pixels].tobytes() == old[0, of_cube.pixels].tobytes()
+        assert planes.values[1, of_cube.pixels].tobytes() != old[1, of_cube.pixels].tobytes()
+
+
+def test_equal_models_are_not_computed_again_and_others_of_the_same_exponent_are() -> None:
+    scene, changed = numbered(0, 0), numbered(0, 1)
+    points = points_of(scene)
+    for other, reused in ((Phong(20), True), (BlinnPhong(20), False)):
+        with with_models(Phong(20.0), other):
+            before = illuminate(scene, points)
+            after = illuminate(changed, points, Previous(scene, before))
+        assert (after.light_planes["key"].values is before.light_planes["key"].values) == reused
+
+
+def test_a_light_off_keeps_its_planes_until_a_model_changes() -> None:
+    scene = two_surfaces()
+    points = points_of(scene)
+    first = illuminate(scene, points)
+    dark = scene.with_light("key", on=False)
+    second = illuminate(dark, points, Previous(scene, first))
+    assert second.light_planes["key"] is first.light_planes["key"]
+    duller = dark.with_surface("cube", exponent=3)
+    assert "key" not in illuminate(duller, points, Previous(dark, second)).light_planes
+
+
+def test_a_light_that_was_off_is_computed_when_a_model_changes_as_it_is_switched_on() -> None:
+    scene = two_surfaces().with_light("key", on=False)
+    points = points_of(scene)
+    previous = Previous(scene, illuminate(scene, points))
+    changed = scene.with_light("key", on=True).with_surface("cube", exponent=3)
+    assert same(illuminate(changed, points, previous), illuminate(changed, points))
+
+
+def test_every_plane_of_a_picture_is_read_only() -> None:
+    scene = two_surfaces()
+    picture = illuminate(scene, points_of(scene))
+    assert picture.light_planes
+    for planes in picture.light_planes.values():
+        assert not planes.values.flags.writeable
+    assert not picture.relative.flags.writeable
+
+
+def test_nothing_visible_is_a_picture_of_nothing() -> None:
+    scene = two_surfaces().with_view(eye=(0, 40, 0), direction=(0, 1, 0))
+    picture = illuminate(scene.replace(lights=(Light("key", (0, 0, 9)),)), points_of(scene))
+    assert len(picture.relative) == 0
+    assert not picture.intensity.any()

@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Light, View
+from autocolor.lighting.rays import FARTHEST, camera_light, rays_to
+from autocolor.visibility.visible_points import NORMAL, REFLECTED_VIEW, VisiblePoints
+from autocolor.visibility.visible_surfaces import visible_surfaces
+from tests.autocolor.meshes import sphere, wall
+from tests.autocolor.reference import dot, minus, times, unit
+from tests.autocolor.strategies import Vector, directions, numbers, outside_views, vectors
+
+BALL = sphere(12, 8)
+
+
+def points_of(view: View) -> VisiblePoints:
+    return visible_surfaces(BALL, view, (1,), 9, 12)
+
+
+@given(outside_views(), vectors(numbers(-3, 3)), directions)
+def test_lengths_and_cosines_are_those_of_the_rays(view: View, position: Vector, direction: Vector) -> None:
+    points = points_of(view)
+    light = Light("light", position, direction=direction)
+    rays = rays_to(camera_light(light, points, directed=True), points.rows)
+    assert rays.cos_light is not None
+    cos_incidence, cos_eye = rays.cosines_with(NORMAL), rays.cosines_with(REFLECTED_VIEW)
+    reflected = points.rows[REFLECTED_VIEW].T.astype(np.float64) @ view.axes
+    for number, point in enumerate(points.world_points.tolist()):
+        ray = minus(position, point)
+        length = math.sqrt(dot(ray, ray))
+        if length < 1e-3:
+            continue
+        # The point itself is rounded to float32.
+        error = 2e-6 + 1e-6 / length
+        assert rays.length[number] * points.unit == pytest.approx(length, abs=1e-5)
+        assert rays.cos_light[number] == pytest.approx(-dot(unit(ray), unit(direction)), abs=error)
+        normal = points.world_normals[number].tolist()
+        assert cos_incidence[number] == pytest.approx(dot(unit(ray), normal), abs=error)
+        assert cos_eye[number] == pytest.approx(dot(unit(ray), reflected[number].tolist()), abs=error)
+
+
+@pytest.mark.parametrize("gap", [0.03, 0.01, 1e-3])
+def test_the_rays_to_a_light_close_to_the_wall_are_as_exact(gap: float) -> None:
+    x, z = 0.31, -0.22
+    view = View((x, -4.0, z), target=(x, 0.0, z), field_of_view=math.degrees(gap))
+    points = visible_surfaces(wall(), view, (1,), 30, 40)
+    rays = rays_to(camera_light(Light("light", (x, -gap, z)), points, directed=False), points.rows)
+    assert len(rays.close) > 0
+    cos_incidence = rays.cosines_with(NORMAL)
+    for number, point in enumerate(points.world_points.tolist()):
+        aside = math.hypot(point[0] - x, point[2] - z)
+        assert cos_incidence[number] == pytest.approx(gap / math.hypot(aside, gap), abs=3e-4)
+
+
+def test_a_ray_to_a_light_at_the_point_itself_has_a_length() -> None:
+    points = points_of(View((0, -5, 0), target=(0, 0, 0)))
+    for point in points.world_points.tolist():
+        rays = rays_to(camera_light(Light("light", tuple(point)), points, directed=False), points.rows)
+        assert (rays.length > 0).all()
+        assert np.isfinite(rays.cosines_with(NORMAL)).all()
+
+
+@given(directions, st.sampled_from([1e16, 1e25, 1e36]))
+def test_the_rays_to_a_light_beyond_all_are_parallel(toward: Vector, distance: float) -> None:
+    points = points_of(View((1, -5, 2), target=(0, 0, 0)))
+    far = times(distance, unit(toward))
+    light = Light("light", (far[0], far[1], far[2]))
+    rays = rays_to(camera_light(light, points, directed=False), points.rows)
+    assert float(rays.length.max()) <= FARTHEST * 1.8
+    expected = points.world_normals @ np.array(unit(toward))
+    assert rays.cosines_with(NORMAL) == pytest.approx(expected, abs=1e-5)
+
+
+def test_a_light_has_a_direction_only_where_one_is_asked_for() -> None:
+    points = points_of(View((1, -5, 2), target=(0, 0, 0)))
+    light = Light("light", (3, -3, 3), direction=(0, 2, 0))
+    assert camera_light(light, points, directed=False).direction is None
+    assert rays_to(camera_light(light, points, directed=False), points.rows).cos_light is None
+    direction = camera_light(light, points, directed=True).direction
+    assert direction is not None
+    assert points.view.axes.T @ direction == pytest.approx(np.array([0, 1, 0]), abs=1e-12)
+    source = Light("light", (3, -3, 3))
+    assert camera_light(source, points, directed=True).direction is None
