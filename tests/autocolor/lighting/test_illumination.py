@@ -1,15 +1,11 @@
 from __future__ import annotations
 
-from typing import Any
-from unittest import mock
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, Mesh, Scene, Surface, View, scene_of
-from autocolor.lighting import illumination
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
@@ -35,16 +31,9 @@ def two_surfaces() -> Scene:
     )
 
 
-def with_models(*models: ReflectionModel) -> Any:
-    """Give a surface the model of the number that its exponent is."""
-    return mock.patch.object(
-        illumination, "model_of", lambda surface: models[int(surface.reflectance.exponent)]
-    )
-
-
-def numbered(sphere: int, cube: int) -> Scene:
-    """The two surfaces with models of these numbers."""
-    return two_surfaces().with_surface("sphere", exponent=sphere).with_surface("cube", exponent=cube)
+def modeled(sphere: ReflectionModel, cube: ReflectionModel) -> Scene:
+    """The two surfaces with these models."""
+    return two_surfaces().with_surface("sphere", model=sphere).with_surface("cube", model=cube)
 
 
 @given(scenes())
@@ -81,28 +70,28 @@ def test_any_other_lights_after_any_lights_give_the_same_picture_as_without_reus
         previous = Previous(changed, picture)
 
 
-numbers_of_models = st.integers(0, len(SOME_MODELS) - 1)
+some_models = st.sampled_from(SOME_MODELS)
 
 
-@given(numbers_of_models, numbers_of_models, numbers_of_models)
-def test_a_change_of_a_model_gives_the_same_picture_as_without_reuse(old: int, new: int, cube: int) -> None:
-    scene, changed = numbered(old, cube), numbered(new, cube)
+@given(some_models, some_models, some_models)
+def test_a_change_of_a_model_gives_the_same_picture_as_without_reuse(
+    old: ReflectionModel, new: ReflectionModel, cube: ReflectionModel
+) -> None:
+    scene, changed = modeled(old, cube), modeled(new, cube)
     points = points_of(scene)
-    with with_models(*SOME_MODELS):
-        before = illuminate(scene, points)
-        after = illuminate(changed, points, Previous(scene, before))
-        assert same(after, illuminate(changed, points))
+    before = illuminate(scene, points)
+    after = illuminate(changed, points, Previous(scene, before))
+    assert same(after, illuminate(changed, points))
     for name, planes in after.light_planes.items():
         assert (planes.values is before.light_planes[name].values) == (old == new)
 
 
 def test_another_model_computes_its_own_surface_again_and_no_other() -> None:
-    scene, changed = numbered(0, 0), numbered(0, 1)
+    scene, changed = modeled(Phong(), Phong()), modeled(Phong(), CookTorrance())
     points = points_of(scene)
     of_sphere, of_cube = points.slices
-    with with_models(Phong(20.0), CookTorrance()):
-        before = illuminate(scene, points)
-        after = illuminate(changed, points, Previous(scene, before))
+    before = illuminate(scene, points)
+    after = illuminate(changed, points, Previous(scene, before))
     for name, planes in after.light_planes.items():
         old = before.light_planes[name].values
         assert planes.values[:, of_sphere.pixels].tobytes() == old[:, of_sphere.pixels].tobytes()
@@ -110,14 +99,15 @@ def test_another_model_computes_its_own_surface_again_and_no_other() -> None:
         assert planes.values[1, of_cube.pixels].tobytes() != old[1, of_cube.pixels].tobytes()
 
 
-def test_equal_models_are_not_computed_again_and_others_of_the_same_exponent_are() -> None:
-    scene, changed = numbered(0, 0), numbered(0, 1)
+@pytest.mark.parametrize(("other", "is_reused"), [(Phong(20), True), (BlinnPhong(20), False)])
+def test_an_equal_model_is_not_computed_again_and_another_of_the_same_exponent_is(
+    other: ReflectionModel, is_reused: bool
+) -> None:
+    scene, changed = modeled(Phong(), Phong(20.0)), modeled(Phong(), other)
     points = points_of(scene)
-    for other, reused in ((Phong(20), True), (BlinnPhong(20), False)):
-        with with_models(Phong(20.0), other):
-            before = illuminate(scene, points)
-            after = illuminate(changed, points, Previous(scene, before))
-        assert (after.light_planes["key"].values is before.light_planes["key"].values) == reused
+    before = illuminate(scene, points)
+    after = illuminate(changed, points, Previous(scene, before))
+    assert (after.light_planes["key"].values is before.light_planes["key"].values) == is_reused
 
 
 def test_a_light_off_keeps_its_planes_until_a_model_changes() -> None:
