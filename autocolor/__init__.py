@@ -34,6 +34,9 @@ if TYPE_CHECKING:
     from autocolor.scene.lights import Flaps as Flaps
     from autocolor.scene.lights import Light as Light
     from autocolor.scene.mesh import Mesh as Mesh
+    from autocolor.scene.reflection_models import BlinnPhong as BlinnPhong
+    from autocolor.scene.reflection_models import CookTorrance as CookTorrance
+    from autocolor.scene.reflection_models import Phong as Phong
     from autocolor.scene.scene import Scene as Scene
     from autocolor.scene.scene import scene_of as scene_of
     from autocolor.scene.surfaces import Paint as Paint
@@ -45,6 +48,8 @@ if TYPE_CHECKING:
 
 _HOME = {
     "AutocolorError": "errors",
+    "BlinnPhong": "scene.reflection_models",
+    "CookTorrance": "scene.reflection_models",
     "Flap": "scene.lights",
     "Flaps": "scene.lights",
     "InputError": "errors",
@@ -55,6 +60,7 @@ _HOME = {
     "OutputError": "errors",
     "Paint": "scene.surfaces",
     "Part": "scene.surfaces",
+    "Phong": "scene.reflection_models",
     "Picture": "lighting.picture",
     "Reflectance": "scene.surfaces",
     "Scene": "scene.scene",

@@ -17,9 +17,9 @@ ROOT = Path(__file__).resolve().parents[1]
 
 PUBLIC_NAMES = {
     "autocolor": [
-        "AutocolorError", "Flap", "Flaps", "InputError", "LevelRange", "Light", "Mesh", "MissingInputError",
-        "OutputError", "Paint", "Part", "Picture", "Reflectance", "Scene", "Studio", "Surface",
-        "UnavailableError", "UsageError", "View", "WriteError", "image", "read_picture", "read_scene",
+        "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "InputError", "LevelRange", "Light",
+        "Mesh", "MissingInputError", "OutputError", "Paint", "Part", "Phong", "Picture", "Reflectance",
+        "Scene", "Studio", "Surface", "UnavailableError", "UsageError", "View", "WriteError", "image", "read_picture", "read_scene",
         "render", "save_image", "scene_of", "write_picture",
     ],
     "ramtek_emu": [
