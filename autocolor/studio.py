@@ -32,10 +32,14 @@ if TYPE_CHECKING:
     from os import PathLike
 
 
+EntryEncoder = Callable[[int, Bytes], Words]
+"""Makes the instruction that loads entries, (n, 3) uint8, from a first one on."""
+
+
 def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
     """Reset a display and show a picture in the colors of a scene on it; nothing is rendered."""
     display.send(instructions.reset())
-    _send(None, display_image(scene, picture), display)
+    _send(None, display_image(scene, picture), display, encoder_of_entries(display))
 
 
 def configuration_of(display: HostPort) -> Configuration:
@@ -54,19 +58,18 @@ def configuration_of(display: HostPort) -> Configuration:
     return configuration
 
 
-def _send(before: DisplayImage | None, now: DisplayImage, display: HostPort) -> None:
+def encoder_of_entries(display: HostPort) -> EntryEncoder:
+    """What makes the instruction that loads entries from a first one on, in the display's format."""
+    short = configuration_of(display).entry_format is EntryFormat.WORD_12
+    return instructions.load_short_entries if short else instructions.load_entries
+
+
+def _send(before: DisplayImage | None, now: DisplayImage, display: HostPort, encoder: EntryEncoder) -> None:
     """Send the entries and the words that differ, or all."""
-    encoder = encoder_of_entries(display)
     for first, entries in [(0, now.entries)] if before is None else now.loads_after(before):
         display.send(encoder(first, entries))
     if before is None or before.words is not now.words:
         display.send(instructions.write_image(now.words))
-
-
-def encoder_of_entries(display: HostPort) -> Callable[[int, Bytes], Words]:
-    """What makes the instruction that loads entries from a first one on, in the display's format."""
-    short = configuration_of(display).entry_format is EntryFormat.WORD_12
-    return instructions.load_short_entries if short else instructions.load_entries
 
 
 class Studio:
@@ -79,6 +82,7 @@ class Studio:
     def __init__(self, scene: Scene, display: HostPort) -> None:
         configuration = configuration_of(display)
         self._display = display
+        self._encoder = encoder_of_entries(display)
         self._rendering = rendering(scene, configuration.shown_lines, configuration.shown_elements)
         self._shown = display_image(scene, self._rendering.picture)
         self._done: list[Scene] = []
@@ -175,7 +179,7 @@ class Studio:
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
         self._display.send(instructions.reset())
-        _send(None, self._shown, self._display)
+        _send(None, self._shown, self._display, self._encoder)
 
     def _step(self, source: list[Scene], target: list[Scene]) -> bool:
         if not source:
@@ -193,7 +197,7 @@ class Studio:
             lines, elements = before.picture.lines, before.picture.elements
             rendered = rendering(scene, lines, elements, rendered)
         now = display_image(scene, rendered.picture, before)
-        _send(before, now, self._display)
+        _send(before, now, self._display, self._encoder)
         self._rendering, self._shown = rendered, now
 
     def _repr_png_(self) -> bytes:

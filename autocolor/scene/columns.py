@@ -262,12 +262,12 @@ def changed(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
     """
     problems: list[Problem] = []
     fields = fields_of(type(row))
-    values = _values_by_field(row, changes, problems)
+    values, inner = _values_by_field(row, changes, problems)
     # Only the columns are copied: what a row computed of itself and keeps may depend on them.
     copy = object.__new__(type(row))
     present = vars(row)
     vars(copy).update(present if len(present) == len(fields) else {name: present[name] for name in fields})
-    vars(copy).update(values)
+    vars(copy).update(values, **inner)
     try:
         check(copy, {name: fields[name] for name in values})
     except RowError as error:
@@ -277,8 +277,10 @@ def changed(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
     return copy
 
 
-def _values_by_field(row: Row, changes: Mapping[str, Any], problems: list[Problem]) -> dict[str, Any]:
-    """The fields that change, with their new values; what is refused is noted and left out."""
+def _values_by_field(
+    row: Row, changes: Mapping[str, Any], problems: list[Problem]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The new values of the fields that change, and the inner rows that changed, checked already."""
     fields, keys = fields_of(type(row)), keys_of(type(row))
     values: dict[str, Any] = {}
     inside: dict[str, dict[str, Any]] = {}
@@ -291,12 +293,14 @@ def _values_by_field(row: Row, changes: Mapping[str, Any], problems: list[Proble
             inside.setdefault(name, {}).update(value)
         else:
             values[name] = value
+    inner: dict[str, Any] = {}
     for name, table in inside.items():
-        present = values.get(name, vars(row)[name])
-        values[name] = fields[name].column.kind.changed(present, table, (name,), problems)
+        present = values.pop(name, vars(row)[name])
+        changed_value = fields[name].column.kind.changed(present, table, (name,), problems)
+        (inner if isinstance(changed_value, Row) else values)[name] = changed_value
     if row.alternatives and any(values.get(name) is not None for name in row.alternatives):
         values = {**dict.fromkeys(row.alternatives), **values}
-    return values
+    return values, inner
 
 
 def made(cls: type[SomeRow], table: object) -> SomeRow:
@@ -314,13 +318,13 @@ def made(cls: type[SomeRow], table: object) -> SomeRow:
         {name: REFUSED if field.default is None else field.default() for name, field in fields.items()}
     )
     problems: list[Problem] = []
-    values = _values_by_field(row, table, problems)
+    values, inner = _values_by_field(row, table, problems)
     problems.extend(
         Problem((name,), f"{name} {field.column.kind.rule()}, not missing; add it", names_key=True)
         for name, field in fields.items()
-        if field.default is None and name not in values
+        if field.default is None and name not in values and name not in inner
     )
-    vars(row).update(values)
+    vars(row).update(values, **inner)
     try:
         check(row, fields)
     except RowError as error:
