@@ -101,3 +101,11 @@ def test_without_a_screen_render_is_named(
     assert (ran.code, ran.out) == (69, "")
     assert ran.err.count("\n") == 1
     assert "`autocolor render SCENE -o PNG` makes the picture without a screen" in ran.err
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs an X display that can be missing")
+def test_a_screen_that_does_not_answer_is_no_screen(process: Run, folder: Path) -> None:
+    ran = process("view", "scene", environment={"DISPLAY": ":4711", "XDG_RUNTIME_DIR": str(folder)})
+    assert (ran.code, ran.out) == (69, "")
+    assert ran.err.count("\n") == 1
+    assert "autocolor render SCENE -o PNG" in ran.err
