@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
+from autocolor.arrays import AnyArray
 from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes, shown
 from autocolor.files.scenes.plain_scene import plain_scene, scene_of_plain
@@ -77,7 +77,7 @@ def write_picture(
     }
     relative = np.zeros(picture.lines * picture.elements, np.float32)
     relative[picture.pixels] = picture.relative
-    arrays: dict[str, NDArray[Any]] = {
+    arrays: dict[str, AnyArray] = {
         "header": np.frombuffer(json.dumps(header, allow_nan=False).encode(), np.uint8),
         "relative_intensity": relative.reshape(picture.lines, picture.elements),
         "surface_number": picture.surface_number,
@@ -124,7 +124,7 @@ def _damaged(source: Path, found: str) -> InputError:
     )
 
 
-def _arrays(source: Path) -> dict[str, NDArray[Any]]:
+def _arrays(source: Path) -> dict[str, AnyArray]:
     """The members of the file, each checked before it is made an array."""
     try:
         with zipfile.ZipFile(io.BytesIO(read_bytes(source, LARGEST_PICTURE_FILE))) as archive:
@@ -143,7 +143,7 @@ def _arrays(source: Path) -> dict[str, NDArray[Any]]:
         raise _damaged(source, f"damaged ({error})") from None
 
 
-def _array(source: Path, name: str, data: bytes) -> NDArray[Any]:
+def _array(source: Path, name: str, data: bytes) -> AnyArray:
     """One member as an array of the type and the dimensions that it must have."""
     dtype, dimensions = MEMBERS[name]
     start = 10 + int.from_bytes(data[8:10], "little")
@@ -159,7 +159,7 @@ def _array(source: Path, name: str, data: bytes) -> NDArray[Any]:
     )
 
 
-def _header(source: Path, data: NDArray[Any]) -> dict[str, Any]:
+def _header(source: Path, data: AnyArray) -> dict[str, Any]:
     """The header as a dictionary with the keys that it must have."""
     place = f"{source.name}, header"
 
@@ -182,7 +182,7 @@ def _header(source: Path, data: NDArray[Any]) -> dict[str, Any]:
     return header
 
 
-def _picture(header: dict[str, Any], scene: Scene, relative: NDArray[Any], numbers: NDArray[Any]) -> Picture:
+def _picture(header: dict[str, Any], scene: Scene, relative: AnyArray, numbers: AnyArray) -> Picture:
     """The picture, with its visible pixels sorted by surface again."""
     scale = header["scale"]
     names = [surface.name for surface in scene.surfaces]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
 from autocolor.files.picture_file import read_picture
 from autocolor.files.scenes.formats import SceneFormat, register
@@ -14,7 +15,7 @@ def read_picture_scene(path: Path, *, outside: bool = False) -> SceneReport:
     return SceneReport(read_picture(path).scene)
 
 
-PICTURE_FILE = register(
+PICTURE_FILE: Final = register(
     SceneFormat(
         "picture file", read_picture_scene, (".npz",), begins=lambda head: head.startswith(b"PK\x03\x04")
     )

@@ -6,8 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from numpy.typing import NDArray
-
+from autocolor.arrays import AnyArray
 from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.scene.columns import made, plain
@@ -22,7 +21,7 @@ def plain_scene(scene: Scene) -> dict[str, Any]:
 
 
 def scene_of_plain(
-    values: object, coordinates: NDArray[Any], node_numbers: NDArray[Any], part_numbers: NDArray[Any]
+    values: object, coordinates: AnyArray, node_numbers: AnyArray, part_numbers: AnyArray
 ) -> Scene:
     """The scene of such values and the mesh's arrays; InputError where they break a rule."""
     if not isinstance(values, Mapping) or not isinstance(values.get("mesh"), Mapping):
