@@ -1,4 +1,4 @@
-"""The scene of a picture file, as a format that scenes come in."""
+"""Picture files as a scene format: reading the scene that was saved with a picture."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from autocolor.files.scenes.scene_report import SceneReport
 
 
 def read_picture_scene(path: Path, *, outside: bool = False) -> SceneReport:
-    """The scene of a picture file, which names no other files. Raises InputError."""
+    """The scene of a picture file; `outside` has no effect, as it names no other files. Raises InputError."""
     return SceneReport(read_picture(path).scene)
 
 

@@ -133,7 +133,7 @@ def test_all_meshes_together_have_a_bound_before_any_is_read(
     assert len(read(folder, MESH * 2)[0]) == 2
     assert refusal(folder, MESH * 3) == [
         f"scene.toml, line 1, mesh: the mesh files must have at most {2 * size:,} bytes together,"
-        f" not {3 * size:,}"
+        f" not {3 * size:,}; thin them out"
     ]
 
 

@@ -105,7 +105,7 @@ def test_material_files_are_never_opened(path: Path) -> None:
 def test_what_is_skipped_stands_in_the_report_with_the_name_of_the_file(path: Path) -> None:
     report = read(path, SQUARE + "p 1\nf 1 2 3 4\nf 1 1 2\n")
     assert report.repairs == (
-        "car.obj: skipped were 1 points",
+        "car.obj: skipped points: 1",
         "car.obj: 1 polygon with fewer than three different corners was dropped",
     )
 

@@ -48,17 +48,18 @@ def test_names_that_are_not_utf_8_are_latin_1_and_can_be_shown() -> None:
 def test_points_lines_and_unknown_statements_are_skipped_and_counted() -> None:
     statements, _ = read("p 1\nl 1 2\nl 2 3\nwhat 3\nelse 4\ncurv 1 2\nf 1 2 3 4\n")
     assert statements.sentences == (
-        "skipped were 1 points",
-        "skipped were 2 lines",
-        "skipped were 2 unknown statements (the first is 'what')",
-        "skipped were 1 statements of curves and curved surfaces",
+        "skipped points: 1",
+        "skipped lines: 2",
+        "skipped unknown statements (the first is 'what'): 2",
+        "skipped statements of curves and curved surfaces: 1",
     )
 
 
 def test_a_file_of_rubbish_is_one_short_sentence() -> None:
     statements, part_numbers = read("".join(f"rubbish{line}{'x' * 1000} 1\n" for line in range(1000)))
     (sentence,) = statements.sentences
-    assert sentence.startswith("skipped were 1,000 unknown statements (the first is 'rubbish0xxx")
+    assert sentence.startswith("skipped unknown statements (the first is 'rubbish0xxx")
+    assert sentence.endswith("...): 1,000")
     assert len(sentence) < 120
     assert part_numbers == []
 
