@@ -75,8 +75,8 @@ def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
                 return path / each.in_folder, each
         found = format_of_folder(path)
         rule = (
-            "a scene's folder must contain a scene.toml, or nodes.csv and polygons.csv, not neither; name a mesh"
-            " file to read it alone"
+            "a scene's folder must contain a scene.toml, or nodes.csv and polygons.csv, not neither; name a"
+            " mesh file to read it alone"
         )
     else:
         found = scene_format_named(path) or format_of(path) or scene_format_within(path)
