@@ -27,7 +27,7 @@ Examples:
     "--blend",
     type=float,
     metavar="FRACTION",
-    help="Where the light color begins: 0 at the lowest level, 1 nowhere.",
+    help="Level above which the light color begins, 0 to 1; 1 for never.",
 )
 @click.option(
     "--percentage",

@@ -38,10 +38,14 @@ Examples:
     help="Save the picture with its scene, to recolor it later.",
 )
 @click.option(
-    "--light", "lights", multiple=True, metavar="NAME", help="Switch all other lights off; repeatable."
+    "--light",
+    "lights",
+    multiple=True,
+    metavar="NAME",
+    help="Use only this light; repeat it for more than one.",
 )
 @click.option(
-    "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Change a field of the scene; repeatable."
+    "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Set a field of the scene; repeatable."
 )
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
 @click.pass_context

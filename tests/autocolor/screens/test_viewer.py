@@ -87,7 +87,7 @@ def test_each_edit_is_shown_undone_and_done_again(viewer: Viewer, name: str) -> 
     assert is_true_to(viewer, before)
     control(viewer, "y")
     assert viewer.studio.scene is after
-    assert viewer.message == "done again"
+    assert viewer.message == "redone"
     control(viewer, "z")
     control(viewer, "z", shift=True)
     assert viewer.studio.scene is after
@@ -115,7 +115,7 @@ def test_without_a_step_there_is_nothing_to_undo_or_to_do_again(viewer: Viewer) 
     control(viewer, "z")
     assert viewer.message == "nothing to undo"
     control(viewer, "y")
-    assert viewer.message == "nothing to do again"
+    assert viewer.message == "nothing to redo"
 
 
 def test_a_light_that_is_not_there_is_told(viewer: Viewer) -> None:
