@@ -193,7 +193,7 @@ def _picture(header: dict[str, Any], scene: Scene, relative: AnyArray, numbers: 
     if relative.shape != numbers.shape or not relative.size:
         raise InputError(f"its arrays must be of one shape, not {relative.shape} and {numbers.shape}")
     if not (np.isfinite(relative).all() and relative.min() >= 0):
-        raise InputError("an intensity must be a finite number of at least 0, not otherwise")
+        raise InputError("every intensity must be a finite number of at least 0")
     if float(relative.max()) * scale > LARGEST_SINGLE:
         raise InputError(
             f"intensities must stay below {LARGEST_SINGLE:.3g}, not reach {scale:g} times their own"

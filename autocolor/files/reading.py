@@ -47,7 +47,7 @@ def read_bytes(path: Path, largest: int) -> bytes:
         raise unreadable(path, error) from None
     if len(data) > largest:
         raise InputError(
-            f"{path.name}: a file must have at most {largest:,} bytes, not more; divide it or thin it out"
+            f"{path.name}: a file must have at most {largest:,} bytes, not more; split or simplify it"
         )
     return data.removeprefix(UTF_8_MARK)
 

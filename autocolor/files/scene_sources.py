@@ -39,7 +39,9 @@ def read_scene(path: PathLike, *, strict: bool = False, up: str = "z", outside: 
     """
     report = read_scene_with_report(path, up=up, outside=outside)
     if strict and report.repairs:
-        raise InputError([f"{repair}; strict reading repairs nothing" for repair in report.repairs])
+        raise InputError(
+            [f"{repair}; correct the file, or read it without strict" for repair in report.repairs]
+        )
     return report.scene
 
 

@@ -59,8 +59,8 @@ def level_ranges(surfaces: Sequence[Surface], in_use: Collection[str]) -> Mappin
             (surface for surface in used if surface.levels), key=lambda surface: surface.levels or 0
         )
         raise InputError(
-            f"surface {largest.name!r}: the levels of all surfaces must leave {FEWEST_LEVELS} for each that"
-            f" asks for none, {room} in all, not {asked} and {sharing} more surfaces; ask for fewer levels"
+            f"surface {largest.name!r}: the levels must be at most {room} in all, {FEWEST_LEVELS} of them for"
+            f" each surface that asks for none, not {asked} and {sharing} such surfaces; ask for fewer levels"
         )
     ranges = {}
     first = BACKGROUND + 1

@@ -1,4 +1,4 @@
-"""The kinds of columns: numbers, switches, texts, colors, vectors, choices, curves, references, rows."""
+"""The kinds of columns: numbers, switches, strings, colors, vectors, choices, curves, references, rows."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ class Text(Leaf):
     may_be_empty: bool = False
 
     def rule(self) -> str:
-        return "must be a text" + ("" if self.may_be_empty else " of at least one letter")
+        return "must be a string" + ("" if self.may_be_empty else " of at least one character")
 
     def accepts(self) -> str:
         return "str"
@@ -491,7 +491,7 @@ class Rows(Kind):
         for number, row in enumerate(value):
             name = row.get("name") if isinstance(row, Mapping) else getattr(row, "name", None)
             if isinstance(name, str) and first.setdefault(name, number) != number:
-                text = f"must differ from all others, not repeat {path[-1]}[{first[name] + 1}]; rename it"
+                text = f"must be unique, not the same as {path[-1]}[{first[name] + 1}]; rename it"
                 problems.append(Problem((*path, number, "name"), text))
         return REFUSED if any(row is REFUSED for row in rows) else rows
 

@@ -70,10 +70,11 @@ class Scene(Row):
 
     mesh: Annotated[Mesh, Column(Instance(Mesh), Tier.FRAME, "The node table and the polygon table.")]
     parts: Annotated[
-        tuple[Part, ...], Column(Rows(Part, by_name=True), Tier.FRAME, "The groups of polygons.")
+        tuple[Part, ...],
+        Column(Rows(Part, by_name=True), Tier.FRAME, "The parts, which are groups of polygons."),
     ]
     surfaces: Annotated[
-        tuple[Surface, ...], Column(Rows(Surface, by_name=True), Tier.FRAME, "The kinds of finish.")
+        tuple[Surface, ...], Column(Rows(Surface, by_name=True), Tier.FRAME, "The surface types.")
     ]
     lights: Annotated[tuple[Light, ...], Column(Rows(Light), Tier.MIX, "The lights.")]
     view: Annotated[View, Column(Nested(View), Tier.FRAME, "The eye position and the view direction.")]

@@ -56,7 +56,7 @@ class View(Row):
     def rules(self) -> Iterator[Problem]:
         """Exactly one of direction and target is given, and the target is not the eye."""
         if (self.direction is None) == (self.target is None):
-            yield Problem((), "it must have a direction or a target, and not both; leave one out")
+            yield Problem((), "it must have either a direction or a target; give one of them")
         elif self.target is not None and self.target == self.eye:
             yield Problem((), f"the target must not be the eye, not both {self.eye}; move one of them")
 

@@ -98,7 +98,7 @@ class Viewer:
 
     def on_drop(self, path: Path) -> None:
         """Open a file that was dropped on the window."""
-        if self._unsaved("drop it again to open it all the same"):
+        if self._unsaved("drop it again to discard the changes"):
             return
         try:
             self._open(read_scene(path))
@@ -107,7 +107,7 @@ class Viewer:
 
     def on_close(self) -> bool:
         """Whether the window may close: nothing is unsaved, or this is the second attempt in a row."""
-        return not self._unsaved("close again to leave without it")
+        return not self._unsaved("close again to discard the changes")
 
     def _unsaved(self, otherwise: str) -> bool:
         """Whether to stop because of unsaved changes. They are announced once; the next attempt succeeds."""
@@ -165,7 +165,7 @@ class Viewer:
         if self.back():
             return True
         if self.studio.is_changed:
-            self.message = "not saved: Ctrl+S saves, Ctrl+Q twice leaves without it"
+            self.message = "not saved: Ctrl+S saves, Ctrl+Q twice discards the changes"
             return True
         return False
 

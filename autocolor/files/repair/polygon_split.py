@@ -47,8 +47,8 @@ def split_polygons(coordinates: Floats, corners: Numbers, counts: Numbers) -> tu
         clipping += int((~convex).sum()) * count * count
         if clipping > MOST_CLIPPING:
             raise InputError(
-                f"polygons with corners that point inward must be fewer, not so many with {count} corners;"
-                " split them into triangles"
+                f"there must be fewer polygons with reflex corners, not so many with {count} corners; split"
+                " them into triangles"
             )
         for row in np.flatnonzero(~convex).tolist():
             clipped = np.array(clipped_ears([(x, y) for x, y in flat[row].tolist()]))

@@ -64,7 +64,7 @@ class Source:
 def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside: bool) -> list[MeshReport]:
     """The meshes of a scene that could be read, all with the same crease angle; problems are collected."""
     if len(rows) > MOST_MESHES:
-        problems.note(("mesh",), f"must be there at most {MOST_MESHES:,} times, not {len(rows):,}; join some")
+        problems.note(("mesh",), f"must have at most {MOST_MESHES:,} tables, not {len(rows):,}; join some")
         return []
     sources = [
         source

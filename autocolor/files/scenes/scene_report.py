@@ -48,5 +48,5 @@ def scene_report(
     asked = fields.get("surface_of_part") or {}
     sharing = sum(part.surface != asked.get(part.name, part.name) for part in scene.parts)
     if sharing:
-        created.append(f"{sharing:,} parts share a surface, for a scene has at most {MOST_SURFACES}")
+        created.append(f"{sharing:,} parts share a surface, because a scene has at most {MOST_SURFACES}")
     return SceneReport(scene, repairs, tuple(created), mesh_files)

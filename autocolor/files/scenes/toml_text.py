@@ -59,7 +59,7 @@ def parsed_toml(data: bytes, place: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         raise InputError(_syntax_problem(str(error), text, place)) from None
     except (ValueError, ArithmeticError, LookupError, TypeError, RecursionError) as error:
-        raise InputError(f"{place}: it must be TOML ({error}); correct it") from None
+        raise InputError(f"{place}: it must be valid TOML ({error}); correct it") from None
 
 
 def _syntax_problem(message: str, text: str, place: str) -> str:
@@ -72,7 +72,7 @@ def _syntax_problem(message: str, text: str, place: str) -> str:
         line, column = str(text.rstrip("\n").count("\n") + 1), "the end of the file"
         message = message.removesuffix(" (at end of document)")
     reason = message[:1].lower() + message[1:200]
-    return f"{place}, line {line}: it must be TOML, not what stands at {column} ({reason}); correct the line"
+    return f"{place}, line {line}: it must be valid TOML, but is not at {column} ({reason}); correct the line"
 
 
 def _check_bounds(text: str, place: str) -> None:
@@ -84,15 +84,13 @@ def _check_bounds(text: str, place: str) -> None:
         if kind == "open":
             nested += 1
             if nested > MOST_NESTED:
-                rule = f"brackets must be nested at most {MOST_NESTED} deep, not deeper; write it flatter"
+                rule = f"brackets must be nested at most {MOST_NESTED} deep, not deeper; flatten them"
         elif kind == "close":
             nested = max(0, nested - 1)
         elif kind == "dot":
             dots += 1
             if dots >= MOST_KEY_PARTS:
-                rule = (
-                    f"a key must have at most {MOST_KEY_PARTS} parts between dots, not more; write it shorter"
-                )
+                rule = f"a key must have at most {MOST_KEY_PARTS} parts between dots, not more; shorten it"
         elif kind == "word" and len(token[0]) > LONGEST_WORD:
             rule = (
                 f"a number or a key must have at most {LONGEST_WORD} digits or letters, not"

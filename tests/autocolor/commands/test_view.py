@@ -74,7 +74,7 @@ def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitor
     assert run("view", "scene").code == 0
     assert captions[0].startswith("autocolor - scene* - [front.low] - object color #")
     assert captions[1] == "False"
-    assert captions[2].endswith("not saved: Ctrl+S saves, close again to leave without it")
+    assert captions[2].endswith("not saved: Ctrl+S saves, close again to discard the changes")
     assert captions[3].endswith("none.obj: there is no such file or folder; check the name")
     assert captions[4].endswith("saved somewhere")
 

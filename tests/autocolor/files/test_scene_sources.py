@@ -49,7 +49,7 @@ def test_parts_beyond_the_surfaces_share_one_and_it_is_said(tmp_path: Path) -> N
     path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 3\n" + "".join(f"o p{part}\nf 1 2 3\n" for part in range(300)))
     report = read_scene_with_report(path)
     assert len(report.scene.surfaces) == 255
-    assert report.created[-1] == "45 parts share a surface, for a scene has at most 255"
+    assert report.created[-1] == "45 parts share a surface, because a scene has at most 255"
 
 
 def test_strict_reading_refuses_repairs(folder: Path) -> None:
@@ -59,8 +59,8 @@ def test_strict_reading_refuses_repairs(folder: Path) -> None:
     with pytest.raises(InputError) as caught:
         read_scene(folder, strict=True)
     assert str(caught.value) == (
-        "car.obj: 1 polygon with fewer than three different corners was dropped; strict reading repairs"
-        " nothing"
+        "car.obj: 1 polygon with fewer than three different corners was dropped; correct the"
+        " file, or read it without strict"
     )
 
 

@@ -70,7 +70,7 @@ class ObjLines:
         """Read the words after `f`: corners. Their texture and normal numbers are ignored."""
         if len(words) > MOST_CORNERS:
             self.problem(
-                f"a polygon must have at most {MOST_CORNERS:,} corners, not {len(words):,}; divide it"
+                f"a polygon must have at most {MOST_CORNERS:,} corners, not {len(words):,}; split it"
             )
             return
         for word in words:
@@ -137,7 +137,7 @@ def _statements(data: bytes, reader: ObjLines) -> Iterator[tuple[int, bytes]]:
         size = size + len(line) if begun else len(line)
         if size > LONGEST_LINE:
             reader.line = first
-            reader.problem(f"a line must have at most {LONGEST_LINE:,} bytes, not {size:,}; divide it")
+            reader.problem(f"a line must have at most {LONGEST_LINE:,} bytes, not {size:,}; split it")
             reader.raise_any()
         if line.endswith(b"\\\n"):
             begun.append(line[:-2])

@@ -220,11 +220,11 @@ concentration = -1
         " add it",
         f"{place} 28, lights[1] 'key': there is no 'positon'; did you mean 'position'?",
         f"{place} 29, lights[1] 'key': intensity must be a finite number of at least 0, not inf",
-        f"{place} 31, lights[2] 'key': name must differ from all others, not repeat lights[1]; rename it",
+        f"{place} 31, lights[2] 'key': name must be unique, not the same as lights[1]; rename it",
         f"{place} 33, lights[2] 'key': direction must not be zero, not [0, 0, 0]; give it a length",
         f"{place} 34, lights[2] 'key': flaps.z: the minimum must not be above the maximum, not 3 to 2;"
         " exchange them",
-        f"{place} 36, lights[3] '': name must be a text of at least one letter, not ''",
+        f"{place} 36, lights[3] '': name must be a string of at least one character, not ''",
         f"{place} 38, lights[3] '': concentration must be a finite number of at least 0, not -1",
     ]
 
@@ -314,7 +314,7 @@ def test_too_many_surfaces_are_refused(folder: Path) -> None:
 
 def test_a_scene_file_of_more_than_a_mebibyte_is_refused(folder: Path) -> None:
     assert refusal(folder, MESH + "#" * (1 << 20)) == [
-        "scene.toml: a file must have at most 1,048,576 bytes, not more; divide it or thin it out"
+        "scene.toml: a file must have at most 1,048,576 bytes, not more; split or simplify it"
     ]
 
 

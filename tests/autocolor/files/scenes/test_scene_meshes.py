@@ -151,5 +151,5 @@ def test_differing_crease_angles_are_refused(folder: Path) -> None:
 
 def test_too_many_meshes_are_refused(folder: Path) -> None:
     assert refusal(folder, MESH * 1001) == [
-        "scene.toml, line 1, mesh must be there at most 1,000 times, not 1,001; join some"
+        "scene.toml, line 1, mesh must have at most 1,000 tables, not 1,001; join some"
     ]

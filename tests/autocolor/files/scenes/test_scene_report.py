@@ -70,7 +70,7 @@ def test_a_list_of_many_surfaces_is_cut_and_says_how_many_more() -> None:
 def test_a_part_that_shares_a_surface_as_asked_is_not_counted() -> None:
     shared = {str(part): "0" for part in range(300)}
     assert created(parts=300, surface_of_part=shared) == ("surface '0' was created",)
-    assert created(parts=300)[-1] == "45 parts share a surface, for a scene has at most 255"
+    assert created(parts=300)[-1] == "45 parts share a surface, because a scene has at most 255"
 
 
 def test_the_repairs_and_mesh_files_are_handed_on() -> None:

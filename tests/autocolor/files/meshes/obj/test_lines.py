@@ -112,7 +112,7 @@ def test_a_file_of_faults_has_a_short_report() -> None:
 @pytest.mark.parametrize("letter", [b"a", b"v 1 ", b"# ", b"f 1 2 3 "])
 def test_an_endless_line_is_refused(letter: bytes) -> None:
     sentence = refusal(SQUARE.encode() + letter * (2_000_000 // len(letter)))
-    assert sentence == "car.obj, line 5: a line must have at most 1,048,576 bytes, not 2,000,000; divide it"
+    assert sentence == "car.obj, line 5: a line must have at most 1,048,576 bytes, not 2,000,000; split it"
 
 
 def test_an_endless_continuation_is_refused() -> None:
@@ -122,7 +122,7 @@ def test_an_endless_continuation_is_refused() -> None:
 
 def test_a_polygon_of_too_many_corners_is_refused() -> None:
     assert refusal(SQUARE + "f" + " 1 2 3" * 400) == (
-        "car.obj, line 5: a polygon must have at most 1,000 corners, not 1,200; divide it"
+        "car.obj, line 5: a polygon must have at most 1,000 corners, not 1,200; split it"
     )
 
 
