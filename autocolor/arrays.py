@@ -7,7 +7,7 @@ Vectors stand in three rows, one for each axis, so that numpy works on long rows
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final, TypeVar
+from typing import Any, Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,9 @@ Bytes = NDArray[np.uint8]
 
 Words = NDArray[np.uint16]
 """Words of the display."""
+
+AnyArray = NDArray[Any]
+"""An array whose element type is not known, or is checked elsewhere."""
 
 Real = TypeVar("Real", np.float32, np.float64)
 

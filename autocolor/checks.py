@@ -1,4 +1,4 @@
-"""What the checks at the doors share: how a value is shown in a sentence, and the nearest right name."""
+"""Helpers for input checks: how messages show values and lists, and which name was probably meant."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ Vector = tuple[float, float, float]
 Color = tuple[int, int, int]
 
 LARGEST_COORDINATE: Final = 1e30
-"""Assumed: far beyond any object, and its square is still far from the end of the float64 range."""
+"""Assumed: far larger than any object; its square is still well within the float64 range."""
 
 
 def shown(value: object, most: int = 60) -> str:
-    """The value for the end of a sentence: true and false as in a file, and cut where it is long.
+    """The value as text for a message, at most about `most` characters; booleans are written as in TOML.
 
     >>> shown(True), shown("body"), shown((1, 2)), shown("x" * 100, most=3)
     ('true', "'body'", '(1, 2)', "'xxx'...")
@@ -29,7 +29,7 @@ def shown(value: object, most: int = 60) -> str:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Names as a list in a sentence.
+    """The names as a list in English.
 
     >>> listed(["x", "y", "z"])
     'x, y and z'
@@ -39,7 +39,7 @@ def listed(names: Iterable[str]) -> str:
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
-    """A clause that names the nearest right name, or all of them when few, or nothing."""
+    """A clause for a message: the closest of `names`, else all of them if they are few, else nothing."""
     names = list(names)
     close = [known for known in names if known.startswith(name)] or difflib.get_close_matches(
         name, names, n=1
@@ -54,7 +54,11 @@ def nearest(name: str, names: Iterable[str]) -> str:
 def finite(
     problems: list[str], what: str, value: object, *, at_least: float = -math.inf, at_most: float = math.inf
 ) -> float:
-    """The value as a float, when it is a finite number within the bounds."""
+    """The value as a float.
+
+    Where it is not a finite number within the bounds, a message that calls it `what` is appended
+    to `problems`, and a placeholder is returned.
+    """
     try:
         number = float(value) if not isinstance(value, (bool, str, bytes)) else math.nan  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):

@@ -1,6 +1,6 @@
-"""The errors of autocolor, each with the exit code that a command gives for it.
+"""The exceptions of autocolor, each with the exit code of a command that fails with it.
 
-A sentence says thing, rule, not value, place, and what to do; `str(error)` is that sentence.
+A message names the thing, the rule it breaks, its value, its place, and what to do about it.
 """
 
 from __future__ import annotations
@@ -9,19 +9,19 @@ from collections.abc import Iterable
 
 
 class AutocolorError(Exception):
-    """Anything that autocolor refuses; `exit_code` is what a command ends with."""
+    """Base class of all errors of this package; `exit_code` is the exit code of the command."""
 
     exit_code = 70
 
 
 class UsageError(AutocolorError, ValueError):
-    """A call or a command that asks for something that does not exist."""
+    """A call or a command line that is wrong, such as a name that does not exist."""
 
     exit_code = 2
 
 
 class InputError(AutocolorError, ValueError):
-    """Input that breaks a rule. `problems` holds every sentence, `str` joins them line by line."""
+    """Invalid input. `problems` holds one message for each problem; `str` joins them with line breaks."""
 
     exit_code = 65
 
@@ -31,24 +31,24 @@ class InputError(AutocolorError, ValueError):
 
 
 class MissingInputError(InputError):
-    """An input file or folder that is not there."""
+    """An input file or folder that does not exist."""
 
     exit_code = 66
 
 
 class UnavailableError(AutocolorError):
-    """No screen, or an optional package that is not installed."""
+    """Something that this machine lacks: a screen, or an optional package."""
 
     exit_code = 69
 
 
 class OutputError(AutocolorError):
-    """An output that exists already, or a place where none can be made."""
+    """An output file that already exists, or that cannot be created at its path."""
 
     exit_code = 73
 
 
 class WriteError(AutocolorError):
-    """A write that failed; what stood there before is still whole."""
+    """A write that failed; the previous content of the file is intact."""
 
     exit_code = 74

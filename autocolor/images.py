@@ -1,6 +1,6 @@
-"""Colors without a display: the image of a picture in the colors of a scene.
+"""Color images of a picture without a display.
 
-A picture knows intensities and no color; here its words look up the entries that a display would hold.
+A picture contains intensities but no colors; the colors come from the lookup table that a display would hold.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from autocolor.scene.scene import Scene
 
 
 def image(scene: Scene, picture: Picture) -> Bytes:
-    """The colors of a picture of the scene, (lines, elements, 3) uint8: red, green, blue.
+    """The picture in the colors of a scene, (lines, elements, 3) uint8: red, green, blue.
 
-    They are those of a display's field. Raises InputError for intensities that are not finite.
+    The colors are the same as on a display. Raises InputError if an intensity is not finite.
     """
     shown = display_image(scene, picture)
     colors: Bytes = shown.entries[shown.words]
@@ -25,10 +25,10 @@ def image(scene: Scene, picture: Picture) -> Bytes:
 
 
 def save_image(path: str | PathLike[str], scene: Scene, picture: Picture, *, overwrite: bool = False) -> None:
-    """Write the image of a picture to a PNG file, wholly or not at all.
+    """Write the picture in the colors of a scene to a PNG file, atomically.
 
-    Raises OutputError where the file exists and may not be overwritten or where none can be, WriteError where
-    writing failed.
+    Raises OutputError if the file exists and `overwrite` is false, or if it cannot be created; WriteError if
+    writing fails.
     """
     from ramtek_emu.png import png_bytes
 

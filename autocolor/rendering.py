@@ -1,10 +1,10 @@
-"""From a scene to its picture, keeping what the next scene can use again.
+"""Rendering a scene to a picture, and reusing what the previous scene has in common with the next.
 
-| changed | computed again |
+| changed | recomputed |
 |---|---|
 | mesh, view, the surface of a part | everything |
-| a light's place, aim, concentration, flaps, cone | that light's two planes, the sum |
-| a surface's exponent | every light on the chunks of points that it is in, the sum |
+| a light's position, aim, concentration, flaps, cone | that light's two planes, the sum |
+| a surface's exponent | all lights, for the chunks of points that contain the surface; the sum |
 | a light's intensity or switch, ambient, D, S | the sum |
 | anything else | nothing |
 """
@@ -30,14 +30,14 @@ from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
 
 LARGEST_RASTER: Final = 16384
-"""Assumed: a picture of this size on both sides takes tens of gigabytes."""
+"""Assumed: a picture with this many lines and elements takes tens of gigabytes."""
 
 ALGORITHMS: Final[dict[str, Callable[..., VisiblePoints]]] = {"batch": visible_surfaces, "watkins": watkins}
 
 
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """A scene, its visible points, and its picture."""
+    """A scene with its visible points and its picture."""
 
     scene: Scene
     points: VisiblePoints
@@ -47,9 +47,9 @@ class Rendering:
 def render(scene: Scene, lines: int = 480, elements: int = 640, algorithm: str = "batch") -> Picture:
     """The picture of a scene, (lines, elements).
 
-    `algorithm` is "batch", all lines at once, or "watkins", the literal one, which gives the same picture
-    some hundred times slower. Raises InputError for intensities that float32 can't hold, UsageError for a
-    raster or an algorithm that there is not.
+    `algorithm` is "batch", which processes all lines at once, or "watkins", the literal scan-line algorithm,
+    which gives the same picture about a hundred times slower. Raises InputError if an intensity exceeds the
+    range of float32, UsageError for an invalid size or algorithm.
     """
     for what, size in (("lines", lines), ("elements", elements)):
         if isinstance(size, bool) or not isinstance(size, Integral) or not 1 <= size <= LARGEST_RASTER:
@@ -68,7 +68,7 @@ def rendering(
     before: Rendering | None = None,
     algorithm: str = "batch",
 ) -> Rendering:
-    """The picture of a scene with what it was made from; what did not change is reused from `before`."""
+    """The rendering of a scene; whatever did not change is reused from the earlier rendering `before`."""
     if before is not None and (before.picture.lines, before.picture.elements) != (lines, elements):
         before = None
     if before is not None and _sees_the_same(before.scene, scene):
@@ -87,16 +87,16 @@ def rendering(
 
 
 def _sees_the_same(old: Scene, new: Scene) -> bool:
-    """Whether the visible points are the same; what is kept of a point includes the number of its surface."""
+    """Whether two scenes have the same visible points, including the surface number of each."""
     is_other = costs_at_least(old, new, Tier.FRAME)
     return not is_other and old.surface_number_of_part == new.surface_number_of_part
 
 
 @cache
 def _keep_large_arrays() -> None:
-    """Have glibc keep large arrays for the next frame.
+    """Make glibc reuse the memory of large arrays.
 
-    It gives them back to the system and fetches them again, page by page, for every frame; once it has seen
-    one of this size go, it keeps them. Measured: 4 to 15 ms a frame.
+    By default it returns them to the system and maps them again, page by page, for every picture. Once an
+    array of this size was freed, it keeps them. Measured: this saves 4 to 15 ms for each picture.
     """
     _ = np.empty(30 << 20, np.uint8)

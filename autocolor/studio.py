@@ -1,13 +1,14 @@
-"""The studio: a session with one scene and one display; where renderer and display meet.
+"""The studio: an editing session that connects one scene to one display.
 
-It does what the VAX did: it sends RAMTEK instructions through a host port and never touches the display's
-memories. Each edit makes a new scene; comparing it with the one before tells what is computed and sent.
+Like the host computer of the paper, it only sends RAMTEK instructions through a host port, and never accesses
+the display's memories directly. Each edit makes a new scene; comparing it with the previous scene tells what
+must be recomputed and sent.
 
 | changed | sent to the display |
 |---|---|
 | mesh, view, lights, ambient, D, S, N | all words |
-| mapping, scaling, division of the levels | all words, the entries that differ |
-| object color, light color, blend, light percentage | the entries of one range, no word |
+| mapping, scaling, numbers of levels | all words, the entries that differ |
+| object color, light color, blend, light percentage | the entries of one range, no words |
 """
 
 from __future__ import annotations
@@ -37,16 +38,15 @@ EntryEncoder = Callable[[int, Bytes], Words]
 
 
 def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
-    """Reset a display and show a picture in the colors of a scene on it; nothing is rendered."""
+    """Reset a display and show a picture in the colors of a scene; nothing is rendered."""
     display.send(instructions.reset())
     _send(None, display_image(scene, picture), display, encoder_of_entries(display))
 
 
 def configuration_of(display: HostPort) -> Configuration:
-    """The display's sizes and formats; those of the paper's display where the port does not tell.
+    """The configuration of a display; GMR_9300, the paper's display, if the host port does not have one.
 
-    Raises UsageError for a display whose words or entries are fewer than the paper's: the ranges of the
-    surfaces would run over its end.
+    Raises UsageError for a display with too few words or entries for the level ranges.
     """
     configuration: Configuration = getattr(display, "configuration", GMR_9300)
     if configuration.largest_word < WORDS - 1 or configuration.entries < WORDS:
@@ -59,13 +59,13 @@ def configuration_of(display: HostPort) -> Configuration:
 
 
 def encoder_of_entries(display: HostPort) -> EntryEncoder:
-    """What makes the instruction that loads entries from a first one on, in the display's format."""
+    """The function that encodes a load of entries, from a first entry on, in the display's format."""
     short = configuration_of(display).entry_format is EntryFormat.WORD_12
     return instructions.load_short_entries if short else instructions.load_entries
 
 
 def _send(before: DisplayImage | None, now: DisplayImage, display: HostPort, encoder: EntryEncoder) -> None:
-    """Send the entries and the words that differ, or all."""
+    """Send the entries and words that differ from those of `before`, or all of them if that is None."""
     for first, entries in [(0, now.entries)] if before is None else now.loads_after(before):
         display.send(encoder(first, entries))
     if before is None or before.words is not now.words:
@@ -73,10 +73,10 @@ def _send(before: DisplayImage | None, now: DisplayImage, display: HostPort, enc
 
 
 class Studio:
-    """A session: a scene on a display, edited step by step, each step undone and done again.
+    """A scene shown on a display, which can be edited step by step, with undo and redo.
 
-    `display` is a host port: a `Ramtek9300`, one behind a network, or a recording. It is reset and gets the
-    whole picture; later edits send what changed. An edit that is refused changes nothing.
+    `display` is a host port: a `Ramtek9300`, a `TcpPort` to one, or a `Recorder`. It is reset and sent the
+    whole picture; each edit then sends only what changed. An edit that raises an error changes nothing.
     """
 
     def __init__(self, scene: Scene, display: HostPort) -> None:
@@ -102,21 +102,21 @@ class Studio:
 
     @property
     def level_ranges(self) -> Mapping[str, LevelRange]:
-        """The words that each surface owns, by its name."""
+        """The level range of each surface in use, by name."""
         return self._shown.ranges
 
     @property
     def words(self) -> Words:
-        """The words of the current picture, (lines, elements) uint16; read-only."""
+        """The words of the current picture, (lines, elements) uint16, read-only."""
         return self._shown.words
 
     @property
     def entries(self) -> Bytes:
-        """The entries of the lookup table, (1024, 3) uint8; read-only."""
+        """The entries of the lookup table, (1024, 3) uint8, read-only."""
         return self._shown.entries
 
     def recolor(self, surface: str, **changes: Unpack[PaintChanges]) -> None:
-        """Change the colors of a surface; entries are sent, and no word.
+        """Change the colors of a surface; this sends entries, but no words.
 
         `changes` are fields of its Paint: object_color, light_color ("#rrggbb" or three numbers), blend,
         light_percentage.
@@ -128,21 +128,21 @@ class Studio:
         self.edit(self.scene.with_surface(surface, **changes))
 
     def surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> None:
-        """Change any field of a surface, of its reflectance or of its paint."""
+        """Change fields of a surface, including those of its reflectance and its paint."""
         self.edit(self.scene.with_surface(name, **changes))
 
     def light(self, name: str, /, **changes: Unpack[LightChanges]) -> None:
-        """Change any field of a light."""
+        """Change fields of a light."""
         self.edit(self.scene.with_light(name, **changes))
 
     def view(self, **changes: Unpack[ViewChanges]) -> None:
-        """Change any field of the view; everything is computed again."""
+        """Change fields of the view; everything is recomputed."""
         self.edit(self.scene.with_view(**changes))
 
     def edit(self, scene: Scene, same_step: bool = False) -> None:
-        """Make a scene the current one; with `same_step` it is undone together with the edit before.
+        """Make a scene the current one; nothing happens if it equals the current one.
 
-        A drag is many edits and one step. A scene that equals the current one is no step.
+        With `same_step`, this edit and the previous one are undone together, as for the many edits of a drag.
         """
         before = self.scene
         if scene.equals(before):
@@ -153,24 +153,24 @@ class Studio:
         self._undone.clear()
 
     def undo(self) -> bool:
-        """Go back one step; False where there is none."""
+        """Undo the last step; returns False if there is none."""
         return self._step(self._done, self._undone)
 
     def redo(self) -> bool:
-        """Do again the step that was undone last; False where there is none."""
+        """Redo the last undone step; returns False if there is none."""
         return self._step(self._undone, self._done)
 
     @property
     def is_changed(self) -> bool:
-        """Whether the scene is another than when it was opened or last kept."""
+        """Whether the scene has changed since the session began or was last saved."""
         return self.scene is not self._kept
 
     def keep(self) -> None:
-        """Note that the current scene is saved."""
+        """Mark the current scene as saved."""
         self._kept = self.scene
 
     def save(self, path: str | PathLike[str], overwrite: bool = False) -> None:
-        """Write the picture with its scene to a picture file, and note that it is saved."""
+        """Write the picture with its scene to a picture file, and mark the scene as saved."""
         from autocolor.files.picture_file import write_picture
 
         write_picture(path, self.picture, self.scene, overwrite=overwrite)
@@ -191,7 +191,7 @@ class Studio:
         return True
 
     def _show(self, scene: Scene) -> None:
-        """Compute what changed and send it; nothing is kept of a scene that is refused."""
+        """Recompute and send what changed. If that raises an error, the session is unchanged."""
         before, rendered = self._shown, self._rendering
         if costs_at_least(before.scene, scene, Tier.MIX):
             lines, elements = before.picture.lines, before.picture.elements

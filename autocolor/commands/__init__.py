@@ -1,4 +1,4 @@
-"""The command line of the studio: one file a command, each loaded only when it is named.
+"""The command line: one module for each command, imported only when the command is used.
 
-Uses every other wing.
+May import from all other packages.
 """

@@ -1,4 +1,4 @@
-"""The command line: one file a command, each loaded only when it is named, so that help comes at once."""
+"""The `autocolor` command group; commands are imported when they are used, so that help is fast."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from ramtek_emu.command_line import CommandGroup, version_option
 
 EXAMPLES: Final = """\b
 Examples:
-  autocolor                                     the built-in demo in the window
-  autocolor render scenes/coupe -o coupe.png    the picture of a scene
-  autocolor render car.obj                      the picture of a bare mesh
-  autocolor COMMAND --help                      more on a command
+  autocolor                                     show the built-in demo in a window
+  autocolor render scenes/coupe -o coupe.png    render a scene to a PNG file
+  autocolor render car.obj                      render a mesh without a scene file
+  autocolor COMMAND --help                      show the help of a command
 """
 
 
 class AutocolorGroup(CommandGroup):
-    """The commands of the studio."""
+    """The group of all commands."""
 
     package = "autocolor.commands"
     table: ClassVar[dict[str, str]] = {
-        "render": "the picture of a scene, without a window",
-        "recolor": "a saved picture in other colors, without computing it again",
-        "view": "a scene in the window of the display",
-        "info": "what a scene holds: counts, sizes, ranges",
-        "validate": "every problem of a scene at once",
-        "show": "the picture of a scene on a display elsewhere",
-        "tables": "the tables of a scene, also those created for it",
+        "render": "render a scene to a PNG or picture file, without a window",
+        "recolor": "change the colors of a saved picture, without rendering it again",
+        "view": "show a scene in an interactive window",
+        "info": "print the counts, sizes and ranges of a scene",
+        "validate": "list every problem of a scene",
+        "show": "render a scene and show it on a display over TCP",
+        "tables": "print or write the tables of a scene, including created ones",
     }
 
 
@@ -42,9 +42,9 @@ class AutocolorGroup(CommandGroup):
 @version_option
 @click.pass_context
 def autocolor(context: click.Context, debug: bool) -> None:
-    """Light a scene and recolor it on an emulated RAMTEK 9300, without computing it again.
+    """Render lit scenes on an emulated RAMTEK 9300, and recolor them without rendering them again.
 
-    Without a command it shows the built-in demo in the window.
+    Without a command, show the built-in demo in a window.
     """
     if context.invoked_subcommand is None:
         from autocolor.commands.view import show_demo

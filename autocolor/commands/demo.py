@@ -1,4 +1,4 @@
-"""Where the built-in demo is: installed beside the package, or in the scenes of a checkout."""
+"""The location of the built-in demo: inside the installed package, or in `scenes` of a checkout."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ PLACES: Final = (PACKAGE / "demo_scene", PACKAGE.parent / "scenes" / "coupe")
 
 
 def demo_folder() -> Path:
-    """The folder of the demo's scene."""
+    """The folder of the demo scene. Raises MissingInputError if it is not installed."""
     for place in PLACES:
         if (place / "scene.toml").is_file():
             return place

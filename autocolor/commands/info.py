@@ -1,4 +1,4 @@
-"""`autocolor info`: what a scene holds."""
+"""`autocolor info`: print the counts, sizes and ranges of a scene."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ Examples:
 
 @click.command(epilog=EXAMPLES)
 @scene_options
-@click.option("--json", "as_json", is_flag=True, help="Answer in JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
 def info(context: click.Context, scene: str, as_json: bool, up: str, strict: bool) -> None:
-    """Say what SCENE holds: nodes, polygons, edges, parts, surfaces, lights, view and intensities."""
+    """Print the nodes, polygons, edges, parts, surfaces, lights, view and intensities of SCENE."""
     report = read(scene, up)
     facts = facts_of(report)
     if as_json:
@@ -37,7 +37,7 @@ def info(context: click.Context, scene: str, as_json: bool, up: str, strict: boo
 
 
 def facts_of(report: SceneReport) -> dict[str, Any]:
-    """The facts of a scene as values that JSON can hold."""
+    """The facts about a scene, as values that JSON can hold; the scene is rendered for them."""
     from autocolor.files.repair.quad_shapes import quad_shapes
     from autocolor.mapping.display_image import display_image
     from autocolor.rendering import render
@@ -75,7 +75,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
 
 
 def lines_of(facts: dict[str, Any]) -> list[str]:
-    """The facts as lines to read."""
+    """The facts as lines of text."""
     low, high = facts["bounds"]
     size = " x ".join(f"{b - a:.4g}" for a, b in zip(low, high, strict=True))
     lines = [

@@ -1,4 +1,4 @@
-"""What the commands share about outputs: refusing one before anything is computed for it, and writing it."""
+"""Output files of the commands: checking their paths before anything is computed, and writing them."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
 
 def refuse_outputs(output: str | None, save: str | None, force: bool) -> None:
-    """Refuse a picture (`-o`) or a picture file (`--save`) that cannot be made; None is no output.
+    """Check the paths of a PNG (`-o`) and a picture file (`--save`), where they are not None.
 
-    Raises UsageError for a name that says another format, OutputError for what exists or has no place.
+    Raises UsageError for a wrong suffix, OutputError if the file exists and `force` is false, or if it cannot
+    be created.
     """
     if output is not None:
         _refuse(output, force)
@@ -39,17 +40,15 @@ def _refuse(path: str, force: bool) -> None:
     folder = Path(path).parent
     if not os.path.isdir(folder):
         raise OutputError(
-            f"an output must have a folder to be in, not {folder}, which is none; make it or choose another"
+            f"an output must be in an existing folder, not {folder}; create it or choose another"
         )
     if not os.access(folder, os.W_OK):
-        raise OutputError(
-            f"an output must have a folder that can be written, not {folder}; choose another place"
-        )
+        raise OutputError(f"an output must be in a writable folder, not {folder}; choose another")
     refuse_output(path, overwrite=force)
 
 
 def write_png(path: str, display: Ramtek9300, force: bool) -> None:
-    """Write what the display shows to a PNG file, wholly or not at all."""
+    """Write what the display shows to a PNG file, atomically."""
     from autocolor.files.writing import write_atomically
     from ramtek_emu.png import png_bytes
 
@@ -57,7 +56,7 @@ def write_png(path: str, display: Ramtek9300, force: bool) -> None:
 
 
 def tell_written(*paths: str | None) -> None:
-    """Say on stderr what was written."""
+    """Print a line on stderr for each path that is not None."""
     for path in paths:
         if path is not None:
             click.echo(f"wrote {path}", err=True)

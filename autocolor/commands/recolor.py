@@ -1,4 +1,4 @@
-"""`autocolor recolor`: a saved picture in other colors; no mesh is read and nothing is rendered."""
+"""`autocolor recolor`: change the colors of a saved picture; nothing is rendered."""
 
 from __future__ import annotations
 
@@ -21,26 +21,31 @@ Examples:
 @click.command(epilog=EXAMPLES)
 @click.argument("picture", type=click.Path())
 @click.argument("surface")
-@click.option("--object", "object_color", metavar="COLOR", help='The object color, "#rrggbb".')
-@click.option("--source", "light_color", metavar="COLOR", help='The light source color, "#rrggbb".')
-@click.option("--blend", type=float, metavar="FRACTION", help="Where the shift begins: 1 never, 0 at once.")
+@click.option("--object", "object_color", metavar="COLOR", help='Object color, "#rrggbb".')
+@click.option("--source", "light_color", metavar="COLOR", help='Light source color, "#rrggbb".')
+@click.option(
+    "--blend",
+    type=float,
+    metavar="FRACTION",
+    help="Level above which the light color begins, 0 to 1; 1 for never.",
+)
 @click.option(
     "--percentage",
     type=float,
     metavar="PERCENT",
-    help="How much of the light color there is at the maximum, 0 to 100.",
+    help="Share of the light color at the highest level, 0 to 100.",
 )
 @click.option(
     "-o",
     "--output",
     type=click.Path(),
     metavar="PNG",
-    help="The picture; PICTURE-SURFACE.png if nothing else is asked.",
+    help="PNG file to write; without -o and --save, PICTURE-SURFACE.png.",
 )
 @click.option(
-    "--save", type=click.Path(), metavar="PICTURE.npz", help="Keep the picture with the new colors."
+    "--save", type=click.Path(), metavar="PICTURE.npz", help="Save the picture with the new colors."
 )
-@click.option("--force", is_flag=True, help="Overwrite what exists.")
+@click.option("--force", is_flag=True, help="Overwrite existing files.")
 def recolor(
     picture: str,
     surface: str,
@@ -52,7 +57,7 @@ def recolor(
     save: str | None,
     force: bool,
 ) -> None:
-    """Give SURFACE of a saved PICTURE other colors."""
+    """Change the colors of SURFACE in PICTURE, a picture file, without rendering it again."""
     if output is None and save is None:
         from autocolor.files.file_stem import file_stem
 

@@ -1,4 +1,4 @@
-"""`autocolor render`: the picture of a scene, without a window."""
+"""`autocolor render`: render a scene to a PNG or picture file, without a window."""
 
 from __future__ import annotations
 
@@ -29,19 +29,25 @@ Examples:
     "--output",
     type=click.Path(),
     metavar="PNG",
-    help="The picture; the scene's name if nothing else is asked.",
+    help="PNG file to write; without -o and --save, SCENE.png.",
 )
 @click.option(
     "--save",
     type=click.Path(),
     metavar="PICTURE.npz",
-    help="Keep the picture with its scene, to recolor it later.",
+    help="Save the picture with its scene, to recolor it later.",
 )
 @click.option(
-    "--light", "lights", multiple=True, metavar="NAME", help="Render with this light alone; repeatable."
+    "--light",
+    "lights",
+    multiple=True,
+    metavar="NAME",
+    help="Use only this light; repeat it for more than one.",
 )
-@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help="Change the scene; repeatable.")
-@click.option("--force", is_flag=True, help="Overwrite what exists.")
+@click.option(
+    "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Set a field of the scene; repeatable."
+)
+@click.option("--force", is_flag=True, help="Overwrite existing files.")
 @click.pass_context
 def render(
     context: click.Context,
@@ -54,7 +60,7 @@ def render(
     up: str,
     strict: bool,
 ) -> None:
-    """Render SCENE: a folder, a scene.toml, a mesh file or a saved picture."""
+    """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
     report = read(scene, up)
     edited = with_settings(report.scene, settings)
     if lights:
@@ -87,7 +93,7 @@ def render(
 
 @contextmanager
 def progress(steps: int) -> Iterator[Callable[[], None]]:
-    """A bar on stderr when it is a terminal; call what it gives after each step."""
+    """A progress bar on stderr if that is a terminal; call the function it yields after each step."""
     if sys.stderr is None or not sys.stderr.isatty():
         yield lambda: None
         return

@@ -1,4 +1,4 @@
-"""What the commands share about scenes: reading one, with a word on what was repaired."""
+"""Reading a scene for a command: the common options, messages about repairs, and the exit code."""
 
 from __future__ import annotations
 
@@ -13,21 +13,19 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 REPAIRED: Final = 1
-"""The exit code for a thing done with something skipped or repaired, under --strict."""
+"""The exit code of a command that succeeds with --strict although something was skipped or repaired."""
 
 
 def scene_options(command: Command) -> Command:
-    """The argument and the options of a command that reads a scene."""
+    """A decorator that adds the argument and options of commands that read a scene."""
     for decorate in (
-        click.option(
-            "--strict", is_flag=True, help="End with exit code 1 if anything was repaired or skipped."
-        ),
+        click.option("--strict", is_flag=True, help="Exit with code 1 if anything was repaired or skipped."),
         click.option(
             "--up",
             type=click.Choice(["x", "y", "z"]),
             default="z",
             show_default=True,
-            help="The up axis of a bare mesh file; a scene file says its own.",
+            help="Up axis of a mesh file; scene files give their own.",
         ),
         click.argument("scene", type=click.Path()),
     ):
@@ -36,7 +34,7 @@ def scene_options(command: Command) -> Command:
 
 
 def read(path: str, up: str) -> SceneReport:
-    """The scene of a path, with a line on stderr for each thing that was repaired."""
+    """Read a scene, and print a line on stderr for each repair."""
     from autocolor.files.scene_sources import read_scene_with_report
 
     report = read_scene_with_report(path, up=up)
@@ -46,5 +44,5 @@ def read(path: str, up: str) -> SceneReport:
 
 
 def ended(report: SceneReport, strict: bool) -> int:
-    """The exit code of a command that did what it was asked."""
+    """The exit code of a command that succeeded."""
     return REPAIRED if strict and report.repairs else 0

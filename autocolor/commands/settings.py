@@ -1,4 +1,4 @@
-"""`--set KEY=VALUE`: a scene with some of its fields changed, each named as in a scene file."""
+"""`--set KEY=VALUE`: changing fields of a scene, named as in a scene file."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ EXAMPLES: Final = {
 }
 
 MOST_PARTS: Final = 4
-"""More parts than the path of any field has in its row."""
+"""An upper bound on the parts of a field's path within its row."""
 
 Changes = dict[str, Any]
 
 
 def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
-    """The scene with each KEY=VALUE set: `lights.key.intensity=2`, `view.angle=10`, `ambient=0.2`.
+    """The scene with each KEY=VALUE set, such as `lights.key.intensity=2` or `ambient=0.2`.
 
-    A key is the path that it has in a scene file; a value is written as there, quotes may be left out. The
-    settings of one row are made together, so that their order does not matter. Raises UsageError for a key
-    that names nothing, InputError for a value that breaks a rule.
+    A key is the path of a field in a scene file. A value is written as in a scene file, but needs no quotes.
+    The settings of one row are applied together, so that their order does not matter. Raises UsageError for
+    an unknown key, InputError for an invalid value.
     """
     changes: dict[tuple[str, str], Changes] = {}
     for setting in settings:
@@ -46,7 +46,7 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
 
 
 def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
-    """The scene with some fields of one row changed, or of the scene itself."""
+    """The scene with some of its own fields, or fields of one row, changed."""
     if table == "":
         return scene.replace(**fields)
     if table == "lights":
@@ -59,14 +59,14 @@ def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
 
 
 def value_of(text: str) -> Any:
-    """A value as a scene file has it; what is none is a text.
+    """The text parsed as a TOML value, or the text itself if it is none.
 
     >>> value_of("2.5"), value_of("[1, 2]"), value_of("true"), value_of("#b01020")
     (2.5, [1, 2], True, '#b01020')
     """
     from autocolor.files.scenes.toml_text import parsed_toml
 
-    # A color begins as a comment does, and a line break would begin another key.
+    # In TOML, the # of a color begins a comment, and a line break ends the value.
     if not text or text.startswith("#") or not text.isprintable():
         return text
     try:
@@ -76,7 +76,7 @@ def value_of(text: str) -> Any:
 
 
 def _place(scene: Scene, key: str) -> tuple[str, str, list[str]]:
-    """The table of a key ("" for none), the name of a row there ("" for none), and the path in it."""
+    """The table of a key, the name of the row, and the path in the row; "" for a name that is not needed."""
     from autocolor.checks import nearest
     from autocolor.scene.column_kinds import Instance, Nested, Rows
     from autocolor.scene.columns import fields_of
@@ -87,12 +87,12 @@ def _place(scene: Scene, key: str) -> tuple[str, str, list[str]]:
     table, _, rest = key.partition(".")
     kind = kinds.get(table)
     if kind is None or (rest and not isinstance(kind, (Nested, Rows))):
-        raise UsageError(f"--set {key}: there is nothing of this name to set{nearest(table, kinds)}")
+        raise UsageError(f"--set {key}: there is no field of this name{nearest(table, kinds)}")
     if not isinstance(kind, (Nested, Rows)):
         return "", "", [table]
     names = {"": ""}
     if isinstance(kind, Rows):
-        # A name may itself hold points, or stand in quotes: take the longest that the table has.
+        # A name may contain periods and may be quoted: take the longest one that matches.
         rows = [row.name for row in vars(scene)[table]]
         names = {written: row for row in rows for written in (row, f'"{row}"', f"'{row}'")}
         start = max((name for name in names if f"{rest}.".startswith(f"{name}.")), key=len, default=None)
@@ -105,7 +105,7 @@ def _place(scene: Scene, key: str) -> tuple[str, str, list[str]]:
     if name is None or not field:
         raise UsageError(f"--set {key}: it must name one field; write it as in {EXAMPLES[table]}")
     if field == "name":
-        raise UsageError(f"--set {key}: a name stays; rename it in the scene file")
+        raise UsageError(f"--set {key}: a name cannot be set; change it in the scene file")
     path = field.split(".")
     if len(path) > MOST_PARTS:
         raise UsageError(f"--set {key}: there is no such field; write it as in {EXAMPLES[table]}")
@@ -113,7 +113,7 @@ def _place(scene: Scene, key: str) -> tuple[str, str, list[str]]:
 
 
 def _put(fields: Changes, path: list[str], value: Any) -> None:
-    """Put a value where the path leads: in a field, or in a field of a row inside."""
+    """Put a value at a path of nested dictionaries, which are created as needed."""
     for name in path[:-1]:
         if not isinstance(fields.get(name), dict):
             fields[name] = {}

@@ -1,4 +1,4 @@
-"""`autocolor show`: the picture of a scene on a display elsewhere."""
+"""`autocolor show`: render a scene and show it on a display over TCP."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from autocolor.commands.scenes import ended, read, scene_options
 
 EXAMPLES: Final = """\b
 Examples:
-  ramtek serve --port 9300 --window                      on the machine with the screen
+  ramtek serve --port 9300 --window                      (on the machine with the screen)
   autocolor show scenes/coupe --to tcp://127.0.0.1:9300
 """
 
 
 @click.command(epilog=EXAMPLES)
 @scene_options
-@click.option("--to", "address", required=True, metavar="tcp://HOST:PORT", help="The display.")
+@click.option("--to", "address", required=True, metavar="tcp://HOST:PORT", help="Address of the display.")
 @click.pass_context
 def show(context: click.Context, scene: str, address: str, up: str, strict: bool) -> None:
-    """Render SCENE and show it on the display that listens at an address."""
+    """Render SCENE and show it on the display that listens at an address, such as `ramtek serve`."""
     from autocolor.studio import Studio
     from ramtek_emu import TcpPort, instructions
 
     report = read(scene, up)
     with TcpPort(address) as port:
         Studio(report.scene, port)
-        # What is read back was shown before it was read.
+        # The reply to this read arrives only after everything sent before it was executed.
         port.send(instructions.read_entries(0, 2))
         port.receive(2)
     click.echo(f"shown on {address}", err=True)

@@ -1,4 +1,4 @@
-"""`autocolor tables`: the tables of a scene, those that were created for it among them."""
+"""`autocolor tables`: print or write the tables of a scene, including those created from defaults."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ if TYPE_CHECKING:
 
 EXAMPLES: Final = """\b
 Examples:
-  autocolor tables car.obj                  the tables as a scene file, on stdout
-  autocolor tables parts/car.obj --write    as parts/scene.toml, to be edited
+  autocolor tables car.obj                  print a scene file for the mesh
+  autocolor tables parts/car.obj --write    write it to parts/scene.toml
 """
 
 
 @click.command(epilog=EXAMPLES)
 @scene_options
-@click.option("--write", is_flag=True, help="Write them to the scene.toml beside the mesh.")
-@click.option("--force", is_flag=True, help="Overwrite the scene.toml if there is one.")
-@click.option("--json", "as_json", is_flag=True, help="Answer in JSON.")
+@click.option("--write", is_flag=True, help="Write a scene.toml beside the mesh instead of printing it.")
+@click.option("--force", is_flag=True, help="Overwrite an existing scene.toml.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
 def tables(
     context: click.Context, scene: str, write: bool, force: bool, as_json: bool, up: str, strict: bool
 ) -> None:
-    """Show the parts, surfaces, lights and view of SCENE, created where they were not given."""
+    """Print the parts, surfaces, lights and view of SCENE as a scene file, including those created for it."""
     report = read(scene, up)
     if write:
         path = written(report, Path(scene), force)
@@ -44,20 +44,23 @@ def tables(
 
 
 def text_of(report: SceneReport) -> str:
-    """The scene as a scene file; for a picture file, whose mesh is in it, without the mesh."""
+    """The text of a scene file; without a mesh if the scene is from a picture file."""
     from autocolor.files.scenes.scene_text import scene_text
 
     return scene_text(report.scene, report.mesh_files)
 
 
 def written(report: SceneReport, source: Path, force: bool) -> Path:
-    """Write the scene file beside the mesh; UsageError for a picture file, which has no mesh beside it."""
+    """Write the scene.toml beside the mesh and return its path.
+
+    Raises UsageError for a picture file, which has no mesh file beside it.
+    """
     from autocolor.errors import UsageError
     from autocolor.files.writing import write_atomically
 
     if not report.mesh_files:
         raise UsageError(
-            f"--write must have mesh files to stand beside, not a picture file such as {source}; name a mesh"
+            f"--write needs a scene with mesh files, not a picture file such as {source}; name a mesh file"
         )
     folder = source if source.is_dir() else source.parent
     write_atomically(folder / "scene.toml", text_of(report).encode("utf-8"), overwrite=force)

@@ -1,4 +1,4 @@
-"""`autocolor validate`: every problem of a scene at once."""
+"""`autocolor validate`: list every problem of a scene."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Examples:
 
 @click.command(epilog=EXAMPLES)
 @scene_options
-@click.option("--json", "as_json", is_flag=True, help="Answer in JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
 def validate(context: click.Context, scene: str, as_json: bool, up: str, strict: bool) -> None:
-    """List every problem of SCENE, and what was repaired; exit code 65 if there is a problem."""
+    """List every problem of SCENE and every repair. The exit code is 65 if there is a problem."""
     try:
         report = read(scene, up)
     except InputError as error:

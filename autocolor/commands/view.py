@@ -1,4 +1,4 @@
-"""`autocolor view`: the interactive system in the window of an emulated display."""
+"""`autocolor view`: show a scene in an interactive window."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ Examples:
 
 @click.command(epilog=EXAMPLES)
 @scene_options
-@click.option("--full-screen", is_flag=True, help="Fill the screen.")
-@click.option("--fit", is_flag=True, help="Fill the window, at the cost of uneven pixels.")
+@click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
+@click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @click.pass_context
 def view(context: click.Context, scene: str, up: str, strict: bool, full_screen: bool, fit: bool) -> None:
-    """Show SCENE in the window; F1 there lists the keys."""
+    """Show SCENE in an interactive window; press F1 there for a list of keys."""
     report = read(scene, up)
     show(report.scene, full_screen, fit)
     context.exit(ended(report, strict))
 
 
 def show_demo() -> None:
-    """Show the built-in demo in the window."""
+    """Show the built-in demo in a window."""
     from autocolor.commands.demo import demo_folder
     from autocolor.files.scene_sources import read_scene
 
@@ -40,14 +40,14 @@ def show_demo() -> None:
 
 
 def show(scene: Scene, full_screen: bool = False, fit: bool = False) -> None:
-    """Hold a window open on a scene; UnavailableError where there is no screen."""
+    """Show a scene in a window until that is closed. Raises UnavailableError if there is no screen."""
     from autocolor.errors import UnavailableError
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import NoScreenError, Ramtek9300
     from ramtek_emu.monitor.window import Key, Monitor, open_screen
 
     try:
-        # Say so before anything is rendered.
+        # Fail before rendering if there is no screen.
         open_screen()
         display = Ramtek9300()
         viewer = Viewer(scene, display)
@@ -81,6 +81,4 @@ def show(scene: Scene, full_screen: bool = False, fit: bool = False) -> None:
         )
         monitor.run()
     except NoScreenError as error:
-        raise UnavailableError(
-            f"{error}; `autocolor render SCENE -o PNG` makes the picture without a screen"
-        ) from None
+        raise UnavailableError(f"{error}; `autocolor render SCENE -o PNG` renders without a screen") from None

@@ -1,4 +1,4 @@
-"""Readers of scenes and meshes, and writing that leaves the old or the new file whole.
+"""Reading scenes, meshes and picture files, and writing files atomically.
 
-Uses `mapping`, `lighting`, `scene` and the ground.
+May import from `mapping`, `lighting`, `scene`, and the modules that every package shares.
 """

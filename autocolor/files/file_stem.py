@@ -1,4 +1,4 @@
-"""Names of files made from names of scenes, which may come from any file."""
+"""Safe file names from the names of scenes and surfaces, which may contain any characters."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from typing import Final
 
 LONGEST_STEM: Final = 100
 REFUSED: Final = frozenset('/\\:*?"<>|')
-"""What a system would take for something else than a part of a name."""
+"""Characters that have a special meaning in the paths of some system."""
 
 
 def file_stem(name: str) -> str:
-    """The name as the beginning of a file's name in one folder.
+    """The name as a file name without an ending, free of folders and special characters.
 
     >>> file_stem("scenes/coupe"), file_stem("a: b"), file_stem("..")
     ('coupe', 'a_ b', 'scene')
     """
     stem = "".join("_" if letter in REFUSED or ord(letter) < 32 else letter for letter in Path(name).name)
-    return stem[:LONGEST_STEM].strip() if stem.strip(" .") else "scene"
+    stem = stem[:LONGEST_STEM].strip()
+    return stem if stem.strip(".") else "scene"

@@ -1,4 +1,4 @@
-"""Names of files inside scene files: nothing outside the scene's folder, and nothing from a network."""
+"""Paths of files that a scene file names: within the scene's folder, and never from a network."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from autocolor.files.reading import shown
 
 
 def path_within(problems: list[str], folder: Path, name: str, *, outside: bool = False) -> Path | None:
-    """The path of a file named in a scene file, or None after the reason was noted.
+    """The path of a file named in a scene file; None if it is refused, with the reason added to `problems`.
 
-    A name stays in the folder, after symbolic links are followed too, unless `outside` is given.
+    The path must be within the folder, also after symbolic links are resolved, unless `outside` is true.
     """
     if not name or not name.isprintable():
         problems.append(f"must be the name of a file, not {shown(name)}; correct it")

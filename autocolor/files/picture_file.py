@@ -1,11 +1,11 @@
-"""Picture files: a picture with the scene that it was made from, as an .npz that numpy can open.
+"""Picture files: a picture and the scene that it was rendered from, as an .npz that numpy can open.
 
-The members are `header` (the scene but its mesh, as JSON in UTF-8 bytes), `relative_intensity` (lines,
-elements) float32 in proportion to the header's scale, `surface_number` (lines, elements) uint8, and the
+The members are `header` (the scene without its mesh, as JSON in UTF-8), `relative_intensity` (lines,
+elements) float32, to be multiplied by the header's scale, `surface_number` (lines, elements) uint8, and the
 mesh: `coordinates` (nodes, 3) float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32.
 
-They are stored without compression, so that a file can't promise more than it holds: each array's size is
-checked against the bytes that are there before anything is allocated. Nothing is ever unpickled.
+They are stored without compression: the size of each array is checked against the size of its member before
+anything is allocated, so a small file cannot take much memory. Nothing is ever unpickled.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
+from autocolor.arrays import AnyArray
 from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes, shown
 from autocolor.files.scenes.plain_scene import plain_scene, scene_of_plain
@@ -32,7 +32,7 @@ from autocolor.scene.scene import Scene
 
 FORMAT: Final = "autocolor picture 2"
 FORMATS_READ: Final = (FORMAT, "autocolor picture 1")
-"""In the first one, reflectance and paint were tables of their own within a surface."""
+"""In version 1 the reflectance and the paint of a surface were nested tables."""
 
 LARGEST_PICTURE_FILE: Final = 4 << 30
 LARGEST_HEADER: Final = 16 << 20
@@ -45,7 +45,7 @@ LARGEST_SINGLE: Final = float(np.finfo(np.float32).max)
 ARRAY_HEADER: Final = re.compile(
     rb"\{'descr': '([^']*)', 'fortran_order': False, 'shape': \(((?:\d{1,12}, ?)*(?:\d{1,12})?)\), \} *\n"
 )
-"""What numpy writes before an array, as it writes it; it is never evaluated."""
+"""The array header exactly as numpy writes it; it is matched, never evaluated."""
 
 MEMBERS: Final = {
     "header": ("|u1", 1),
@@ -55,11 +55,11 @@ MEMBERS: Final = {
     "node_numbers": ("<i4", 2),
     "part_numbers": ("<i4", 1),
 }
-"""The dtype and the number of dimensions of each member."""
+"""The dtype and number of dimensions of each member."""
 
 
 class SavedPicture(NamedTuple):
-    """A picture and the scene that it was made from."""
+    """A picture and the scene that it was rendered from."""
 
     picture: Picture
     scene: Scene
@@ -68,7 +68,7 @@ class SavedPicture(NamedTuple):
 def write_picture(
     path: str | PathLike[str], picture: Picture, scene: Scene, *, overwrite: bool = False
 ) -> None:
-    """Write a picture file, wholly or not at all; OutputError or WriteError where it can't be."""
+    """Write a picture file atomically. Raises OutputError or WriteError if that is not possible."""
     header = {
         "format": FORMAT,
         "scale": picture.scale,
@@ -77,7 +77,7 @@ def write_picture(
     }
     relative = np.zeros(picture.lines * picture.elements, np.float32)
     relative[picture.pixels] = picture.relative
-    arrays: dict[str, NDArray[Any]] = {
+    arrays: dict[str, AnyArray] = {
         "header": np.frombuffer(json.dumps(header, allow_nan=False).encode(), np.uint8),
         "relative_intensity": relative.reshape(picture.lines, picture.elements),
         "surface_number": picture.surface_number,
@@ -95,13 +95,13 @@ def write_picture(
                 version=(1, 0),
                 allow_pickle=False,
             )
-            # A fixed date: the same picture gives the same file.
+            # A fixed date makes the file depend on its content only.
             archive.writestr(zipfile.ZipInfo(f"{name}.npy", (1983, 7, 25, 0, 0, 0)), member.getvalue())
     write_atomically(path, buffer.getvalue(), overwrite=overwrite)
 
 
 def read_picture(path: str | PathLike[str]) -> SavedPicture:
-    """The picture of a picture file with its scene; InputError for a file that is no whole picture file."""
+    """The picture and the scene of a picture file. Raises InputError if the file is damaged or incomplete."""
     source = Path(path)
     arrays = _arrays(source)
     header = _header(source, arrays["header"])
@@ -124,8 +124,8 @@ def _damaged(source: Path, found: str) -> InputError:
     )
 
 
-def _arrays(source: Path) -> dict[str, NDArray[Any]]:
-    """The members of the file, each checked before it is made an array."""
+def _arrays(source: Path) -> dict[str, AnyArray]:
+    """The members of the file as arrays, each checked before its array is made."""
     try:
         with zipfile.ZipFile(io.BytesIO(read_bytes(source, LARGEST_PICTURE_FILE))) as archive:
             found = [member.filename for member in archive.infolist()]
@@ -139,12 +139,12 @@ def _arrays(source: Path) -> dict[str, NDArray[Any]]:
     except (zipfile.BadZipFile, EOFError, RuntimeError, ValueError, OSError) as error:
         raise _damaged(source, f"damaged or of another kind ({error or 'cut short'})") from None
     except (struct.error, LookupError, ArithmeticError) as error:
-        # What zipfile lets out where the offsets in its tables are wrong.
+        # zipfile raises these for wrong offsets in its directory.
         raise _damaged(source, f"damaged ({error})") from None
 
 
-def _array(source: Path, name: str, data: bytes) -> NDArray[Any]:
-    """One member as an array of the type and the dimensions that it must have."""
+def _array(source: Path, name: str, data: bytes) -> AnyArray:
+    """One member as an array. Raises InputError if its dtype, dimensions or size is not the required one."""
     dtype, dimensions = MEMBERS[name]
     start = 10 + int.from_bytes(data[8:10], "little")
     described = ARRAY_HEADER.fullmatch(data[10:start]) if start <= LARGEST_ARRAY_HEADER else None
@@ -159,8 +159,8 @@ def _array(source: Path, name: str, data: bytes) -> NDArray[Any]:
     )
 
 
-def _header(source: Path, data: NDArray[Any]) -> dict[str, Any]:
-    """The header as a dictionary with the keys that it must have."""
+def _header(source: Path, data: AnyArray) -> dict[str, Any]:
+    """The parsed header. Raises InputError if it is not JSON or lacks a key."""
     place = f"{source.name}, header"
 
     def refuse(constant: str) -> NoReturn:
@@ -182,8 +182,8 @@ def _header(source: Path, data: NDArray[Any]) -> dict[str, Any]:
     return header
 
 
-def _picture(header: dict[str, Any], scene: Scene, relative: NDArray[Any], numbers: NDArray[Any]) -> Picture:
-    """The picture, with its visible pixels sorted by surface again."""
+def _picture(header: dict[str, Any], scene: Scene, relative: AnyArray, numbers: AnyArray) -> Picture:
+    """The picture of the rasters and the header. Raises InputError if they or the scene do not match."""
     scale = header["scale"]
     names = [surface.name for surface in scene.surfaces]
     if isinstance(scale, bool) or not isinstance(scale, (int, float)) or not 0 < scale < LARGEST_SINGLE:
@@ -193,7 +193,7 @@ def _picture(header: dict[str, Any], scene: Scene, relative: NDArray[Any], numbe
     if relative.shape != numbers.shape or not relative.size:
         raise InputError(f"its arrays must be of one shape, not {relative.shape} and {numbers.shape}")
     if not (np.isfinite(relative).all() and relative.min() >= 0):
-        raise InputError("an intensity must be a finite number of at least 0, not otherwise")
+        raise InputError("every intensity must be a finite number of at least 0")
     if float(relative.max()) * scale > LARGEST_SINGLE:
         raise InputError(
             f"intensities must stay below {LARGEST_SINGLE:.3g}, not reach {scale:g} times their own"

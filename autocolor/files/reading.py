@@ -1,4 +1,4 @@
-"""Bytes and text of an input file, bounded: regular files only, never more than a stated size."""
+"""Reading input files safely: regular files only, and never more than a given number of bytes."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from typing import Final
 from autocolor.errors import InputError, MissingInputError
 
 LARGEST_MESH_FILE: Final = 256 * 1024 * 1024
-"""Assumed: bytes; some three million polygons as OBJ, and a bound on the memory that a reader takes."""
+"""Assumed: in bytes, about three million polygons as OBJ; it bounds the memory that a reader needs."""
 
 LEAST_READ: Final = 1 << 20
-"""Bytes asked for even of a file that says it has less."""
+"""Bytes to request even if the file system reports a smaller file."""
 
 HEAD: Final = 4096
-"""Bytes that tell what a file is."""
+"""Bytes that are enough to recognize a file format."""
 
 UTF_8_MARK: Final = b"\xef\xbb\xbf"
 
@@ -25,8 +25,8 @@ UTF_8_MARK: Final = b"\xef\xbb\xbf"
 def read_bytes(path: Path, largest: int) -> bytes:
     """The content of a regular file of at most `largest` bytes, without a UTF-8 byte order mark.
 
-    Raises MissingInputError where there is none, InputError where it is no regular file, is too large or
-    cannot be read. A pipe or a device is never waited for.
+    Never waits for a pipe or a device. Raises MissingInputError if the file does not exist, InputError if it
+    is not a regular file, too large, or unreadable.
     """
     try:
         status = os.stat(path)
@@ -36,24 +36,24 @@ def read_bytes(path: Path, largest: int) -> bytes:
         raise unnameable(path) from None
     try:
         refuse_irregular(path, status)
-        # A pipe put there in between would block without O_NONBLOCK; look again at what was opened.
+        # The file may have been replaced since: O_NONBLOCK keeps a pipe from blocking; fstat checks again.
         number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         with open(number, "rb") as file:
             opened = os.fstat(number)
             refuse_irregular(path, opened)
-            # As many bytes as are asked for are allocated at once, however small the file is.
+            # read() allocates the requested size at once, even for a small file.
             data = file.read(min(largest, max(opened.st_size, LEAST_READ)) + 1)
     except OSError as error:
         raise unreadable(path, error) from None
     if len(data) > largest:
         raise InputError(
-            f"{path.name}: a file must have at most {largest:,} bytes, not more; divide it or thin it out"
+            f"{path.name}: a file must have at most {largest:,} bytes, not more; split or simplify it"
         )
     return data.removeprefix(UTF_8_MARK)
 
 
 def read_head(path: Path) -> bytes:
-    """The first bytes of a regular file, to tell what it is; none where it cannot be read."""
+    """The first HEAD bytes of a regular file; empty if it cannot be read."""
     try:
         refuse_irregular(path, os.stat(path))
         with open(path, "rb") as file:
@@ -63,7 +63,7 @@ def read_head(path: Path) -> bytes:
 
 
 def refuse_irregular(path: Path, status: os.stat_result) -> None:
-    """Raise InputError unless the status is that of a regular file."""
+    """Raise InputError if the status is not that of a regular file."""
     if stat.S_ISREG(status.st_mode):
         return
     kinds = ((stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISSOCK, "a socket"))
@@ -72,12 +72,12 @@ def refuse_irregular(path: Path, status: os.stat_result) -> None:
 
 
 def unnameable(path: Path) -> InputError:
-    """The InputError for a name that the system cannot hold: with a NUL byte, or in no encoding."""
-    return InputError(f"a file name must be one that the system can hold, not {str(path)!r}; correct it")
+    """The error for a path that the system cannot represent, such as one with a NUL byte."""
+    return InputError(f"a file name must be valid on this system, not {str(path)!r}; correct it")
 
 
 def unreadable(path: Path, error: OSError) -> InputError:
-    """The InputError that says why a file could not be read."""
+    """The error that says why a file could not be read."""
     if error.errno in (errno.ENOENT, errno.ENOTDIR):
         return MissingInputError(f"{path}: there is no such file or folder; check the name")
     reason = (error.strerror or str(error)).lower()
@@ -85,7 +85,7 @@ def unreadable(path: Path, error: OSError) -> InputError:
 
 
 def text_problem(data: bytes) -> str | None:
-    """What keeps the bytes from being text, as the end of a sentence, or None."""
+    """Why the bytes cannot be UTF-8 text (UTF-16, or a NUL byte), as the end of a message; None otherwise."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return "must be text in UTF-8, not UTF-16; save it as UTF-8"
     place = data.find(b"\0")
@@ -96,7 +96,7 @@ def text_problem(data: bytes) -> str | None:
 
 
 def shown(value: str | bytes, most: int = 40) -> str:
-    """The text in quotes, cut where it is long, for the end of a sentence."""
+    """The text in quotes for a message, cut to `most` characters."""
     if isinstance(value, bytes):
         value = value[: 4 * most + 4].decode("utf-8", "backslashreplace")
     return repr(value) if len(value) <= most else repr(value[:most]) + "..."

@@ -1,4 +1,4 @@
-"""Reading a scene from whatever it comes in: a folder, a scene file, a mesh file, a picture file."""
+"""Reading a scene from a folder, a scene file, a mesh file or a picture file."""
 
 from __future__ import annotations
 
@@ -32,19 +32,21 @@ PathLike = str | os.PathLike[str]
 def read_scene(path: PathLike, *, strict: bool = False, up: str = "z", outside: bool = False) -> Scene:
     """The scene of a folder, a scene file (.toml), a mesh file (.obj) or a picture file (.npz).
 
-    A folder has a `scene.toml`, or `nodes.csv` and `polygons.csv`. What is missing is created. `up` is the up
-    axis of a mesh that is read without a scene file; `outside` allows a scene file to name files outside its
-    folder; `strict` refuses what would otherwise be repaired.
-    Raises InputError with every problem, MissingInputError where there is no such file.
+    A folder must contain a `scene.toml`, or `nodes.csv` and `polygons.csv`. Whatever the source does not
+    define is created with defaults. `up` is the up axis of a mesh that is read without a scene file. With
+    `outside`, a scene file may name files outside its folder. With `strict`, a mesh that needs repair is
+    refused. Raises InputError with every problem, MissingInputError if a file does not exist.
     """
     report = read_scene_with_report(path, up=up, outside=outside)
     if strict and report.repairs:
-        raise InputError([f"{repair}; strict reading repairs nothing" for repair in report.repairs])
+        raise InputError(
+            [f"{repair}; correct the file, or read it without strict" for repair in report.repairs]
+        )
     return report.scene
 
 
 def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = False) -> SceneReport:
-    """As `read_scene`, with sentences for what was repaired, skipped and created."""
+    """Like `read_scene`, but also returns messages about what was repaired, skipped and created."""
     if up not in UPS:
         raise UsageError(f"up must be 'x', 'y' or 'z', not {up!r}")
     path = Path(path)
@@ -58,7 +60,7 @@ def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = Fal
     path, found = _format(path)
     if isinstance(found, SceneFormat):
         if up != "z":
-            raise UsageError(f"up must go with a mesh, not with {path}, which says its own; leave it out")
+            raise UsageError(f"up is for mesh files, not for {path}, which gives its own; leave it out")
         return found.read(path, outside=outside)
     if path.is_dir():
         names = dict(zip(found.keys, found.in_folder, strict=True))
@@ -67,7 +69,7 @@ def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = Fal
 
 
 def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
-    """What a folder or a file is, and the file to read for a folder that has a scene file."""
+    """The path to read and its format; the path of a folder with a scene file is that of the scene file."""
     found: SceneFormat | MeshFormat | None
     if path.is_dir():
         for each in scene_formats():
@@ -75,8 +77,8 @@ def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
                 return path / each.in_folder, each
         found = format_of_folder(path)
         rule = (
-            "a scene's folder must have a scene.toml, or nodes.csv and polygons.csv, not neither; name the"
-            " mesh file to read that alone"
+            "a scene's folder must contain a scene.toml, or nodes.csv and polygons.csv, not neither; name a"
+            " mesh file to read it alone"
         )
     else:
         found = scene_format_named(path) or format_of(path) or scene_format_within(path)
@@ -91,7 +93,7 @@ def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
 
 
 def _bare_mesh(files: Mapping[str, Path], name: str, up: str) -> SceneReport:
-    """The scene of a mesh, with everything else created."""
+    """The scene of a mesh, with everything else created from defaults."""
     read = read_mesh(files, up=up)
     entry = {**{key: file.name for key, file in files.items()}, "up": up}
     return scene_report(read.mesh, repairs=read.repairs, mesh_files=(entry,), name=name or "scene")

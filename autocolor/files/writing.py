@@ -1,6 +1,6 @@
-"""Writing that leaves the old file or the new one, whole, whatever happens in between.
+"""Atomic writing: after any failure, either the old or the new file is there, complete.
 
-The display writes its files in the same way; here its refusals become those of this package.
+`ramtek_emu.writing` does the work; its errors are raised as errors of this package.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from ramtek_emu import writing
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bool) -> None:
-    """Write the bytes beside the path, sync them, and give them its name.
+    """Write the bytes to a temporary file beside the path, sync it, and rename it to the path.
 
-    Raises OutputError where the path exists and may not be overwritten, or where nothing can be put;
-    WriteError where writing failed. Nothing but a whole old or new file is left in either case.
+    Raises OutputError if the path exists and `overwrite` is false, or if no file can be created there;
+    WriteError if writing fails. In both cases the old file, if any, is intact.
     """
     with _refusals_of_this_package():
         writing.write_atomically(path, data, overwrite=overwrite)
 
 
 def refuse_output(path: str | os.PathLike[str], *, overwrite: bool) -> None:
-    """Raise OutputError where no output can be put, before anything is computed for it."""
+    """Raise OutputError if no file can be written to the path; for use before an expensive computation."""
     with _refusals_of_this_package():
         writing.refuse_output(path, overwrite)
 

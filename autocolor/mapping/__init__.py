@@ -1,4 +1,4 @@
-"""Intensity to level to word, and word to color: what the display holds of a picture.
+"""From intensities to levels and words, and from words to colors: what the display holds for a picture.
 
-Uses `lighting`, `scene` and the ground.
+May import from `lighting`, `scene`, and the modules that every package shares.
 """

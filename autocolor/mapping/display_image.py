@@ -1,4 +1,4 @@
-"""What a display holds of a scene and its picture: words, entries, and which of them are whose."""
+"""The display image: the words and lookup table entries that show a picture in the colors of a scene."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from autocolor.scene.surfaces import Surface
 
 @dataclass(frozen=True, eq=False)
 class DisplayImage:
-    """The words and the entries of a scene with its picture, and the range of each surface."""
+    """The words and entries for a scene and its picture, and the level range of each surface by name."""
 
     scene: Scene
     picture: Picture
@@ -29,7 +29,7 @@ class DisplayImage:
 
     @cached_property
     def entries(self) -> Bytes:
-        """The whole lookup table, (1024, 3) uint8, read-only."""
+        """The complete lookup table, (1024, 3) uint8, read-only."""
         table = np.zeros((WORDS, 3), np.uint8)
         table[BACKGROUND] = self.scene.background
         table[SCREENS.first :] = SCREEN_COLORS
@@ -39,15 +39,15 @@ class DisplayImage:
         return table
 
     def entries_of(self, surface: Surface) -> Bytes:
-        """The entries of the range of a surface, (levels, 3) uint8, read-only."""
+        """The entries of one surface, (levels, 3) uint8, read-only."""
         floor = _floor(self.scene, self.picture, surface.name) if self.scene.contrast == "floor" else 0.0
         return entries_of(surface.paint, self.ranges[surface.name].levels, floor)
 
     def loads_after(self, before: DisplayImage) -> Iterator[tuple[int, Bytes]]:
-        """The runs of entries that make a table of this one that holds those of another: first entry, colors.
+        """The runs of entries, as (first entry, colors), to load into a table that holds those of `before`.
 
-        Where paints alone may differ, the table is not made: the ranges of the surfaces in another paint are
-        given.
+        When the two images can differ in paints only, these are the ranges of the repainted surfaces, and
+        neither table is built. Otherwise it is one run from the first to the last entry that differs.
         """
         mine, others = self.scene, before.scene
         if (
@@ -65,7 +65,7 @@ class DisplayImage:
             yield first, self.entries[first : last + 1]
 
     def _has_floors_of(self, other: DisplayImage) -> bool:
-        """Whether the lowest levels are as bright as those of another image with the same ranges."""
+        """Whether the floors equal those of another image that has the same ranges."""
         mine, others = self.scene, other.scene
         if mine.contrast != others.contrast:
             return False
@@ -75,7 +75,10 @@ class DisplayImage:
 
 
 def display_image(scene: Scene, picture: Picture, before: DisplayImage | None = None) -> DisplayImage:
-    """What the display holds of a scene with its picture; what did not change is that of `before`."""
+    """The display image of a scene and its picture.
+
+    Ranges and words are shared with the earlier image `before` where they did not change.
+    """
     if before is not None and not costs_at_least(before.scene, scene, Tier.LEVELS):
         ranges = before.ranges
     else:
@@ -97,7 +100,7 @@ def display_image(scene: Scene, picture: Picture, before: DisplayImage | None = 
 
 
 def _floor(scene: Scene, picture: Picture, name: str) -> float:
-    """The minimum as a fraction of the maximum, of the surface or of the whole object."""
+    """The minimum intensity as a fraction of the maximum, for the surface or for the whole object."""
     number = 0 if scene.scaling == "object" else picture.surfaces.index(name) + 1
     extent = picture.relative_ranges.get(number)
     return extent.minimum / extent.maximum if extent is not None and extent.maximum > 0 else 0.0

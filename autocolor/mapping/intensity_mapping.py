@@ -1,8 +1,8 @@
-"""Intensity to level to word.
+"""From intensities to levels, and from levels to words.
 
-Paper: "The Lighting Model": the unscaled intensities are mapped into integer intensities for the display,
+Paper: "The Lighting Model": the unscaled intensities are mapped to integer intensities for the display,
 by the range of each surface or of the entire object; nonlinear mappings can be tried. "Light Source Color
-Blending", Figure 11: a word is the first of its surface's range plus the level.
+Blending", Figure 11: a word is the first word of the surface's range plus the level.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ def words_of(
     scaling: str = "surface",
     mapping: str | CurvePoints = "linear",
 ) -> Words:
-    """The words of a picture, (lines, elements) uint16; the background's where nothing is seen.
+    """The words of a picture, (lines, elements) uint16, read-only; BACKGROUND where nothing is visible.
 
-    `scaling` says whose minimum and maximum become the lowest and the highest level, each "surface" its own
-    or the whole "object"; a range without extent becomes the highest level. Raises InputError for
-    intensities that are not finite.
+    The minimum and maximum intensity become the lowest and highest level: those of each surface if `scaling`
+    is "surface", those of the whole picture if it is "object". Where they are equal, every pixel gets the
+    highest level. Raises InputError if an intensity is not finite.
     """
     words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
     extents = picture.relative_ranges
@@ -63,7 +63,7 @@ def words_of(
 
 
 def levels_of(fractions: Singles, levels: int, out: Singles | None = None) -> Singles:
-    """The levels, 0 to levels - 1, of fractions from 0 to 1, as float32; `out` may be the fractions."""
+    """The levels, 0 to levels - 1, for fractions from 0 to 1, as float32; `out` may be `fractions`."""
     scaled = np.multiply(fractions, np.float32(levels - 1), out=out)
     return halves_up(scaled, out=scaled)
 
@@ -71,7 +71,10 @@ def levels_of(fractions: Singles, levels: int, out: Singles | None = None) -> Si
 def fraction_of(
     extent: IntensityRange, mapping: str | CurvePoints, everything: Singles
 ) -> Callable[[Singles], Singles]:
-    """How far along its range an intensity is shown, 0 to 1; `everything` are all the intensities of it."""
+    """The function from intensities to fractions of the range, 0 to 1.
+
+    `everything` holds all intensities that are mapped with this range.
+    """
     if extent.maximum == extent.minimum:
         return np.ones_like
     return mapping_curve(mapping)(np.float32(extent.minimum), np.float32(extent.maximum), everything)

@@ -1,8 +1,9 @@
-"""Level ranges: which words of the display each surface owns.
+"""Level ranges: the words that each surface owns.
 
 Paper: "Light Source Color Blending", Figure 11: the intensities of each surface type are mapped to a separate
-sequential range of the lookup table. Assumed: word 0 is the background, the screens own sixteen words at
-the top, and what is between is shared equally among the surfaces in use, in the order of their table.
+sequential range of the lookup table. Assumed: word 0 is the background, the sixteen highest
+words belong to the interactive screens, and the words between are divided equally among the surfaces in use,
+in table order.
 """
 
 from __future__ import annotations
@@ -32,21 +33,21 @@ class LevelRange(NamedTuple):
 
 
 SCREENS: Final = LevelRange(WORDS - SCREEN_LEVELS, SCREEN_LEVELS)
-"""The words of the interactive screens: letters, frames, bars."""
+"""The words that the interactive screens draw with."""
 
 SCREEN_COLORS: Final = (
     (0, 0, 0), (255, 255, 255), (192, 192, 192), (128, 128, 128), (72, 76, 84), (36, 39, 46),
     (255, 214, 90), (255, 140, 60), (235, 70, 70), (110, 200, 110), (90, 170, 240), (170, 130, 230),
     (120, 220, 220), (240, 150, 190), (150, 110, 70), (210, 225, 160),
 )  # fmt: skip
-"""Assumed: the entries of the screens' words, which no surface's colors change."""
+"""Assumed: the colors of the screens' words, which do not depend on the scene."""
 
 
 def level_ranges(surfaces: Sequence[Surface], in_use: Collection[str]) -> Mapping[str, LevelRange]:
-    """The range of each surface in use, by name.
+    """The level range of each surface in use, by name.
 
-    A surface has as many levels as it asks for, the others share equally what is left. Raises InputError
-    where less than two levels would be left for one of them.
+    A surface gets the number of levels that it asks for; the others share the rest equally. Raises InputError
+    if that would leave fewer than two levels for one of them.
     """
     used = [surface for surface in surfaces if surface.name in in_use]
     room = SCREENS.first - BACKGROUND - 1
@@ -58,8 +59,8 @@ def level_ranges(surfaces: Sequence[Surface], in_use: Collection[str]) -> Mappin
             (surface for surface in used if surface.levels), key=lambda surface: surface.levels or 0
         )
         raise InputError(
-            f"surface {largest.name!r}: the levels of all surfaces must leave {FEWEST_LEVELS} for each that"
-            f" asks for none, {room} in all, not {asked} and {sharing} more surfaces; ask for fewer levels"
+            f"surface {largest.name!r}: the levels must be at most {room} in all, {FEWEST_LEVELS} of them for"
+            f" each surface that asks for none, not {asked} and {sharing} such surfaces; ask for fewer levels"
         )
     ranges = {}
     first = BACKGROUND + 1

@@ -1,4 +1,4 @@
-"""The one rounding rule: to the nearest whole number, halves up; `color_blending` does it as it mixes."""
+"""Rounding half up, the only rounding rule of the package; `color_blending` applies it as it blends."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 from autocolor.arrays import Singles
 
 HALF: Final = 0.5
-"""What is added to a number before the next lower whole number is taken."""
+"""Added before taking the floor."""
 
 
 def half_up(value: float) -> int:
-    """The whole number nearest to a number, the upper one of two.
+    """The nearest integer; halves are rounded up.
 
     >>> half_up(2.5), half_up(-2.5)
     (3, -2)
@@ -23,6 +23,6 @@ def half_up(value: float) -> int:
 
 
 def halves_up(values: Singles, out: Singles | None = None) -> Singles:
-    """The whole numbers nearest to an array's numbers, halves up; `out` may be the array itself."""
+    """The nearest integers of an array, as float32; halves are rounded up. `out` may be `values`."""
     rounded = np.add(values, np.float32(HALF), out=out)
     return np.floor(rounded, out=rounded)

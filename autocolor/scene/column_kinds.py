@@ -1,4 +1,4 @@
-"""The kinds of columns: numbers, switches, texts, colors, vectors, choices, curves, references, rows."""
+"""The kinds of columns: numbers, switches, strings, colors, vectors, choices, curves, references, rows."""
 
 from __future__ import annotations
 
@@ -30,23 +30,23 @@ from autocolor.scene.columns import (
 )
 
 LARGEST_PLACE: Final = 1e36
-"""Assumed: an eye and lights have room around the largest object."""
+"""Assumed: leaves room for the eye and the lights around the largest object."""
 
 MOST_ROWS: Final = 1_000_000
 
 NO_NUMBERS: Final = (bool, np.bool_, str, bytes)
-"""What Python would take for a number, and nobody means as one."""
+"""Types that Python converts to numbers, but that are not accepted as numbers."""
 
 
 class Leaf(Kind):
-    """A kind of values with nothing inside: it accepts a value or refuses it by its rule."""
+    """A kind of values without fields: a value is accepted or refused as a whole."""
 
     def accepted(self, value: Any) -> Any:
-        """The value as a row holds it; TypeError, ValueError or OverflowError where it breaks the rule."""
+        """The converted value. Raises TypeError, ValueError or OverflowError if it breaks the rule."""
         raise NotImplementedError
 
     def advice(self, value: object) -> str:
-        """What to do about a value that breaks the rule, as a clause."""
+        """A clause for the message about an invalid value: what to do."""
         return ""
 
     def held(self, value: object, path: Path, problems: list[Problem]) -> object:
@@ -64,9 +64,9 @@ def _require(condition: bool) -> None:
 
 @dataclass(frozen=True)
 class Number(Leaf):
-    """A finite number within bounds, held as a float.
+    """A finite number within bounds, converted to float.
 
-    The lower bound is not included where it is `above`. `endless` is an infinite value that stands for no
+    With `above`, the lower bound is excluded. `endless` is an infinite value that is also accepted, for no
     limit, and is not written.
     """
 
@@ -103,7 +103,7 @@ class Number(Leaf):
 
 @dataclass(frozen=True)
 class Whole(Leaf):
-    """A whole number of at least `at_least`."""
+    """An integer of at least `at_least`."""
 
     at_least: int
 
@@ -122,7 +122,7 @@ class Whole(Leaf):
 
 @dataclass(frozen=True)
 class Switch(Leaf):
-    """True or false."""
+    """A boolean."""
 
     def rule(self) -> str:
         return "must be true or false"
@@ -137,12 +137,12 @@ class Switch(Leaf):
 
 @dataclass(frozen=True)
 class Text(Leaf):
-    """A text of at least one letter, or of none where it `may_be_empty`."""
+    """A string, which must not be empty unless `may_be_empty`."""
 
     may_be_empty: bool = False
 
     def rule(self) -> str:
-        return "must be a text" + ("" if self.may_be_empty else " of at least one letter")
+        return "must be a string" + ("" if self.may_be_empty else " of at least one character")
 
     def accepts(self) -> str:
         return "str"
@@ -166,7 +166,7 @@ class ColorKind(Leaf):
     def accepted(self, value: Any) -> tuple[int, int, int]:
         if isinstance(value, str):
             _require(len(value) == 7 and value[0] == "#")
-            # Six hexadecimal digits with nothing between them make three bytes.
+            # fromhex skips spaces, but only six digits give three bytes.
             red, green, blue = bytes.fromhex(value[1:])
             return red, green, blue
         given = list(value)
@@ -180,7 +180,7 @@ class ColorKind(Leaf):
 
 @dataclass(frozen=True)
 class VectorKind(Leaf):
-    """A point or a direction: three finite numbers, not all zero where it `has_length`."""
+    """A point or a direction: three finite numbers; with `has_length`, not all zero."""
 
     has_length: bool = False
 
@@ -207,7 +207,7 @@ class VectorKind(Leaf):
 
 @dataclass(frozen=True)
 class Choice(Leaf):
-    """One of some names."""
+    """One of several names."""
 
     names: tuple[str, ...]
 
@@ -230,7 +230,7 @@ class Choice(Leaf):
 
 @dataclass(frozen=True, eq=False)
 class CurveKind(Leaf):
-    """The name of a curve, or points (x, y) of one that never falls, from x = 0 to x = 1."""
+    """The name of a curve, or points (x, y) of a nondecreasing one from x = 0 to x = 1."""
 
     names: Mapping[str, object]
 
@@ -256,7 +256,7 @@ class CurveKind(Leaf):
 
 @dataclass(frozen=True)
 class Referring(Leaf):
-    """Names of rows of another table; that these are there is checked where all tables are."""
+    """References to rows of another table by name; the scene checks that these rows exist."""
 
     table: str
 
@@ -284,7 +284,7 @@ class Reference(Referring):
 
 @dataclass(frozen=True)
 class References(Referring):
-    """Names of rows of another table, in any number."""
+    """A list of names of rows of another table."""
 
     def rule(self) -> str:
         return "must be a list of names"
@@ -302,7 +302,7 @@ class References(Referring):
 
 @dataclass(frozen=True)
 class PointOrName(Referring):
-    """A point, or the name of a row of another table that takes its place."""
+    """A point, or the name of a row of another table that gives the point."""
 
     def rule(self) -> str:
         return "must be three finite numbers of at most 1e36, or a name"
@@ -318,7 +318,7 @@ class PointOrName(Referring):
 
 
 def references_of(cls: type[Row]) -> Mapping[str, Referring]:
-    """The fields of a row class that refer to rows of other tables."""
+    """The kinds of the fields of a row class that refer to rows of other tables, by field name."""
     found = _REFERENCES.get(cls)
     if found is None:
         kinds = {name: field.column.kind for name, field in fields_of(cls).items()}
@@ -331,7 +331,7 @@ _REFERENCES: Final[dict[type[Row], Mapping[str, Referring]]] = {}
 
 @dataclass(frozen=True, eq=False)
 class Instance(Leaf):
-    """A value of a class, such as the mesh; it is compared by identity and not written."""
+    """An instance of a class, such as the mesh; it is compared by identity and not written."""
 
     value_class: type
 
@@ -354,7 +354,7 @@ class Instance(Leaf):
 
 @dataclass(frozen=True)
 class Nested(Kind):
-    """A row of another class; where it is `inline`, its keys stand among those of the row around it."""
+    """A row of another class; if it is `inline`, its keys are among those of the containing row."""
 
     row_class: type[Row]
     inline: bool = False
@@ -391,7 +391,7 @@ class Nested(Kind):
                 return changed(present, table)
             except RowError as error:
                 return _refused(error, self._path(path), problems)
-        # What was refused or is not there yet is made; something else is refused where it is held.
+        # Make a new row if there was none or an invalid one; `held` will refuse anything else.
         return self.held(table, path, problems) if present in (None, REFUSED) else present
 
     def written(self, name: str, value: Any) -> Mapping[str, object]:
@@ -406,7 +406,7 @@ class Nested(Kind):
 
 @dataclass(frozen=True, eq=False)
 class Variant(Kind):
-    """A row of one of several classes, chosen by name: the name and the row's own keys stand around it."""
+    """A row of one of several classes, chosen by name; the name and its keys are in the containing row."""
 
     classes: Mapping[str, type[Row]]
 
@@ -420,7 +420,7 @@ class Variant(Kind):
         return f"must be {', '.join(map(repr, self.classes))}"
 
     def name_of(self, value: Row) -> str:
-        """The name by which the class of a value is chosen."""
+        """The name of the class of a value."""
         return next(name for name, cls in self.classes.items() if type(value) is cls)
 
     def keys(self, name: str, column: Column) -> Mapping[str, Column]:
@@ -467,7 +467,7 @@ class Variant(Kind):
 
 @dataclass(frozen=True)
 class Rows(Kind):
-    """A table: rows of a class whose names differ; in a scene file `by_name`, or one after another."""
+    """A table: rows of a class with unique names; scene files write them `by_name` or as an array."""
 
     row_class: type[Row]
     by_name: bool = False
@@ -491,7 +491,7 @@ class Rows(Kind):
         for number, row in enumerate(value):
             name = row.get("name") if isinstance(row, Mapping) else getattr(row, "name", None)
             if isinstance(name, str) and first.setdefault(name, number) != number:
-                text = f"must differ from all others, not repeat {path[-1]}[{first[name] + 1}]; rename it"
+                text = f"must be unique, not the same as {path[-1]}[{first[name] + 1}]; rename it"
                 problems.append(Problem((*path, number, "name"), text))
         return REFUSED if any(row is REFUSED for row in rows) else rows
 
@@ -507,6 +507,6 @@ class Rows(Kind):
 
 
 def _refused(error: RowError, path: Path, problems: list[Problem]) -> Any:
-    """REFUSED, after the problems of a row inside were noted under a path."""
+    """Append the problems of a nested row, with its path before theirs, and return REFUSED."""
     problems.extend(problem.under(path) for problem in error.found)
     return REFUSED

@@ -1,14 +1,13 @@
-"""Columns: what each field of a table is, told once, at the field of its dataclass.
+"""Columns: the description of each field of a table, given once, at the field of its dataclass.
 
     concentration: Annotated[float, Column(Number(at_least=0), Tier.LIGHT, "how narrow the light is")] = 0.0
 
-A row of a table is a frozen dataclass that derives from `Row`. From its columns derive the checks at
-construction (`Row`), changes of some fields (`changed`), reading a row from plain values such as a scene file
-has (`made`), writing one (`plain`), and what an edit costs (`cost`). The kinds of columns are in
-`column_kinds`.
+A row of a table is a frozen dataclass that derives from `Row`. Its columns determine the checks at
+construction (`Row`), changes of fields (`changed`), reading a row from plain values, as in a scene file
+(`made`), writing one (`plain`), and the cost of an edit (`cost`). The kinds of columns are in `column_kinds`.
 
-A key is the name that a column has in a file: that of the field. The columns of a row that is `inline` stand
-among the keys of the row around it.
+A key is the name of a column in a file. It is the name of the field, except that a nested row that is
+`inline` has no key of its own: its keys are among those of the row that contains it.
 """
 
 from __future__ import annotations
@@ -23,19 +22,19 @@ from autocolor.checks import listed, nearest, shown
 from autocolor.errors import InputError
 
 Path = tuple[str | int, ...]
-"""Keys and row numbers that lead from a row to a value in it."""
+"""The keys and row numbers that lead from a row to a value inside it."""
 
 MOST_KEYS: Final = 64
-"""Assumed: more keys than any table has."""
+"""Assumed: an upper bound on the keys of any table."""
 
 
 class Tier(IntEnum):
-    """What an edit of a column costs: what is computed again, from the least to the most."""
+    """The cost of an edit of a column: what must be recomputed, in increasing order."""
 
     NOTHING = 0
     """Nothing."""
     ENTRIES = 1
-    """Entries of the lookup table; no word."""
+    """Entries of the lookup table, but no words."""
     LEVELS = 2
     """The levels, and so the words."""
     MIX = 3
@@ -47,9 +46,9 @@ class Tier(IntEnum):
 
 
 class Problem(NamedTuple):
-    """What is wrong with the value at a path, as the end of a sentence; () is the row as a whole.
+    """A problem of the value at a path; the path () is the row as a whole.
 
-    Where the text `names_key`, the sentence does not name the last key of the path again.
+    `text` is the end of a message. If `names_key`, it already contains the last key of the path.
     """
 
     path: Path
@@ -58,7 +57,7 @@ class Problem(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """The problem with the keys before it.
+        """The message: the path and the text.
 
         >>> Problem(("flaps", "z", "on"), "must be true or false, not 3").sentence
         'flaps.z.on must be true or false, not 3'
@@ -69,14 +68,14 @@ class Problem(NamedTuple):
         return f"{key}{'' if self.text.startswith('must ') else ':'} {self.text}" if key else self.text
 
     def under(self, path: Path) -> Problem:
-        """The same problem, seen from a row around it."""
+        """The same problem with a path that starts at a row around it."""
         return self._replace(path=(*path, *self.path))
 
 
 class RowError(InputError):
-    """A row that breaks rules.
+    """An invalid row.
 
-    `found` says where in the row; `row` is its noun and name, as in "light 'key'", or nothing.
+    `found` are its problems; `row` is its noun and name, as in "light 'key'", or empty.
     """
 
     def __init__(self, found: Iterable[Problem], row: str = "") -> None:
@@ -86,9 +85,9 @@ class RowError(InputError):
 
 
 class Refused:
-    """What stands for a value that was refused while the rules between columns are checked.
+    """The placeholder for an invalid value while the rules between columns are checked.
 
-    It is neither None nor equal to, above or below anything, so that it breaks no rule again.
+    It is not None, and all its comparisons are false, so that it breaks no further rule.
     """
 
     def __eq__(self, other: object) -> bool:
@@ -105,18 +104,18 @@ REFUSED: Final[Any] = Refused()
 
 
 class Kind:
-    """What a column holds: how it is checked, changed, written and compared."""
+    """The kind of values in a column: how they are checked, changed, written and compared."""
 
     def rule(self) -> str:
-        """What a value must be, as the middle of a sentence: "must be true or false"."""
+        """The rule for a value, as part of a message: "must be true or false"."""
         raise NotImplementedError
 
     def accepts(self) -> str:
-        """The type of what is accepted, as it stands in `changes.py`."""
+        """The type annotation of accepted values, as written in `changes.py`."""
         raise NotImplementedError
 
     def has_keys_inside(self) -> bool:
-        """Whether keys of the row around it lead into the value."""
+        """Whether keys of the containing row can refer to fields inside the value."""
         return False
 
     def keys(self, name: str, column: Column) -> Mapping[str, Column]:
@@ -124,25 +123,25 @@ class Kind:
         return {name: column}
 
     def held(self, value: object, path: Path, problems: list[Problem]) -> object:
-        """The value as a row holds it, or REFUSED after its problems were noted."""
+        """The value converted for the row; REFUSED, with its problems appended, if it is invalid."""
         raise NotImplementedError
 
     def changed(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
-        """The value with some keys inside it changed; the table itself where there are none inside."""
+        """The value with some keys inside it changed; the table itself if the kind has no keys inside."""
         return table
 
     def written(self, name: str, value: Any) -> Mapping[str, object]:
-        """The keys and plain values of a field of this name; a key whose value is None is not written."""
+        """The keys and plain values to write for a field of this name; None values are not written."""
         return {name: value}
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        """What a change from one value to another costs, None for no change; `own` is the column's tier."""
+        """The cost of a change from one value to another, None for no change; `own` is the column's tier."""
         return None if one == other else own
 
 
 @dataclasses.dataclass(frozen=True)
 class Column:
-    """One column: its kind, what an edit of it costs, one line of help, and its unit."""
+    """One column: its kind, the cost of an edit, one line of help, and its unit."""
 
     kind: Kind
     tier: Tier
@@ -151,10 +150,10 @@ class Column:
 
 
 class Row:
-    """A row of a table: a frozen dataclass whose fields are columns, checked when it is made.
+    """A row of a table: a frozen dataclass whose fields are columns, checked at construction.
 
-    `noun` names it in sentences, before its name if it has one. Of the fields in `alternatives` one at most
-    is given; a change that gives one drops the others.
+    `noun` is what messages call it, before its name if it has one. At most one of the fields in
+    `alternatives` has a value; a change that sets one resets the others.
     """
 
     noun: ClassVar[str] = ""
@@ -164,7 +163,7 @@ class Row:
         check(self, fields_of(type(self)))
 
     def rules(self) -> Iterator[Problem]:
-        """The rules between columns that the row breaks; a value that was refused is REFUSED."""
+        """The rules between columns that the row breaks; invalid values are REFUSED."""
         return iter(())
 
 
@@ -172,7 +171,7 @@ SomeRow = TypeVar("SomeRow", bound=Row)
 
 
 class Field(NamedTuple):
-    """A field of a row class: its column, whether it may be None, and what makes its default, if any."""
+    """A field of a row class: its column, whether it may be None, and a function for its default, if any."""
 
     column: Column
     is_optional: bool
@@ -180,7 +179,7 @@ class Field(NamedTuple):
 
 
 def fields_of(cls: type[Row]) -> Mapping[str, Field]:
-    """The fields of a row class by name, in their order."""
+    """The fields of a row class by name, in definition order."""
     found = _FIELDS.get(cls)
     if found is None:
         found = _FIELDS[cls] = _fields_of(cls)
@@ -209,7 +208,7 @@ def _itself(value: object) -> object:
 
 
 class Key(NamedTuple):
-    """A key of a row in a file: its column, and the field of the row that it leads to."""
+    """A key of a row in a file: its column, and the field of the row that contains it."""
 
     column: Column
     field: str
@@ -231,13 +230,13 @@ _KEYS: Final[dict[type[Row], Mapping[str, Key]]] = {}
 
 
 def row_label(row: Row) -> str:
-    """The noun of a row and its name, as in "light 'key'"."""
+    """The noun and the name of a row, as in "light 'key'"."""
     name = vars(row).get("name")
     return f"{row.noun} {shown(name)}" if row.noun and isinstance(name, str) and name else row.noun
 
 
 def check(row: Row, fields: Mapping[str, Field]) -> None:
-    """Check some fields of a row and hold them as their kinds do; then check the rules between columns.
+    """Check and convert some fields of a row in place, then check the rules between its columns.
 
     Raises RowError with every problem.
     """
@@ -263,7 +262,7 @@ def changed(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
     problems: list[Problem] = []
     fields = fields_of(type(row))
     values, inner = _values_by_field(row, changes, problems)
-    # Only the columns are copied: what a row computed of itself and keeps may depend on them.
+    # Copy the columns only: cached properties may depend on them.
     copy = object.__new__(type(row))
     present = vars(row)
     vars(copy).update(present if len(present) == len(fields) else {name: present[name] for name in fields})
@@ -280,7 +279,10 @@ def changed(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
 def _values_by_field(
     row: Row, changes: Mapping[str, Any], problems: list[Problem]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The new values of the fields that change, and the inner rows that changed, checked already."""
+    """The new values of the fields that change, and the inner rows that changed, which are checked.
+
+    Problems are appended, and unknown names left out.
+    """
     fields, keys = fields_of(type(row)), keys_of(type(row))
     values: dict[str, Any] = {}
     inside: dict[str, dict[str, Any]] = {}
@@ -304,7 +306,7 @@ def _values_by_field(
 
 
 def made(cls: type[SomeRow], table: object) -> SomeRow:
-    """The row of a table of keys and plain values; what is left out has its default.
+    """The row of a class for a table of keys and plain values; omitted keys have their defaults.
 
     Raises RowError with every problem.
     """
@@ -335,7 +337,7 @@ def made(cls: type[SomeRow], table: object) -> SomeRow:
 
 
 def plain(row: Row) -> dict[str, object]:
-    """The row as keys and plain values, which TOML and JSON can hold; what is None is left out."""
+    """The row as keys and plain values, which TOML and JSON can hold; None values are omitted."""
     values = vars(row)
     return {
         key: value
@@ -347,9 +349,9 @@ def plain(row: Row) -> dict[str, object]:
 
 
 def cost(one: Row, other: Row, own: Tier = Tier.FRAME) -> Tier | None:
-    """What an edit costs that changes one row to another: the most of its columns, None where all are equal.
+    """The cost of an edit from one row to another: the largest of its columns; None if all are equal.
 
-    Rows of different classes cost `own`.
+    For rows of different classes it is `own`.
     """
     if type(one) is not type(other):
         return own
@@ -364,6 +366,6 @@ def cost(one: Row, other: Row, own: Tier = Tier.FRAME) -> Tier | None:
 
 
 def unknown(name: object, known: Iterable[str]) -> Problem:
-    """The problem of a key that there is not, with the nearest right one."""
+    """The problem of an unknown key, with the closest known one."""
     clause = nearest(str(name), list(known))
     return Problem((str(name),), f"there is no {shown(name)}{clause}", names_key=True)

@@ -1,7 +1,7 @@
-"""The auxiliary tables that are created when they are not given.
+"""The default parts, surfaces, view and lights of a scene that does not define them.
 
 Paper: "Introduction": tables with the part, surface and lighting parameters can be supplied as input or
-created automatically by the system as they are needed. Assumed: everything about how they look.
+created automatically by the system as they are needed. Assumed: all the values of these defaults.
 """
 
 from __future__ import annotations
@@ -19,36 +19,36 @@ from autocolor.scene.surfaces import Paint, Part, Surface
 from autocolor.scene.view import View
 
 FILLED: Final = 0.86
-"""Assumed: the fraction of the picture's width or height that a framed object fills."""
+"""Assumed: the fraction of the width or height of the picture that a framed object fills."""
 
 ASPECT: Final = 640 / 480
-"""Assumed: the paper's display; a picture of another shape shows more or less on its left and right."""
+"""Assumed: that of the paper's display; a picture of another shape shows more or less at its sides."""
 
 POINT: Final = 1e-12
-"""Assumed: what is smaller than this fraction of its distance from the origin is taken as a point."""
+"""Assumed: an object smaller than this fraction of its distance from the origin is treated as a point."""
 
 POINTS_AT_ONCE: Final = 1 << 14
-"""Few enough for one thread: a product of more waits for threads, long where the processors are shared."""
+"""Few enough that numpy multiplies in one thread; waiting for threads is slow on shared processors."""
 
 OBJECT_COLORS: Final = (
     "#b3202c", "#2f5fa8", "#c9a227", "#3f7f4f", "#7d4a94", "#c8642c",
     "#3a8c92", "#a8426a", "#7c8a3a", "#5561a8", "#8c5a3c", "#8a949e",
 )  # fmt: skip
-"""Assumed: paints that can be told apart on one screen, given to the surfaces in turn."""
+"""Assumed: distinguishable object colors, assigned to the surfaces in turn."""
 
 
 def default_parts(mesh: Mesh, surface_of_part: Mapping[str, str]) -> tuple[Part, ...]:
-    """A part for each group of the mesh, with the surface that is named for it, else the one of its name."""
+    """A part for each part name of the mesh; its surface is that in `surface_of_part`, else its own name."""
     return tuple(Part(name, surface_of_part.get(name, name)) for name in mesh.part_names)
 
 
 def default_surface(name: str, number: int) -> Surface:
-    """A glossy paint, the color chosen by the surface's number, counted from 0."""
+    """A glossy surface; its object color is chosen by the number of the surface, counted from 0."""
     return Surface(name, paint=Paint(object_color=OBJECT_COLORS[number % len(OBJECT_COLORS)]))  # type: ignore[arg-type]
 
 
 def default_view(mesh: Mesh) -> View:
-    """A view from the front left and somewhat above, as near as the whole object stays in the picture."""
+    """A view from the front left and slightly above, at the distance that frames the whole object."""
     azimuth, elevation = math.radians(-125.0), math.radians(18.0)
     toward_eye = (
         math.cos(elevation) * math.cos(azimuth),
@@ -59,7 +59,7 @@ def default_view(mesh: Mesh) -> View:
 
 
 def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
-    """The view moved, not turned, so that the object fills the picture with space left on all sides.
+    """The view with the eye moved, but not turned, so that the object fills the picture, with a margin.
 
     Paper: Figure 5, RESCALE.
     """
@@ -70,10 +70,11 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
     else:
         points = mesh.used_coordinates.T
 
-    # A point is within the picture where |across - shift| <= slope (depth + distance). Both bounds together
-    # give the shift and the least distance for each direction; the larger distance serves both.
-    slope_down = filled * math.tan(math.radians(view.field_of_view) / 2)
-    slopes = np.array([slope_down * ASPECT, slope_down])
+    # For an eye moved by `shift` and moved back by `distance`, a point is within the picture if
+    # |x - shift| <= slope * (depth + distance), and likewise for y. The two extreme points of an axis give
+    # its shift and its least distance; the larger of the two distances is taken.
+    slope_y = filled * math.tan(math.radians(view.field_of_view) / 2)
+    slopes = np.array([slope_y * ASPECT, slope_y])
     least, most, nearest, size = np.full(2, np.inf), np.full(2, -np.inf), np.inf, 0.0
     for some in chunks(points.shape[1], POINTS_AT_ONCE):
         places = axes @ (points[:, some] - middle[:, None])
@@ -91,26 +92,26 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
 
 
 def _is_a_point(mesh: Mesh) -> bool:
-    """Whether the mesh has no polygon, or none that float64 tells from a point where it lies."""
+    """Whether the object is so small relative to its distance from the origin that it is a point."""
     low, high = mesh.bounds
     return float((high - low).max()) <= POINT * float(np.abs([low, high]).max())
 
 
 def _sphere_around(mesh: Mesh) -> tuple[Floats, float]:
-    """The middle and the radius of a sphere around the object; a point is given some room."""
+    """The center and radius of a sphere around the object; an object treated as a point gets some room."""
     low, high = mesh.bounds
     if _is_a_point(mesh):
         return (low + high) / 2, max(1.0, 1e3 * POINT * float(np.abs([low, high]).max()))
-    # Scale by the largest extent first: the squares of a very small one leave the float range.
+    # Scale by the largest extent first, as the squares of very small extents underflow.
     extent = (high - low).max()
     return (low + high) / 2, float(np.linalg.norm((high - low) / extent) * extent / 2)
 
 
 def default_lights(mesh: Mesh, view: View) -> tuple[Light, ...]:
-    """Four studio lights around the object, aimed at it, placed as seen from the eye.
+    """Four studio lights aimed at the object, with positions relative to the view.
 
-    Key from the upper left, fill from the right, top from above, rim from behind: as around a car in a
-    photographer's studio (Paper: "Light Controls").
+    As seen from the eye, the key light is at the upper left, the fill light at the right, the top light above
+    and the rim light behind, as around a car in a photographer's studio (Paper: "Light Controls").
     """
     middle, radius = _sphere_around(mesh)
     right, down, forward = view.axes

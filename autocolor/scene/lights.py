@@ -1,8 +1,8 @@
-"""A light and its controls, as data.
+"""Lights and their controls, as data.
 
-Paper: "Light Controls". A light has a position and an intensity; a direction makes it a directed light,
-whose concentration, cone and flaps restrict and shape what it gives. What these numbers do to the light at
-a point is computed in `lighting/light_controls`.
+Paper: "Light Controls". A light has a position and an intensity. With a direction or an aim it is a directed
+light, which concentration and a cone can narrow; flaps can restrict any light. The effect of these controls
+is computed in `lighting/light_controls`.
 """
 
 from __future__ import annotations
@@ -20,21 +20,20 @@ from autocolor.scene.columns import Column, Problem, Row, Tier, changed
 
 @dataclass(frozen=True)
 class Flap(Row):
-    """A minimum and a maximum of one object coordinate, with a switch that keeps both.
+    """A range of one object coordinate outside of which a light has no effect, and a switch.
 
-    Paper: "Light Flaps and Cones", Figure 9. A point outside gets nothing from the light; a point at the
-    minimum or the maximum is lit.
+    Paper: "Light Flaps and Cones", Figure 9. A point at the minimum or the maximum is lit.
     """
 
     noun: ClassVar[str] = "flap"
 
     minimum: Annotated[
-        float, Column(Number(endless=-math.inf), Tier.LIGHT, "The least coordinate that is lit.", "units")
+        float, Column(Number(endless=-math.inf), Tier.LIGHT, "The smallest coordinate that is lit.", "units")
     ] = -math.inf
     maximum: Annotated[
         float, Column(Number(endless=math.inf), Tier.LIGHT, "The largest coordinate that is lit.", "units")
     ] = math.inf
-    on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether the flap cuts the light.")] = True
+    on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether the flap restricts the light.")] = True
 
     def rules(self) -> Iterator[Problem]:
         """The minimum must not be above the maximum."""
@@ -53,68 +52,68 @@ class Flaps(Row):
 
     noun: ClassVar[str] = "flaps"
 
-    x: Annotated[
-        Flap | None, Column(Nested(Flap), Tier.LIGHT, "A range of X, outside of which it is dark.")
-    ] = None
-    y: Annotated[
-        Flap | None, Column(Nested(Flap), Tier.LIGHT, "A range of Y, outside of which it is dark.")
-    ] = None
-    z: Annotated[
-        Flap | None, Column(Nested(Flap), Tier.LIGHT, "A range of Z, outside of which it is dark.")
-    ] = None
+    x: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of X that is lit.")] = None
+    y: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Y that is lit.")] = None
+    z: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Z that is lit.")] = None
 
     def replace(self, **changes: Unpack[FlapsChanges]) -> Flaps:
-        """The flaps with some of them changed; a table of some fields of a flap leaves its others."""
+        """The flaps with some changed; a table of fields changes only these fields of a flap."""
         return changed(self, changes)
 
 
 @dataclass(frozen=True)
 class Light(Row):
-    """One light of the studio.
+    """One light.
 
-    A light has a direction or an aim (the direction then follows the position) or neither: then it is a point
-    source. Paper: "Light Direction and Concentration", "Light Flaps and Cones".
+    It has a direction, or an aim (its direction is then from the position to the aim), or neither; then it is
+    a point source. Paper: "Light Direction and Concentration", "Light Flaps and Cones".
     """
 
     noun: ClassVar[str] = "light"
     alternatives: ClassVar[tuple[str, ...]] = ("direction", "aim")
 
-    name: Annotated[str, Column(Text(), Tier.LIGHT, "What the light is called; names differ.")]
-    position: Annotated[Vector, Column(VectorKind(), Tier.LIGHT, "Where the light is.", "world units")]
+    name: Annotated[str, Column(Text(), Tier.LIGHT, "The name of the light, which must be unique.")]
+    position: Annotated[Vector, Column(VectorKind(), Tier.LIGHT, "The position of the light.", "world units")]
     intensity: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "How much light it gives; there is no upper limit.")
+        float, Column(Number(at_least=0), Tier.MIX, "The intensity of the light, without an upper limit.")
     ] = 1.0
-    on: Annotated[bool, Column(Switch(), Tier.MIX, "Whether the light shines.")] = True
+    on: Annotated[bool, Column(Switch(), Tier.MIX, "Whether the light is switched on.")] = True
     direction: Annotated[
         Vector | None,
         Column(
-            VectorKind(has_length=True), Tier.LIGHT, "Where it points, a vector of any length; or an aim."
+            VectorKind(has_length=True),
+            Tier.LIGHT,
+            "The direction of the light, of any length; excludes an aim.",
         ),
     ] = None
     aim: Annotated[
-        Vector | None, Column(VectorKind(), Tier.LIGHT, "The point that it is aimed at.", "world units")
+        Vector | None,
+        Column(
+            VectorKind(),
+            Tier.LIGHT,
+            "The point at which the light is aimed; excludes a direction.",
+            "world units",
+        ),
     ] = None
     concentration: Annotated[
         float,
-        Column(
-            Number(at_least=0), Tier.LIGHT, "C: it falls off from its direction as the cosine to this power."
-        ),
+        Column(Number(at_least=0), Tier.LIGHT, "C: the exponent of the cosine falloff around the direction."),
     ] = 0.0
     cone_angle: Annotated[
         float | None,
         Column(
             Number(at_least=0, at_most=180, above=True),
             Tier.LIGHT,
-            "A: nothing is lit farther from the direction than this; absent for no cone.",
+            "A: the largest angle from the direction that is lit; if absent, there is no cone.",
             "degrees",
         ),
     ] = None
     flaps: Annotated[
-        Flaps, Column(Nested(Flaps), Tier.LIGHT, "Ranges of object coordinates, outside of which it is dark.")
+        Flaps, Column(Nested(Flaps), Tier.LIGHT, "The ranges of object coordinates that are lit.")
     ] = field(default_factory=Flaps)
 
     def rules(self) -> Iterator[Problem]:
-        """A direction or an aim, or neither, and then no control that needs one."""
+        """At most one of direction and aim is given; without both, no control that needs one is given."""
         if self.direction is not None and self.aim is not None:
             yield Problem((), "it must have a direction or an aim, not both; leave one out")
         if self.aim is not None and self.aim == self.position:
@@ -130,27 +129,27 @@ class Light(Row):
 
     @property
     def shines(self) -> bool:
-        """Whether it gives any light."""
+        """Whether the light is on and its intensity is above 0."""
         return self.on and self.intensity > 0
 
     @property
     def axis(self) -> Vector | None:
-        """The unit vector of the light direction, or None for a point source."""
+        """The unit vector of the light direction; None for a point source."""
         if self.direction is not None:
             toward = self.direction
         elif self.aim is not None:
             toward = tuple(a - p for a, p in zip(self.aim, self.position, strict=True))  # type: ignore[assignment]
         else:
             return None
-        # Scale by the largest component first: squares of very short or long vectors leave the float range.
+        # Scale by the largest component first, as squares of very large or small ones over- or underflow.
         largest = max(abs(component) for component in toward)
         scaled = tuple(component / largest for component in toward)
         length = math.hypot(*scaled)
         return (scaled[0] / length, scaled[1] / length, scaled[2] / length)
 
     def replace(self, **changes: Unpack[LightChanges]) -> Light:
-        """The light with some fields changed; giving a direction drops the aim, and the other way round.
+        """The light with some fields changed; a new direction removes the aim, and vice versa.
 
-        Raises InputError for an unknown field or a value that breaks a rule.
+        Raises InputError for an unknown field or an invalid value.
         """
         return changed(self, changes)

@@ -1,7 +1,7 @@
-"""The scene: the tables, the lights, the ambient term and the view, and how intensities are shown.
+"""The scene: mesh, parts, surfaces, lights and view, and how intensities are shown.
 
-A scene never changes. An edit is a new scene that shares all it did not change, so that comparing the
-tables of two scenes tells what must be computed again.
+Scenes are immutable. An edit makes a new scene that shares every unchanged table with the old one, so that
+comparing the tables of two scenes tells what must be recomputed.
 """
 
 from __future__ import annotations
@@ -62,28 +62,31 @@ MOST_PROBLEMS: Final = 100
 
 @dataclass(frozen=True, eq=False)
 class Scene(Row):
-    """Everything that makes a picture, and everything that colors it; `scene_of` creates what is missing.
+    """All that is needed to render and color a picture; `scene_of` creates one with defaults.
 
-    There is one part for each of the mesh's part names, in their order, and a surface for each name that a
-    part has. Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
+    There is one part for each part name of the mesh, in the same order, and every part's surface is in the
+    surface table. Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
     """
 
     mesh: Annotated[Mesh, Column(Instance(Mesh), Tier.FRAME, "The node table and the polygon table.")]
     parts: Annotated[
-        tuple[Part, ...], Column(Rows(Part, by_name=True), Tier.FRAME, "The groups of polygons.")
+        tuple[Part, ...],
+        Column(Rows(Part, by_name=True), Tier.FRAME, "The parts, which are groups of polygons."),
     ]
     surfaces: Annotated[
-        tuple[Surface, ...], Column(Rows(Surface, by_name=True), Tier.FRAME, "The kinds of finish.")
+        tuple[Surface, ...], Column(Rows(Surface, by_name=True), Tier.FRAME, "The surface types.")
     ]
-    lights: Annotated[tuple[Light, ...], Column(Rows(Light), Tier.MIX, "The lights of the studio.")]
-    view: Annotated[View, Column(Nested(View), Tier.FRAME, "The eye and where it looks.")]
+    lights: Annotated[tuple[Light, ...], Column(Rows(Light), Tier.MIX, "The lights.")]
+    view: Annotated[View, Column(Nested(View), Tier.FRAME, "The eye position and the view direction.")]
     ambient: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "The intensity that every point has without any light.")
+        float, Column(Number(at_least=0), Tier.MIX, "The intensity of every point without any light.")
     ] = 0.1
     scaling: Annotated[
         str,
         Column(
-            Choice(SCALINGS), Tier.LEVELS, "Whose minimum and maximum are mapped: each surface's, or all."
+            Choice(SCALINGS),
+            Tier.LEVELS,
+            "Whether each surface has its own intensity range, or all share one.",
         ),
     ] = "surface"
     mapping: Annotated[
@@ -95,26 +98,27 @@ class Scene(Row):
         Column(
             Choice(CONTRASTS),
             Tier.ENTRIES,
-            "Whether the lowest level is black, or as bright as its intensity beside the highest.",
+            "Whether the lowest level is black, or in proportion to the minimum intensity.",
         ),
     ] = "stretch"
-    background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is seen.")] = (
+    background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (
         0,
         0,
         0,
     )
     name: Annotated[
-        str, Column(Text(may_be_empty=True), Tier.NOTHING, "What the scene is called: its folder or file.")
+        str,
+        Column(Text(may_be_empty=True), Tier.NOTHING, "The name of the scene, that of its folder or file."),
     ] = "scene"
 
     def rules(self) -> Iterator[Problem]:
-        """The parts are those of the mesh, names lead to rows, and every surface has a number."""
+        """The parts are those of the mesh, all references are valid, and there are at most MOST_SURFACES."""
         if self.mesh is not REFUSED and self.parts is not REFUSED:
             names = [part.name for part in self.parts]
             if names != list(self.mesh.part_names):
                 rule = "the part table must have the mesh's parts in their order"
                 yield Problem((), f"{rule} {list(self.mesh.part_names)}, not {names}")
-        # The nearest right name takes its time; a file may have very many wrong ones.
+        # Finding the closest valid name is slow, and a file may contain many invalid names.
         yield from islice(self._reference_problems(), MOST_PROBLEMS)
         if self.surfaces is not REFUSED and len(self.surfaces) > MOST_SURFACES:
             yield Problem(
@@ -123,7 +127,7 @@ class Scene(Row):
             )
 
     def _reference_problems(self) -> Iterator[Problem]:
-        """The names of rows of other tables that are not there."""
+        """The problems of references to rows of other tables that do not exist."""
         for table, field in fields_of(Scene).items():
             kind, rows = field.column.kind, vars(self)[table]
             if isinstance(kind, Rows) and rows is not REFUSED:
@@ -137,19 +141,19 @@ class Scene(Row):
         return changed(self, changes)
 
     def equals(self, other: Scene) -> bool:
-        """Whether every column is equal; meshes are compared by identity."""
+        """Whether all columns are equal; meshes are compared by identity."""
         return cost_of_edit(other, self) is None
 
     def light(self, name: str) -> Light:
-        """The light of that name; UsageError with the nearest right name when there is none."""
+        """The light of that name. Raises UsageError, with the closest valid name, if there is none."""
         return self.lights[_place("light", self.lights, name)]
 
     def surface(self, name: str) -> Surface:
-        """The surface of that name; UsageError with the nearest right name when there is none."""
+        """The surface of that name. Raises UsageError, with the closest valid name, if there is none."""
         return self.surfaces[_place("surface", self.surfaces, name)]
 
     def part(self, name: str) -> Part:
-        """The part of that name; UsageError with the nearest right name when there is none."""
+        """The part of that name. Raises UsageError, with the closest valid name, if there is none."""
         return self.parts[_place("part", self.parts, name)]
 
     def with_light(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
@@ -157,7 +161,7 @@ class Scene(Row):
         return self._with_row("lights", _place("light", self.lights, name), changes)
 
     def with_surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> Scene:
-        """The scene with some fields of one surface changed, its reflectance and paint among them."""
+        """The scene with some fields of one surface changed, including those of its reflectance and paint."""
         return self._with_row("surfaces", _place("surface", self.surfaces, name), changes)
 
     def with_part(self, name: str, /, **changes: Unpack[PartChanges]) -> Scene:
@@ -177,15 +181,15 @@ class Scene(Row):
         rows = vars(self)[table]
         row = rows[place]
         rows = (*rows[:place], changed(row, changes), *rows[place + 1 :])
-        # Only names lead from table to table: without a new one there is nothing to check again.
+        # Tables refer to each other by name only: if no name changes, the references stay valid.
         if "name" in changes or not references_of(type(row)).keys().isdisjoint(changes):
             return changed(self, {table: rows})
         return self._with_checked({table: rows})
 
     def _with_checked(self, values: Mapping[str, object]) -> Scene:
-        """The scene with other values of some fields, which were checked and lead to no other rows.
+        """The scene with some fields replaced by values that are valid and keep all references valid.
 
-        What the scene computed of itself and keeps goes along: it depends on names only.
+        The cached properties are copied too, as they depend on names only.
         """
         copy = object.__new__(Scene)
         vars(copy).update(vars(self))
@@ -207,7 +211,7 @@ class Scene(Row):
 def _missing_names(
     rows: Sequence[Row], name: str, referring: Referring, known: Sequence[str]
 ) -> Iterator[Problem]:
-    """What rows name in a column and the other table has not."""
+    """The problems of rows whose column `name` refers to names that are not in `known`."""
     found = set(known)
     for row in rows:
         for wanted in referring.names_in(vars(row)[name]):
@@ -219,15 +223,15 @@ def _missing_names(
 
 @lru_cache(maxsize=1)
 def cost_of_edit(old: Scene, new: Scene) -> Tier | None:
-    """What an edit costs that changes one scene to another, None where they are equal.
+    """The cost of an edit from one scene to another; None if they are equal.
 
-    The answer is kept, for whoever takes part in an edit asks for it: the studio, the renderer, the mapping.
+    The result is cached, as the studio, the renderer and the mapping all need it for each edit.
     """
     return cost(old, new)
 
 
 def costs_at_least(old: Scene, new: Scene, tier: Tier) -> bool:
-    """Whether an edit that changes one scene to another costs a tier or more."""
+    """Whether the cost of an edit from one scene to another is at least a tier."""
     costs = cost_of_edit(old, new)
     return costs is not None and costs >= tier
 
@@ -235,11 +239,11 @@ def costs_at_least(old: Scene, new: Scene, tier: Tier) -> bool:
 def scene_of(
     mesh: Mesh, *, surface_of_part: Mapping[str, str] | None = None, **fields: Unpack[SceneFields]
 ) -> Scene:
-    """A scene of a mesh, with every table that is not given created.
+    """A scene of a mesh; tables that are not given are created with defaults.
 
-    A part takes the surface that `surface_of_part` names, else the surface of its own name, else one that
-    is created for it. Where that would be more surfaces than numbers, the parts past them share the last.
-    `fields` are the other fields of Scene. Raises InputError.
+    Each part has the surface that `surface_of_part` names, or else the surface of its own name, which is
+    created if it is not given. If that would make more than MOST_SURFACES, the remaining parts share the last
+    one. `fields` are the other fields of Scene. Raises InputError.
     """
     missing = [name for name in surface_of_part or {} if name not in mesh.part_names]
     if missing:
@@ -260,7 +264,7 @@ def scene_of(
 def _with_default_surfaces(
     mesh: Mesh, surface_of_part: Mapping[str, str], given: tuple[Surface, ...]
 ) -> tuple[tuple[Part, ...], tuple[Surface, ...]]:
-    """The parts, and the given surfaces with those that are created for parts, while there are numbers."""
+    """The parts, and the given surfaces with those created for the parts, up to MOST_SURFACES."""
     parts = default_parts(mesh, surface_of_part)
     names = {surface.name: None for surface in given} | {part.surface: None for part in parts}
     kept = list(names)[:MOST_SURFACES]
@@ -269,9 +273,9 @@ def _with_default_surfaces(
         parts = tuple(part if part.surface in shared else Part(part.name, kept[-1]) for part in parts)
     table = {surface.name: surface for surface in given}
     if len(table) < len(given):
-        # Names that are repeated are refused where the scene is made.
+        # The checks of Scene refuse repeated names.
         return parts, given
-    # A part that names a surface of another name than its own must name one that is given.
+    # Create no surface for a name in surface_of_part, unless it is also the name of a part.
     named = set(surface_of_part.values())
     own = set(mesh.part_names)
     for number, name in enumerate(kept):
@@ -281,7 +285,7 @@ def _with_default_surfaces(
 
 
 def _place(kind: str, rows: Sequence[SomeTableRow], name: str) -> int:
-    """Where the row of that name is."""
+    """The index of the row of that name. Raises UsageError if there is none."""
     for place, row in enumerate(rows):
         if row.name == name:
             return place

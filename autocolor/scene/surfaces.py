@@ -1,7 +1,7 @@
-"""The tables of parts and surfaces.
+"""The rows of the part table and the surface table.
 
-Paper: "Introduction". Polygons are grouped to parts; a part has a surface type; a surface type has colors and
-reflectance properties.
+Paper: "Introduction". Polygons are grouped into parts; a part has a surface type; a surface type has colors
+and reflectance properties.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from autocolor.scene.columns import Column, Row, Tier, changed
 from autocolor.scene.reflection_models import MODELS, Phong, ReflectionModel
 
 MOST_SURFACES: Final = 255
-"""Surface numbers are held in 8 bits, and 0 means that nothing is seen."""
+"""Surface numbers have 8 bits, and 0 means that nothing is visible."""
 
 PHONG: Final = Phong()
-"""The model of a reflectance that is given none."""
+"""The default reflection model."""
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,8 @@ class Part(Row):
 
     noun: ClassVar[str] = "part"
 
-    name: Annotated[str, Column(Text(), Tier.NOTHING, "What the part is called, as in the mesh.")]
-    surface: Annotated[str, Column(Reference("surfaces"), Tier.FRAME, "The name of its surface.")]
+    name: Annotated[str, Column(Text(), Tier.NOTHING, "The name of the part, as in the mesh.")]
+    surface: Annotated[str, Column(Reference("surfaces"), Tier.FRAME, "The name of the part's surface.")]
 
     def replace(self, **changes: Unpack[PartChanges]) -> Part:
         """The part with some fields changed."""
@@ -38,19 +38,16 @@ class Part(Row):
 
 @dataclass(frozen=True, init=False)
 class Reflectance(Row):
-    """The reflectance properties of a surface: D, S, and a reflection model with its own parameters.
+    """The reflectance properties of a surface: D, S, and a reflection model with its parameters.
 
     Paper: Figure 2.
     """
 
-    diffuse: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "D: how much is reflected to all sides.")
-    ] = 0.7
-    specular: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "S: how much is reflected around the mirror direction.")
-    ] = 0.5
+    diffuse: Annotated[float, Column(Number(at_least=0), Tier.MIX, "D: the diffuse reflectance.")] = 0.7
+    specular: Annotated[float, Column(Number(at_least=0), Tier.MIX, "S: the specular reflectance.")] = 0.5
     model: Annotated[
-        ReflectionModel, Column(Variant(MODELS), Tier.LIGHT, "The reflection model of the highlight.")
+        ReflectionModel,
+        Column(Variant(MODELS), Tier.LIGHT, "The reflection model of the specular highlight."),
     ] = PHONG
 
     def __init__(
@@ -61,7 +58,10 @@ class Reflectance(Row):
         *,
         exponent: float | None = None,
     ) -> None:
-        """D, S, and a model or its name; a number or `exponent` is N of Phong's model. Raises InputError."""
+        """Set D, S and the model, given by a value or a name; a number, or `exponent`, is N of Phong's model.
+
+        Raises InputError.
+        """
         if isinstance(model, (float, int)):
             exponent, model = model, PHONG
         vars(self).update(diffuse=diffuse, specular=specular, model=model)
@@ -71,7 +71,7 @@ class Reflectance(Row):
 
     @property
     def exponent(self) -> float:
-        """N of the reflection model; AttributeError where the model has none."""
+        """N of the reflection model. Raises AttributeError if the model has none."""
         values = vars(self.model)
         if "exponent" not in values:
             raise AttributeError(f"the model of a reflectance must have an exponent, not {self.model!r}")
@@ -79,7 +79,7 @@ class Reflectance(Row):
         return exponent
 
     def replace(self, **changes: Unpack[ReflectanceChanges]) -> Reflectance:
-        """The reflectance with some fields changed; another model begins with its own defaults."""
+        """The reflectance with some fields changed; a new model starts with its default parameters."""
         return changed(self, changes)
 
 
@@ -90,18 +90,20 @@ class Paint(Row):
     Paper: "Light Source Color Blending", Figure 12.
     """
 
-    object_color: Annotated[
-        Color, Column(ColorKind(), Tier.ENTRIES, "The color of the object, of diffuse light.")
-    ] = (176, 176, 176)
+    object_color: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color of diffuse reflection.")] = (
+        176,
+        176,
+        176,
+    )
     light_color: Annotated[
-        Color, Column(ColorKind(), Tier.ENTRIES, "The color of the light source, of highlights.")
+        Color, Column(ColorKind(), Tier.ENTRIES, "The color of the light source, shown in highlights.")
     ] = (255, 255, 255)
     blend: Annotated[
         float,
         Column(
             Number(at_least=0, at_most=1),
             Tier.ENTRIES,
-            "Where the object color begins to give way to the light color: 1 never, 0 from the lowest level.",
+            "The level above which the light color blends in, from 0 to 1; 1 for no blending.",
             "fraction of the range of levels",
         ),
     ] = 0.6
@@ -110,7 +112,7 @@ class Paint(Row):
         Column(
             Number(at_least=0, at_most=100),
             Tier.ENTRIES,
-            "How much of the light color is reached at the maximum.",
+            "The share of the light color at the highest level.",
             "percent",
         ),
     ] = 100.0
@@ -122,28 +124,33 @@ class Paint(Row):
 
 @dataclass(frozen=True)
 class Surface(Row):
-    """A surface type: a kind of finish that parts share."""
+    """A surface type, which several parts can share."""
 
     noun: ClassVar[str] = "surface"
 
-    name: Annotated[str, Column(Text(), Tier.MIX, "What the surface is called; names differ.")]
+    name: Annotated[str, Column(Text(), Tier.MIX, "The name of the surface, which must be unique.")]
     reflectance: Annotated[
-        Reflectance, Column(Nested(Reflectance, inline=True), Tier.LIGHT, "How it reflects light.")
+        Reflectance, Column(Nested(Reflectance, inline=True), Tier.LIGHT, "How the surface reflects light.")
     ] = field(default_factory=Reflectance)
     paint: Annotated[
-        Paint, Column(Nested(Paint, inline=True), Tier.ENTRIES, "Its colors and how they blend.")
+        Paint,
+        Column(Nested(Paint, inline=True), Tier.ENTRIES, "The colors of the surface, and how they blend."),
     ] = field(default_factory=Paint)
     two_sided: Annotated[
         bool,
         Column(
-            Switch(), Tier.FRAME, "Whether the normal of a polygon seen from behind is turned to the eye."
+            Switch(), Tier.FRAME, "Whether the normals of polygons seen from behind are turned to the eye."
         ),
     ] = True
     levels: Annotated[
         int | None,
-        Column(Whole(at_least=2), Tier.LEVELS, "How many entries of the table it owns; absent for a share."),
+        Column(
+            Whole(at_least=2),
+            Tier.LEVELS,
+            "The number of lookup table entries; if absent, an equal share of the rest.",
+        ),
     ] = None
 
     def replace(self, **changes: Unpack[SurfaceChanges]) -> Surface:
-        """The surface with some fields changed, those of its reflectance and of its paint among them."""
+        """The surface with some fields changed, including those of its reflectance and its paint."""
         return changed(self, changes)

@@ -1,4 +1,4 @@
-"""The view: where the eye is, where it looks, how the picture plane is turned, and how much it takes in.
+"""The view: eye position, view direction, rotation of the picture plane, and field of view.
 
 Paper: "Light Direction and Concentration", Figure 5 (eye, view direction, RESCALE, ANGLE).
 """
@@ -22,48 +22,51 @@ from autocolor.scene.columns import Column, Problem, Row, Tier, changed
 
 @dataclass(frozen=True)
 class View(Row):
-    """An eye, and a view direction or a target that it looks at. The world's z axis points up."""
+    """An eye position, and either a view direction or a target. The world's z axis points up."""
 
     noun: ClassVar[str] = "view"
     alternatives: ClassVar[tuple[str, ...]] = ("direction", "target")
 
-    eye: Annotated[Vector, Column(VectorKind(), Tier.FRAME, "Where the eye is.", "world units")]
+    eye: Annotated[Vector, Column(VectorKind(), Tier.FRAME, "The position of the eye.", "world units")]
     direction: Annotated[
         Vector | None,
         Column(
-            VectorKind(has_length=True), Tier.FRAME, "Where it looks, a vector of any length; or a target."
+            VectorKind(has_length=True), Tier.FRAME, "The view direction, of any length; excludes a target."
         ),
     ] = None
     target: Annotated[
-        Vector | None, Column(VectorKind(), Tier.FRAME, "The point that it looks at.", "world units")
+        Vector | None,
+        Column(
+            VectorKind(), Tier.FRAME, "The point that the eye looks at; excludes a direction.", "world units"
+        ),
     ] = None
     angle: Annotated[
-        float, Column(Number(), Tier.FRAME, "Turns the horizontal axis of the picture plane.", "degrees")
+        float, Column(Number(), Tier.FRAME, "Rotates the horizontal axis of the picture plane.", "degrees")
     ] = 0.0
     field_of_view: Annotated[
         float,
         Column(
             Number(at_least=0.01, at_most=179),
             Tier.FRAME,
-            "How much it takes in, from top to bottom.",
+            "The vertical field of view.",
             "degrees",
         ),
     ] = 30.0
 
     def rules(self) -> Iterator[Problem]:
-        """A direction or a target, and a target that is not the eye."""
+        """Exactly one of direction and target is given, and the target is not the eye."""
         if (self.direction is None) == (self.target is None):
-            yield Problem((), "it must have a direction or a target, and not both; leave one out")
+            yield Problem((), "it must have either a direction or a target; give one of them")
         elif self.target is not None and self.target == self.eye:
             yield Problem((), f"the target must not be the eye, not both {self.eye}; move one of them")
 
     @cached_property
     def axes(self) -> Floats:
-        """Right, down and forward as the rows of a (3, 3) rotation, the axes of camera space.
+        """The axes of camera space, right, down and forward, as the rows of a (3, 3) rotation matrix.
 
-        A point's camera coordinates are axes @ (point - eye): elements grow to the right, lines downward,
-        and the third is the depth along the view direction.
-        Assumed: when the eye looks along the up axis, the top of the picture is +y.
+        The camera coordinates of a point are axes @ (point - eye): x to the right, as elements; y down, as
+        lines; and the depth along the view direction.
+        Assumed: if the view direction is vertical, the top of the picture is +y.
         """
         if self.direction is not None:
             toward = np.array(self.direction)
@@ -75,7 +78,7 @@ class View(Row):
         x, y, z = x / length, y / length, z / length
         # Right is forward x up, and down is forward x right; measured: a tenth of the time of np.cross.
         right, flat = (y, -x, 0.0), math.hypot(x, y)
-        # Closer to the up axis than this, rounding would choose the picture's top.
+        # Closer to the vertical than this, rounding errors would determine the rotation of the picture.
         if flat < 1e-9:
             right, flat = (-z, 0.0, x), math.hypot(z, x)
         u, v, w = right[0] / flat, right[1] / flat, right[2] / flat
@@ -93,5 +96,5 @@ class View(Row):
         return axes
 
     def replace(self, **changes: Unpack[ViewChanges]) -> View:
-        """The view with some fields changed; giving a direction drops the target, and the other way round."""
+        """The view with some fields changed; a new direction removes the target, and vice versa."""
         return changed(self, changes)

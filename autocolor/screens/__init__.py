@@ -1,4 +1,4 @@
-"""The interactive screens: everything on them is words in the frame buffer, drawn by instructions alone.
+"""The interactive screens, which are drawn into the frame buffer by display instructions.
 
-Uses `studio` and the wings before it.
+May import from `studio` and everything that `studio` uses.
 """

@@ -1,4 +1,4 @@
-"""What every key of the viewer does, in the order of the help page."""
+"""The key bindings of the viewer, in the order of the help page."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from autocolor.screens.keys import Binding, Chord
 
 
 class Actions(Protocol):
-    """What the keys make a viewer do."""
+    """The actions that keys can be bound to."""
 
     def show_help(self) -> object:
-        """Show the help page, or go back."""
+        """Show the help page, or return to the picture."""
 
     def show_entries(self) -> object:
-        """Show the entries, or go back."""
+        """Show the lookup table, or return to the picture."""
 
     def turn(self, right: float, up: float) -> object:
-        """Go around the object by degrees."""
+        """Move the eye around the object, in degrees."""
 
     def move(self, ratio: float) -> object:
-        """Move closer or farther."""
+        """Multiply the distance of the eye by a ratio."""
 
     def tilt(self, degrees: float) -> object:
-        """Turn the picture plane."""
+        """Rotate the picture plane by some degrees."""
 
     def rescale(self) -> object:
         """Fill the picture with the object."""
@@ -32,29 +32,29 @@ class Actions(Protocol):
         """Switch a light on or off."""
 
     def choose_surface(self, step: int) -> object:
-        """Choose another surface."""
+        """Select another surface."""
 
     def blend(self, step: float) -> object:
-        """Move the blend."""
+        """Change the blend of the selected surface."""
 
     def repaint(self, step: int) -> object:
-        """Give another object color."""
+        """Change the object color of the selected surface."""
 
     def undo(self) -> object:
-        """Undo a step."""
+        """Undo the last step."""
 
     def redo(self) -> object:
-        """Do a step again."""
+        """Redo the last undone step."""
 
     def save(self) -> object:
-        """Save."""
+        """Save the picture with its scene."""
 
     def escape(self) -> object:
-        """Go back one step."""
+        """Return to the picture, or leave."""
 
 
 TURN: Final = 5.0
-"""Degrees that one press of an arrow goes around the object."""
+"""Degrees for each press of a key that turns."""
 
 CLOSER: Final = 0.9
 BLEND: Final = 0.05
@@ -62,17 +62,19 @@ BLEND: Final = 0.05
 BINDINGS: Final[tuple[Binding[Actions], ...]] = (
     Binding((Chord("f1"),), "this help, and back", lambda viewer, _: viewer.show_help()),
     Binding(
-        (Chord("f4"),), "the 1024 entries of the table, and back", lambda viewer, _: viewer.show_entries()
+        (Chord("f4"),),
+        "the 1024 entries of the lookup table, and back",
+        lambda viewer, _: viewer.show_entries(),
     ),
     Binding(
         (Chord("left"), Chord("right")),
-        "go around the object",
+        "turn around the object",
         lambda viewer, number: viewer.turn((-TURN, TURN)[number], 0),
         held=True,
     ),
     Binding(
         (Chord("up"), Chord("down")),
-        "look from higher, from lower",
+        "look from above, from below",
         lambda viewer, number: viewer.turn(0, (TURN, -TURN)[number]),
         held=True,
     ),
@@ -85,7 +87,7 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
     ),
     Binding(
         (Chord(","), Chord(".")),
-        "turn the picture's horizontal axis",
+        "rotate the picture's horizontal axis",
         lambda viewer, number: viewer.tilt((-TURN, TURN)[number]),
         label="comma, period",
         held=True,
@@ -99,30 +101,32 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
     ),
     Binding(
         (Chord("s"), Chord("s", shift=True)),
-        "choose the next surface, the one before",
+        "select the next surface, the previous one",
         lambda viewer, number: viewer.choose_surface((1, -1)[number]),
     ),
     Binding(
         (Chord("["), Chord("]")),
-        "blend: the light color from lower, from higher levels",
+        "blend: light color from a lower, from a higher level",
         lambda viewer, number: viewer.blend((-BLEND, BLEND)[number]),
         label="[ and ]",
         held=True,
     ),
     Binding(
         (Chord("c"), Chord("c", shift=True)),
-        "the next object color, the one before",
+        "the next object color, the previous one",
         lambda viewer, number: viewer.repaint((1, -1)[number]),
     ),
     Binding((Chord("z", control=True),), "undo", lambda viewer, _: viewer.undo()),
     Binding(
         (Chord("y", control=True), Chord("z", control=True, shift=True)),
-        "do again",
+        "redo",
         lambda viewer, _: viewer.redo(),
     ),
     Binding((Chord("s", control=True),), "save the picture with its scene", lambda viewer, _: viewer.save()),
     Binding(
-        (Chord("escape"),), "one step back; leave, if nothing is unsaved", lambda viewer, _: viewer.escape()
+        (Chord("escape"),),
+        "back to the picture; leave, if nothing is unsaved",
+        lambda viewer, _: viewer.escape(),
     ),
 )
 WINDOW_KEYS: Final = (
@@ -131,4 +135,4 @@ WINDOW_KEYS: Final = (
     ("Ctrl+Q", "leave"),
     ("a file dropped", "open it: a scene, a mesh or a picture file"),
 )
-"""The keys that the window itself answers to."""
+"""The keys that the window itself handles."""

@@ -1,4 +1,4 @@
-"""What the screens draw with: their own words by name, text and frames as instructions."""
+"""Drawing on the screens: the words of their colors, and instructions for clearing and for text."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ramtek_emu import HostPort, instructions
 
 WIDTH: Final = 640
 HEIGHT: Final = 480
-"""Elements and lines that a screen is laid out for."""
+"""The size that the screens are laid out for, in elements and lines."""
 
 BLACK: Final = SCREENS.first
 WHITE: Final = SCREENS.first + 1
@@ -36,5 +36,5 @@ def text(
     background: int = NIGHT,
     size: int = 1,
 ) -> None:
-    """Write a line of text with its first character's corner at (left, top)."""
+    """Write a line of text whose upper left corner is at (left, top)."""
     display.send(instructions.write_text(line, left, top, word, background, size))

@@ -1,4 +1,4 @@
-"""The table page: the 1024 entries as 32 x 32 cells, each filled with its own word, the ranges outlined."""
+"""The lookup table page: its 1024 entries as 32 x 32 cells, with an outline around each level range."""
 
 from __future__ import annotations
 
@@ -13,26 +13,28 @@ from autocolor.screens.drawing import HEIGHT, WIDTH, YELLOW
 from ramtek_emu import HostPort, instructions
 
 SIDE: Final = 32
-ACROSS: Final = WIDTH // SIDE
-DOWN: Final = HEIGHT // SIDE
+CELL_WIDTH: Final = WIDTH // SIDE
+CELL_HEIGHT: Final = HEIGHT // SIDE
 
 
 def cell_words(ranges: Mapping[str, LevelRange]) -> Words:
-    """The page as words, (480, 640) uint16: a line runs between cells of different owners."""
+    """The page as words, (480, 640) uint16: each cell is filled with its own word."""
     words = np.arange(WORDS, dtype=np.uint16).reshape(SIDE, SIDE)
     owners = np.zeros(WORDS, np.intp)
     for number, (first, levels) in enumerate([*ranges.values(), SCREENS, LevelRange(BACKGROUND, 1)], start=1):
         owners[first : first + levels] = number
     owner = owners.reshape(SIDE, SIDE)
-    page = words.repeat(DOWN, axis=0).repeat(ACROSS, axis=1)
-    # Mark each cell's border where its neighbor has another owner, on both sides of it.
-    owner = owner.repeat(DOWN, axis=0).repeat(ACROSS, axis=1)
-    across, down = owner[:, 1:] != owner[:, :-1], owner[1:] != owner[:-1]
-    for part, other in ((page[:, 1:], across), (page[:, :-1], across), (page[1:], down), (page[:-1], down)):
-        part[other] = YELLOW
+    page = words.repeat(CELL_HEIGHT, axis=0).repeat(CELL_WIDTH, axis=1)
+    # Draw the outlines: mark both pixels wherever neighboring pixels have different owners.
+    owner = owner.repeat(CELL_HEIGHT, axis=0).repeat(CELL_WIDTH, axis=1)
+    columns_differ, rows_differ = owner[:, 1:] != owner[:, :-1], owner[1:] != owner[:-1]
+    page[:, 1:][columns_differ] = YELLOW
+    page[:, :-1][columns_differ] = YELLOW
+    page[1:][rows_differ] = YELLOW
+    page[:-1][rows_differ] = YELLOW
     return page
 
 
 def draw_entries(display: HostPort, ranges: Mapping[str, LevelRange]) -> None:
-    """Show the page; entries that change afterwards change on it too."""
+    """Show the page; it also shows later changes of the entries."""
     display.send(instructions.write_image(cell_words(ranges)))

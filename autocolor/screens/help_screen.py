@@ -1,4 +1,4 @@
-"""The help page, made from the key table."""
+"""The help page: what each key does, and the limits of the method."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ TOP: Final = 62
 STEP: Final = 15
 
 LIMITS: Final = (
-    "The blend takes the brightest points of a surface for the color of the",
-    "light. It is an approximation: it does not predict a color.",
+    "The blend gives the brightest points of a surface the color of the light.",
+    "This is an approximation; it does not predict the true color.",
 )
 """Paper: "Light Source Color Blending", the simplifications of the method."""
 
 
 def draw_help(display: HostPort, title: str, rows: Sequence[tuple[str, str]]) -> None:
-    """Show a title, a line for each key and what it does, and the limits of the method."""
+    """Show a title, a line for each row (keys, what they do), and the limits of the method."""
     clear(display)
     text(display, title, LEFT, 22, YELLOW, size=2)
     for number, (keys, does) in enumerate(rows):

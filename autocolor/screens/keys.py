@@ -1,4 +1,4 @@
-"""The key table: what each key does, in one place, for the window and for its help page."""
+"""Keys and key bindings, from which the viewer and its help page work."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Viewer = TypeVar("Viewer")
 
 @dataclass(frozen=True)
 class Chord:
-    """A key by its name, with what is held down. A letter's `shift` counts, that of a sign does not."""
+    """A key and its modifiers. `shift` is significant for letters, but not for digits and signs."""
 
     name: str
     control: bool = False
@@ -19,7 +19,7 @@ class Chord:
 
     @property
     def is_sign(self) -> bool:
-        """Whether it is a digit or a sign, which keyboards have in different places."""
+        """Whether it is a digit or a sign, whose key depends on the keyboard layout."""
         return len(self.name) == 1 and not self.name.isalpha()
 
     def __str__(self) -> str:
@@ -37,9 +37,11 @@ class Chord:
 
 @dataclass(frozen=True)
 class Binding(Generic[Viewer]):
-    """Keys that do one thing; `run` gets who is driven and which of the keys it was, counted from 0.
+    """Keys that are bound to an action.
 
-    What a key does while it is `held` down is one step to undo.
+    `run` is called with the viewer and the index in `chords` of the key that was pressed. With `held`, all
+    repetitions while the key is held down are undone as one step. `does` describes the action on the help
+    page; `label` replaces the names of the keys there.
     """
 
     chords: tuple[Chord, ...]

@@ -1,4 +1,4 @@
-"""Views from around an object: the eye goes around what it looks at, closer and farther."""
+"""Orbiting: views with the eye moved around its target, or closer to it or farther away."""
 
 from __future__ import annotations
 
@@ -13,44 +13,44 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 
 HIGHEST: Final = math.radians(85)
-"""Assumed: nearer to straight above, the picture would turn under the eye."""
+"""Assumed: the largest elevation; closer to the vertical, a small step would spin the picture."""
 
 
 def turned(scene: Scene, right: float, up: float) -> View:
-    """The view after going around the object by degrees, keeping the distance."""
+    """The view with the eye moved around the target by degrees to the right and up, at the same distance."""
     target = target_of(scene)
     away = np.array(scene.view.eye) - target
     distance = float(np.linalg.norm(away)) or 1.0
     azimuth = _azimuth(scene.view, away) + math.radians(right)
     before = math.asin(max(-1.0, min(1.0, float(away[2]) / distance)))
     elevation = max(-HIGHEST, min(HIGHEST, before + math.radians(up)))
-    # At the top, rounding would make another view of the same place.
+    # At the highest elevation, rounding would make a slightly different view.
     if up and math.isclose(elevation, before, abs_tol=1e-9):
         return scene.view
-    across = math.cos(elevation)
+    horizontal = math.cos(elevation)
     eye = target + distance * np.array(
-        [across * math.cos(azimuth), across * math.sin(azimuth), math.sin(elevation)]
+        [horizontal * math.cos(azimuth), horizontal * math.sin(azimuth), math.sin(elevation)]
     )
     return scene.view.replace(eye=_vector(eye), target=_vector(target))
 
 
 def _azimuth(view: View, away: Floats) -> float:
-    """Where the eye stands around the object; from straight above or below, as the picture lies."""
+    """The azimuth of the eye as seen from the target; for a vertical view, from the picture's axes."""
     if math.hypot(away[0], away[1]) < 1e-9 * abs(away[2]):
-        # The side that the picture's bottom points to is the one that a lower eye would stand on.
+        # The picture's bottom points to the side of a lower eye; seen from below, its top does.
         toward = view.axes[1] if away[2] > 0 else -view.axes[1]
         return math.atan2(toward[1], toward[0])
     return math.atan2(away[1], away[0])
 
 
 def moved(scene: Scene, ratio: float) -> View:
-    """The view from the same direction at another distance from the object."""
+    """The view with the distance of the eye from the target multiplied by a ratio."""
     target = target_of(scene)
     return scene.view.replace(eye=_vector(target + (np.array(scene.view.eye) - target) * ratio))
 
 
 def target_of(scene: Scene) -> Floats:
-    """What the eye goes around: the view's target, else the point before it that is as far as the object."""
+    """The point to orbit: the view's target, else the point of the line of sight as deep as the object."""
     view = scene.view
     if view.target is not None:
         return np.array(view.target)

@@ -1,7 +1,7 @@
-"""The picture on the display, and the keys that change it.
+"""The interactive viewer: a picture on the display, and the keys that change it.
 
-The viewer knows the window's events as plain values only, and draws by instructions; tests drive it without
-a window.
+The viewer gets key names and paths from the window as plain values, and draws by display instructions, so
+that tests can run it without a window.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from ramtek_emu import HostPort, RamtekError
 
 
 class Viewer:
-    """A session on a display: a scene, its studio, which page is shown, and where Ctrl+S saves."""
+    """The viewer of one scene on a display: its studio, the page that is shown, and the file to save to."""
 
     def __init__(self, scene: Scene, display: HostPort, folder: Path | None = None) -> None:
         self.display = display
@@ -49,7 +49,7 @@ class Viewer:
 
     @property
     def caption(self) -> str:
-        """What the window's title says: the scene, the chosen surface, and the last message."""
+        """The title of the window: the scene, the selected surface, and the last message."""
         changed = "*" if self.studio.is_changed else ""
         name = f"{self.studio.scene.name}{changed}"
         surface = f"[{self.surface_name}]" if self.surface_name else ""
@@ -57,21 +57,24 @@ class Viewer:
 
     @property
     def surface_name(self) -> str:
-        """The name of the surface that the color keys change; nothing where the scene has none."""
+        """The name of the surface that the color keys change; empty if the scene has none in use."""
         names = list(self.studio.level_ranges)
         return names[self.surface % len(names)] if names else ""
 
     def on_key(
         self, name: str, control: bool = False, shift: bool = False, typed: str = "", repeated: bool = False
     ) -> bool:
-        """Do what a key does; False where it does nothing here. `repeated`: it was down already."""
+        """Handle a key press; returns False if the key does nothing here.
+
+        `typed` is the character that the key produces; `repeated` is whether the key is being held down.
+        """
         chords = [
             (binding, number, chord)
             for binding in BINDINGS
             for number, chord in enumerate(binding.chords)
             if chord.control == control
         ]
-        # A sign is where the keyboard has it, whatever the key is called; a letter is its key.
+        # Match signs by the typed character, as keyboards place them differently; match letters by key name.
         by_sign = [row for row in chords if row[2].is_sign and row[2].name == typed]
         by_name = [row for row in chords if row[2].name == name and (row[2].is_sign or row[2].shift == shift)]
         for binding, number, _ in (by_sign or by_name)[:1]:
@@ -89,13 +92,13 @@ class Viewer:
             taken = True
         if self.studio.scene is not before or not repeated:
             self._edited_by = (binding, number) if self.studio.scene is not before else None
-        # A warning holds for the next key only.
+        # A warning applies to the next key only.
         self._warned = self._warned and not warned
         return taken is not False
 
     def on_drop(self, path: Path) -> None:
-        """Open a scene or a mesh that was dropped on the window."""
-        if self._unsaved("drop it again to open it all the same"):
+        """Open a file that was dropped on the window."""
+        if self._unsaved("drop it again to discard the changes"):
             return
         try:
             self._open(read_scene(path))
@@ -103,11 +106,11 @@ class Viewer:
             self.message = str(error).replace("\n", "; ")
 
     def on_close(self) -> bool:
-        """Whether the window may close; the second time in a row it may in any case."""
-        return not self._unsaved("close again to leave without it")
+        """Whether the window may close: nothing is unsaved, or this is the second attempt in a row."""
+        return not self._unsaved("close again to discard the changes")
 
     def _unsaved(self, otherwise: str) -> bool:
-        """Whether to stop for work that is not saved, which is said once."""
+        """Whether to stop because of unsaved changes. They are announced once; the next attempt succeeds."""
         if not self.studio.is_changed or self._warned:
             return False
         self._warned = True
@@ -115,24 +118,24 @@ class Viewer:
         return True
 
     def _edit(self, scene: Scene) -> None:
-        """Make a scene the current one; a key held down is one step to undo."""
+        """Make a scene the current one; the edits of a key that is held down are one step to undo."""
         self.studio.edit(scene, same_step=self._same_step)
 
     def _look(self, view: View) -> None:
-        """Look from elsewhere; the same view again is no step."""
+        """Change the view and return to the picture; an equal view is not an edit."""
         self.back()
         if view != self.studio.scene.view:
             self._edit(self.studio.scene.replace(view=view))
 
     def _paint(self, **changes: Unpack[PaintChanges]) -> None:
-        """Change the paint of the chosen surface; the same paint again is no step."""
+        """Change the paint of the selected surface; an equal paint is not an edit."""
         scene = self.studio.scene
         changed = scene.with_surface(self.surface_name, **changes)
         if changed.surfaces != scene.surfaces:
             self._edit(changed)
 
     def back(self) -> bool:
-        """Go back to the picture from another page; False where it is shown already."""
+        """Return to the picture from another page; returns False if it is already shown."""
         if self.page == "picture":
             return False
         self.page = "picture"
@@ -140,7 +143,7 @@ class Viewer:
         return True
 
     def show_help(self) -> None:
-        """Show the help page, or go back from it."""
+        """Show the help page, or return to the picture if it is already shown."""
         if self.page == "help":
             self.back()
             return
@@ -149,7 +152,7 @@ class Viewer:
         draw_help(self.display, "AUTOCOLOR", rows)
 
     def show_entries(self) -> None:
-        """Show the 1024 entries, or go back from them."""
+        """Show the lookup table, or return to the picture if it is already shown."""
         if self.page == "entries":
             self.back()
             return
@@ -158,26 +161,26 @@ class Viewer:
         draw_entries(self.display, self.studio.level_ranges)
 
     def escape(self) -> bool:
-        """Go back one step: to the picture, or out of the window when nothing would be lost."""
+        """Return to the picture. If it is already shown and nothing is unsaved, returns False, to leave."""
         if self.back():
             return True
         if self.studio.is_changed:
-            self.message = "not saved: Ctrl+S saves, Ctrl+Q twice leaves without it"
+            self.message = "not saved: Ctrl+S saves, Ctrl+Q twice discards the changes"
             return True
         return False
 
     def undo(self) -> None:
-        """Undo one step."""
+        """Undo the last step."""
         self.back()
         self.message = "undone" if self.studio.undo() else "nothing to undo"
 
     def redo(self) -> None:
-        """Do a step again."""
+        """Redo the last undone step."""
         self.back()
-        self.message = "done again" if self.studio.redo() else "nothing to do again"
+        self.message = "redone" if self.studio.redo() else "nothing to redo"
 
     def save(self) -> None:
-        """Save the picture with its scene: the first time under a new name, then over it."""
+        """Save the picture with its scene: to a new file the first time, then to the same file."""
         if self.saved is None:
             stem, number = file_stem(self.studio.scene.name), 1
             path = self.folder / f"{stem}.npz"
@@ -191,20 +194,20 @@ class Viewer:
         self.message = f"saved {self.saved.resolve()}"
 
     def turn(self, right: float, up: float) -> None:
-        """Go around the object by degrees."""
+        """Move the eye around the object, in degrees."""
         self._look(turned(self.studio.scene, right, up))
 
     def move(self, ratio: float) -> None:
-        """Move closer or farther."""
+        """Multiply the distance of the eye by a ratio."""
         self._look(moved(self.studio.scene, ratio))
 
     def rescale(self) -> None:
-        """Move so that the object fills the picture (Paper: Figure 5, RESCALE)."""
+        """Move the eye so that the object fills the picture (Paper: Figure 5, RESCALE)."""
         scene = self.studio.scene
         self._look(framed(scene.view, scene.mesh))
 
     def tilt(self, degrees: float) -> None:
-        """Turn the horizontal axis of the picture plane (Paper: Figure 5, ANGLE)."""
+        """Rotate the horizontal axis of the picture plane (Paper: Figure 5, ANGLE)."""
         view = self.studio.scene.view
         self._look(view.replace(angle=view.angle + degrees))
 
@@ -220,11 +223,11 @@ class Viewer:
         self.message = f"light {light.name} {'off' if light.on else 'on'}"
 
     def choose_surface(self, step: int) -> None:
-        """Choose the next surface for the color keys, of those that parts have."""
+        """Select another surface in use for the color keys, `step` positions further."""
         self.surface = (self.surface + step) % max(1, len(self.studio.level_ranges))
 
     def blend(self, step: float) -> None:
-        """Move the blend of the chosen surface."""
+        """Change the blend of the selected surface."""
         if self.surface_name:
             blend = self.studio.scene.surface(self.surface_name).paint.blend
             blend = min(1.0, max(0.0, round(blend + step, 6)))
@@ -232,7 +235,7 @@ class Viewer:
             self.message = f"blend {blend:.2f}"
 
     def repaint(self, step: int) -> None:
-        """Give the chosen surface the next object color."""
+        """Give the selected surface another of OBJECT_COLORS, `step` positions further."""
         if self.surface_name:
             red, green, blue = self.studio.scene.surface(self.surface_name).paint.object_color
             present = f"#{red:02x}{green:02x}{blue:02x}"

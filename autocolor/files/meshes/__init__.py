@@ -1,4 +1,4 @@
-"""Mesh files: one file or folder for each format, registered where it is defined, and the registry.
+"""Mesh file formats: one module or package for each, and the registry in `formats`.
 
-Uses `files/repair` and the rooms of `files`.
+May import from `files/repair` and the modules of `files`.
 """

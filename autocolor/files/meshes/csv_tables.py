@@ -4,11 +4,12 @@
     1,0.0,0.0,0.0           1,hood,1,2,3,4
     2,1.0,0.0,0.0           2,roof,2,5,3,
 
-The first row names the columns, in any order. Of the node table `node` may be missing; nodes are then
-numbered from 1. Node numbers are whole numbers of any size and order, each once. Of the polygon table
-`polygon` (whole numbers, each once) and `part` may be missing; a triangle leaves `node4` empty. Rows without
-any cell filled are skipped. Columns are divided by commas; rows are counted from 1, which is the header, as
-a spreadsheet shows them.
+The first row names the columns, which may be in any order. Cells are separated by commas; empty rows are
+skipped. In messages rows are counted from 1, the header, as in a spreadsheet.
+
+In the node table `node` may be omitted; nodes are then numbered from 1. Node numbers are unique integers, in
+any order and with gaps. In the polygon table `polygon` (unique integers) and `part` may be omitted. A
+triangle leaves `node4` empty.
 """
 
 from __future__ import annotations
@@ -40,13 +41,13 @@ POLYGON_COLUMNS: Final = ("polygon", "part", "node1", "node2", "node3", "node4")
 
 
 class Problems:
-    """The problems of both tables, up to MOST_PROBLEMS."""
+    """Collects the problems of both tables, up to MOST_PROBLEMS."""
 
     def __init__(self) -> None:
         self.found: list[str] = []
 
     def note(self, place: str, row: int, sentence: str) -> None:
-        """Note a problem; raise InputError when there are enough."""
+        """Add a problem; raise InputError once there are MOST_PROBLEMS."""
         self.found.append(f"{place}, row {row}: {sentence}")
         if len(self.found) >= MOST_PROBLEMS:
             raise InputError(self.found)
@@ -57,7 +58,7 @@ def read_csv_tables(
 ) -> MeshReport:
     """The mesh of a node table and a polygon table, and what was repaired.
 
-    Raises InputError with every problem of both, file and row with each.
+    Raises InputError with every problem of both tables, each with its file and row.
     """
     problems = Problems()
     coordinates, row_of_node = _nodes(problems, nodes)
@@ -75,7 +76,7 @@ def read_csv_tables(
 
 
 def _nodes(problems: Problems, path: Path) -> tuple[list[float], dict[int, int]]:
-    """The coordinates one after the other, and the row of the node table for each node number."""
+    """The coordinates as one flat list, and the row index of each node number."""
     coordinates: list[float] = []
     row_of_node: dict[int, int] = {}
     for row, (node, *place) in _rows(problems, path, NODE_COLUMNS, ("x", "y", "z")):
@@ -84,7 +85,7 @@ def _nodes(problems: Problems, path: Path) -> tuple[list[float], dict[int, int]]
         )
         if number in row_of_node:
             problems.note(
-                path.name, row, f"a node number must stand once, not repeat: {number}; number it anew"
+                path.name, row, f"a node number must be unique, not repeated: {number}; renumber it"
             )
         elif number is not None:
             row_of_node[number] = len(row_of_node)
@@ -100,7 +101,7 @@ def _nodes(problems: Problems, path: Path) -> tuple[list[float], dict[int, int]]
 def _polygons(
     problems: Problems, path: Path, row_of_node: dict[int, int]
 ) -> tuple[list[int], list[int], list[int], dict[str, int]]:
-    """Corners, one after the other; how many each polygon has; their part numbers; the part names."""
+    """The corners as one flat list, the corner counts and part numbers of the polygons, the part names."""
     corners: list[int] = []
     counts: list[int] = []
     parts: list[int] = []
@@ -111,11 +112,11 @@ def _polygons(
             number = _whole(problems, path.name, row, "a polygon number", polygon)
             if number in seen:
                 problems.note(
-                    path.name, row, f"a polygon number must stand once, not repeat: {number}; number it anew"
+                    path.name, row, f"a polygon number must be unique, not repeated: {number}; renumber it"
                 )
             elif number is not None:
                 seen.add(number)
-        # A triangle leaves the last cell empty, and no other.
+        # Only the last corner, that of a triangle, may be empty.
         if not cells[3]:
             del cells[3]
         for cell in cells:
@@ -130,7 +131,7 @@ def _polygons(
 
 
 def _known(row_of_node: dict[int, int]) -> str:
-    """The node numbers as a range, or how many there are where some are missing in between."""
+    """The range of the node numbers, for a message; it says if there are gaps."""
     if not row_of_node:
         return "it is empty"
     low, high = min(row_of_node), max(row_of_node)
@@ -148,7 +149,10 @@ def _whole(problems: Problems, place: str, row: int, what: str, cell: str) -> in
 def _rows(
     problems: Problems, path: Path, columns: tuple[str, ...], required: tuple[str, ...]
 ) -> Iterator[tuple[int, list[str | None]]]:
-    """Each row that is not blank, its cells in the order of `columns`; None where there is no such column."""
+    """The row number and cells of each row that is not empty.
+
+    The cells are in the order of `columns`, with None for a column that the file does not have.
+    """
     data = read_bytes(path, LARGEST_MESH_FILE)
     if problem := text_problem(data):
         raise InputError(f"{path.name}: a table {problem}")
@@ -184,14 +188,14 @@ def _rows(
 def _header(
     place: str, cells: list[str], columns: tuple[str, ...], required: tuple[str, ...]
 ) -> list[int | None]:
-    """Where each column stands among the cells, None for one that is missing and may be."""
+    """The index of each column in the header; None for an optional column that is missing."""
     problems = [
         f"{place}, row 1: there is no column {shown(cell)}{nearest(cell[:60], columns)}"
         for cell in cells[:MOST_PROBLEMS]
         if cell not in columns
     ]
     problems += [
-        f"{place}, row 1: a column must stand once, not repeat: {column!r}; leave one out"
+        f"{place}, row 1: a column name must be unique, not repeated: {column!r}; remove one"
         for column in columns
         if cells.count(column) > 1
     ]

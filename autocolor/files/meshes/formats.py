@@ -1,7 +1,7 @@
-"""Formats of mesh files: a registry that each format enters where it is defined.
+"""The registry of mesh file formats.
 
-A format is a module, or a folder, beside this one that calls `register`; nothing else names it. It is chosen
-by the end of a file's name, or by how the file begins where that says nothing.
+To add a format, put a module or package that calls `register` beside this one; nothing else needs to change.
+A file's format is recognized by its suffix, or by its first bytes if the suffix is unknown.
 """
 
 from __future__ import annotations
@@ -19,17 +19,18 @@ from autocolor.files.reading import read_head
 from autocolor.files.repair.polygons import MeshReport
 
 MeshReader = Callable[..., MeshReport]
-"""Reads the mesh of the files of a format, each an argument; keywords are `up`, the file's up axis, and
-`crease_angle`, None for the usual one. Raises InputError."""
+"""A function that reads a mesh. Its positional arguments are the paths of the files, in the order of the
+format's keys; its keyword arguments are `up`, the files' up axis, and `crease_angle`, None for the default.
+It raises InputError."""
 
 
 @dataclass(frozen=True)
 class MeshFormat:
-    """One format.
+    """One mesh file format.
 
-    `keys` are those of a `[[mesh]]` that name its files; `suffixes` are how the first of these may end, in
-    small letters. `in_folder` are the names of files that make a folder a mesh. `begins` tells by a file's
-    first bytes whether it may be one.
+    `keys` are the keys of a `[[mesh]]` table that name its files; `suffixes` are the suffixes of the first
+    file, in lower case. A folder that contains all the files `in_folder` is a mesh of this format. `begins`
+    tells from the first bytes of a file whether it may have this format.
     """
 
     name: str
@@ -44,14 +45,14 @@ _REGISTERED: Final[list[MeshFormat]] = []
 
 
 def register(mesh_format: MeshFormat) -> MeshFormat:
-    """Enter a format."""
+    """Add a format to the registry; returns it."""
     _REGISTERED.append(mesh_format)
     return mesh_format
 
 
 @cache
 def mesh_formats() -> tuple[MeshFormat, ...]:
-    """Every format, in the order of their names."""
+    """All registered formats, sorted by name."""
     package = import_module(__name__.rpartition(".")[0])
     for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
         import_module(module.name)
@@ -59,12 +60,12 @@ def mesh_formats() -> tuple[MeshFormat, ...]:
 
 
 def mesh_suffixes() -> tuple[str, ...]:
-    """How the names of mesh files end."""
+    """The suffixes of all formats that consist of a single file."""
     return tuple(suffix for each in mesh_formats() if each.keys == ("file",) for suffix in each.suffixes)
 
 
 def format_of(path: Path) -> MeshFormat | None:
-    """The format of a single file, by its name, else by how it begins; None for no known one."""
+    """The format of a single file, by its suffix or else by its first bytes; None if it is unknown."""
     single = [each for each in mesh_formats() if each.keys == ("file",)]
     suffix = path.suffix.lower()
     named = next((each for each in single if suffix in each.suffixes), None)
@@ -75,7 +76,7 @@ def format_of(path: Path) -> MeshFormat | None:
 
 
 def format_of_folder(folder: Path) -> MeshFormat | None:
-    """The format of which a folder is a mesh; None for none."""
+    """The format of the mesh that a folder is; None if it is none."""
     return next(
         (
             each
@@ -87,7 +88,7 @@ def format_of_folder(folder: Path) -> MeshFormat | None:
 
 
 def read_mesh(files: Mapping[str, Path], *, up: str = "z", crease_angle: float | None = None) -> MeshReport:
-    """The mesh of the files that the keys of a `[[mesh]]` name, and what was repaired. Raises InputError."""
+    """The mesh of some files, given by their keys in `[[mesh]]`, and what was repaired. Raises InputError."""
     if tuple(files) == ("file",):
         found = format_of(files["file"])
     else:

@@ -1,4 +1,4 @@
-"""From the polygons of a file to a mesh of triangles and quads, with every repair counted.
+"""Converting the polygons of a file to a mesh of triangles and quads, and reporting every repair.
 
-Uses the rooms of `files`.
+May import from the modules of `files`.
 """

@@ -1,10 +1,10 @@
-"""From the polygons of a file to a mesh of triangles and quads, with a sentence for every repair.
+"""Converting the polygons of a file to a mesh of triangles and quads, with a message for each repair.
 
-- A corner that repeats the one before it is left out: a quad becomes a triangle.
+- A corner that repeats the previous one is removed: a quad becomes a triangle.
 - A polygon with fewer than three corners left, or without area, is dropped.
-- A polygon of more than four corners is split into quads and triangles.
-- Quads that are warped, concave or crossed (bow-ties) are kept as they are, for the renderer goes through
-  them scan line by scan line; `quad_shapes.py` counts them. Nodes that no polygon uses are kept.
+- A polygon with more than four corners is split into quads and triangles.
+- Warped, concave and crossed quads (bow-ties) are kept, since the renderer fills them scan line by scan line;
+  `quad_shapes.py` counts them. Unused nodes are kept.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.node_normals import CREASE_ANGLE
 
 AT_A_TIME: Final = 1 << 14
-"""Polygons whose corners are looked at together, so that the arrays stay near the processor."""
+"""Polygons to check at once, so that the arrays fit in the processor cache."""
 
 FLAT: Final = 1e-12
-"""Assumed: twice the area of a triangle over the square of the polygon's size, below which it has none."""
+"""Assumed: a triangle has no area if twice its area is below this fraction of the squared polygon size."""
 
 
 def repaired(
@@ -35,9 +35,10 @@ def repaired(
     crease_angle: float | None = None,
     skipped: tuple[str, ...] = (),
 ) -> MeshReport:
-    """The mesh of the polygons; `place` is the file's name and `skipped` are sentences for the report.
+    """The mesh of the polygons, with messages about what was repaired.
 
-    Raises InputError where no polygon is left.
+    `place` is the file's name in messages; `skipped` are messages to put before those of the repairs. Raises
+    InputError if no polygon is left.
     """
     coordinates = upright(polygons.coordinates, up)
     repairs = list(skipped)
@@ -48,7 +49,7 @@ def repaired(
     except InputError as error:
         raise InputError(f"{place}: {error}") from None
 
-    # Drop pieces without area; a polygon is dropped when no piece of it is left.
+    # Drop pieces without area, and so the polygons of which no piece is left.
     wide = np.concatenate(
         [
             _have_area(coordinates[node_numbers[first : first + AT_A_TIME]])
@@ -82,7 +83,7 @@ def repaired(
 
 
 def _without_repeats(corners: Numbers, counts: Numbers) -> tuple[Numbers, Numbers, Flags]:
-    """Corners and counts without a corner that equals the following one, and which polygons had such."""
+    """The corners and counts without corners that equal the next one, and which polygons had such corners."""
     following = np.arange(1, len(corners) + 1)
     ends = np.cumsum(counts)
     filled = counts > 0
@@ -96,9 +97,9 @@ def _without_repeats(corners: Numbers, counts: Numbers) -> tuple[Numbers, Number
 
 
 def _have_area(corners: Floats) -> Flags:
-    """Whether polygons (n, 4, 3) cover any area: on neither diagonal are both triangles flat.
+    """Whether each polygon of (n, 4, 3) has area: neither diagonal splits it into two flat triangles.
 
-    A bow-tie whose halves cancel has area; a polygon that goes the same way there and back has none.
+    A bow-tie whose halves cancel has area; a polygon that runs forth and back along one path has none.
     """
     rows = np.ascontiguousarray(corners.T)
     size = np.ptp(rows, axis=1).max(axis=0)

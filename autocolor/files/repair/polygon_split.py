@@ -1,7 +1,7 @@
-"""Polygons of more than four corners as quads and triangles.
+"""Splitting polygons with more than four corners into quads and triangles.
 
-Assumed: a convex one is cut into quads that fan out from its first corner; from one that has a corner
-pointing inward, triangles are clipped where no other corner lies in them, until a quad is left.
+Assumed: a convex polygon is split into a fan of quads around its first corner; a polygon with a reflex corner
+is split by ear clipping, until a quad is left.
 """
 
 from __future__ import annotations
@@ -14,19 +14,20 @@ from autocolor.arrays import Flags, Floats, Numbers
 from autocolor.errors import InputError
 
 MOST_CORNERS: Final = 1000
-"""Assumed: corners of one polygon; clipping takes time with their square."""
+"""Assumed: corners of one polygon; the time for ear clipping grows with their square."""
 
 MOST_CLIPPING: Final = 200_000_000
-"""Assumed: the sum of the squared corners of all polygons that are clipped, some minutes at the worst."""
+"""Assumed: the sum of squared corner counts of all clipped polygons; some minutes in the worst case."""
 
 Point = tuple[float, float]
 
 
 def split_polygons(coordinates: Floats, corners: Numbers, counts: Numbers) -> tuple[Numbers, Numbers]:
-    """Pieces (n, 4), each a quad or a triangle that repeats its last node, and the row of each one's polygon.
+    """The pieces, (n, 4), and the index of each one's polygon, (n,).
 
-    The pieces stand in the order of the polygons; those with fewer than three corners have none.
-    Raises InputError where the polygons with corners that point inward are too many and too large.
+    A piece is a quad, or a triangle that repeats its last node. The pieces are in polygon order; polygons
+    with fewer than three corners have none. Raises InputError if there are too many large polygons with
+    reflex corners.
     """
     starts = np.cumsum(counts) - counts
     small = np.flatnonzero((counts == 3) | (counts == 4))
@@ -46,8 +47,8 @@ def split_polygons(coordinates: Floats, corners: Numbers, counts: Numbers) -> tu
         clipping += int((~convex).sum()) * count * count
         if clipping > MOST_CLIPPING:
             raise InputError(
-                f"polygons with corners that point inward must be fewer, not so many with {count} corners;"
-                " split them into triangles"
+                f"there must be fewer polygons with reflex corners, not so many with {count} corners; split"
+                " them into triangles"
             )
         for row in np.flatnonzero(~convex).tolist():
             clipped = np.array(clipped_ears([(x, y) for x, y in flat[row].tolist()]))
@@ -61,28 +62,29 @@ def split_polygons(coordinates: Floats, corners: Numbers, counts: Numbers) -> tu
 def _in_their_planes(
     points: Floats,
 ) -> tuple[Floats, Flags]:
-    """Polygons (n, corners, 3) as (n, corners, 2), turning left, and whether no corner points inward."""
+    """The polygons of (n, corners, 3) projected to (n, corners, 2), counterclockwise; which are convex."""
     size = np.ptp(points, axis=1).max(axis=1)
     size[size == 0] = 1.0
     points = (points - points[:, :1]) / size[:, None, None]
     normals = np.cross(points, np.roll(points, -1, axis=1)).sum(axis=1)
-    # Look along the axis on which the polygon shows most of its area, from the side where it turns left.
+    # Project along the axis that keeps most of the area, from the side where the corners turn left.
     rows = np.arange(len(points))
     axis = np.abs(normals).argmax(axis=1)
-    across = points[rows, :, (axis + 1) % 3]
-    along = points[rows, :, (axis + 2) % 3]
-    across[normals[rows, axis] < 0] *= -1
-    flat = np.stack([across, along], axis=-1)
-    onward = np.roll(flat, -1, axis=1) - flat
-    before = np.roll(onward, 1, axis=1)
-    turns = before[..., 0] * onward[..., 1] - before[..., 1] * onward[..., 0]
+    x = points[rows, :, (axis + 1) % 3]
+    y = points[rows, :, (axis + 2) % 3]
+    x[normals[rows, axis] < 0] *= -1
+    flat = np.stack([x, y], axis=-1)
+    outgoing = np.roll(flat, -1, axis=1) - flat
+    incoming = np.roll(outgoing, 1, axis=1)
+    turns = incoming[..., 0] * outgoing[..., 1] - incoming[..., 1] * outgoing[..., 0]
     return flat, np.all(turns >= -1e-12, axis=1)
 
 
 def clipped_ears(points: list[Point]) -> list[tuple[int, int, int, int]]:
-    """The pieces of one polygon that turns left, as rows of its points; the last has four corners.
+    """The pieces of one counterclockwise polygon by ear clipping, as indices of its points.
 
-    One that does not cross itself always has an ear; from another, what is left is clipped as it comes.
+    All but the last are triangles. A simple polygon always has an ear; where a self-intersecting one has
+    none left, its remaining corners are clipped in order.
     """
     rows = list(range(len(points)))
     pieces = []
@@ -94,7 +96,7 @@ def clipped_ears(points: list[Point]) -> list[tuple[int, int, int, int]]:
         if crossed or _is_ear(points, rows, before, here, after):
             pieces.append((before, here, after, after))
             del rows[at]
-            # Look at the corner after next: ears taken in a row would make slivers.
+            # Continue after the next corner: clipping adjacent ears would make slivers.
             looked = 0
         else:
             looked += 1

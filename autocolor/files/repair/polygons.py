@@ -1,4 +1,4 @@
-"""Polygons as a file has them, before they are repaired: any number of corners, repeated ones among them."""
+"""Polygons as they were in a file, before repair: with any number of corners, possibly repeated."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ UPS: Final = ("x", "y", "z")
 
 @dataclass(frozen=True, eq=False)
 class Polygons:
-    """A node table and polygons of any number of corners, with node numbers that were checked.
+    """Nodes, and polygons with any number of corners.
 
-    `coordinates` is (nodes, 3) float64; `corners` holds the rows of all polygons one after the other,
-    `corner_counts` how many each has; `part_numbers` are rows of `part_names`.
+    `coordinates` is (nodes, 3) float64. `corners` holds the rows in `coordinates` of all corners, polygon
+    after polygon; they must be valid. `corner_counts` and `part_numbers`, indices of `part_names`, have one
+    element for each polygon.
     """
 
     coordinates: Floats
@@ -28,17 +29,17 @@ class Polygons:
 
 @dataclass(frozen=True)
 class MeshReport:
-    """A mesh that was read, and a sentence for everything that was repaired or skipped."""
+    """A mesh that was read, with messages about what was repaired or skipped."""
 
     mesh: Mesh
     repairs: tuple[str, ...] = ()
 
 
 def upright(coordinates: Floats, up: str) -> Floats:
-    """The coordinates with the file's up axis as the world's z.
+    """The coordinates with the axis `up` of the file turned to the world's z axis.
 
-    Each is an even permutation, so that polygons keep their winding: y up makes (x, y, z) to (x, -z, y),
-    where x stays to the right; x up makes it to (y, z, x).
+    Polygons keep their winding: with y up, (x, y, z) becomes (x, -z, y), a rotation about x; with x up it
+    becomes (y, z, x).
     """
     if up == "y":
         turned = coordinates[:, [0, 2, 1]]

@@ -1,4 +1,4 @@
-"""Scene files: reading a scene.toml with every problem in one report, and writing one.
+"""Scene files: reading a scene.toml, reporting all its problems at once, and writing one.
 
-Uses `files/meshes` and the rooms of `files`.
+May import from `files/meshes` and the modules of `files`.
 """

@@ -1,6 +1,6 @@
-"""Formats that a whole scene comes in: a registry that each format enters where it is defined.
+"""The registry of file formats that hold a whole scene.
 
-A format is a module beside this one that calls `register`; nothing else names it.
+To add a format, put a module that calls `register` beside this one; nothing else needs to change.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from autocolor.files.scenes.scene_report import SceneReport
 
 
 class SceneReader(Protocol):
-    """Reads a scene."""
+    """A function that reads a scene."""
 
     def __call__(self, path: Path, *, outside: bool = False) -> SceneReport:
-        """The scene of a file; `outside` allows it to name files outside its folder. Raises InputError."""
+        """The scene of a file. With `outside`, it may name files outside its folder. Raises InputError."""
         ...
 
 
 @dataclass(frozen=True)
 class SceneFormat:
-    """One format.
+    """One scene file format.
 
-    `suffixes` are how the names of its files end, in small letters; `in_folder` is the file that makes a
-    folder a scene. `begins` tells by a file's first bytes whether it may be one.
+    `suffixes` are those of its files, in lower case. A folder that contains the file `in_folder` is a scene
+    of this format. `begins` tells from the first bytes of a file whether it may have this format.
     """
 
     name: str
@@ -44,14 +44,14 @@ _REGISTERED: Final[list[SceneFormat]] = []
 
 
 def register(scene_format: SceneFormat) -> SceneFormat:
-    """Enter a format."""
+    """Add a format to the registry; returns it."""
     _REGISTERED.append(scene_format)
     return scene_format
 
 
 @cache
 def scene_formats() -> tuple[SceneFormat, ...]:
-    """Every format, in the order of their names."""
+    """All registered formats, sorted by name."""
     package = import_module(__name__.rpartition(".")[0])
     for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
         import_module(module.name)
@@ -59,16 +59,16 @@ def scene_formats() -> tuple[SceneFormat, ...]:
 
 
 def scene_suffixes() -> tuple[str, ...]:
-    """How the names of scene files end."""
+    """The suffixes of all formats."""
     return tuple(suffix for each in scene_formats() for suffix in each.suffixes)
 
 
 def scene_format_named(path: Path) -> SceneFormat | None:
-    """The format that the end of a file's name says; None for no known one."""
+    """The format with the suffix of the path; None if there is none."""
     return next((each for each in scene_formats() if path.suffix.lower() in each.suffixes), None)
 
 
 def scene_format_within(path: Path) -> SceneFormat | None:
-    """The format that a file begins as; None for no known one."""
+    """The format that the first bytes of the file indicate; None if there is none."""
     head = read_head(path)
     return next((each for each in scene_formats() if each.begins is not None and each.begins(head)), None)

@@ -1,8 +1,9 @@
-"""The scene of a picture file, as a format that scenes come in."""
+"""Picture files as a scene format: reading the scene that was saved with a picture."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
 from autocolor.files.picture_file import read_picture
 from autocolor.files.scenes.formats import SceneFormat, register
@@ -10,11 +11,11 @@ from autocolor.files.scenes.scene_report import SceneReport
 
 
 def read_picture_scene(path: Path, *, outside: bool = False) -> SceneReport:
-    """The scene of a picture file, which names no other files. Raises InputError."""
+    """The scene of a picture file; `outside` has no effect, as it names no other files. Raises InputError."""
     return SceneReport(read_picture(path).scene)
 
 
-PICTURE_FILE = register(
+PICTURE_FILE: Final = register(
     SceneFormat(
         "picture file", read_picture_scene, (".npz",), begins=lambda head: head.startswith(b"PK\x03\x04")
     )

@@ -1,4 +1,4 @@
-"""A scene but the arrays of its mesh as plain values, dictionaries and lists, and back, for picture files."""
+"""Converting a scene, without the arrays of its mesh, to values that JSON can hold, and back."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from numpy.typing import NDArray
-
+from autocolor.arrays import AnyArray
 from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.scene.columns import made, plain
@@ -16,15 +15,18 @@ from autocolor.scene.scene import Scene
 
 
 def plain_scene(scene: Scene) -> dict[str, Any]:
-    """The scene's tables but the mesh's arrays as values that JSON can hold; None and infinities left out."""
+    """The tables of a scene as values that JSON can hold, without the arrays of the mesh.
+
+    Keys whose value is None or infinite are omitted.
+    """
     mesh = {"part_names": scene.mesh.part_names, "crease_angle": scene.mesh.crease_angle}
     return {"mesh": mesh, **plain(scene)}
 
 
 def scene_of_plain(
-    values: object, coordinates: NDArray[Any], node_numbers: NDArray[Any], part_numbers: NDArray[Any]
+    values: object, coordinates: AnyArray, node_numbers: AnyArray, part_numbers: AnyArray
 ) -> Scene:
-    """The scene of such values and the mesh's arrays; InputError where they break a rule."""
+    """The scene of values as from `plain_scene` and of the mesh's arrays. Raises InputError."""
     if not isinstance(values, Mapping) or not isinstance(values.get("mesh"), Mapping):
         raise InputError(f"scene: it must be tables, its mesh among them, not {shown(values)}")
     described = values["mesh"]

@@ -1,4 +1,4 @@
-"""The report of a scene file: every problem, each with its line, its table and its key."""
+"""Collecting the problems of a scene file, each with its line, table and key."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LONGEST_SENTENCE: Final = 400
 
 
 class SceneProblems:
-    """The problems found in one scene file, in the order of its lines."""
+    """Collects the problems of one scene file and raises them in line order."""
 
     def __init__(self, place: str, data: bytes, document: dict[str, Any]) -> None:
         self.place = place
@@ -28,11 +28,14 @@ class SceneProblems:
         self.all_missing = True
 
     def note(self, path: KeyPath, text: str, names: tuple[str, Iterable[str]] | None = None) -> None:
-        """Note what is wrong with the value at a path; `names` is a wrong name and the right ones."""
+        """Add a problem of the value at a path.
+
+        With `names`, a wrong name and the valid ones, the message suggests the closest valid name.
+        """
         self.note_all([Problem(path, text + (nearest(*names) if names else ""))])
 
     def note_all(self, problems: Iterable[Problem], path: KeyPath = ()) -> None:
-        """Note problems of the table at a path."""
+        """Add problems of the table at a path."""
         for problem in problems:
             self.all_missing = False
             self._note(problem.under(path))
@@ -53,11 +56,11 @@ class SceneProblems:
 
     @property
     def full(self) -> bool:
-        """Whether there are as many problems as a report has."""
+        """Whether the report has reached its largest number of problems."""
         return len(self.found) >= MOST_PROBLEMS
 
     def note_file(self, path: KeyPath, error: InputError) -> None:
-        """Note what the reader of a mesh file says; its sentences have their own places."""
+        """Add the problems of a mesh file, which state their own places; `path` is the key that names it."""
         if isinstance(error, MissingInputError):
             for sentence in error.problems:
                 self._note(Problem(path, sentence, names_key=True))
@@ -68,7 +71,7 @@ class SceneProblems:
         self.found.extend((line, problem) for problem in error.problems[: MOST_PROBLEMS - len(self.found)])
 
     def raise_any(self) -> None:
-        """Raise one error with everything that was noted: MissingInputError if only files are missing."""
+        """Raise InputError with all problems, if any; MissingInputError if they are missing files only."""
         if not self.found:
             return
         sentences = [sentence for _, sentence in sorted(self.found, key=lambda found: found[0])]
@@ -84,7 +87,7 @@ class SceneProblems:
         )
 
     def _table_of(self, path: KeyPath) -> tuple[str, int]:
-        """The table that a path is in, as "lights[1] 'key': ", and how many of its parts that is.
+        """The table that a path is in, as in "lights[1] 'key': ", and how many parts of the path name it.
 
         Rows are counted from 1.
         """

@@ -1,9 +1,9 @@
-"""Scene files: `scene.toml` and the mesh files beside it, read to a Scene.
+"""Reading a scene from a `scene.toml` and the mesh files beside it.
 
-The keys are the columns of the tables, which docs/COLUMNS.md lists; `[[mesh]]` names the mesh files. All but
-a mesh may be left out and is then created; `lights = []` is a scene without lights. Parts of the same name in
-several meshes become one. Every problem of the file is in one report; rows of `lights` and `mesh` are counted
-from 1 there.
+The keys are the columns of the tables, which docs/COLUMNS.md lists; `[[mesh]]` names the mesh files.
+Everything but a mesh is optional and created with defaults when omitted; `lights = []` means no lights. Parts
+of the same name in several meshes become one part. All problems of the file are reported together; messages
+count the rows of `lights` and `mesh` from 1.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ FILE_KEYS: Final = tuple(key for key in keys_of(Scene) if key != "name")
 """The keys of a scene file; the scene's name is that of its folder or file."""
 
 TABLES: Final = ("mesh", "parts", "surfaces")
-"""Those of the keys that are read with regard to each other."""
+"""The keys that cannot be read one by one, as they refer to each other."""
 
 
 def read_scene_file(path: Path, *, outside: bool = False) -> SceneReport:
     """The scene of a scene file, and what was repaired and created.
 
-    `outside` allows mesh files outside the scene's folder. Raises InputError with every problem of the file
-    and of its meshes, MissingInputError where nothing is wrong but files that are missing.
+    With `outside`, mesh files may be outside the scene's folder. Raises InputError with every problem of the
+    file and its meshes, MissingInputError if missing files are the only problem.
     """
     data = read_bytes(path, LARGEST_TEXT)
     document = parsed_toml(data, path.name)
@@ -74,7 +74,7 @@ def read_scene_file(path: Path, *, outside: bool = False) -> SceneReport:
 
 
 def _fields(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, Any]:
-    """The columns of the scene but its tables, as far as they are right."""
+    """The valid values of the keys that are not in TABLES, by key."""
     fields = {}
     found: list[Problem] = []
     for key, value in document.items():
@@ -87,7 +87,7 @@ def _fields(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, A
 
 
 def _surfaces(problems: SceneProblems, document: Mapping[str, Any]) -> dict[str, Surface | None]:
-    """The given surfaces, None for one with problems; a key that is left out is as if it were created."""
+    """The given surfaces by name, None for one with problems; omitted keys have their defaults."""
     tables = _named_tables(problems, document, "surfaces")
     if len(tables) > MOST_SURFACES:
         problems.note(
@@ -114,7 +114,7 @@ def _parts(
     part_names: tuple[str, ...] | None,
     surface_names: tuple[str, ...],
 ) -> dict[str, str]:
-    """The surface of each part that names one; no names are checked where a mesh could not be read."""
+    """The surface name of each part that names one; names are not checked if `part_names` is None."""
     surface_of_part: dict[str, str] = {}
     known_parts = dict.fromkeys(part_names or ())
     known_surfaces = dict.fromkeys((*surface_names, *known_parts))
@@ -136,7 +136,7 @@ def _parts(
 
 
 def _named_tables(problems: SceneProblems, document: Mapping[str, Any], key: str) -> dict[str, Any]:
-    """The tables of a key that are written [key.NAME]."""
+    """The tables written [key.NAME], by NAME."""
     tables = document.get(key, {})
     if not isinstance(tables, dict):
         problems.note((key,), f"must be tables written [{key}.NAME], not {shown(tables)}")
@@ -147,7 +147,7 @@ def _named_tables(problems: SceneProblems, document: Mapping[str, Any], key: str
 def _row(
     problems: SceneProblems, path: tuple[str, str], table: Any, make: Callable[[Mapping[str, Any]], SomeRow]
 ) -> SomeRow | None:
-    """The row of a table that has its name in its header, or None after its problems were noted."""
+    """The row that `make` returns for a table [key.NAME]; None, with its problems added, if it is invalid."""
     if not isinstance(table, dict):
         problems.note(path, f"it must be a table, not {shown(table)}; write keys and values")
         return None

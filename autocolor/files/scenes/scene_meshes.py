@@ -1,4 +1,4 @@
-"""The meshes that a scene file names, with every problem noted."""
+"""Reading the meshes that a scene file names, and collecting their problems."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FILE_KEYS: Final = (("file",), ("nodes", "polygons"))
 
 @dataclass(frozen=True)
 class MeshEntry(Row):
-    """One `[[mesh]]` of a scene file: which files, how they stand, and where edges are sharp."""
+    """One `[[mesh]]` table of a scene file: its files, their up axis, and the crease angle."""
 
     noun: ClassVar[str] = "mesh"
 
@@ -39,13 +39,13 @@ class MeshEntry(Row):
         Column(
             Number(at_least=0, at_most=180),
             Tier.FRAME,
-            "Polygons that meet at more keep a sharp edge; the same for all meshes.",
+            "Polygons that meet at a larger angle keep a sharp edge; the same for all meshes.",
             "degrees",
         ),
     ] = None
 
     def rules(self) -> Iterator[Problem]:
-        """The files are named by one of the sets of keys."""
+        """The given keys name either one file or two tables."""
         given = tuple(key for keys in FILE_KEYS for key in keys if vars(self)[key] is not None)
         if given not in FILE_KEYS:
             listed = " and ".join(given) or "none of them"
@@ -54,7 +54,7 @@ class MeshEntry(Row):
 
 @dataclass(frozen=True)
 class Source:
-    """Where a mesh comes from: the place of its `[[mesh]]`, its files by their keys, and the entry."""
+    """A mesh to read: the path of its `[[mesh]]` table, its files by key, and the table itself."""
 
     path: KeyPath
     files: Mapping[str, Path]
@@ -62,9 +62,9 @@ class Source:
 
 
 def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside: bool) -> list[MeshReport]:
-    """The meshes of a scene, as many as could be read, all with the same crease angle."""
+    """The meshes of a scene that could be read, all with the same crease angle; problems are collected."""
     if len(rows) > MOST_MESHES:
-        problems.note(("mesh",), f"must be there at most {MOST_MESHES:,} times, not {len(rows):,}; join some")
+        problems.note(("mesh",), f"must have at most {MOST_MESHES:,} tables, not {len(rows):,}; join some")
         return []
     sources = [
         source
@@ -77,7 +77,8 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
     if size > LARGEST_MESH_FILE:
         problems.note(
             ("mesh",),
-            f"the mesh files must have at most {LARGEST_MESH_FILE:,} bytes together, not {size:,}",
+            f"the mesh files must have at most {LARGEST_MESH_FILE:,} bytes together, not {size:,};"
+            " thin them out",
         )
         return []
     reports = []
@@ -92,7 +93,7 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
 def _source(
     problems: SceneProblems, path: KeyPath, table: object, folder: Path, outside: bool
 ) -> Source | None:
-    """The files of one `[[mesh]]`, or None after its problems were noted."""
+    """The files of one `[[mesh]]` table; None, with its problems added, if they are invalid."""
     entry = _entry(problems, path, table)
     if entry is None:
         return None
@@ -107,7 +108,10 @@ def _source(
 
 
 def _entry(problems: SceneProblems, path: KeyPath, table: object) -> MeshEntry | None:
-    """One `[[mesh]]`; where keys are wrong they are noted and left out, so that its files are still read."""
+    """One `[[mesh]]` table without its invalid keys, which are added to the problems.
+
+    So its files are still read, and their problems reported too.
+    """
     try:
         return made(MeshEntry, table)
     except RowError as error:
@@ -122,7 +126,7 @@ def _entry(problems: SceneProblems, path: KeyPath, table: object) -> MeshEntry |
 
 
 def _crease_angle(problems: SceneProblems, sources: list[Source]) -> float | None:
-    """The crease angle that the entries give, None where none does."""
+    """The crease angle that the tables give; None if none does."""
     given = [
         (source.entry.crease_angle, source) for source in sources if source.entry.crease_angle is not None
     ]
@@ -143,5 +147,5 @@ def _size(path: Path) -> int:
 
 
 def mesh_file(table: Mapping[str, Any]) -> dict[str, str]:
-    """The keys of a `[[mesh]]` that lead to its mesh."""
+    """The keys of a `[[mesh]]` table that are needed to read the mesh again."""
     return {key: table[key] for key in ("file", "nodes", "polygons", "up") if key in table}

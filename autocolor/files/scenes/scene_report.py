@@ -1,4 +1,4 @@
-"""A scene that was read, with what was repaired and what was created for it."""
+"""A scene that was read, with messages about what was repaired and created."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from autocolor.scene.surfaces import MOST_SURFACES
 
 @dataclass(frozen=True)
 class SceneReport:
-    """A scene; sentences for what was repaired or skipped in its files, and for what was created.
+    """A scene, with messages about what was repaired or skipped in its files, and about what was created.
 
-    `mesh_files` are the `[[mesh]]` tables that lead to the same mesh (see `scene_text`).
+    `mesh_files` are the `[[mesh]]` tables with which a scene file can name the same mesh (see `scene_text`).
     """
 
     scene: Scene
@@ -31,7 +31,7 @@ def scene_report(
     mesh_files: tuple[Mapping[str, str], ...] = (),
     **fields: Any,
 ) -> SceneReport:
-    """The scene of a mesh and of tables as for `scene_of`, and what that created."""
+    """The report for a scene of a mesh; `fields` are passed to `scene_of`."""
     scene = scene_of(mesh, **fields)
     given = {surface.name for surface in fields.get("surfaces") or ()}
     names = [repr(surface.name) for surface in scene.surfaces if surface.name not in given]
@@ -48,5 +48,5 @@ def scene_report(
     asked = fields.get("surface_of_part") or {}
     sharing = sum(part.surface != asked.get(part.name, part.name) for part in scene.parts)
     if sharing:
-        created.append(f"{sharing:,} parts share a surface, for a scene has at most {MOST_SURFACES}")
+        created.append(f"{sharing:,} parts share a surface, because a scene has at most {MOST_SURFACES}")
     return SceneReport(scene, repairs, tuple(created), mesh_files)

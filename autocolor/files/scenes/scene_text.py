@@ -1,4 +1,4 @@
-"""A scene as the text of a scene file, with every table written out; reading it back gives the same scene."""
+"""Writing a scene as the text of a scene file; reading it back gives the same scene."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 
 
 def scene_text(scene: Scene, mesh_files: Sequence[Mapping[str, str]]) -> str:
-    """The scene as TOML; `mesh_files` are the `[[mesh]]` tables that lead to its mesh (see SceneReport).
+    """The scene as TOML, with all its tables; `mesh_files` are its `[[mesh]]` tables (see SceneReport).
 
-    The name of the scene is not written: it is that of the folder or the file that the text is saved to.
+    The scene's name is not written, as it is given by the name of the folder or file.
     """
     tables = plain(scene)
     kinds = {name: field.column.kind for name, field in fields_of(Scene).items()}
@@ -37,7 +37,7 @@ def scene_text(scene: Scene, mesh_files: Sequence[Mapping[str, str]]) -> str:
 
 
 def _rows(name: str, kind: Rows, rows: Any) -> Iterator[str]:
-    """The rows of a table, each under its name, or one after another."""
+    """The rows of a table, as [name.ROW] tables or as [[name]] tables."""
     for keys in rows:
         if kind.by_name:
             others = {key: value for key, value in keys.items() if key != "name"}
@@ -47,7 +47,7 @@ def _rows(name: str, kind: Rows, rows: Any) -> Iterator[str]:
 
 
 def _table(header: str, keys: Any) -> str:
-    """A table with a line for each key; what a key holds in several tables has a line for each of them."""
+    """A table with a line for each key; a table of tables, such as flaps, has a line for each inner table."""
     lines = [header] if header else []
     for key, value in keys.items():
         if isinstance(value, Mapping) and all(isinstance(inner, Mapping) for inner in value.values()):
@@ -67,6 +67,6 @@ def _value(value: object) -> str:
     if isinstance(value, Mapping):
         return f"{{ {', '.join(f'{key} = {_value(inner)}' for key, inner in value.items())} }}"
     if isinstance(value, (str, bool)):
-        # TOML escapes what JSON escapes, and one more.
+        # TOML needs the escapes of JSON, and one for DEL.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     return repr(value)

@@ -1,7 +1,8 @@
-"""TOML text, bounded before it is parsed, and where its keys stand.
+"""Parsing TOML with bounded time and memory, and finding the line of each key.
 
-`tomllib` takes memory and time with the square of a dotted key's parts, and recursion with nested arrays; so
-the text is first cut into its tokens by one regular expression, in time that grows with its length alone.
+`tomllib` needs time and memory quadratic in the parts of a dotted key, and recurses into nested arrays. So
+the text is first split into tokens by a regular expression, in linear time, and refused if it exceeds a
+bound.
 """
 
 from __future__ import annotations
@@ -15,12 +16,12 @@ from autocolor.errors import InputError
 from autocolor.files.reading import text_problem
 
 LARGEST_TEXT: Final = 1 << 20
-"""Bytes of a scene file."""
+"""Largest size of a scene file, in bytes."""
 
 MOST_NESTED: Final = 16
 MOST_KEY_PARTS: Final = 8
 LONGEST_WORD: Final = 100
-"""Assumed: letters or digits of a number or a key without quotes; a scene needs a tenth of that."""
+"""Assumed: characters of a number or of a key without quotes; a scene needs a tenth of that."""
 
 TOKEN: Final = re.compile(
     r"""
@@ -41,7 +42,7 @@ KeyPath = tuple[str | int, ...]
 
 
 def parsed_toml(data: bytes, place: str) -> dict[str, Any]:
-    """The tables of a TOML file; `place` is its name. Raises InputError, one sentence, with the line."""
+    """The parsed TOML text; `place` is the file's name in messages. Raises InputError with the line."""
     if problem := text_problem(data):
         raise InputError(f"{place}: a scene file {problem}")
     try:
@@ -58,11 +59,11 @@ def parsed_toml(data: bytes, place: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         raise InputError(_syntax_problem(str(error), text, place)) from None
     except (ValueError, ArithmeticError, LookupError, TypeError, RecursionError) as error:
-        raise InputError(f"{place}: it must be TOML ({error}); correct it") from None
+        raise InputError(f"{place}: it must be valid TOML ({error}); correct it") from None
 
 
 def _syntax_problem(message: str, text: str, place: str) -> str:
-    """One sentence of what the parser says, with the line."""
+    """The parser's error message as one of ours, with file and line."""
     found = re.search(r" \(at line (\d+), column (\d+)\)$", message)
     if found:
         line, column = found[1], f"column {found[2]}"
@@ -71,11 +72,11 @@ def _syntax_problem(message: str, text: str, place: str) -> str:
         line, column = str(text.rstrip("\n").count("\n") + 1), "the end of the file"
         message = message.removesuffix(" (at end of document)")
     reason = message[:1].lower() + message[1:200]
-    return f"{place}, line {line}: it must be TOML, not what stands at {column} ({reason}); correct the line"
+    return f"{place}, line {line}: it must be valid TOML, but is not at {column} ({reason}); correct the line"
 
 
 def _check_bounds(text: str, place: str) -> None:
-    """Refuse what would cost the parser more than its length: nesting, dotted keys, endless words."""
+    """Raise InputError for deep nesting, long dotted keys and long words, which are slow to parse."""
     nested = dots = 0
     for token in TOKEN.finditer(text):
         kind = token.lastgroup
@@ -83,15 +84,13 @@ def _check_bounds(text: str, place: str) -> None:
         if kind == "open":
             nested += 1
             if nested > MOST_NESTED:
-                rule = f"brackets must be nested at most {MOST_NESTED} deep, not deeper; write it flatter"
+                rule = f"brackets must be nested at most {MOST_NESTED} deep, not deeper; flatten them"
         elif kind == "close":
             nested = max(0, nested - 1)
         elif kind == "dot":
             dots += 1
             if dots >= MOST_KEY_PARTS:
-                rule = (
-                    f"a key must have at most {MOST_KEY_PARTS} parts between dots, not more; write it shorter"
-                )
+                rule = f"a key must have at most {MOST_KEY_PARTS} parts between dots, not more; shorten it"
         elif kind == "word" and len(token[0]) > LONGEST_WORD:
             rule = (
                 f"a number or a key must have at most {LONGEST_WORD} digits or letters, not"
@@ -104,7 +103,7 @@ def _check_bounds(text: str, place: str) -> None:
 
 
 def key_lines(data: bytes) -> dict[KeyPath, int]:
-    """The line of each table and key of a TOML text that parses, by its path; rows of arrays count from 0."""
+    """The line of each table and key of a valid TOML text, by its path; rows of arrays count from 0."""
     lines: dict[KeyPath, int] = {}
     rows: dict[KeyPath, int] = {}
     table: KeyPath = ()
@@ -128,7 +127,7 @@ def key_lines(data: bytes) -> dict[KeyPath, int]:
 
 
 def _only_path(text: str, statement: str) -> tuple[str, ...]:
-    """The keys of a header or of a statement with its value left away."""
+    """The path of keys in a header, or in a statement whose value was removed."""
     try:
         value: Any = tomllib.loads(text)
     except tomllib.TOMLDecodeError:
@@ -149,7 +148,7 @@ def _only_path(text: str, statement: str) -> tuple[str, ...]:
 
 
 def _statements(text: str) -> Iterator[tuple[int, str]]:
-    """Each header and each key with its value, and the line where it starts."""
+    """Each header, and each key with its value, with the number of its first line."""
     line, first, nested = 1, 1, 0
     words: list[str] = []
     for token in TOKEN.finditer(text + "\n"):

@@ -43,11 +43,11 @@ def test_a_picture_file_must_be_one_that_is_known_again(folder: Path) -> None:
         ("/dev/null", "an output must be a file, not the device /dev/null; choose another name"),
         (
             "no/a.png",
-            "an output must have a folder to be in, not no, which is none; make it or choose another",
+            "an output must be in an existing folder, not no; create it or choose another",
         ),
         (
             "two.obj/a.png",
-            "an output must have a folder to be in, not two.obj, which is none; make it or choose another",
+            "an output must be in an existing folder, not two.obj; create it or choose another",
         ),
     ],
 )
@@ -73,5 +73,7 @@ def test_what_exists_is_refused_unless_forced(folder: Path) -> None:
 
 def test_a_folder_that_cannot_be_written_is_refused(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "access", lambda *_: False)
-    with pytest.raises(OutputError, match="must have a folder that can be written, not scene"):
+    with pytest.raises(
+        OutputError, match="an output must be in a writable folder, not scene; choose another"
+    ):
         refuse_outputs("scene/a.png", None, force=False)

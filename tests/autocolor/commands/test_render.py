@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -143,3 +145,42 @@ def test_a_broken_mesh_is_bad_input_and_one_that_is_not_there_is_missing(folder:
     assert run("render", "no.obj") == (66, "", expected)
     assert run("render", "").code == 65
     assert run("render", "x" * 5000).code in (65, 66)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a pseudo-terminal")
+def test_a_progress_bar_is_shown_on_a_terminal_alone(process: Run, folder: Path) -> None:
+    import pty
+
+    outer, inner = pty.openpty()
+    ran = process("render", "two.obj", stderr=inner)
+    os.close(inner)
+    shown = b""
+    # The end of a terminal that nobody holds open is an error.
+    while chunk := _read(outer):
+        shown += chunk
+    os.close(outer)
+    assert ran.code == 0
+    assert b"100%" in shown
+    assert shown.endswith(b"wrote two.png\r\n")
+    assert process("render", "two.obj", "--force").err == "wrote two.png\n"
+
+
+def _read(number: int) -> bytes:
+    try:
+        return os.read(number, 4096)
+    except OSError:
+        return b""
+
+
+def test_a_terminated_render_leaves_the_old_picture_whole(process: Run, folder: Path) -> None:
+    if os.name != "posix":
+        pytest.skip("needs what POSIX says about signals")
+    (folder / "two.png").write_bytes(b"mine")
+    program = (
+        "import os, signal, sys, autocolor.files.writing, autocolor.__main__ as m\n"
+        "os.fsync = lambda number: os.kill(os.getpid(), signal.SIGKILL)\n"
+        "sys.argv[1:] = ['render', 'two.obj', '--force']\n"
+        "m.main()\n"
+    )
+    assert process(command=[sys.executable, "-c", program]).code == -signal.SIGKILL
+    assert (folder / "two.png").read_bytes() == b"mine"

@@ -108,8 +108,8 @@ def test_of_two_names_the_longer_is_meant(scene: Scene) -> None:
 @pytest.mark.parametrize(
     ("setting", "sentence"),
     [
-        ("ambiet=1", "--set ambiet: there is nothing of this name to set; did you mean 'ambient'?"),
-        ("light.k.on=true", "--set light.k.on: there is nothing of this name to set; did you mean 'lights'?"),
+        ("ambiet=1", "--set ambiet: there is no field of this name; did you mean 'ambient'?"),
+        ("light.k.on=true", "--set light.k.on: there is no field of this name; did you mean 'lights'?"),
         ("lights.kye.on=true", "--set lights.kye.on: there is no light 'kye'; did you mean 'key'?"),
         ("surfaces.sid.blend=1", "--set surfaces.sid.blend: there is no surface 'sid'; did you mean 'side'?"),
         ("parts.sid.surface=x", "--set parts.sid.surface: there is no part 'sid'; did you mean 'side'?"),
@@ -117,9 +117,12 @@ def test_of_two_names_the_longer_is_meant(scene: Scene) -> None:
         ("lights.key=1", "--set lights.key: it must name one field; write it as in lights.key.intensity=2"),
         ("view=1", "--set view: it must name one field; write it as in view.angle=10"),
         ("view.=1", "--set view.: it must name one field; write it as in view.angle=10"),
-        ("ambient.x=1", "--set ambient.x: there is nothing of this name to set; did you mean 'ambient'?"),
-        ("lights.key.name=a", "--set lights.key.name: a name stays; rename it in the scene file"),
-        ("surfaces.side.name=a", "--set surfaces.side.name: a name stays; rename it in the scene file"),
+        ("ambient.x=1", "--set ambient.x: there is no field of this name; did you mean 'ambient'?"),
+        ("lights.key.name=a", "--set lights.key.name: a name cannot be set; change it in the scene file"),
+        (
+            "surfaces.side.name=a",
+            "--set surfaces.side.name: a name cannot be set; change it in the scene file",
+        ),
         (
             "lights.key.a.b.c.d.e=1",
             "--set lights.key.a.b.c.d.e: there is no such field; write it as in lights.key.intensity=2",

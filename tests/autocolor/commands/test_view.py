@@ -74,7 +74,7 @@ def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitor
     assert run("view", "scene").code == 0
     assert captions[0].startswith("autocolor - scene* - [front.low] - object color #")
     assert captions[1] == "False"
-    assert captions[2].endswith("not saved: Ctrl+S saves, close again to leave without it")
+    assert captions[2].endswith("not saved: Ctrl+S saves, close again to discard the changes")
     assert captions[3].endswith("none.obj: there is no such file or folder; check the name")
     assert captions[4].endswith("saved somewhere")
 
@@ -100,4 +100,12 @@ def test_without_a_screen_render_is_named(
     ran = run(*arguments)
     assert (ran.code, ran.out) == (69, "")
     assert ran.err.count("\n") == 1
-    assert "`autocolor render SCENE -o PNG` makes the picture without a screen" in ran.err
+    assert "`autocolor render SCENE -o PNG` renders without a screen" in ran.err
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs an X display that can be missing")
+def test_a_screen_that_does_not_answer_is_no_screen(process: Run, folder: Path) -> None:
+    ran = process("view", "scene", environment={"DISPLAY": ":4711", "XDG_RUNTIME_DIR": str(folder)})
+    assert (ran.code, ran.out) == (69, "")
+    assert ran.err.count("\n") == 1
+    assert "autocolor render SCENE -o PNG" in ran.err

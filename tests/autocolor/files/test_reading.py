@@ -55,9 +55,7 @@ def test_a_file_larger_than_allowed_is_refused_after_that_many_bytes(tmp_path: P
     path.write_bytes(bytes(1001))
     with pytest.raises(InputError) as caught:
         read_bytes(path, 1000)
-    assert (
-        str(caught.value) == "a.obj: a file must have at most 1,000 bytes, not more; divide it or thin it out"
-    )
+    assert str(caught.value) == "a.obj: a file must have at most 1,000 bytes, not more; split or simplify it"
 
 
 def test_a_name_with_a_nul_byte_or_of_endless_length_is_refused() -> None:

@@ -54,7 +54,9 @@ def test_one_surface_has_all_the_words_but_those_of_background_and_screens() -> 
 def test_a_surface_that_asks_for_too_much_is_named() -> None:
     with pytest.raises(InputError) as refusal:
         level_ranges(rows([600, 500]), {"surface 0", "surface 1"})
-    assert str(refusal.value).startswith("surface 'surface 0': the levels of all surfaces must leave 2")
+    assert str(refusal.value).startswith(
+        "surface 'surface 0': the levels must be at most 1007 in all, 2 of them"
+    )
 
 
 def test_a_surface_that_is_not_in_use_has_no_words() -> None:

@@ -75,12 +75,12 @@ def test_what_is_no_finite_number_is_refused(value: object) -> None:
         (Whole(0), True, "it must be a whole number of at least 0, not true"),
         (Switch(), 1, "it must be true or false, not 1"),
         (Switch(), None, "it must be true or false, not None"),
-        (Text(), "", "it must be a text of at least one letter, not ''"),
-        (Text(may_be_empty=True), 3, "it must be a text, not 3"),
+        (Text(), "", "it must be a string of at least one character, not ''"),
+        (Text(may_be_empty=True), 3, "it must be a string, not 3"),
         (Choice(("on", "off")), "of", "it must be 'on' or 'off', not 'of'; did you mean 'off'?"),
         (Choice(("surface", "object")), 3, "it must be 'surface' or 'object', not 3"),
         (VectorKind(has_length=True), (0, 0, 0), "it must not be zero, not (0, 0, 0); give it a length"),
-        (Reference("surfaces"), 3, "it must be a text of at least one letter, not 3"),
+        (Reference("surfaces"), 3, "it must be a string of at least one character, not 3"),
         (References("lights"), "key", "it must be a list of names, not 'key'"),
         (References("lights"), ["key", 3], "it must be a list of names, not ['key', 3]"),
         (PointOrName("lights"), 3, "it must be three finite numbers of at most 1e36, or a name, not 3"),
@@ -289,7 +289,7 @@ def test_a_table_holds_rows_whose_names_differ() -> None:
     assert stack.boxes == (Box("a"), Box("b"))
     assert plain(stack)["boxes"] == [plain(Box("a")), plain(Box("b"))]
     assert sentences(lambda: Stack((Box("a"), Box("b"), Box("a")))) == (
-        "boxes[3].name must differ from all others, not repeat boxes[1]; rename it",
+        "boxes[3].name must be unique, not the same as boxes[1]; rename it",
     )
     assert sentences(lambda: made(Stack, {"boxes": [{"name": "a", "weight": -1}, 3]})) == (
         "boxes[1].weight must be a finite number of at least 0, not -1",

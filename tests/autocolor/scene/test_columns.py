@@ -64,7 +64,9 @@ def test_every_problem_of_a_row_is_told_with_its_noun_and_name() -> None:
         "span 'a': begin must be a finite number, not 'x'",
         "span 'a': end must be a finite number, not 'y'",
     )
-    assert sentences(lambda: Span("", 0)) == ("span: name must be a text of at least one letter, not ''",)
+    assert sentences(lambda: Span("", 0)) == (
+        "span: name must be a string of at least one character, not ''",
+    )
 
 
 def test_a_rule_between_columns_is_checked_beside_a_value_that_is_refused() -> None:
@@ -121,7 +123,7 @@ def test_a_row_of_a_table_has_defaults_for_what_is_left_out() -> None:
 def test_what_is_missing_is_told_beside_what_is_wrong() -> None:
     assert sentences(lambda: made(Span, {"begin": "x", "z": 1})) == (
         "span: there is no 'z'; known are 'name', 'begin', 'end', 'length'",
-        "span: name must be a text of at least one letter, not missing; add it",
+        "span: name must be a string of at least one character, not missing; add it",
         "span: begin must be a finite number, not 'x'",
     )
 

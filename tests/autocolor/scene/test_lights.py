@@ -117,7 +117,7 @@ def test_all_problems_of_a_light_are_told_at_once() -> None:
 
 @pytest.mark.parametrize("name", ["", 3, None])
 def test_a_light_must_have_a_name(name: Any) -> None:
-    with pytest.raises(InputError, match=r"light: name must be a text of at least one letter, not"):
+    with pytest.raises(InputError, match=r"light: name must be a string of at least one character, not"):
         Light(name, (0, 0, 0))
 
 

@@ -100,7 +100,7 @@ def test_an_unknown_name_is_refused_with_the_nearest_right_one(ask: Any, sentenc
         ),
         (
             {"lights": [Light("a", (0, 0, 0))] * 2},
-            "lights[2].name must differ from all others, not repeat lights[1]; rename it",
+            "lights[2].name must be unique, not the same as lights[1]; rename it",
         ),
         ({"parts": [Part("door", "door")]}, "the part table must have the mesh's parts in their order"),
     ],

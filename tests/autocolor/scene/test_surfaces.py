@@ -17,7 +17,7 @@ from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong
         (lambda: Reflectance(exponent=math.inf), "exponent must be a finite number of at least 0, not inf"),
         (lambda: Paint(blend=1.5), "blend must be a number from 0 to 1, not 1.5"),
         (lambda: Paint(light_percentage=101), "light_percentage must be a number from 0 to 100, not 101"),
-        (lambda: Surface(""), "surface: name must be a text of at least one letter, not ''"),
+        (lambda: Surface(""), "surface: name must be a string of at least one character, not ''"),
         (
             lambda: Surface("body", levels=1),
             "surface 'body': levels must be a whole number of at least 2, not 1",
@@ -59,9 +59,9 @@ def test_every_problem_of_a_change_is_told_and_in_its_order() -> None:
 
 
 def test_parts_and_surfaces_of_other_kinds_are_refused_in_a_sentence() -> None:
-    with pytest.raises(InputError, match="part: name must be a text of at least one letter, not 3"):
+    with pytest.raises(InputError, match="part: name must be a string of at least one character, not 3"):
         Part(3, "wall")  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="part 'hood': surface must be a text"):
+    with pytest.raises(InputError, match="part 'hood': surface must be a string"):
         Part("hood", None)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="surface 'a': paint must be a Paint, not"):
         Surface("a", paint=0.5)  # type: ignore[arg-type]

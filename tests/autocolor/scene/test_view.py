@@ -80,10 +80,10 @@ def test_giving_a_direction_drops_the_target_and_the_other_way_round() -> None:
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
-        ({}, "view: it must have a direction or a target, and not both; leave one out"),
+        ({}, "view: it must have either a direction or a target; give one of them"),
         (
             {"direction": (1, 0, 0), "target": (1, 1, 1)},
-            "view: it must have a direction or a target, and not both; leave one out",
+            "view: it must have either a direction or a target; give one of them",
         ),
         (
             {"target": (0, 0, 0)},

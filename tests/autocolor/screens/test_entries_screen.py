@@ -5,7 +5,7 @@ import pytest
 
 from autocolor.mapping.level_ranges import BACKGROUND, SCREENS, LevelRange
 from autocolor.screens.drawing import YELLOW
-from autocolor.screens.entries_screen import ACROSS, DOWN, SIDE, cell_words, draw_entries
+from autocolor.screens.entries_screen import CELL_HEIGHT, CELL_WIDTH, SIDE, cell_words, draw_entries
 from ramtek_emu import Ramtek9300
 
 RANGES = {"body": LevelRange(1, 500), "glass": LevelRange(501, 40)}
@@ -23,7 +23,9 @@ def owner(word: int) -> str:
 
 def cell(word: int) -> tuple[slice, slice]:
     line, element = divmod(word, SIDE)
-    return slice(line * DOWN, (line + 1) * DOWN), slice(element * ACROSS, (element + 1) * ACROSS)
+    return slice(line * CELL_HEIGHT, (line + 1) * CELL_HEIGHT), slice(
+        element * CELL_WIDTH, (element + 1) * CELL_WIDTH
+    )
 
 
 def test_every_cell_shows_its_own_word() -> None:

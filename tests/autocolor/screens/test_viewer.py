@@ -87,7 +87,7 @@ def test_each_edit_is_shown_undone_and_done_again(viewer: Viewer, name: str) -> 
     assert is_true_to(viewer, before)
     control(viewer, "y")
     assert viewer.studio.scene is after
-    assert viewer.message == "done again"
+    assert viewer.message == "redone"
     control(viewer, "z")
     control(viewer, "z", shift=True)
     assert viewer.studio.scene is after
@@ -115,7 +115,7 @@ def test_without_a_step_there_is_nothing_to_undo_or_to_do_again(viewer: Viewer) 
     control(viewer, "z")
     assert viewer.message == "nothing to undo"
     control(viewer, "y")
-    assert viewer.message == "nothing to do again"
+    assert viewer.message == "nothing to redo"
 
 
 def test_a_light_that_is_not_there_is_told(viewer: Viewer) -> None:
@@ -340,7 +340,7 @@ def test_escape_never_leaves_unsaved_work(viewer: Viewer) -> None:
     press_c(viewer)
     for _ in range(5):
         assert viewer.on_key("escape")
-    assert viewer.message == "not saved: Ctrl+S saves, Ctrl+Q twice leaves without it"
+    assert viewer.message == "not saved: Ctrl+S saves, Ctrl+Q twice discards the changes"
     control(viewer, "s")
     assert not viewer.on_key("escape")
 
@@ -348,7 +348,7 @@ def test_escape_never_leaves_unsaved_work(viewer: Viewer) -> None:
 def test_closing_with_unsaved_work_takes_two_times_in_a_row(viewer: Viewer) -> None:
     press_c(viewer)
     assert not viewer.on_close()
-    assert viewer.message == "not saved: Ctrl+S saves, close again to leave without it"
+    assert viewer.message == "not saved: Ctrl+S saves, close again to discard the changes"
     viewer.on_key("f1")
     assert not viewer.on_close()
     assert viewer.on_close()
@@ -395,7 +395,7 @@ def test_a_file_dropped_on_unsaved_work_is_opened_the_second_time(viewer: Viewer
     scene = viewer.studio.scene
     viewer.on_drop(tmp_path / "roof.obj")
     assert viewer.studio.scene is scene
-    assert viewer.message == "not saved: Ctrl+S saves, drop it again to open it all the same"
+    assert viewer.message == "not saved: Ctrl+S saves, drop it again to discard the changes"
     viewer.on_drop(tmp_path / "roof.obj")
     assert viewer.studio.scene.name == "roof"
 

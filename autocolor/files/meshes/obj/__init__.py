@@ -1,4 +1,4 @@
-"""Meshes in OBJ files (Wavefront): plain files are read fast, others line by line."""
+"""Wavefront OBJ files: a fast reader for plain files, and a line-by-line reader for all others."""
 
 from __future__ import annotations
 

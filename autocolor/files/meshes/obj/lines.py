@@ -1,4 +1,4 @@
-"""The patient OBJ reader: one statement after the other, with a sentence for every fault."""
+"""The line-by-line OBJ reader, which reports every problem with its line."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from autocolor.files.reading import shown
 from autocolor.files.repair.polygon_split import MOST_CORNERS
 
 MOST_PROBLEMS: Final = 20
-"""Assumed: sentences for one mesh file; a file with more faults has one that repeats."""
+"""Assumed: problems reported for one mesh file; a file with more usually repeats the same one."""
 
 NUMBER: Final = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 CORNER: Final = re.compile(rb"([+-]?[0-9]{1,18})(?:/[+-]?[0-9]*){0,2}")
 
 
 class ObjLines:
-    """The tables while they grow, and the problems found."""
+    """Collects the tables and the problems of one file."""
 
     def __init__(self, place: str, statements: Statements) -> None:
         self.place = place
@@ -41,18 +41,18 @@ class ObjLines:
         self.line = 0
 
     def problem(self, sentence: str) -> None:
-        """Note a problem of the current line; raise InputError when there are enough."""
+        """Add a problem of the current line; raise InputError once there are MOST_PROBLEMS."""
         self.problems.append((self.line, f"{self.place}, line {self.line}: {sentence}"))
         if len(self.problems) >= MOST_PROBLEMS:
             self.raise_any()
 
     def raise_any(self) -> None:
-        """Raise InputError with the problems so far, in the order of their lines."""
+        """Raise InputError with the problems found so far, if any, in line order."""
         if self.problems:
             raise InputError([sentence for _, sentence in sorted(self.problems)])
 
     def node(self, words: list[bytes]) -> None:
-        """Read `v x y z`; a weight or colors that follow must be numbers and are not used."""
+        """Read the words after `v`: x y z. A weight or color that follows must be numeric and is ignored."""
         if len(words) < 3:
             self.problem(f"a node must have three coordinates x y z, not {len(words)}; add what is missing")
             words = [*words, b"0", b"0", b"0"][:3]
@@ -67,10 +67,10 @@ class ObjLines:
                 self.coordinates.append(number)
 
     def polygon(self, words: list[bytes]) -> None:
-        """Read the corners of `f`, of each the node number; texture and normal numbers are not used."""
+        """Read the words after `f`: corners. Their texture and normal numbers are ignored."""
         if len(words) > MOST_CORNERS:
             self.problem(
-                f"a polygon must have at most {MOST_CORNERS:,} corners, not {len(words):,}; divide it"
+                f"a polygon must have at most {MOST_CORNERS:,} corners, not {len(words):,}; split it"
             )
             return
         for word in words:
@@ -88,7 +88,7 @@ class ObjLines:
         self.polygon_lines.append(self.line)
 
     def tables(self) -> ObjTables:
-        """The tables, when there was no problem and every corner has its node; else InputError."""
+        """The tables. Raises InputError if there was a problem or a corner names no node."""
         count = len(self.coordinates) // 3
         tables = ObjTables(
             np.array(self.coordinates).reshape(count, 3),
@@ -111,7 +111,7 @@ class ObjLines:
 
 
 def read_obj_lines(data: bytes, place: str, statements: Statements) -> ObjTables:
-    """The tables of an OBJ file whose lines end with line feeds; `place` is its name in the sentences.
+    """The tables of an OBJ file whose lines end with line feeds; `place` is its name in messages.
 
     Raises InputError with every problem, up to MOST_PROBLEMS.
     """
@@ -129,7 +129,7 @@ def read_obj_lines(data: bytes, place: str, statements: Statements) -> ObjTables
 
 
 def _statements(data: bytes, reader: ObjLines) -> Iterator[tuple[int, bytes]]:
-    """Each statement with the number of its first line; a backslash at a line's end continues it."""
+    """Each statement and the number of its first line; a backslash at the end of a line continues it."""
     begun: list[bytes] = []
     first = size = 0
     for number, line in enumerate(io.BytesIO(data), start=1):
@@ -137,7 +137,7 @@ def _statements(data: bytes, reader: ObjLines) -> Iterator[tuple[int, bytes]]:
         size = size + len(line) if begun else len(line)
         if size > LONGEST_LINE:
             reader.line = first
-            reader.problem(f"a line must have at most {LONGEST_LINE:,} bytes, not {size:,}; divide it")
+            reader.problem(f"a line must have at most {LONGEST_LINE:,} bytes, not {size:,}; split it")
             reader.raise_any()
         if line.endswith(b"\\\n"):
             begun.append(line[:-2])

@@ -1,10 +1,13 @@
-"""Meshes in OBJ files (Wavefront): nodes, polygons and the names that group them.
+"""Reading a mesh from a Wavefront OBJ file.
 
-Read are `v` (a weight or colors after x y z are not used), `f` with node numbers from 1 or negative, alone or
-with texture and normal numbers, and `g`, `o` and `usemtl` as part names (see `obj_statements`). Polygons may
-name nodes that come later. Quads stay quads and shared nodes stay shared. Texture places, normals and
-material files are not used; points, lines, curves and unknown statements are skipped and counted. Lines may
-end in any of the three ways, continue after a backslash, and start with spaces or tabs.
+These statements are used: `v` (a weight or color after x y z is ignored); `f`, with node numbers that count
+from 1 or, if negative, back from the latest node (texture and normal numbers are ignored); and `g`, `o` and
+`usemtl`, which name the parts (see `statements`). A polygon may name nodes that are defined later. Quads stay
+quads, and shared nodes stay shared.
+
+Texture coordinates, normals and material files are ignored. Points, lines, curves and unknown statements are
+skipped and counted. Lines may end with LF, CR LF or CR, may be continued with a backslash, and may start with
+spaces or tabs.
 """
 
 from __future__ import annotations
@@ -23,13 +26,13 @@ from autocolor.files.repair.mesh_repair import repaired
 from autocolor.files.repair.polygons import MeshReport, Polygons
 
 NODE_LINE: Final = re.compile(rb"^[ \t]*v([ \t]+[-+.0-9][^\s]*){3}", re.MULTILINE)
-"""A line of the node table."""
+"""A line that defines a node."""
 
 
 def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) -> MeshReport:
     """The mesh of an OBJ file, and what was repaired or skipped; `up` is the file's up axis.
 
-    Raises InputError with file and line of every problem, MissingInputError where there is no file.
+    Raises InputError with every problem, each with its line, MissingInputError if the file does not exist.
     """
     data = read_bytes(path, LARGEST_MESH_FILE)
     if problem := text_problem(data):
@@ -54,7 +57,7 @@ def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) ->
 
 
 def _begins(head: bytes) -> bool:
-    """Whether a file begins with lines of a node table, after comments and names."""
+    """Whether the first bytes of a file contain a line that defines a node, and no NUL byte."""
     return NODE_LINE.search(head) is not None and b"\0" not in head
 
 

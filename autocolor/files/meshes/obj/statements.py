@@ -1,9 +1,9 @@
-"""OBJ statements other than nodes and polygons: what names the parts, and what is skipped.
+"""OBJ statements other than nodes and polygons: part names, and statements that are skipped.
 
-A polygon's part is the latest `g` or `o` name before it (the first name, where `g` gives several). Before
-any was given it is the current `usemtl` name, and before any of these the file's own name. So a file that
-groups keeps its groups whole whatever materials they use, and one that only changes materials has a part for
-each. `g` or `o` without a name takes the name away.
+A polygon belongs to the part of the latest `g` or `o` name before it; of several names after `g`, the first
+counts. Without such a name it belongs to the part of the current `usemtl` name, and without that to the part
+with the file's own name. So groups stay whole whatever materials they use, and a file with materials but no
+groups has one part for each material. `g` or `o` without a name ends the group.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from autocolor.files.reading import shown
 UNUSED: Final = frozenset(
     b"vt vn s mg mtllib maplib usemap lod bevel c_interp d_interp shadow_obj trace_obj".split()
 )
-"""Statements that change nothing here; material files are never opened."""
+"""Statements that are ignored without being counted; material files are never opened."""
 
 SKIPPED: Final = {
     b"p": "points",
@@ -28,7 +28,7 @@ SKIPPED: Final = {
 
 
 class Statements:
-    """The part names and the counts of what was skipped, while a file is read from top to bottom."""
+    """Keeps the current part name and counts skipped statements while a file is read."""
 
     def __init__(self, file_stem: str) -> None:
         self.file_stem = file_stem
@@ -40,12 +40,12 @@ class Statements:
 
     @property
     def part_number(self) -> int:
-        """The row of the part that a polygon read now belongs to."""
+        """The part number of a polygon at the current position; a new part name gets the next number."""
         name = self.group or self.surface or self.file_stem
         return self.numbers.setdefault(name, len(self.numbers))
 
     def read(self, line: bytes) -> bool:
-        """Read one line; False where it is a node or a polygon."""
+        """Process one line; returns False if it is a node or a polygon, which the caller must read."""
         words = line.split(None, 2)
         if not words or words[0].startswith(b"#"):
             return True
@@ -59,7 +59,7 @@ class Statements:
         elif keyword == b"usemtl":
             self.surface = _name(line.split(None, 1)[1]) if len(words) > 1 else None
         elif keyword not in UNUSED:
-            # Name the first unknown one only, so that a file of rubbish makes no endless report.
+            # Name only the first unknown statement, to keep the report short.
             if keyword not in SKIPPED and not self.unknown:
                 self.unknown = f"unknown statements (the first is {shown(keyword)})"
             what = SKIPPED.get(keyword, self.unknown)
@@ -68,12 +68,12 @@ class Statements:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What was skipped, for the report."""
-        return tuple(f"skipped were {count:,} {what}" for what, count in self.skipped.items())
+        """Messages about what was skipped."""
+        return tuple(f"skipped {what}: {count:,}" for what, count in self.skipped.items())
 
 
 def _name(text: bytes) -> str:
-    """The name as text that can be shown; what is not UTF-8 is taken as Latin-1."""
+    """The name as printable text of at most 200 characters; bytes that are not UTF-8 are read as Latin-1."""
     text = text.strip()[:200]
     try:
         name = text.decode("utf-8")

@@ -1,4 +1,4 @@
-"""What the two OBJ readers hand on: the node table and the corners as the file numbers them."""
+"""The tables that both OBJ readers return: nodes, and polygons with the node numbers of the file."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ import numpy as np
 from autocolor.arrays import Floats, Integers, Numbers
 
 LONGEST_LINE: Final = 1 << 20
-"""Assumed: bytes of one statement, its continuation lines included."""
+"""Assumed: bytes of one statement, including its continuation lines."""
 
 
 @dataclass(frozen=True, eq=False)
 class ObjTables:
-    """Node numbers as they stand in the file: from 1, or negative, counted back from the latest node.
+    """The nodes and polygons of an OBJ file.
 
-    `coordinates` is (nodes, 3); `numbers` holds the corners of all polygons one after the other;
-    `corner_counts`, `part_numbers` and `nodes_before` (how many nodes stood before it) have a row a polygon.
+    `coordinates` is (nodes, 3). `numbers` holds the node numbers of all polygons, concatenated, as in the
+    file: from 1, or negative, counted back from the latest node. `corner_counts`, `part_numbers` and
+    `nodes_before` (the number of nodes defined before the polygon) have one element for each polygon.
     """
 
     coordinates: Floats
@@ -30,7 +31,7 @@ class ObjTables:
 
     @cached_property
     def rows(self) -> Numbers:
-        """The row of the node table for each corner, -1 where there is no such node."""
+        """The row in `coordinates` of each corner; -1 if there is no such node."""
         rows = self.numbers - 1
         back = np.flatnonzero(self.numbers < 0)
         if len(back):

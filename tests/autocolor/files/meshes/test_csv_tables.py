@@ -67,13 +67,13 @@ def test_every_problem_of_both_tables_is_named(tmp_path: Path) -> None:
     polygons = POLYGONS + "2,a,1,2,3,4\n1.5,a,1,,x,4\n"
     rule = "a coordinate must be a decimal number of at most 1e30 in size"
     assert refusal(tmp_path, nodes, polygons) == [
-        "nodes.csv, row 6: a node number must stand once, not repeat: 1; number it anew",
+        "nodes.csv, row 6: a node number must be unique, not repeated: 1; renumber it",
         "nodes.csv, row 7: a node number must be a whole number, not 'x'; correct it",
         f"nodes.csv, row 7: {rule}, not 'nan'; correct it",
         f"nodes.csv, row 7: {rule}, not '1e31'; correct it",
         f"nodes.csv, row 7: {rule}, not ''; correct it",
         "nodes.csv, row 8: a row must have 4 cells, not 5; correct it",
-        "polygons.csv, row 4: a polygon number must stand once, not repeat: 2; number it anew",
+        "polygons.csv, row 4: a polygon number must be unique, not repeated: 2; renumber it",
         "polygons.csv, row 5: a polygon number must be a whole number, not '1.5'; correct it",
         "polygons.csv, row 5: a corner must be a whole number, not ''; correct it",
         "polygons.csv, row 5: a corner must be a whole number, not 'x'; correct it",
@@ -91,7 +91,7 @@ def test_numbers_are_strict(tmp_path: Path, number: str) -> None:
     [
         ("node;x;y;z", "nodes.csv, row 1: there is no column 'node;x;y;z'; known are 'node', 'x', 'y', 'z'"),
         ("nod,x,y,z", "nodes.csv, row 1: there is no column 'nod'; did you mean 'node'?"),
-        ("x,y,z,x", "nodes.csv, row 1: a column must stand once, not repeat: 'x'; leave one out"),
+        ("x,y,z,x", "nodes.csv, row 1: a column name must be unique, not repeated: 'x'; remove one"),
         ("x,y", "nodes.csv, row 1: there must be a column 'z', not only x, y; add it"),
     ],
 )

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from autocolor.errors import InputError
 from autocolor.files.repair.mesh_repair import repaired
-from autocolor.files.repair.polygons import MeshReport, Polygons, upright
+from autocolor.files.repair.polygons import MeshReport, Polygons
 
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [0, 0, 1]]
 
@@ -87,19 +87,6 @@ def test_a_mesh_without_polygons_left_is_refused() -> None:
 @pytest.mark.parametrize("scale", [1e-300, 1e-20, 1e20, 1e30])
 def test_size_does_not_matter(scale: float) -> None:
     assert mesh_of([0, 1, 2, 3], coordinates=np.array(SQUARE[:4]) * scale).repairs == ()
-
-
-def test_the_up_axis_becomes_z_and_windings_stay() -> None:
-    axes = np.eye(3)
-    assert upright(axes, "z").tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-    assert upright(axes, "y").tolist() == [[1, 0, 0], [0, 0, 1], [0, -1, 0]]
-    assert upright(axes, "x").tolist() == [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
-    for up in "xyz":
-        assert np.linalg.det(upright(axes, up)) == 1
-
-
-def test_turning_makes_no_negative_zero() -> None:
-    assert not np.signbit(upright(np.zeros((1, 3)), "y")).any()
 
 
 @given(st.lists(st.lists(st.integers(0, 5), max_size=9), max_size=6))

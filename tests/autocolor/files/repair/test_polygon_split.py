@@ -79,6 +79,6 @@ def test_clipping_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> Non
     with pytest.raises(InputError) as caught:
         split_polygons(notched, np.tile(np.arange(5), 3), np.array([5, 5, 5]))
     assert str(caught.value) == (
-        "polygons with corners that point inward must be fewer, not so many with 5 corners; split them into"
+        "there must be fewer polygons with reflex corners, not so many with 5 corners; split them into"
         " triangles"
     )

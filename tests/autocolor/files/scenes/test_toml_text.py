@@ -36,7 +36,7 @@ def test_toml_is_parsed() -> None:
 )
 def test_a_syntax_error_is_one_sentence_with_its_line(text: str, line: int, place: str) -> None:
     sentence = refusal(text)
-    assert sentence.startswith(f"scene.toml, line {line}: it must be TOML, not what stands at {place} (")
+    assert sentence.startswith(f"scene.toml, line {line}: it must be valid TOML, but is not at {place} (")
     assert sentence.endswith("); correct the line")
 
 
@@ -55,7 +55,7 @@ def test_other_encodings_are_refused() -> None:
 @pytest.mark.parametrize("brackets", ["[" * 1000, "[" * 1000 + "]" * 1000, "{a=" * 1000, "[{a=" * 500])
 def test_deep_nesting_is_refused_before_parsing(brackets: str) -> None:
     assert refusal("b = 1\na = " + brackets) == (
-        "scene.toml, line 2: brackets must be nested at most 16 deep, not deeper; write it flatter"
+        "scene.toml, line 2: brackets must be nested at most 16 deep, not deeper; flatten them"
     )
 
 
@@ -63,7 +63,7 @@ def test_deep_nesting_is_refused_before_parsing(brackets: str) -> None:
 @pytest.mark.parametrize("form", ["{} = 1", "[{}]", "[[{}]]", "a = {{ {} = 1 }}"])
 def test_long_dotted_keys_are_refused_before_parsing(key: str, form: str) -> None:
     assert refusal("\n" + form.format(key)) == (
-        "scene.toml, line 2: a key must have at most 8 parts between dots, not more; write it shorter"
+        "scene.toml, line 2: a key must have at most 8 parts between dots, not more; shorten it"
     )
 
 
@@ -90,7 +90,7 @@ def test_a_list_of_many_numbers_is_no_dotted_key() -> None:
     "text", ["a = 'x", 'a = "x\\', 'a = """x', "a = '''x''", 'a = """""', "]]]]", '"' * 9999]
 )
 def test_open_ends_are_refused(text: str) -> None:
-    assert refusal(text).startswith("scene.toml, line 1: it must be TOML")
+    assert refusal(text).startswith("scene.toml, line 1: it must be valid TOML")
 
 
 @given(st.binary(max_size=100) | st.text("ab.=[]{}\"'\\#,1-: \n\r\t", max_size=100).map(str.encode))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import sys
 from pathlib import Path
 
@@ -205,53 +204,6 @@ def test_nothing_is_needed_of_a_home(process: Run, folder: Path) -> None:
 
 
 @POSIX
-def test_a_screen_that_does_not_answer_is_no_screen(process: Run, folder: Path) -> None:
-    ran = process("view", "scene", environment={"DISPLAY": ":4711", "XDG_RUNTIME_DIR": str(folder)})
-    assert (ran.code, ran.out) == (69, "")
-    assert ran.err.count("\n") == 1
-    assert "autocolor render SCENE -o PNG" in ran.err
-
-
-@POSIX
-def test_a_progress_bar_is_shown_on_a_terminal_alone(process: Run, folder: Path) -> None:
-    import pty
-
-    outer, inner = pty.openpty()
-    ran = process("render", "two.obj", stderr=inner)
-    os.close(inner)
-    shown = b""
-    # The end of a terminal that nobody holds open is an error.
-    while chunk := _read(outer):
-        shown += chunk
-    os.close(outer)
-    assert ran.code == 0
-    assert b"100%" in shown
-    assert shown.endswith(b"wrote two.png\r\n")
-    assert process("render", "two.obj", "--force").err == "wrote two.png\n"
-
-
-def _read(number: int) -> bytes:
-    try:
-        return os.read(number, 4096)
-    except OSError:
-        return b""
-
-
-@POSIX
 def test_a_shell_can_complete_commands_and_options(process: Run) -> None:
     completion = {"_AUTOCOLOR_COMPLETE": "bash_complete", "COMP_WORDS": "autocolor re", "COMP_CWORD": "1"}
     assert process(environment=completion).out.split() == ["plain,render", "plain,recolor"]
-
-
-def test_a_terminated_render_leaves_the_old_picture_whole(process: Run, folder: Path) -> None:
-    if os.name != "posix":
-        pytest.skip("needs what POSIX says about signals")
-    (folder / "two.png").write_bytes(b"mine")
-    program = (
-        "import os, signal, sys, autocolor.files.writing, autocolor.__main__ as m\n"
-        "os.fsync = lambda number: os.kill(os.getpid(), signal.SIGKILL)\n"
-        "sys.argv[1:] = ['render', 'two.obj', '--force']\n"
-        "m.main()\n"
-    )
-    assert process(command=[sys.executable, "-c", program]).code == -signal.SIGKILL
-    assert (folder / "two.png").read_bytes() == b"mine"

@@ -1,0 +1,81 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import pytest
+from click.testing import CliRunner
+
+from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.errors import InputError, MissingInputError
+from autocolor.files.scenes.scene_report import SceneReport
+from tests.autocolor.commands.conftest import Run
+from tests.autocolor.meshes import wall_scene
+
+
+@click.command
+@scene_options
+def echo(scene: str, up: str, strict: bool) -> None:
+    """Say what the options of a command are."""
+    click.echo(f"{scene} {up} {strict}")
+
+
+def said(*arguments: str) -> str:
+    return CliRunner().invoke(echo, arguments).output
+
+
+def test_a_command_takes_a_scene_an_up_axis_and_whether_to_be_strict() -> None:
+    assert said("car.obj") == "car.obj z False\n"
+    assert said("--up", "y", "car.obj", "--strict") == "car.obj y True\n"
+
+
+@pytest.mark.parametrize("arguments", [(), ("a.obj", "b.obj"), ("a.obj", "--up", "Z"), ("a.obj", "--up")])
+def test_other_arguments_are_wrong_usage(arguments: tuple[str, ...]) -> None:
+    assert CliRunner().invoke(echo, arguments).exit_code == 2
+
+
+def test_a_scene_is_read_without_a_word_where_nothing_is_repaired(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert read("scene", "z").scene.name == "scene"
+    assert tuple(capsys.readouterr()) == ("", "")
+
+
+def test_each_repair_is_a_line_on_stderr(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\nl 1 2\n")
+    report = read("two.obj", "z")
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.splitlines() == [f"autocolor: {repair}" for repair in report.repairs]
+    assert len(report.repairs) == 2
+
+
+def test_the_up_axis_is_that_of_the_mesh_file(folder: Path) -> None:
+    above = read("two.obj", "y").scene.mesh.coordinates
+    assert above[2].tolist() == [1, -1, 0]
+
+
+def test_what_cannot_be_read_is_refused_and_not_told(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "bad.obj").write_text("v 0\n")
+    with pytest.raises(InputError):
+        read("bad.obj", "z")
+    with pytest.raises(MissingInputError):
+        read("none.obj", "z")
+    assert tuple(capsys.readouterr()) == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("repairs", "strict", "code"),
+    [((), False, 0), ((), True, 0), (("a repair",), False, 0), (("a repair",), True, 1)],
+)
+def test_only_strict_makes_a_repair_an_exit_code(repairs: tuple[str, ...], strict: bool, code: int) -> None:
+    assert ended(SceneReport(wall_scene(), repairs), strict) == code
+
+
+@pytest.mark.parametrize("command", ["render", "view", "info", "validate", "show", "tables"])
+def test_every_command_that_reads_a_scene_takes_the_same_options(run: Run, command: str) -> None:
+    shown = run(command, "--help").out
+    for option in ("SCENE", "--up [x|y|z]", "--strict"):
+        assert option in shown

@@ -1,0 +1,84 @@
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import InputError, Light, Mesh, Surface, View
+from autocolor.files.scenes.scene_report import scene_report
+from tests.autocolor.meshes import cube, wall_scene
+
+VIEW = View((0, -4, 0), target=(0, 0, 0))
+
+
+def mesh_of(parts: int) -> Mesh:
+    """A cube and more parts, named 0, 1 and so on, the others without polygons."""
+    return dataclasses.replace(cube(), part_names=tuple(map(str, range(parts))))
+
+
+def created(parts: int = 1, **fields: Any) -> tuple[str, ...]:
+    """What is said to be created where only a view and no lights are given, unless `fields` say otherwise."""
+    return scene_report(mesh_of(parts), **{"view": VIEW, "lights": (), **fields}).created
+
+
+def test_of_a_bare_mesh_everything_is_created_and_said() -> None:
+    assert scene_report(cube()).created == (
+        "a view was created that frames the object",
+        "4 studio lights were created",
+        "surface 'cube' was created",
+    )
+
+
+def test_nothing_is_said_of_what_was_given() -> None:
+    report = scene_report(cube(), view=VIEW, lights=[Light("key", (0, -3, 0))], surfaces=[Surface("cube")])
+    assert report.created == ()
+    assert report.scene.view == VIEW
+
+
+def test_no_lights_are_lights_that_were_given() -> None:
+    assert created() == ("surface '0' was created",)
+    assert created(lights=None)[0] == "4 studio lights were created"
+
+
+@given(st.integers(1, 30), st.data())
+def test_as_many_surfaces_are_said_as_the_scene_has_beside_the_given(parts: int, data: st.DataObject) -> None:
+    given_names = data.draw(st.sets(st.sampled_from([str(part) for part in range(parts)])))
+    report = scene_report(
+        mesh_of(parts), view=VIEW, lights=(), surfaces=[Surface(name) for name in sorted(given_names)]
+    )
+    missing = [surface.name for surface in report.scene.surfaces if surface.name not in given_names]
+    assert len(missing) == parts - len(given_names)
+    if not missing:
+        assert report.created == ()
+    elif len(missing) == 1:
+        assert report.created == (f"surface '{missing[0]}' was created",)
+    else:
+        (sentence,) = report.created
+        assert sentence.startswith(f"{len(missing)} surfaces were created: '{missing[0]}', '{missing[1]}'")
+        assert sentence.endswith(" more") == (len(missing) > 12)
+
+
+def test_a_list_of_many_surfaces_is_cut_and_says_how_many_more() -> None:
+    names = ", ".join(f"'{part}'" for part in range(12))
+    assert created(parts=12) == (f"12 surfaces were created: {names}",)
+    assert created(parts=14) == (f"14 surfaces were created: {names} and 2 more",)
+
+
+def test_a_part_that_shares_a_surface_as_asked_is_not_counted() -> None:
+    shared = {str(part): "0" for part in range(300)}
+    assert created(parts=300, surface_of_part=shared) == ("surface '0' was created",)
+    assert created(parts=300)[-1] == "45 parts share a surface, because a scene has at most 255"
+
+
+def test_the_repairs_and_mesh_files_are_handed_on() -> None:
+    report = scene_report(cube(), repairs=("car.obj: a repair",), mesh_files=({"file": "car.obj"},))
+    assert report.repairs == ("car.obj: a repair",)
+    assert report.mesh_files == ({"file": "car.obj"},)
+
+
+def test_a_scene_that_breaks_a_rule_is_refused() -> None:
+    with pytest.raises(InputError, match="ambient must be a finite number of at least 0, not -1"):
+        scene_report(wall_scene().mesh, ambient=-1)

@@ -1,0 +1,217 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import InputError, Light, Picture, Scene, Surface
+from autocolor.mapping.display_image import DisplayImage, display_image
+from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS
+from autocolor.rendering import Rendering, rendering
+from autocolor.scene.columns import Tier
+from autocolor.scene.scene import costs_at_least
+from tests.autocolor.meshes import wall_scene
+from tests.autocolor.strategies import MAPPINGS, colors, numbers, paints, scenes
+
+LINES, ELEMENTS = 9, 12
+
+Edit = Callable[[Scene], Scene]
+
+names = st.sampled_from(["body", "glass"])
+
+
+def of_surface(**fields: st.SearchStrategy[Any]) -> st.SearchStrategy[Edit]:
+    """Edits of some fields of one surface."""
+    return st.builds(
+        lambda name, changes: lambda scene: scene.with_surface(name, **changes),
+        names,
+        st.fixed_dictionaries(fields),
+    )
+
+
+def of_scene(**fields: st.SearchStrategy[Any]) -> st.SearchStrategy[Edit]:
+    """Edits of some fields of the scene itself."""
+    return st.builds(lambda changes: lambda scene: scene.replace(**changes), st.fixed_dictionaries(fields))
+
+
+paint_edits = of_surface(paint=paints)
+edits = st.one_of(
+    paint_edits,
+    of_surface(blend=numbers(0, 1)),
+    of_surface(levels=st.none() | st.integers(2, 300)),
+    of_surface(diffuse=numbers(0, 2)),
+    of_surface(two_sided=st.booleans()),
+    of_scene(background=colors),
+    of_scene(contrast=st.sampled_from(["stretch", "floor"])),
+    of_scene(scaling=st.sampled_from(["surface", "object"])),
+    of_scene(mapping=st.sampled_from(MAPPINGS)),
+    of_scene(ambient=numbers(0, 1)),
+    of_scene(lights=st.sampled_from([(), (Light("key", (0.0, -3.0, 2.0)),)])),
+    of_scene(name=st.sampled_from(["scene", "another"])),
+)
+"""Edits of every tier."""
+
+
+class Session:
+    """A scene, its rendering and its image, edited as a studio does."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.rendering: Rendering = rendering(scene, LINES, ELEMENTS)
+        self.image = display_image(scene, self.rendering.picture)
+
+    def edit(self, *edits: Edit) -> DisplayImage:
+        """The image before the edits; `image` is then the one after them."""
+        before, scene = self.image, self.image.scene
+        for each in edits:
+            scene = each(scene)
+        if costs_at_least(before.scene, scene, Tier.MIX):
+            self.rendering = rendering(scene, LINES, ELEMENTS, self.rendering)
+        self.image = display_image(scene, self.rendering.picture, before)
+        return before
+
+
+def loaded(before: DisplayImage, after: DisplayImage) -> npt.NDArray[np.uint8]:
+    """The table of one image after the loads that lead to another."""
+    table = before.entries.copy()
+    for first, entries in after.loads_after(before):
+        assert len(entries) > 0
+        table[first : first + len(entries)] = entries
+    return table
+
+
+@given(scenes(), st.lists(st.lists(edits, min_size=1, max_size=3), min_size=1, max_size=4))
+def test_the_loads_turn_one_table_into_the_other(scene: Scene, steps: list[list[Edit]]) -> None:
+    session = Session(scene)
+    for step in steps:
+        before = session.edit(*step)
+        assert (loaded(before, session.image) == session.image.entries).all()
+        assert (loaded(session.image, before) == before.entries).all()
+
+
+@given(scenes(), st.lists(edits, min_size=1, max_size=3))
+def test_an_image_is_the_same_whatever_it_was_made_after(scene: Scene, step: list[Edit]) -> None:
+    session = Session(scene)
+    session.edit(*step)
+    alone = display_image(session.image.scene, session.image.picture)
+    assert session.image.ranges == alone.ranges
+    assert (session.image.words == alone.words).all()
+    assert (session.image.entries == alone.entries).all()
+
+
+@given(scenes(), st.lists(edits, min_size=1, max_size=3))
+def test_the_words_are_shared_where_no_level_can_have_changed(scene: Scene, step: list[Edit]) -> None:
+    session = Session(scene)
+    before = session.edit(*step)
+    if not costs_at_least(before.scene, session.image.scene, Tier.LEVELS):
+        assert session.image.words is before.words
+        assert session.image.ranges is before.ranges
+    if session.image.words is before.words:
+        alone = display_image(session.image.scene, session.image.picture)
+        assert (alone.words == before.words).all()
+
+
+@given(scenes(), names, paints)
+def test_another_paint_loads_the_range_of_its_surface_alone(scene: Scene, name: str, paint: Any) -> None:
+    session = Session(scene)
+    is_other = scene.surface(name).paint != paint
+    before = session.edit(lambda scene: scene.with_surface(name, paint=paint))
+    loads = [(first, len(entries)) for first, entries in session.image.loads_after(before)]
+    has_words = name in session.image.ranges
+    assert loads == ([tuple(session.image.ranges[name])] if is_other and has_words else [])
+
+
+@given(scenes(), edits)
+def test_nothing_is_loaded_for_an_image_of_the_same_colors(scene: Scene, edit: Edit) -> None:
+    session = Session(scene)
+    session.edit(edit)
+    image = session.image
+    assert list(image.loads_after(image)) == []
+    assert list(image.loads_after(display_image(image.scene.replace(name="new"), image.picture))) == []
+
+
+@given(scenes(), of_scene(background=colors) | of_scene(contrast=st.sampled_from(["stretch", "floor"])))
+def test_where_more_than_paints_differ_one_load_reaches_from_the_first_to_the_last_that_does(
+    scene: Scene, edit: Edit
+) -> None:
+    session = Session(scene)
+    before = session.edit(edit)
+    differing = np.flatnonzero((before.entries != session.image.entries).any(axis=1))
+    loads = [(first, first + len(entries) - 1) for first, entries in session.image.loads_after(before)]
+    assert loads == ([(differing[0], differing[-1])] if len(differing) else [])
+
+
+@given(scenes())
+def test_every_entry_is_the_backgrounds_a_surfaces_or_a_screens(scene: Scene) -> None:
+    image = Session(scene).image
+    assert image.entries.shape == (WORDS, 3)
+    assert tuple(image.entries[BACKGROUND]) == scene.background
+    assert list(map(tuple, image.entries[SCREENS.first :].tolist())) == list(SCREEN_COLORS)
+    free = np.ones(WORDS, np.bool_)
+    free[[BACKGROUND, *range(SCREENS.first, WORDS)]] = False
+    for name, (first, levels) in image.ranges.items():
+        assert (image.entries[first : first + levels] == image.entries_of(scene.surface(name))).all()
+        free[first : first + levels] = False
+    assert not image.entries[free].any()
+    assert not image.entries.flags.writeable
+    assert not image.words.flags.writeable
+
+
+@given(scenes())
+def test_no_pixel_has_a_word_of_the_screens_and_only_the_unseen_have_the_backgrounds(scene: Scene) -> None:
+    image = Session(scene).image
+    assert image.words.max() < SCREENS.first
+    assert ((image.words == BACKGROUND) == (image.picture.surface_number == 0)).all()
+
+
+def two_tones(least: float, most: float) -> Picture:
+    """A picture of two pixels of the wall."""
+    relative = np.array([[least, most]], np.float32)
+    return Picture.from_rasters(relative, np.ones((1, 2), np.uint8), ("wall",), 1.0)
+
+
+@pytest.mark.parametrize(
+    ("contrast", "scaling", "darkest"),
+    [("stretch", "surface", 0), ("stretch", "object", 0), ("floor", "surface", 50), ("floor", "object", 50)],
+)
+def test_the_lowest_entry_is_black_or_in_proportion_to_the_lowest_intensity(
+    contrast: Any, scaling: Any, darkest: int
+) -> None:
+    wall = Surface("wall").replace(object_color=(200, 200, 200), light_color=(200, 200, 200))
+    scene = wall_scene().replace(surfaces=[wall], contrast=contrast, scaling=scaling)
+    image = display_image(scene, two_tones(0.5, 2.0))
+    dark, bright = image.entries[image.words][0].tolist()
+    assert dark == [darkest] * 3
+    assert bright == [200] * 3
+
+
+def test_a_surface_that_is_dark_everywhere_or_seen_nowhere_has_a_floor_of_black() -> None:
+    scene = wall_scene(contrast="floor")
+    for picture in (two_tones(0.0, 0.0), Picture.from_rasters(*unseen(), ("wall",), 1.0)):
+        assert display_image(scene, picture).entries[1].tolist() == [0, 0, 0]
+
+
+def unseen() -> tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]:
+    return np.zeros((1, 2), np.float32), np.zeros((1, 2), np.uint8)
+
+
+def test_a_floor_that_moves_with_the_picture_is_loaded() -> None:
+    scene = wall_scene(contrast="floor")
+    before = display_image(scene, two_tones(0.5, 2.0))
+    after = display_image(scene, two_tones(1.0, 2.0), before)
+    assert after.ranges is before.ranges
+    assert (loaded(before, after) == after.entries).all()
+    assert (after.entries != before.entries).any()
+    stretched = display_image(scene.replace(contrast="stretch"), two_tones(0.5, 2.0))
+    moved = display_image(stretched.scene, two_tones(1.0, 2.0), stretched)
+    assert list(moved.loads_after(stretched)) == []
+
+
+def test_levels_that_surfaces_in_use_cannot_have_are_refused() -> None:
+    scene = wall_scene().with_surface("wall", levels=2000)
+    with pytest.raises(InputError, match="ask for fewer levels"):
+        display_image(scene, two_tones(0.0, 1.0))

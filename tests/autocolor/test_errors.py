@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+import inspect
+
+import pytest
+
+import autocolor
+from autocolor import errors
+from autocolor.errors import AutocolorError, InputError, MissingInputError
+
+TREE = [each for _, each in inspect.getmembers(errors, inspect.isclass) if issubclass(each, AutocolorError)]
+CODES = {
+    "AutocolorError": 70,
+    "UsageError": 2,
+    "InputError": 65,
+    "MissingInputError": 66,
+    "UnavailableError": 69,
+    "OutputError": 73,
+    "WriteError": 74,
+}
+
+
+def test_each_error_has_its_exit_code() -> None:
+    assert {each.__name__: each.exit_code for each in TREE} == CODES
+
+
+@pytest.mark.parametrize("error", TREE)
+def test_every_error_is_in_one_tree_and_a_public_name(error: type[AutocolorError]) -> None:
+    assert issubclass(error, AutocolorError)
+    assert getattr(autocolor, error.__name__) is error
+
+
+@pytest.mark.parametrize("error", TREE)
+def test_an_error_reads_as_its_sentence(error: type[AutocolorError]) -> None:
+    assert str(error("ambient must be a number, not 'x'")) == "ambient must be a number, not 'x'"
+
+
+@pytest.mark.parametrize("name", ["UsageError", "InputError", "MissingInputError"])
+def test_a_wrong_value_is_caught_as_a_value_error(name: str) -> None:
+    with pytest.raises(ValueError, match="sentence"):
+        raise getattr(errors, name)("sentence")
+
+
+def test_one_sentence_is_one_problem_and_not_its_letters() -> None:
+    assert InputError("one, two").problems == ("one, two",)
+
+
+def test_several_problems_are_kept_in_order_and_stand_on_lines_of_their_own() -> None:
+    error = MissingInputError(f"{name}: there is no such file" for name in ("b.obj", "a.obj"))
+    assert error.problems == ("b.obj: there is no such file", "a.obj: there is no such file")
+    assert str(error).splitlines() == list(error.problems)
