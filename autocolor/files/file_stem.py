@@ -18,4 +18,4 @@ def file_stem(name: str) -> str:
     """
     stem = "".join("_" if letter in REFUSED or ord(letter) < 32 else letter for letter in Path(name).name)
     stem = stem[:LONGEST_STEM].strip()
-    return stem if stem.strip(".") else "scene"
+    return stem if stem.strip(" .") else "scene"
