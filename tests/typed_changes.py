@@ -1,7 +1,7 @@
 """The types of changes: for each class of rows, which keys a change may have, and of which type each is.
 
-They derive from the columns, and type checkers want them written out: `python -m tests.typed_changes` writes
-`autocolor/scene/changes.py`. Not through the shell's `>`, which would empty the file before it is imported here.
+They derive from the columns, and type checkers want them written out: `python -m tests.typed_changes`
+writes `autocolor/scene/changes.py`. The shell's `>` would empty the file before it is imported here.
 """
 
 from __future__ import annotations
