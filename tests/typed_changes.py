@@ -1,12 +1,11 @@
 """The types of changes: for each class of rows, which keys a change may have, and of which type each is.
 
-They derive from the columns, and type checkers want them written out:
-`python -m tests.typed_changes > autocolor/scene/changes.py` writes them.
+They derive from the columns, and type checkers want them written out: `python -m tests.typed_changes`
+writes `autocolor/scene/changes.py`. The shell's `>` would empty the file before it is imported here.
 """
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 from autocolor.scene.columns import Row, fields_of, keys_of
@@ -16,6 +15,7 @@ from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
 from autocolor.scene.view import View
 
 ROOT = Path(__file__).resolve().parents[1]
+WRITTEN = ROOT / "autocolor" / "scene" / "changes.py"
 
 CLASSES: tuple[type[Row], ...] = (Flap, Flaps, Light, Part, Reflectance, Paint, Surface, View)
 
@@ -72,4 +72,4 @@ def written(name: str, text: str, types: dict[str, str]) -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(source())
+    WRITTEN.write_text(source(), encoding="utf-8")

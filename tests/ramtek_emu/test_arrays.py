@@ -14,8 +14,9 @@ from ramtek_emu.memory.scan_orders import Point
 
 
 def kind_of(array_type: object) -> object:
-    """The type of the numbers that an array type names."""
-    return get_args(get_args(array_type)[1])[0]
+    """The type of the numbers that an array type names: from numpy 2.5 on its argument, before an array's."""
+    kind = get_args(array_type)[-1]
+    return (get_args(kind) or (kind,))[0]
 
 
 @pytest.mark.parametrize(

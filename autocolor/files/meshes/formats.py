@@ -97,6 +97,6 @@ def read_mesh(files: Mapping[str, Path], *, up: str = "z", crease_angle: float |
         path = next(iter(files.values()))
         raise InputError(
             f"{path.name}: a mesh file must end in {' or '.join(mesh_suffixes())}, not in {path.suffix!r};"
-            f" export it as {mesh_formats()[-1].name}"
+            " export it as one of these"
         )
     return found.read(*files.values(), up=up, crease_angle=crease_angle)

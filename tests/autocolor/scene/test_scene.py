@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import InputError, Light, Mesh, Part, Scene, Surface, UsageError, scene_of
+from autocolor.scene.curves import CURVES
 from tests.autocolor.meshes import cube, grid
 from tests.autocolor.strategies import scenes
 
@@ -91,7 +92,7 @@ def test_an_unknown_name_is_refused_with_the_nearest_right_one(ask: Any, sentenc
         ({"contrast": "high"}, "contrast must be 'stretch' or 'floor', not 'high'"),
         (
             {"mapping": "log"},
-            "mapping must be 'linear', 'gamma', 'logarithm', 'equalize', or rising points [x, y] from x = 0"
+            f"mapping must be {', '.join(map(repr, CURVES))}, or rising points [x, y] from x = 0"
             " to x = 1, not 'log'; did you mean 'logarithm'?",
         ),
         (

@@ -100,10 +100,10 @@ def test_another_model_of_a_surface_begins_with_its_own_defaults() -> None:
 
 def test_a_key_of_another_model_is_refused_by_name() -> None:
     with pytest.raises(InputError) as refusal:
-        Surface("body").replace(roughness=0.1)
+        Surface("body").replace(normal_reflectance=0.1)
     assert str(refusal.value) == (
-        "surface 'body': roughness must go with model = 'cook-torrance', not with 'phong'; leave it out, or"
-        " change the other"
+        "surface 'body': normal_reflectance must go with model = 'cook-torrance', not with 'phong'; leave it"
+        " out, or change the other"
     )
     with pytest.raises(InputError) as other:
         Surface("body").replace(model="cook-torrance", exponent=9)

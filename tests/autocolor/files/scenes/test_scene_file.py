@@ -7,8 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError, MissingInputError
+from autocolor.files.meshes.formats import mesh_suffixes
 from autocolor.files.scenes.scene_file import read_scene_file
 from autocolor.files.scenes.scene_report import SceneReport
+from autocolor.scene.curves import CURVES
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng hood\nf 1 2 3 4\ng roof\nf 1 2 3\n"
 MESH = '[[mesh]]\nfile = "car.obj"\n'
@@ -170,7 +172,7 @@ file = "../car.obj"
 file = "none.obj"
 crease_angle = 200
 [[mesh]]
-file = "car.stl"
+file = "car.shape"
 up = "z"
 [[mesh]]
 nodes = "n.csv"
@@ -196,7 +198,7 @@ concentration = -1
     assert refusal(folder, text) == [
         f"{place} 1, ambient must be a finite number of at least 0, not true",
         f"{place} 2, scaling must be 'surface' or 'object', not 'surfac'; did you mean 'surface'?",
-        f"{place} 3, mapping must be 'linear', 'gamma', 'logarithm', 'equalize', or rising points [x, y] from"
+        f"{place} 3, mapping must be {', '.join(map(repr, CURVES))}, or rising points [x, y] from"
         " x = 0 to x = 1, not 'linea'; did you mean 'linear'?",
         f"{place} 4, there is no 'colour'; known are 'mesh', 'parts', 'surfaces', 'lights', 'view',"
         " 'ambient', 'scaling', 'mapping', 'contrast', 'background'",
@@ -211,7 +213,8 @@ concentration = -1
         " copy the file there",
         f"{place} 15, mesh[3]: {folder / 'none.obj'}: there is no such file or folder; check the name",
         f"{place} 16, mesh[3]: crease_angle must be a number from 0 to 180, not 200",
-        "car.stl: a mesh file must end in .obj, not in '.stl'; export it as OBJ",
+        f"car.shape: a mesh file must end in {' or '.join(mesh_suffixes())}, not in '.shape';"
+        " export it as one of these",
         f"{place} 20, mesh[5]: it must have a file, or nodes and polygons, not nodes; correct it",
         f"{place} 23, [surfaces.body]: exponent must be a finite number of at least 0, not -1",
         f"{place} 24, [surfaces.body]: diffuse must be a finite number of at least 0, not '1.0'",
