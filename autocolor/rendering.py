@@ -23,7 +23,7 @@ from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
-from autocolor.scene.columns import Tier
+from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import Scene, costs_at_least
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces

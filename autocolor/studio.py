@@ -24,7 +24,7 @@ from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.level_ranges import WORDS, LevelRange
 from autocolor.rendering import rendering
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges, ViewChanges
-from autocolor.scene.columns import Tier, fields_of
+from autocolor.scene.columns.column import Tier, fields_of
 from autocolor.scene.scene import Scene, costs_at_least
 from autocolor.scene.surfaces import Paint
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions

@@ -11,8 +11,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from autocolor.files.scenes.scene_meshes import MeshEntry
-from autocolor.scene.column_kinds import Nested, Variant
-from autocolor.scene.columns import Column, Kind, Row, Tier, fields_of, keys_of, plain
+from autocolor.scene.columns.column import Column, Kind, Row, Tier, fields_of, keys_of
+from autocolor.scene.columns.row_kinds import Nested, Variant
+from autocolor.scene.columns.rows import plain
 from autocolor.scene.lights import Flap, Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface

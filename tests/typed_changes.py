@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from autocolor.scene.columns import Row, fields_of, keys_of
+from autocolor.scene.columns.column import Row, fields_of, keys_of
 from autocolor.scene.lights import Flap, Flaps, Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
@@ -29,7 +29,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, TypedDict
 
-from autocolor.scene.columns import Row
+from autocolor.scene.columns.column import Row
 '''
 
 MADE_FROM_THE_MESH = ("mesh", "parts")

@@ -78,8 +78,9 @@ def value_of(text: str) -> Any:
 def _place(scene: Scene, key: str) -> tuple[str, str, list[str]]:
     """The table of a key, the name of the row, and the path in the row; "" for a name that is not needed."""
     from autocolor.checks import nearest
-    from autocolor.scene.column_kinds import Instance, Nested, Rows
-    from autocolor.scene.columns import fields_of
+    from autocolor.scene.columns.column import fields_of
+    from autocolor.scene.columns.row_kinds import Nested, Rows
+    from autocolor.scene.columns.value_kinds import Instance
     from autocolor.scene.scene import Scene
 
     kinds = {name: field.column.kind for name, field in fields_of(Scene).items() if name != "name"}

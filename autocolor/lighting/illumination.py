@@ -16,7 +16,8 @@ from autocolor.lighting.light_mix import SurfaceWeights, light_mix
 from autocolor.lighting.light_planes import LightPlanes, mix
 from autocolor.lighting.picture import Picture
 from autocolor.lighting.shading import ControlledLight, controlled_light, shade
-from autocolor.scene.columns import Tier, cost
+from autocolor.scene.columns.column import Tier
+from autocolor.scene.columns.rows import cost
 from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import ReflectionModel
 from autocolor.scene.scene import Scene

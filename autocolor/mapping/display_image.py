@@ -13,7 +13,7 @@ from autocolor.lighting.picture import Picture
 from autocolor.mapping.color_blending import entries_of
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
-from autocolor.scene.columns import Tier
+from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import Scene, costs_at_least
 from autocolor.scene.surfaces import Surface
 

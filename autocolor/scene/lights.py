@@ -14,8 +14,11 @@ from typing import Annotated, ClassVar, Unpack
 
 from autocolor.checks import Vector
 from autocolor.scene.changes import FlapChanges, FlapsChanges, LightChanges
-from autocolor.scene.column_kinds import Nested, Number, Switch, Text, VectorKind
-from autocolor.scene.columns import Column, Problem, Row, Tier, changed
+from autocolor.scene.columns.column import Column, Row, Tier
+from autocolor.scene.columns.problems import Problem
+from autocolor.scene.columns.row_kinds import Nested
+from autocolor.scene.columns.rows import changed
+from autocolor.scene.columns.value_kinds import Number, Switch, Text, VectorKind
 
 
 @dataclass(frozen=True)

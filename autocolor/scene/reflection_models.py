@@ -25,8 +25,8 @@ from typing import Annotated, Final, NamedTuple, TypeVar
 import numpy as np
 
 from autocolor.arrays import Singles, power
-from autocolor.scene.column_kinds import Number
-from autocolor.scene.columns import Column, Row, Tier
+from autocolor.scene.columns.column import Column, Row, Tier
+from autocolor.scene.columns.value_kinds import Number
 
 LEAST_FACING: Final = 0.3
 """Assumed: the least N.V to divide by, so that no silhouette outshines its surface by far.

@@ -22,29 +22,12 @@ from autocolor.scene.changes import (
     SurfaceChanges,
     ViewChanges,
 )
-from autocolor.scene.column_kinds import (
-    Choice,
-    ColorKind,
-    CurveKind,
-    Instance,
-    Nested,
-    Number,
-    Referring,
-    Rows,
-    Text,
-    references_of,
-)
-from autocolor.scene.columns import (
-    REFUSED,
-    Column,
-    Problem,
-    Row,
-    Tier,
-    changed,
-    cost,
-    fields_of,
-    row_label,
-)
+from autocolor.scene.columns.column import Column, Row, Tier, fields_of, row_label
+from autocolor.scene.columns.problems import REFUSED, Problem
+from autocolor.scene.columns.reference_kinds import Referring, references_of
+from autocolor.scene.columns.row_kinds import Nested, Rows
+from autocolor.scene.columns.rows import changed, cost
+from autocolor.scene.columns.value_kinds import Choice, ColorKind, CurveKind, Instance, Number, Text
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import default_lights, default_parts, default_surface, default_view
 from autocolor.scene.lights import Light

@@ -16,8 +16,10 @@ import numpy as np
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.scene.changes import ViewChanges
-from autocolor.scene.column_kinds import Number, VectorKind
-from autocolor.scene.columns import Column, Problem, Row, Tier, changed
+from autocolor.scene.columns.column import Column, Row, Tier
+from autocolor.scene.columns.problems import Problem
+from autocolor.scene.columns.rows import changed
+from autocolor.scene.columns.value_kinds import Number, VectorKind
 
 
 @dataclass(frozen=True)

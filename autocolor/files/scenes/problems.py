@@ -8,7 +8,7 @@ from typing import Any, Final
 from autocolor.checks import nearest
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.scenes.toml_text import KeyPath, key_lines
-from autocolor.scene.columns import Problem
+from autocolor.scene.columns.problems import Problem
 
 MOST_PROBLEMS: Final = 100
 

@@ -21,7 +21,9 @@ from autocolor.files.scenes.problems import SceneProblems
 from autocolor.files.scenes.scene_meshes import mesh_file, meshes_of
 from autocolor.files.scenes.scene_report import SceneReport, scene_report
 from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
-from autocolor.scene.columns import REFUSED, Problem, RowError, SomeRow, changed, keys_of, made, unknown
+from autocolor.scene.columns.column import SomeRow, keys_of
+from autocolor.scene.columns.problems import REFUSED, Problem, RowError, unknown
+from autocolor.scene.columns.rows import changed, made
 from autocolor.scene.defaults import default_surface
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene

@@ -15,8 +15,10 @@ from autocolor.files.reading import LARGEST_MESH_FILE
 from autocolor.files.repair.polygons import UPS, MeshReport
 from autocolor.files.scenes.problems import SceneProblems
 from autocolor.files.scenes.toml_text import KeyPath
-from autocolor.scene.column_kinds import Choice, Number, Text
-from autocolor.scene.columns import Column, Problem, Row, RowError, Tier, made
+from autocolor.scene.columns.column import Column, Row, Tier
+from autocolor.scene.columns.problems import Problem, RowError
+from autocolor.scene.columns.rows import made
+from autocolor.scene.columns.value_kinds import Choice, Number, Text
 
 MOST_MESHES: Final = 1000
 

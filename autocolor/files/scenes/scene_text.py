@@ -7,8 +7,9 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from autocolor.scene.column_kinds import Nested, Rows
-from autocolor.scene.columns import fields_of, plain
+from autocolor.scene.columns.column import fields_of
+from autocolor.scene.columns.row_kinds import Nested, Rows
+from autocolor.scene.columns.rows import plain
 from autocolor.scene.scene import Scene
 
 BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")

@@ -13,7 +13,7 @@ from autocolor import InputError, Light, Picture, Scene, Surface
 from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS
 from autocolor.rendering import Rendering, rendering
-from autocolor.scene.columns import Tier
+from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import costs_at_least
 from tests.autocolor.meshes import wall_scene
 from tests.autocolor.strategies import MAPPINGS, colors, numbers, paints, scenes

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.scenes.problems import LONGEST_SENTENCE, MOST_PROBLEMS, SceneProblems
-from autocolor.scene.columns import Problem
+from autocolor.scene.columns.problems import Problem
 
 TEXT = """ambient = 1
 scaling = "object"

@@ -1,86 +1,17 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar
+from typing import Any
 
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
-from autocolor import Flap, Light, Scene, Surface, View
-from autocolor.scene.column_kinds import Number, Text
-from autocolor.scene.columns import (
-    REFUSED,
-    Column,
-    Problem,
-    Row,
-    RowError,
-    Tier,
-    changed,
-    cost,
-    fields_of,
-    keys_of,
-    made,
-    plain,
-)
+from autocolor import Scene, Surface, View
+from autocolor.scene.columns.column import Row, Tier
+from autocolor.scene.columns.problems import RowError
+from autocolor.scene.columns.rows import changed, cost, made, plain
+from tests.autocolor.scene.columns.spans import Span, sentences
 from tests.autocolor.strategies import lights, scenes, surfaces, views
-
-
-@dataclass(frozen=True)
-class Span(Row):
-    """A row with a rule between its columns, and alternatives."""
-
-    noun: ClassVar[str] = "span"
-    alternatives: ClassVar[tuple[str, ...]] = ("end", "length")
-
-    name: Annotated[str, Column(Text(), Tier.NOTHING, "What it is called.")]
-    begin: Annotated[float, Column(Number(), Tier.LIGHT, "Where it begins.")] = 0.0
-    end: Annotated[float | None, Column(Number(), Tier.LIGHT, "Where it ends.")] = None
-    length: Annotated[float | None, Column(Number(at_least=0), Tier.MIX, "How long it is.")] = None
-
-    def rules(self) -> Iterator[Problem]:
-        if self.end is not None and self.length is not None:
-            yield Problem((), "it must have an end or a length, not both")
-        if self.end is not None and self.begin > self.end:
-            yield Problem(("begin",), f"must not be above the end, not {self.begin:g}")
-
-
-def sentences(make: Any) -> tuple[str, ...]:
-    with pytest.raises(RowError) as caught:
-        make()
-    return caught.value.problems
-
-
-def test_a_row_holds_its_values_as_its_kinds_do() -> None:
-    span = Span("a", 1, 2)
-    assert (span.begin, type(span.begin)) == (1.0, float)
-    assert span.length is None
-
-
-def test_every_problem_of_a_row_is_told_with_its_noun_and_name() -> None:
-    assert sentences(lambda: Span("a", "x", "y")) == (  # type: ignore[arg-type]
-        "span 'a': begin must be a finite number, not 'x'",
-        "span 'a': end must be a finite number, not 'y'",
-    )
-    assert sentences(lambda: Span("", 0)) == (
-        "span: name must be a string of at least one character, not ''",
-    )
-
-
-def test_a_rule_between_columns_is_checked_beside_a_value_that_is_refused() -> None:
-    assert sentences(lambda: Span("a", "x", 3, 4)) == (  # type: ignore[arg-type]
-        "span 'a': begin must be a finite number, not 'x'",
-        "span 'a': it must have an end or a length, not both",
-    )
-    assert sentences(lambda: Span("a", 5, 3)) == ("span 'a': begin must not be above the end, not 5",)
-
-
-def test_a_refused_value_breaks_no_rule_again() -> None:
-    assert REFUSED != REFUSED
-    assert [REFUSED > 0, REFUSED < 0, REFUSED >= 0, REFUSED <= 0] == [False] * 4
-    assert REFUSED is not None
 
 
 def test_a_change_checks_what_it_changes_and_the_rules() -> None:
@@ -141,13 +72,6 @@ def test_a_table_of_very_many_keys_is_refused_at_once() -> None:
     )
 
 
-def test_problems_say_where_they_are() -> None:
-    with pytest.raises(RowError) as caught:
-        Light("key", (0, 0, 0), flaps={"z": {"on": 3}})  # type: ignore[arg-type]
-    assert [problem.path for problem in caught.value.found] == [("flaps", "z", "on")]
-    assert caught.value.row == "light 'key'"
-
-
 @given(lights() | surfaces("body") | views())
 def test_a_row_comes_back_from_its_plain_values(row: Row) -> None:
     assert made(type(row), plain(row)) == row
@@ -200,19 +124,3 @@ def test_a_change_of_a_surface_costs_the_tier_of_its_column(change: dict[str, An
 def test_an_edit_costs_nothing_at_all_where_rows_are_equal(one: Surface, other: Surface) -> None:
     assert (cost(one, other) is None) == (one == other)
     assert cost(one, dataclasses.replace(one)) is None
-
-
-@pytest.mark.parametrize("cls", [Flap, Light, Surface, View, Scene])
-def test_every_column_has_a_line_of_help_that_is_a_sentence(cls: type[Row]) -> None:
-    columns = [field.column for field in fields_of(cls).values()]
-    for column in [*columns, *(key.column for key in keys_of(cls).values())]:
-        assert column.help[0].isupper()
-        assert column.help.endswith(".")
-        assert "\n" not in column.help
-
-
-@given(st.lists(st.sampled_from(["begin", "end", 0, 7]), max_size=4))
-def test_a_problem_under_another_place_has_the_path_from_there(path: list[Any]) -> None:
-    problem = Problem(("z",), "must be so").under(tuple(path))
-    assert problem.path == (*path, "z")
-    assert problem.sentence.endswith("z must be so")

@@ -1,0 +1,1 @@
+"""The columns of tables: what each field is, told once, and all that derives from it."""

@@ -1,0 +1,124 @@
+"""What columns determine for rows: changes of fields, plain values as in files, and the cost of an edit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from autocolor.checks import listed, shown
+from autocolor.scene.columns.column import Row, SomeRow, Tier, check, fields_of, keys_of, row_label
+from autocolor.scene.columns.problems import REFUSED, Problem, RowError, unknown
+
+MOST_KEYS: Final = 64
+"""Assumed: an upper bound on the keys of any table."""
+
+
+def changed(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
+    """The row with some fields or keys changed; a table for a row inside it changes that row's keys.
+
+    Raises RowError with every problem.
+    """
+    problems: list[Problem] = []
+    fields = fields_of(type(row))
+    values, inner = _values_by_field(row, changes, problems)
+    # Copy the columns only: cached properties may depend on them.
+    copy = object.__new__(type(row))
+    present = vars(row)
+    vars(copy).update(present if len(present) == len(fields) else {name: present[name] for name in fields})
+    vars(copy).update(values, **inner)
+    try:
+        check(copy, {name: fields[name] for name in values})
+    except RowError as error:
+        problems.extend(error.found)
+    if problems:
+        raise RowError(problems, row_label(row))
+    return copy
+
+
+def _values_by_field(
+    row: Row, changes: Mapping[str, Any], problems: list[Problem]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The new values of the fields that change, and the inner rows that changed, which are checked.
+
+    Problems are appended, and unknown names left out.
+    """
+    fields, keys = fields_of(type(row)), keys_of(type(row))
+    values: dict[str, Any] = {}
+    inside: dict[str, dict[str, Any]] = {}
+    for name, value in changes.items():
+        if name in keys and fields[keys[name].field].column.kind.has_keys_inside():
+            inside.setdefault(keys[name].field, {})[name] = value
+        elif name not in fields:
+            problems.append(unknown(name, {**fields, **keys}))
+        elif isinstance(value, Mapping):
+            inside.setdefault(name, {}).update(value)
+        else:
+            values[name] = value
+    inner: dict[str, Any] = {}
+    for name, table in inside.items():
+        present = values.pop(name, vars(row)[name])
+        changed_value = fields[name].column.kind.changed(present, table, (name,), problems)
+        (inner if isinstance(changed_value, Row) else values)[name] = changed_value
+    if row.alternatives and any(values.get(name) is not None for name in row.alternatives):
+        values = {**dict.fromkeys(row.alternatives), **values}
+    return values, inner
+
+
+def made(cls: type[SomeRow], table: object) -> SomeRow:
+    """The row of a class for a table of keys and plain values; omitted keys have their defaults.
+
+    Raises RowError with every problem.
+    """
+    if not isinstance(table, Mapping):
+        raise RowError([Problem((), f"must be a table of {listed(keys_of(cls))}, not {shown(table)}")])
+    if len(table) > MOST_KEYS:
+        raise RowError([Problem((), f"it must be a table of at most {MOST_KEYS} keys, not {len(table):,}")])
+    fields = fields_of(cls)
+    row = object.__new__(cls)
+    vars(row).update(
+        {name: REFUSED if field.default is None else field.default() for name, field in fields.items()}
+    )
+    problems: list[Problem] = []
+    values, inner = _values_by_field(row, table, problems)
+    problems.extend(
+        Problem((name,), f"{name} {field.column.kind.rule()}, not missing; add it", names_key=True)
+        for name, field in fields.items()
+        if field.default is None and name not in values and name not in inner
+    )
+    vars(row).update(values, **inner)
+    try:
+        check(row, fields)
+    except RowError as error:
+        problems.extend(error.found)
+    if problems:
+        raise RowError(problems, row_label(row))
+    return row
+
+
+def plain(row: Row) -> dict[str, object]:
+    """The row as keys and plain values, which TOML and JSON can hold; None values are omitted."""
+    values = vars(row)
+    return {
+        key: value
+        for name, field in fields_of(type(row)).items()
+        if values[name] is not None
+        for key, value in field.column.kind.written(name, values[name]).items()
+        if value is not None
+    }
+
+
+def cost(one: Row, other: Row, own: Tier = Tier.FRAME) -> Tier | None:
+    """The cost of an edit from one row to another: the largest of its columns; None if all are equal.
+
+    For rows of different classes it is `own`.
+    """
+    if type(one) is not type(other):
+        return own
+    ones, others = vars(one), vars(other)
+    most: Tier | None = None
+    for name, (column, _, _) in fields_of(type(one)).items():
+        if ones[name] is not others[name]:
+            costs = column.kind.cost(ones[name], others[name], column.tier)
+            if costs is not None and (most is None or costs > most):
+                most = costs
+    return most
