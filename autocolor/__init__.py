@@ -12,7 +12,7 @@ Paper: D. R. Warn, "Lighting Controls for Synthetic Images", SIGGRAPH 1983.
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from autocolor.errors import AutocolorError as AutocolorError
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from autocolor.scene.view import View as View
     from autocolor.studio import Studio as Studio
 
-_HOME = {
+_HOME: Final = {
     "AutocolorError": "errors",
     "BlinnPhong": "scene.reflection_models",
     "CookTorrance": "scene.reflection_models",

@@ -18,16 +18,16 @@ Singles = NDArray[np.float32]
 Floats = NDArray[np.float64]
 """Coordinates, and what is computed from them before it is held for pixels."""
 
-Numbers = NDArray[np.intp]
+Indices = NDArray[np.intp]
 """Row numbers of tables, counts of rows, and places in a raster: what numpy indexes with."""
 
-ShortNumbers = NDArray[np.int32]
-"""Row numbers in tables that are too large for `Numbers`."""
+ShortIndices = NDArray[np.int32]
+"""Indices where the size of `Indices` would cost too much memory."""
 
-Integers = NDArray[np.int64]
+Numbers = NDArray[np.int64]
 """Whole numbers to calculate with: depth keys, runs."""
 
-Flags = NDArray[np.bool_]
+Booleans = NDArray[np.bool_]
 """Whether something holds, for each of many."""
 
 Bytes = NDArray[np.uint8]
@@ -41,13 +41,16 @@ AnyArray = NDArray[Any]
 
 Real = TypeVar("Real", np.float32, np.float64)
 
+RealArray = NDArray[Real]
+"""An array of either type of floating-point numbers."""
+
 LARGEST_SINGLE: Final = float(np.finfo(np.float32).max)
 
 MOST_MULTIPLIED: Final = 64
 """The largest exponent for which repeated squaring is exact to 1e-5."""
 
 
-def runs(first: Integers, count: Integers, step: Integers | None = None) -> Integers:
+def runs(first: Numbers, count: Numbers, step: Numbers | None = None) -> Numbers:
     """Run after run: `first`, `first` + `step` and so on, `count` numbers of each.
 
     All are (runs,) int64, every count at least 1; the step is 1 where none is given. It is one running sum,
@@ -80,7 +83,7 @@ def chunks(end: int, most: int, start: int = 0) -> Iterator[slice]:
         yield slice(first, min(first + most, end))
 
 
-def chunks_of_runs(count: Integers, most: int) -> Iterator[tuple[slice, slice]]:
+def chunks_of_runs(count: Numbers, most: int) -> Iterator[tuple[slice, slice]]:
     """Runs in chunks of about `most` numbers: a slice of the runs, and a slice of all their numbers.
 
     >>> list(chunks_of_runs(np.array([3, 2, 4]), 5))
@@ -95,13 +98,13 @@ def chunks_of_runs(count: Integers, most: int) -> Iterator[tuple[slice, slice]]:
         first, base = last, end
 
 
-def dot(one: NDArray[Real], other: NDArray[Real]) -> NDArray[Real]:
+def dot(one: RealArray[Real], other: RealArray[Real]) -> RealArray[Real]:
     """The dot product of each vector with its counterpart; both are (3, n).
 
     >>> dot(np.array([[2.0], [3.0], [6.0]]), np.array([[1.0], [0.0], [0.5]])).tolist()
     [5.0]
     """
-    products: NDArray[Real] = np.einsum("ij,ij->j", one, other)
+    products: RealArray[Real] = np.einsum("ij,ij->j", one, other)
     return products
 
 

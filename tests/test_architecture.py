@@ -44,10 +44,10 @@ WINGS = {
 }  # fmt: skip
 """The wings of a package in the order of its data: each may use those before it and no other."""
 
-IN_THE_DIALECT = ("ramtek_emu",)
+IN_THE_DIALECT = ("autocolor", "ramtek_emu")
 """The packages whose constants are Final and whose array types are all in arrays.py."""
 
-TESTED_ROOM_BY_ROOM = ("ramtek_emu",)
+TESTED_ROOM_BY_ROOM = ("autocolor", "ramtek_emu")
 """The packages of which every module has a file of tests at the mirrored place."""
 
 KNOWING_THE_DISPLAY = (

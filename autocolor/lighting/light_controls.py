@@ -25,7 +25,7 @@ from typing import Final, TypeVar
 
 import numpy as np
 
-from autocolor.arrays import Flags, Floats, Singles, power
+from autocolor.arrays import Booleans, Floats, Singles, power
 from autocolor.scene.lights import Light
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 
@@ -52,7 +52,7 @@ class LightControl(ABC):
     def of(cls, light: Light, points: VisiblePoints) -> LightControl | None:
         """The control of a light, or None where the light does not use it."""
 
-    def lit_points(self, rows: Singles) -> Flags | None:
+    def lit_points(self, rows: Singles) -> Booleans | None:
         """Whether the points in some columns of `VisiblePoints.rows` may be lit; None for all of them."""
         return None
 
@@ -109,7 +109,7 @@ class FlapSides(LightControl):
                     sides.append(sign * coordinate - np.array([0, 0, 0, in_units - slack]))
         return cls(np.array(sides, np.float32)) if sides else None
 
-    def lit_points(self, rows: Singles) -> Flags:
+    def lit_points(self, rows: Singles) -> Booleans:
         """Whether each point is inside all flaps."""
         lit = self._inside(self.sides[0], rows)
         for side in self.sides[1:]:
@@ -117,8 +117,8 @@ class FlapSides(LightControl):
         return lit
 
     @staticmethod
-    def _inside(side: Singles, rows: Singles) -> Flags:
-        inside: Flags = side[:3] @ rows[POINT] >= -side[3]
+    def _inside(side: Singles, rows: Singles) -> Booleans:
+        inside: Booleans = side[:3] @ rows[POINT] >= -side[3]
         return inside
 
 

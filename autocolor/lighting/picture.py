@@ -10,12 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from autocolor.arrays import Bytes, Numbers, Singles
+from autocolor.arrays import AnyArray, Bytes, Indices, Singles
 from autocolor.lighting.light_planes import DIFFUSE, SPECULAR, LightPlanes
 from autocolor.visibility.visible_points import SurfaceSlice, surface_slices
 
@@ -58,7 +57,7 @@ class Picture:
     lines: int
     elements: int
     surfaces: tuple[str, ...]
-    pixels: Numbers
+    pixels: Indices
     slices: tuple[SurfaceSlice, ...]
     relative: Singles
     scale: float
@@ -119,7 +118,7 @@ class Picture:
             for name, planes in self.light_planes.items()
         }
 
-    def _raster(self, values: NDArray[Any]) -> NDArray[Any]:
+    def _raster(self, values: AnyArray) -> AnyArray:
         """A raster with the values at the visible pixels and 0 elsewhere; read-only."""
         flat = np.zeros(self.lines * self.elements, values.dtype)
         flat[self.pixels] = values

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Numbers, Singles
+from autocolor.arrays import Floats, Indices, Singles
 from autocolor.scene.lights import Light
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints, fill_point_products
 
@@ -57,7 +57,7 @@ class Rays(NamedTuple):
     cos_light: Singles | None
     rows: Singles
     position: Floats
-    close: Numbers
+    close: Indices
     close_rows: Singles
 
     def cosines_with(self, vector: slice) -> Singles:

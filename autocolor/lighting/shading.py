@@ -19,7 +19,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Flags, Numbers, Singles, dot
+from autocolor.arrays import Booleans, Indices, Singles, dot
 from autocolor.lighting.light_controls import LightControl, controls_of
 from autocolor.lighting.light_planes import DIFFUSE, SPECULAR
 from autocolor.lighting.rays import CameraLight, camera_light, rays_to
@@ -92,9 +92,9 @@ def shade(
         plane[chosen] = values
 
 
-def _lit_points(controls: Sequence[LightControl], rows: Singles) -> Flags | None:
+def _lit_points(controls: Sequence[LightControl], rows: Singles) -> Booleans | None:
     """Whether each point may be lit under all controls; None where no control decides by the points."""
-    lit: Flags | None = None
+    lit: Booleans | None = None
     for control in controls:
         allowed = control.lit_points(rows)
         if allowed is not None:
@@ -112,9 +112,9 @@ class _AtPoints(NamedTuple):
     eye: Singles
     light: Singles | None
     rows: Singles
-    places: Numbers | None
+    places: Indices | None
 
-    def chosen(self, places: Numbers) -> _AtPoints:
+    def chosen(self, places: Indices) -> _AtPoints:
         """Some points of the whole chunk."""
         light = None if self.light is None else self.light.take(places)
         return _AtPoints(self.incidence.take(places), self.eye.take(places), light, self.rows, places)
@@ -133,7 +133,7 @@ class _AtPoints(NamedTuple):
 def _reflect(
     out: Singles,
     at_points: _AtPoints,
-    is_lit: Flags | None,
+    is_lit: Booleans | None,
     controls: Sequence[LightControl],
     ends: Sequence[int],
     models: Sequence[ReflectionModel],

@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Numbers, chunks
+from autocolor.arrays import Floats, Indices, chunks
 from autocolor.scene.union_find import group_numbers, unite
 
 AT_ONCE: Final = 1 << 15
@@ -21,7 +21,7 @@ MIXER: Final = np.uint64(0x9E3779B97F4A7C15)
 """An odd number with well-spread bits, so that every bit of a factor changes the high bits of the product."""
 
 
-def places_of_corners(coordinate_rows: Floats, node_rows: Numbers) -> Numbers:
+def places_of_corners(coordinate_rows: Floats, node_rows: Indices) -> Indices:
     """A number for each corner, (4, polygons), equal for corners at the same place.
 
     `coordinate_rows` is (3, nodes); `node_rows`, (4, polygons), holds the node numbers of the polygons.
@@ -53,8 +53,8 @@ def _some_share_a_place(coordinate_rows: Floats) -> bool:
 
 
 def fans_of_corners(
-    places: Numbers, part_numbers: Numbers, normals: Floats, crease_angle: float
-) -> tuple[Numbers, list[Numbers]]:
+    places: Indices, part_numbers: Indices, normals: Floats, crease_angle: float
+) -> tuple[Indices, list[Indices]]:
     """The fan of each corner, (corners,), and pairs of fans with opposite winding, each (2, pairs).
 
     `places`, (4, polygons), has the place of each corner; `normals`, (3, polygons), holds unit vectors, or
@@ -82,7 +82,7 @@ def fans_of_corners(
     return fans, [fans[pairs] for pairs in opposite_corners]
 
 
-def _corners_at_shared_edges(places: Numbers, part_numbers: Numbers) -> Iterator[tuple[Numbers, Numbers]]:
+def _corners_at_shared_edges(places: Indices, part_numbers: Indices) -> Iterator[tuple[Indices, Indices]]:
     """Pairs of corners whose outgoing edges join the same two places in the same part, chunk by chunk.
 
     Where more than two polygons share an edge, each is paired with the next in the polygon table.
@@ -113,6 +113,6 @@ def _corners_at_shared_edges(places: Numbers, part_numbers: Numbers) -> Iterator
         yield corners[shared], corners[shared + 1]
 
 
-def _next_corner(corners: Numbers) -> Numbers:
+def _next_corner(corners: Indices) -> Indices:
     """The next corner of each corner's polygon."""
     return (corners & ~3) | ((corners + 1) & 3)

@@ -10,15 +10,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from autocolor.arrays import Floats, Numbers
-from autocolor.checks import LARGEST_COORDINATE, finite
+from autocolor.arrays import AnyArray, Floats, Indices
+from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
+from autocolor.scene.columns.problems import Problem
+from autocolor.scene.columns.value_kinds import Number
 from autocolor.scene.node_normals import CREASE_ANGLE, NodeNormals, node_normals
+
+CREASE_ANGLES: Final = Number(at_least=0, at_most=180)
+"""The crease angles that there may be, in degrees."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +37,8 @@ class Mesh:
     """
 
     coordinates: Floats
-    node_numbers: Numbers
-    part_numbers: Numbers
+    node_numbers: Indices
+    part_numbers: Indices
     part_names: tuple[str, ...]
     crease_angle: float = CREASE_ANGLE
 
@@ -50,7 +54,9 @@ class Mesh:
         if isinstance(self.part_names, str) or not all(isinstance(name, str) and name for name in names):
             problems.append(f"part table: part names must be texts, one a part, not {self.part_names!r}")
             names = tuple(map(repr, names))
-        angle = finite(problems, "mesh: crease_angle", self.crease_angle, at_least=0.0, at_most=180.0)
+        found: list[Problem] = []
+        angle = CREASE_ANGLES.held(self.crease_angle, ("crease_angle",), found)
+        problems.extend(f"mesh: {problem.sentence}" for problem in found)
         if coordinate_rows.size and not (
             coordinate_rows.min() >= -LARGEST_COORDINATE and coordinate_rows.max() <= LARGEST_COORDINATE
         ):
@@ -145,7 +151,7 @@ class Mesh:
         return f"Mesh(nodes {nodes}, polygons {polygons}, parts {parts})"
 
 
-def _numbers(problems: list[str], what: str, value: object, dtype: type) -> NDArray[Any]:
+def _numbers(problems: list[str], what: str, value: object, dtype: type) -> AnyArray:
     """The value as an array of the type, or an empty one after a problem was noted."""
     try:
         array = np.asarray(value)
@@ -158,9 +164,7 @@ def _numbers(problems: list[str], what: str, value: object, dtype: type) -> NDAr
     return array.astype(dtype, copy=False)
 
 
-def _rows(
-    problems: list[str], what: str, value: object, dtype: type, widths: tuple[int, ...]
-) -> NDArray[Any]:
+def _rows(problems: list[str], what: str, value: object, dtype: type, widths: tuple[int, ...]) -> AnyArray:
     """A copy of the value, (rows, width), as contiguous (width, rows); empty after a problem was noted."""
     array = _numbers(problems, what, value, dtype)
     if array.size == 0:
@@ -172,7 +176,7 @@ def _rows(
     return np.array(array.T, order="C")
 
 
-def _check_rows(problems: list[str], what: str, numbers: Numbers, count: int, table: str) -> None:
+def _check_rows(problems: list[str], what: str, numbers: Indices, count: int, table: str) -> None:
     """Note the first number, or group of numbers in a column, that is no row of a table."""
     if not numbers.size or (numbers.min() >= 0 and numbers.max() < count):
         return

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Numbers, Singles, chunks, cross, lengths
+from autocolor.arrays import Floats, Indices, Singles, chunks, cross, lengths
 from autocolor.scene.fans import fans_of_corners, places_of_corners
 from autocolor.scene.union_find import group_numbers, unite
 
@@ -34,11 +34,11 @@ class NodeNormals:
     """
 
     vectors: Singles
-    numbers: Numbers
+    numbers: Indices
 
 
 def node_normals(
-    coordinates: Floats, node_numbers: Numbers, part_numbers: Numbers, crease_angle: float = CREASE_ANGLE
+    coordinates: Floats, node_numbers: Indices, part_numbers: Indices, crease_angle: float = CREASE_ANGLE
 ) -> NodeNormals:
     """The normals at the corners of the polygons; a polygon without area adds nothing to any."""
     coordinate_rows, node_rows = np.ascontiguousarray(coordinates.T), np.ascontiguousarray(node_numbers.T)
@@ -67,7 +67,7 @@ def node_normals(
     return NodeNormals(vectors.astype(np.float32).T, numbers.T)
 
 
-def _normals_and_angles(coordinate_rows: Floats, node_rows: Numbers) -> tuple[Floats, Floats]:
+def _normals_and_angles(coordinate_rows: Floats, node_rows: Indices) -> tuple[Floats, Floats]:
     """The normals of the polygons, (3, polygons), and the angles at their corners, (4, polygons)."""
     normals, angles = np.empty((3, node_rows.shape[1])), np.empty(node_rows.shape)
     for chunk in chunks(node_rows.shape[1], POLYGONS_AT_ONCE):
@@ -77,7 +77,7 @@ def _normals_and_angles(coordinate_rows: Floats, node_rows: Numbers) -> tuple[Fl
     return normals, angles
 
 
-def _weighted_sums(fans: Numbers, normals: Floats, angles: Floats) -> tuple[Floats, Numbers]:
+def _weighted_sums(fans: Indices, normals: Floats, angles: Floats) -> tuple[Floats, Indices]:
     """The sums of the weighted normals of each fan, (3, fans), and the fan of each corner, (4, polygons)."""
     sums = np.zeros((3, int(fans.max(initial=-1)) + 1))
     numbers = np.empty(angles.shape, np.intp)
@@ -89,7 +89,7 @@ def _weighted_sums(fans: Numbers, normals: Floats, angles: Floats) -> tuple[Floa
     return sums, numbers
 
 
-def _united_with_opposite(sums: Floats, opposite: list[Numbers]) -> tuple[Floats, Numbers]:
+def _united_with_opposite(sums: Floats, opposite: list[Indices]) -> tuple[Floats, Indices]:
     """The sums of fans, (3, fans), united with the fans of opposite winding next to them; each fan's column.
 
     Every fan has two sides, numbered `fan` and `fan + count`. The front of one is united with the back of a

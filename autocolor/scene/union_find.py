@@ -10,12 +10,12 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Numbers, chunks
+from autocolor.arrays import Indices, chunks
 
 AT_ONCE: Final = 1 << 15
 
 
-def unite(parents: Numbers, one: Numbers, other: Numbers) -> None:
+def unite(parents: Indices, one: Indices, other: Indices) -> None:
     """Unite the groups of each pair of items; `parents` is changed in place."""
     while len(one):
         # Drop the pairs that are in one group by now.
@@ -27,7 +27,7 @@ def unite(parents: Numbers, one: Numbers, other: Numbers) -> None:
         np.minimum.at(parents, np.maximum(one, other), np.minimum(one, other))
 
 
-def group_numbers(parents: Numbers) -> Numbers:
+def group_numbers(parents: Indices) -> Indices:
     """The group of each item; groups are numbered from 0 in the order of their roots."""
     numbers = np.cumsum(parents == np.arange(len(parents)))
     numbers -= 1
@@ -38,7 +38,7 @@ def group_numbers(parents: Numbers) -> Numbers:
     return groups
 
 
-def _roots(parents: Numbers, items: Numbers) -> Numbers:
+def _roots(parents: Indices, items: Indices) -> Indices:
     """The root of each item, which becomes its parent (path compression)."""
     ancestors = np.take(parents, items)
     while True:

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from autocolor.arrays import Floats, Numbers, Real, Singles, chunks
+from autocolor.arrays import Floats, Indices, Real, RealArray, Singles, chunks
 from autocolor.checks import Vector
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
@@ -43,9 +42,9 @@ class CameraPolygons:
     near: float
     positions: Floats
     normals: Singles
-    corners: Numbers
-    corner_normals: Numbers
-    polygon_numbers: Numbers
+    corners: Indices
+    corner_normals: Indices
+    polygon_numbers: Indices
 
 
 def camera_space(mesh: Mesh, view: View) -> CameraPolygons:
@@ -64,7 +63,7 @@ def camera_space(mesh: Mesh, view: View) -> CameraPolygons:
     )
 
 
-def rotated(axes: Floats, points: NDArray[Real], origin: Vector = (0.0, 0.0, 0.0)) -> NDArray[Real]:
+def rotated(axes: Floats, points: RealArray[Real], origin: Vector = (0.0, 0.0, 0.0)) -> RealArray[Real]:
     """Points, (3, n), relative to an origin and in other axes, the rows of a matrix.
 
     Measured: a matrix product of so few rows takes as long, and up to thirty times as long while another

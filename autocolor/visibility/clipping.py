@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 
-from autocolor.arrays import Floats, Numbers
+from autocolor.arrays import Floats, Indices
 from autocolor.visibility.camera_space import CameraPolygons
 
 
@@ -101,7 +101,7 @@ class _Clipped:
         return int(normals.shape[1]) + len(self.new_normals) - 1
 
 
-def _merged(table: Numbers, kept: Numbers, clipped: list[list[int]], order: Numbers) -> Numbers:
+def _merged(table: Indices, kept: Indices, clipped: list[list[int]], order: Indices) -> Indices:
     """The columns of the kept polygons and those of the clipped ones, in an order."""
     columns = np.array(clipped, np.intp).reshape(-1, 4).T
     return np.take(np.concatenate([np.take(table, kept, axis=1), columns], axis=1), order, axis=1)

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Integers, Numbers
+from autocolor.arrays import Indices, Numbers
 from autocolor.visibility.depth import DepthScale
 from autocolor.visibility.projection import Projection, least_of_four, most_of_four
 
@@ -22,8 +22,8 @@ FITTING: Final = 0.9
 
 
 def not_occluded(
-    depth_buffer: Integers, projected: Projection, scale: DepthScale, polygons: Numbers
-) -> Numbers:
+    depth_buffer: Numbers, projected: Projection, scale: DepthScale, polygons: Indices
+) -> Indices:
     """Those of some polygons of the projection that may be nearer than what the depth buffer holds."""
     if not len(polygons):
         return polygons
@@ -49,12 +49,12 @@ def not_occluded(
     # pixel.
     nearest = scale.keys(most_of_four(projected.inverse_depth[corners]))
     nearest += (extent // 2 + 2) * scale.segment_limit
-    kept: Numbers = polygons[(extent > size) | (nearest >= behind)]
+    kept: Indices = polygons[(extent > size) | (nearest >= behind)]
     return kept
 
 
-def _least_of_rows(keys: Integers, size: int) -> Integers:
+def _least_of_rows(keys: Numbers, size: int) -> Numbers:
     """The least keys of each `size` rows, and of the rows that are left over."""
     whole = len(keys) // size * size
-    least: Integers = keys[:whole].reshape(-1, size, keys.shape[1]).min(axis=1)
+    least: Numbers = keys[:whole].reshape(-1, size, keys.shape[1]).min(axis=1)
     return least if whole == len(keys) else np.concatenate([least, keys[whole:].min(axis=0, keepdims=True)])

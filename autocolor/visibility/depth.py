@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Integers
+from autocolor.arrays import Floats, Numbers
 from autocolor.visibility.projection import Projection
 
 KEY_BITS: Final = 62
@@ -39,7 +39,7 @@ class DepthScale:
         """
         return round(inverse_depth * self.factor) * self.segment_limit
 
-    def keys(self, inverse_depth: Floats) -> Integers:
+    def keys(self, inverse_depth: Floats) -> Numbers:
         """The keys of inverse depths, or of differences of them; the number of a segment can be added.
 
         A difference beyond the largest key can only belong to a segment of one pixel, which takes no step.

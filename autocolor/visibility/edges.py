@@ -13,7 +13,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from autocolor.arrays import Floats, Numbers
+from autocolor.arrays import Floats, Indices
 from autocolor.visibility.projection import Projection, least_of_four
 
 Side = Literal[1, -1]
@@ -34,19 +34,19 @@ class Edges:
     `top_node` and `bottom_node` the nodes there.
     """
 
-    top: Numbers
-    bottom: Numbers
-    top_node: Numbers
-    bottom_node: Numbers
-    first_line: Numbers
-    count: Numbers
+    top: Indices
+    bottom: Indices
+    top_node: Indices
+    bottom_node: Indices
+    first_line: Indices
+    count: Indices
     x: Floats
     x_step: Floats
     inverse_depth: Floats
     inverse_depth_step: Floats
 
 
-def edges(projected: Projection, top: Numbers, bottom: Numbers) -> Edges:
+def edges(projected: Projection, top: Indices, bottom: Indices) -> Edges:
     """The edges between corners; each must cross a line.
 
     Measured, here and wherever many elements are picked: `take` takes two thirds of the time of an index.
@@ -73,7 +73,7 @@ def edges(projected: Projection, top: Numbers, bottom: Numbers) -> Edges:
     )
 
 
-def edges_of_sides(projected: Projection, polygons: Numbers) -> tuple[Edges, Edges]:
+def edges_of_sides(projected: Projection, polygons: Indices) -> tuple[Edges, Edges]:
     """The edges of the down side and of the up side of some polygons of the projection.
 
     They are in the order of the polygons, and those of one polygon from top to bottom, so that each side has
@@ -100,8 +100,8 @@ def edges_of_sides(projected: Projection, polygons: Numbers) -> tuple[Edges, Edg
     return side(DOWN_SIDE, [0, 1, 2, 3]), side(UP_SIDE, [0, 3, 2, 1])
 
 
-def bottom_of_edge(projected: Projection, top: Numbers, side: Side) -> Numbers:
+def bottom_of_edge(projected: Projection, top: Indices, side: Side) -> Indices:
     """The bottom corner of each edge of a side, given the top corner."""
     corner, polygon = np.divmod(top, projected.corners.shape[1])
-    bottom: Numbers = ((corner + side) & 3) * projected.corners.shape[1] + polygon
+    bottom: Indices = ((corner + side) & 3) * projected.corners.shape[1] + polygon
     return bottom

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Integers, ShortNumbers, Singles, chunks_of_runs, dot, runs
+from autocolor.arrays import Numbers, ShortIndices, Singles, chunks_of_runs, dot, runs
 from autocolor.visibility.projection import Projection
 from autocolor.visibility.visible_points import (
     NORMAL,
@@ -32,8 +32,8 @@ PIXELS_AT_ONCE: Final = 1 << 14
 
 def interpolated_points(
     projected: Projection,
-    segment_at_pixel: Integers,
-    segment_edges: ShortNumbers,
+    segment_at_pixel: Numbers,
+    segment_edges: ShortIndices,
     surface_numbers: tuple[int, ...],
     one_sided: frozenset[int],
 ) -> VisiblePoints:
@@ -75,7 +75,7 @@ def interpolated_points(
     )
 
 
-def _pixels_of_surfaces(spans: VisibleSpans) -> Integers:
+def _pixels_of_surfaces(spans: VisibleSpans) -> Numbers:
     """How many pixels each surface number has, from 0 on; the spans are sorted by surface."""
     # One number more than there are, as the last surface ends where the next one would begin.
     numbers = np.arange(int(spans.surface.max(initial=0)) + 2)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from autocolor.arrays import Floats, Integers, Numbers, ShortNumbers, runs
+from autocolor.arrays import Floats, Indices, Numbers, ShortIndices, runs
 from autocolor.visibility.depth import DepthScale
 from autocolor.visibility.edges import Edges, edges_of_sides
 from autocolor.visibility.projection import Projection
@@ -21,16 +21,16 @@ class Segments:
     `down_edge` and `up_edge` are the edges that bound it, each known by its top corner.
     """
 
-    number: Numbers
-    first_pixel: Numbers
-    count: Numbers
-    start: Integers
-    step: Integers
-    down_edge: ShortNumbers
-    up_edge: ShortNumbers
+    number: Indices
+    first_pixel: Indices
+    count: Indices
+    start: Numbers
+    step: Numbers
+    down_edge: ShortIndices
+    up_edge: ShortIndices
 
 
-def segments_of_polygons(projected: Projection, scale: DepthScale, polygons: Numbers) -> Segments:
+def segments_of_polygons(projected: Projection, scale: DepthScale, polygons: Indices) -> Segments:
     """The segments of some polygons of the projection, in the order of polygons and lines."""
     # Let the lines cross the edges; both sides have the same polygons and lines in the same order.
     down_edges, up_edges = edges_of_sides(projected, polygons)
@@ -64,7 +64,7 @@ def segments_of_polygons(projected: Projection, scale: DepthScale, polygons: Num
     )
 
 
-def _crossings(edges: Edges) -> tuple[Floats, Floats, ShortNumbers]:
+def _crossings(edges: Edges) -> tuple[Floats, Floats, ShortIndices]:
     """Where the lines cross the edges of one side: the screen x, the inverse depth, and the edge."""
     lines_below = runs(np.zeros_like(edges.count), edges.count).astype(np.float64)
     x = lines_below * np.repeat(edges.x_step, edges.count)
@@ -74,6 +74,6 @@ def _crossings(edges: Edges) -> tuple[Floats, Floats, ShortNumbers]:
     return x, inverse_depth, np.repeat(edges.top.astype(np.int32), edges.count)
 
 
-def _first_center(x: Floats, elements: int) -> Numbers:
+def _first_center(x: Floats, elements: int) -> Indices:
     """The first element whose center is at x or right of it, 0 to `elements`."""
     return np.clip(np.ceil(x - 0.5), 0, elements).astype(np.intp)

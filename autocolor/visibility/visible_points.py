@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Integers, Numbers, Singles
+from autocolor.arrays import Floats, Indices, Numbers, Singles
 from autocolor.scene.view import View
 
 PIXELS_AT_ONCE: Final = 1 << 17
@@ -53,7 +53,7 @@ class PointChunk:
     slices: tuple[SurfaceSlice, ...]
 
 
-def surface_slices(counts: Integers) -> tuple[SurfaceSlice, ...]:
+def surface_slices(counts: Numbers) -> tuple[SurfaceSlice, ...]:
     """The slices of pixels sorted by surface; `counts` has the number of pixels of each surface number."""
     stops = np.cumsum(counts)
     return tuple(
@@ -109,10 +109,10 @@ class VisiblePoints:
     elements: int
     unit: float
     middle: Floats
-    pixels: Numbers
+    pixels: Indices
     slices: tuple[SurfaceSlice, ...]
-    span_polygons: Numbers
-    span_lengths: Numbers
+    span_polygons: Indices
+    span_lengths: Indices
     rows: Singles
 
     @cached_property
@@ -142,7 +142,7 @@ class VisiblePoints:
         return np.append(along, self.view.eye[axis] / self.unit + along @ self.middle)
 
     @property
-    def polygon_numbers(self) -> Numbers:
+    def polygon_numbers(self) -> Indices:
         """Rows of the polygon table, (n,), in the order of `pixels`."""
         return np.repeat(self.span_polygons, self.span_lengths)
 

@@ -19,7 +19,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Integers, Numbers, ShortNumbers, chunks, chunks_of_runs, runs
+from autocolor.arrays import Indices, Numbers, ShortIndices, chunks, chunks_of_runs, runs
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 from autocolor.visibility.culling import not_occluded
@@ -63,11 +63,11 @@ def visible_surfaces(
 
 
 def depth_test(
-    depth_buffer: Integers,
-    segment_edges: ShortNumbers,
+    depth_buffer: Numbers,
+    segment_edges: ShortIndices,
     projected: Projection,
     scale: DepthScale,
-    polygons: Numbers,
+    polygons: Indices,
 ) -> None:
     """Keep in the depth buffer, (lines * elements,), the largest key of some polygons at each pixel.
 

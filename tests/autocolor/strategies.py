@@ -12,7 +12,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Paint, Part, Reflectance, Scene, Surface, View
-from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong
+from autocolor.scene.curves import CURVES
+from autocolor.scene.reflection_models import MODELS, BlinnPhong, CookTorrance, Phong
 
 Vector = tuple[float, float, float]
 
@@ -120,6 +121,7 @@ models = (
     st.builds(Phong, exponents)
     | st.builds(BlinnPhong, exponents)
     | st.builds(CookTorrance, st.sampled_from([0.1, 0.3, 1.0]), st.sampled_from([0.04, 0.5, 1.0]))
+    | st.sampled_from([model() for model in MODELS.values()])
 )
 reflectances = st.builds(Reflectance, numbers(0, 2), numbers(0, 2), exponents)
 """Phong's, as in the paper."""
@@ -142,7 +144,7 @@ def surfaces(name: str) -> st.SearchStrategy[Surface]:
     )
 
 
-MAPPINGS: list[Any] = ["linear", "gamma", "logarithm", "equalize", ((0, 0.1), (0.4, 0.8), (1, 1))]
+MAPPINGS: list[Any] = [*CURVES, ((0, 0.1), (0.4, 0.8), (1, 1))]
 
 
 @st.composite

@@ -1,33 +1,10 @@
 from __future__ import annotations
 
-import math
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.checks import finite, listed, nearest, shown
-
-
-@given(st.floats(allow_nan=False, allow_infinity=False))
-def test_a_finite_number_passes_unchanged(number: float) -> None:
-    problems: list[str] = []
-    assert finite(problems, "it", number) == number
-    assert not problems
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf, True, "3", b"3", None, [], 1j, 10**400])
-def test_what_is_no_finite_number_is_named(value: object) -> None:
-    problems: list[str] = []
-    finite(problems, "ambient", value)
-    assert problems == [f"ambient must be a finite number, not {value!r}"]
-
-
-@pytest.mark.parametrize(("value", "fine"), [(0, True), (1.0, True), (-0.1, False), (1.1, False)])
-def test_a_number_beyond_a_bound_is_named_with_both_bounds(value: float, fine: bool) -> None:
-    problems: list[str] = []
-    finite(problems, "blend", value, at_least=0, at_most=1)
-    assert problems == ([] if fine else [f"blend must be a number from 0 to 1, not {value!r}"])
+from autocolor.checks import listed, nearest, shown
 
 
 def test_the_nearest_right_name_is_told() -> None:
@@ -35,6 +12,10 @@ def test_the_nearest_right_name_is_told() -> None:
     assert nearest("gl", ["body", "glass"]) == "; did you mean 'glass'?"
     assert nearest("xyz", ["body", "glass"]) == "; known are 'body', 'glass'"
     assert nearest("xyz", []) == ""
+
+
+def test_a_name_of_a_million_letters_is_compared_by_its_first() -> None:
+    assert nearest("b" * 1_000_000, ["body", "glass"]) == "; known are 'body', 'glass'"
 
 
 @given(st.text(), st.lists(st.text()))

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Flags, Floats, Numbers, cross, lengths
+from autocolor.arrays import Booleans, Floats, Indices, cross, lengths
 from autocolor.errors import InputError
 from autocolor.files.repair.polygon_split import split_polygons
 from autocolor.files.repair.polygons import MeshReport, Polygons, upright
@@ -82,7 +82,7 @@ def repaired(
     return MeshReport(mesh, tuple(f"{place}: {repair}" for repair in repairs))
 
 
-def _without_repeats(corners: Numbers, counts: Numbers) -> tuple[Numbers, Numbers, Flags]:
+def _without_repeats(corners: Indices, counts: Indices) -> tuple[Indices, Indices, Booleans]:
     """The corners and counts without corners that equal the next one, and which polygons had such corners."""
     following = np.arange(1, len(corners) + 1)
     ends = np.cumsum(counts)
@@ -96,7 +96,7 @@ def _without_repeats(corners: Numbers, counts: Numbers) -> tuple[Numbers, Number
     return corners[kept], kept_counts, kept_counts != counts
 
 
-def _have_area(corners: Floats) -> Flags:
+def _have_area(corners: Floats) -> Booleans:
     """Whether each polygon of (n, 4, 3) has area: neither diagonal splits it into two flat triangles.
 
     A bow-tie whose halves cancel has area; a polygon that runs forth and back along one path has none.
@@ -106,9 +106,9 @@ def _have_area(corners: Floats) -> Flags:
     size[size == 0] = 1.0
     scaled = (rows - rows[:, :1]) / size
 
-    def flat(first: int, second: int, third: int) -> Flags:
+    def flat(first: int, second: int, third: int) -> Booleans:
         onward, back = scaled[:, second] - scaled[:, first], scaled[:, third] - scaled[:, first]
-        below: Flags = lengths(cross(onward, back)) < FLAT
+        below: Booleans = lengths(cross(onward, back)) < FLAT
         return below
 
     return ~((flat(0, 1, 2) & flat(0, 2, 3)) | (flat(0, 1, 3) & flat(1, 2, 3)))

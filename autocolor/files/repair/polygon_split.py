@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Flags, Floats, Numbers
+from autocolor.arrays import Booleans, Floats, Indices
 from autocolor.errors import InputError
 
 MOST_CORNERS: Final = 1000
@@ -22,7 +22,7 @@ MOST_CLIPPING: Final = 200_000_000
 Point = tuple[float, float]
 
 
-def split_polygons(coordinates: Floats, corners: Numbers, counts: Numbers) -> tuple[Numbers, Numbers]:
+def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> tuple[Indices, Indices]:
     """The pieces, (n, 4), and the index of each one's polygon, (n,).
 
     A piece is a quad, or a triangle that repeats its last node. The pieces are in polygon order; polygons
@@ -61,7 +61,7 @@ def split_polygons(coordinates: Floats, corners: Numbers, counts: Numbers) -> tu
 
 def _in_their_planes(
     points: Floats,
-) -> tuple[Floats, Flags]:
+) -> tuple[Floats, Booleans]:
     """The polygons of (n, corners, 3) projected to (n, corners, 2), counterclockwise; which are convex."""
     size = np.ptp(points, axis=1).max(axis=1)
     size[size == 0] = 1.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from autocolor.arrays import Floats, Numbers
+from autocolor.arrays import Floats, Indices
 from autocolor.scene.mesh import Mesh
 
 UPS: Final = ("x", "y", "z")
@@ -21,9 +21,9 @@ class Polygons:
     """
 
     coordinates: Floats
-    corners: Numbers
-    corner_counts: Numbers
-    part_numbers: Numbers
+    corners: Indices
+    corner_counts: Indices
+    part_numbers: Indices
     part_names: tuple[str, ...]
 
 

@@ -18,7 +18,8 @@ from autocolor.files.scenes.toml_text import KeyPath
 from autocolor.scene.columns.column import Column, Row, Tier
 from autocolor.scene.columns.problems import Problem, RowError
 from autocolor.scene.columns.rows import made
-from autocolor.scene.columns.value_kinds import Choice, Number, Text
+from autocolor.scene.columns.value_kinds import Choice, Text
+from autocolor.scene.mesh import CREASE_ANGLES
 
 MOST_MESHES: Final = 1000
 
@@ -39,7 +40,7 @@ class MeshEntry(Row):
     crease_angle: Annotated[
         float | None,
         Column(
-            Number(at_least=0, at_most=180),
+            CREASE_ANGLES,
             Tier.FRAME,
             "Polygons that meet at a larger angle keep a sharp edge; the same for all meshes.",
             "degrees",

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, View, render
-from autocolor.arrays import Flags, Singles
+from autocolor.arrays import Booleans, Singles
 from autocolor.lighting import light_controls
 from autocolor.lighting.light_controls import (
     CONTROLS,
@@ -144,7 +144,7 @@ def test_a_control_is_added_by_one_registered_class(monkeypatch: pytest.MonkeyPa
         def of(cls, light: Light, points: VisiblePoints) -> Ramp:
             return cls(points)
 
-        def lit_points(self, rows: Singles) -> Flags:
+        def lit_points(self, rows: Singles) -> Booleans:
             return np.asarray(rows[POINT][0] > 0)
 
         def factor(self, cos_light: Singles, out: Singles) -> Singles:

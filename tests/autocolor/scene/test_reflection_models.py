@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from autocolor import InputError
 from autocolor.arrays import Singles, power
+from autocolor.scene.columns.column import Field, fields_of
 from autocolor.scene.reflection_models import (
     LEAST_FACING,
     MODELS,
@@ -199,3 +200,13 @@ def test_models_are_values_under_their_names() -> None:
         BlinnPhong(20.0),
         CookTorrance(0.3, 0.05),
     ]
+
+
+def test_models_that_share_a_key_describe_it_alike() -> None:
+    shared: dict[str, Field] = {}
+    for model in MODELS.values():
+        for name, field in fields_of(model).items():
+            assert shared.setdefault(name, field).column == field.column
+            assert vars(model())[name] == next(
+                vars(other())[name] for other in MODELS.values() if name in fields_of(other)
+            )

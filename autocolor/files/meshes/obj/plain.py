@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Flags, Floats, Integers
+from autocolor.arrays import Booleans, Bytes, Floats, Numbers
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.files.meshes.obj.statements import Statements
 from autocolor.files.meshes.obj.tables import LONGEST_LINE, ObjTables
@@ -33,7 +33,7 @@ def read_plain_obj(data: bytes, statements: Statements) -> ObjTables | None:
         return None
     node_count = 0
     nodes = [np.empty((0, 3))]
-    tables: list[tuple[Integers, Integers, Integers, Integers]] = []
+    tables: list[tuple[Numbers, Numbers, Numbers, Numbers]] = []
     for block in _blocks(data):
         text = np.frombuffer(block, np.uint8)
         ends = np.flatnonzero(text == ord("\n"))
@@ -74,7 +74,7 @@ def _blocks(data: bytes) -> Iterator[bytes]:
         start += len(block)
 
 
-def _coordinates(text: Bytes, chosen: Flags, lengths: Integers) -> Floats | None:
+def _coordinates(text: Bytes, chosen: Booleans, lengths: Numbers) -> Floats | None:
     """The first three numbers of each chosen line, (n, 3); None if the lines are not plain.
 
     All lines must have the same number of numbers.
@@ -97,7 +97,7 @@ def _coordinates(text: Bytes, chosen: Flags, lengths: Integers) -> Floats | None
     return coordinates if (np.abs(coordinates) <= LARGEST_COORDINATE).all() else None
 
 
-def _corners(text: Bytes, chosen: Flags, lengths: Integers) -> tuple[Integers, Integers] | None:
+def _corners(text: Bytes, chosen: Booleans, lengths: Numbers) -> tuple[Numbers, Numbers] | None:
     """The node numbers of the chosen lines, and their count in each line; None if the lines are not plain."""
     lines = text[np.repeat(chosen, lengths)]
     if not len(lines):
@@ -123,7 +123,7 @@ def _corners(text: Bytes, chosen: Flags, lengths: Integers) -> tuple[Integers, I
         return None
 
 
-def _words_a_line(lines: Bytes) -> Integers:
+def _words_a_line(lines: Bytes) -> Numbers:
     """The number of words in each line."""
     spaces = lines <= ord(" ")
     starts = ~spaces
@@ -134,12 +134,12 @@ def _words_a_line(lines: Bytes) -> Integers:
 
 def _part_numbers(
     block: bytes,
-    others: Integers,
-    starts: Integers,
-    ends: Integers,
-    polygons: Integers,
+    others: Numbers,
+    starts: Numbers,
+    ends: Numbers,
+    polygons: Numbers,
     statements: Statements,
-) -> Integers | None:
+) -> Numbers | None:
     """The part number of each polygon, from the names before it in the other lines.
 
     None if one of these is itself a node or a polygon, such as an indented one.

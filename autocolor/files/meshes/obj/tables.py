@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Integers, Numbers
+from autocolor.arrays import Floats, Indices, Numbers
 
 LONGEST_LINE: Final = 1 << 20
 """Assumed: bytes of one statement, including its continuation lines."""
@@ -24,13 +24,13 @@ class ObjTables:
     """
 
     coordinates: Floats
-    numbers: Integers
-    corner_counts: Integers
-    part_numbers: Integers
-    nodes_before: Integers
+    numbers: Numbers
+    corner_counts: Numbers
+    part_numbers: Numbers
+    nodes_before: Numbers
 
     @cached_property
-    def rows(self) -> Numbers:
+    def rows(self) -> Indices:
         """The row in `coordinates` of each corner; -1 if there is no such node."""
         rows = self.numbers - 1
         back = np.flatnonzero(self.numbers < 0)
