@@ -17,5 +17,5 @@ def file_stem(name: str) -> str:
     ('coupe', 'a_ b', 'scene')
     """
     stem = "".join("_" if letter in REFUSED or ord(letter) < 32 else letter for letter in Path(name).name)
-    stem = stem[:LONGEST_STEM].strip()
+    stem = stem.strip()[:LONGEST_STEM].strip()
     return stem if stem.strip(" .") else "scene"

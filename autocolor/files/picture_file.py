@@ -201,7 +201,7 @@ def _picture(header: dict[str, Any], scene: Scene, relative: AnyArray, numbers: 
     in_use = set(scene.mesh.parts_in_use)
     owned = {number for part, number in enumerate(scene.surface_number_of_part) if part in in_use}
     picture = Picture.from_rasters(relative, numbers, tuple(names), float(scale))
-    strange = {each.surface_number for each in picture.slices} - owned
-    if strange:
-        raise InputError(f"a surface number must be that of a surface with polygons, not {min(strange)}")
+    invalid = {each.surface_number for each in picture.slices} - owned
+    if invalid:
+        raise InputError(f"a surface number must be that of a surface with polygons, not {min(invalid)}")
     return picture

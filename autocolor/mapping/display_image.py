@@ -49,15 +49,15 @@ class DisplayImage:
         When the two images can differ in paints only, these are the ranges of the repainted surfaces, and
         neither table is built. Otherwise it is one run from the first to the last entry that differs.
         """
-        mine, others = self.scene, before.scene
         if (
             self.ranges is before.ranges
-            and mine.background == others.background
+            and self.scene.background == before.scene.background
             and self._has_floors_of(before)
         ):
-            for new, old in zip(mine.surfaces, others.surfaces, strict=True):
-                if new is not old and new.paint != old.paint and new.name in self.ranges:
-                    yield self.ranges[new.name].first, self.entries_of(new)
+            paints = {surface.name: surface.paint for surface in before.scene.surfaces}
+            for surface in self.scene.surfaces:
+                if surface.name in self.ranges and surface.paint != paints.get(surface.name):
+                    yield self.ranges[surface.name].first, self.entries_of(surface)
             return
         differing = np.flatnonzero((before.entries != self.entries).any(axis=1))
         if len(differing):
@@ -66,11 +66,10 @@ class DisplayImage:
 
     def _has_floors_of(self, other: DisplayImage) -> bool:
         """Whether the floors equal those of another image that has the same ranges."""
-        mine, others = self.scene, other.scene
-        if mine.contrast != others.contrast:
+        if self.scene.contrast != other.scene.contrast:
             return False
-        return mine.contrast == "stretch" or (
-            self.picture is other.picture and mine.scaling == others.scaling
+        return self.scene.contrast == "stretch" or (
+            self.picture is other.picture and self.scene.scaling == other.scene.scaling
         )
 
 

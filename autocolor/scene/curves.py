@@ -57,7 +57,7 @@ def curve_of_fractions(name: str) -> Callable[[Fractions], Fractions]:
 def along_range(function: Fractions) -> MappingCurve:
     """The mapping curve that applies a function to the linear fraction of the range."""
 
-    def of_extent(minimum: np.float32, maximum: np.float32, _: Singles) -> Fractions:
+    def curve_of_range(minimum: np.float32, maximum: np.float32, _: Singles) -> Fractions:
         width = maximum - minimum
 
         def fraction(intensities: Singles) -> Singles:
@@ -68,7 +68,7 @@ def along_range(function: Fractions) -> MappingCurve:
 
         return fraction
 
-    return of_extent
+    return curve_of_range
 
 
 def through_points(points: CurvePoints) -> MappingCurve:
@@ -110,4 +110,4 @@ def equalize(minimum: np.float32, maximum: np.float32, intensities: Singles) -> 
     values, counts = np.unique(intensities, return_counts=True)
     below = np.cumsum(counts) - counts[0]
     shares: Singles = (below / max(below[-1], 1)).astype(np.float32)
-    return lambda some: shares[np.searchsorted(values, some)]
+    return lambda given: shares[np.searchsorted(values, given)]

@@ -64,9 +64,9 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
     Paper: Figure 5, RESCALE.
     """
     axes = view.axes
-    middle, radius = _sphere_around(mesh)
+    center, radius = _sphere_around(mesh)
     if _is_a_point(mesh):
-        points = middle[:, None] + radius * np.array([[-0.5, 0.5]] * 3)
+        points = center[:, None] + radius * np.array([[-0.5, 0.5]] * 3)
     else:
         points = mesh.used_coordinates.T
 
@@ -76,17 +76,17 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
     slope_y = filled * math.tan(math.radians(view.field_of_view) / 2)
     slopes = np.array([slope_y * ASPECT, slope_y])
     least, most, nearest, size = np.full(2, np.inf), np.full(2, -np.inf), np.inf, 0.0
-    for some in chunks(points.shape[1], POINTS_AT_ONCE):
-        places = axes @ (points[:, some] - middle[:, None])
-        reach = slopes[:, None] * places[2]
-        least = np.minimum(least, (places[:2] + reach).min(axis=1))
-        most = np.maximum(most, (places[:2] - reach).max(axis=1))
-        nearest = min(nearest, float(places[2].min()))
-        size = max(size, float(np.abs(places).max()))
+    for chunk in chunks(points.shape[1], POINTS_AT_ONCE):
+        camera_points = axes @ (points[:, chunk] - center[:, None])
+        reach = slopes[:, None] * camera_points[2]
+        least = np.minimum(least, (camera_points[:2] + reach).min(axis=1))
+        most = np.maximum(most, (camera_points[:2] - reach).max(axis=1))
+        nearest = min(nearest, float(camera_points[2].min()))
+        size = max(size, float(np.abs(camera_points).max()))
     shifts = (least + most) / 2
     distances = (most - least) / (2 * slopes)
     distance = max(*distances.tolist(), size * 1e-3 - nearest)
-    eye = middle + axes.T @ np.array([*shifts, -distance])
+    eye = center + axes.T @ np.array([*shifts, -distance])
     forward = axes[2]
     return view.replace(eye=tuple(eye), direction=tuple(forward))
 
@@ -113,22 +113,22 @@ def default_lights(mesh: Mesh, view: View) -> tuple[Light, ...]:
     As seen from the eye, the key light is at the upper left, the fill light at the right, the top light above
     and the rim light behind, as around a car in a photographer's studio (Paper: "Light Controls").
     """
-    middle, radius = _sphere_around(mesh)
+    center, radius = _sphere_around(mesh)
     right, down, forward = view.axes
     if abs(forward[2]) > 0.99:
-        up, ahead = -down, forward
+        up, away = -down, forward
     else:
         up = np.array([0.0, 0.0, 1.0])
-        ahead = np.array([forward[0], forward[1], 0.0])
-        ahead /= np.linalg.norm(ahead)
-        right = np.cross(ahead, up)
+        away = np.array([forward[0], forward[1], 0.0])
+        away /= np.linalg.norm(away)
+        right = np.cross(away, up)
 
     def light(
         name: str, to_right: float, to_up: float, to_eye: float, intensity: float, concentration: float
     ) -> Light:
-        place = middle + radius * (to_right * right + to_up * up - to_eye * ahead)
+        position = center + radius * (to_right * right + to_up * up - to_eye * away)
         return Light(
-            name, tuple(place.tolist()), intensity, aim=tuple(middle.tolist()), concentration=concentration
+            name, tuple(position.tolist()), intensity, aim=tuple(center.tolist()), concentration=concentration
         )  # fmt: skip
 
     return (

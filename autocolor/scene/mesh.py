@@ -52,7 +52,9 @@ class Mesh:
         names = () if isinstance(self.part_names, str) else self.part_names
         names = tuple(names) if isinstance(names, Iterable) else ()
         if isinstance(self.part_names, str) or not all(isinstance(name, str) and name for name in names):
-            problems.append(f"part table: part names must be texts, one a part, not {self.part_names!r}")
+            problems.append(
+                f"part table: part names must be strings, one for each part, not {self.part_names!r}"
+            )
             names = tuple(map(repr, names))
         found: list[Problem] = []
         angle = CREASE_ANGLES.held(self.crease_angle, ("crease_angle",), found)

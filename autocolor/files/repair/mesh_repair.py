@@ -43,31 +43,31 @@ def repaired(
     coordinates = upright(polygons.coordinates, up)
     repairs = list(skipped)
     corners, counts, shortened = _without_repeats(polygons.corners, polygons.corner_counts)
-    few = counts < 3
+    too_few = counts < 3
     try:
         node_numbers, owners = split_polygons(coordinates, corners, counts)
     except InputError as error:
         raise InputError(f"{place}: {error}") from None
 
     # Drop pieces without area, and so the polygons of which no piece is left.
-    wide = np.concatenate(
+    has_area = np.concatenate(
         [
             _have_area(coordinates[node_numbers[first : first + AT_A_TIME]])
             for first in range(0, max(len(node_numbers), 1), AT_A_TIME)
         ]
     )
-    if not wide.all():
-        node_numbers, owners = node_numbers[wide], owners[wide]
-    left = np.zeros(len(counts), np.bool_)
-    left[owners] = True
-    noted = (
-        (shortened & ~few & left, "{} with repeated corners {} repaired"),
-        (few, "{} with fewer than three different corners {} dropped"),
-        (~few & ~left, "{} without area {} dropped"),
-        ((counts > 4) & left, "{} with more than four corners {} split"),
+    if not has_area.all():
+        node_numbers, owners = node_numbers[has_area], owners[has_area]
+    is_kept = np.zeros(len(counts), np.bool_)
+    is_kept[owners] = True
+    kinds = (
+        (shortened & ~too_few & is_kept, "{} with repeated corners {} repaired"),
+        (too_few, "{} with fewer than three different corners {} dropped"),
+        (~too_few & ~is_kept, "{} without area {} dropped"),
+        ((counts > 4) & is_kept, "{} with more than four corners {} split"),
     )
-    for which, sentence in noted:
-        if count := int(which.sum()):
+    for repaired_polygons, sentence in kinds:
+        if count := int(repaired_polygons.sum()):
             polygon, was = ("polygon", "was") if count == 1 else ("polygons", "were")
             repairs.append(sentence.format(f"{count:,} {polygon}", was))
     if not len(node_numbers):
@@ -107,8 +107,8 @@ def _have_area(corners: Floats) -> Booleans:
     scaled = (rows - rows[:, :1]) / size
 
     def flat(first: int, second: int, third: int) -> Booleans:
-        onward, back = scaled[:, second] - scaled[:, first], scaled[:, third] - scaled[:, first]
-        below: Booleans = lengths(cross(onward, back)) < FLAT
-        return below
+        one, other = scaled[:, second] - scaled[:, first], scaled[:, third] - scaled[:, first]
+        is_flat: Booleans = lengths(cross(one, other)) < FLAT
+        return is_flat
 
     return ~((flat(0, 1, 2) & flat(0, 2, 3)) | (flat(0, 1, 3) & flat(1, 2, 3)))

@@ -35,6 +35,7 @@ def test_a_name_that_names_no_file_becomes_scene(name: str) -> None:
 @given(st.text())
 @example("../../x")
 @example("a\\..\\b")
+@example(" " * 100 + "x")
 def test_any_name_becomes_a_file_in_the_folder_where_it_is_put(name: str) -> None:
     path = f"{file_stem(name)}.png"
     assert Path(path).name == path

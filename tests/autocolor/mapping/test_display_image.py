@@ -168,6 +168,40 @@ def test_no_pixel_has_a_word_of_the_screens_and_only_the_unseen_have_the_backgro
     assert ((image.words == BACKGROUND) == (image.picture.surface_number == 0)).all()
 
 
+SPARE = Surface("spare").replace(object_color=(1, 2, 3))
+
+
+@given(
+    scenes(), paints, st.permutations([0, 1, 2]), st.lists(st.sampled_from([0, 1]), max_size=2, unique=True)
+)
+def test_surfaces_without_parts_come_and_go_and_change_places(
+    scene: Scene, paint: Any, order: list[int], paint_taken: list[int]
+) -> None:
+    session = Session(scene)
+
+    def add(scene: Scene) -> Scene:
+        rows = [*scene.surfaces, SPARE]
+        rows = [row.replace(paint=paint) if number in paint_taken else row for number, row in enumerate(rows)]
+        return scene.replace(surfaces=[rows[number] for number in order])
+
+    before = session.edit(add)
+    assert (loaded(before, session.image) == session.image.entries).all()
+    assert (loaded(session.image, before) == before.entries).all()
+
+
+def test_a_surface_that_takes_the_place_and_the_paint_of_another_is_still_loaded() -> None:
+    scene = wall_scene()
+    blue = scene.surfaces[0].paint.replace(object_color="#0000ff")
+    scene = scene.replace(surfaces=[scene.surfaces[0], SPARE.replace(paint=blue)])
+    before = display_image(scene, two_tones(0.5, 2.0))
+    wall, spare = scene.surfaces
+    after = display_image(
+        scene.replace(surfaces=[spare, wall.replace(paint=blue)]), two_tones(0.5, 2.0), before
+    )
+    assert (loaded(before, after) == after.entries).all()
+    assert (after.entries != before.entries).any()
+
+
 def two_tones(least: float, most: float) -> Picture:
     """A picture of two pixels of the wall."""
     relative = np.array([[least, most]], np.float32)
