@@ -25,7 +25,7 @@ from autocolor.mapping.level_ranges import WORDS, LevelRange
 from autocolor.rendering import rendering
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns.column import Tier, fields_of
-from autocolor.scene.scene import Scene, costs_at_least
+from autocolor.scene.scene import Scene, cost_of_edit
 from autocolor.scene.surfaces import Paint
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
 
@@ -125,7 +125,9 @@ class Studio:
         for name in changes:
             if name not in known:
                 raise UsageError(f"recolor takes {', '.join(known)}, not {name!r}{nearest(name, known)}")
-        self.edit(self.scene.with_surface(surface, **changes))
+        scene = self.scene.with_paint(surface, **changes)
+        if scene is not self.scene:
+            self._take(scene, Tier.ENTRIES)
 
     def surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> None:
         """Change fields of a surface, including those of its reflectance and its paint."""
@@ -144,13 +146,9 @@ class Studio:
 
         With `same_step`, this edit and the previous one are undone together, as for the many edits of a drag.
         """
-        before = self.scene
-        if scene.equals(before):
-            return
-        self._show(scene)
-        if not (same_step and self._done):
-            self._done.append(before)
-        self._undone.clear()
+        costs = cost_of_edit(self.scene, scene)
+        if costs is not None:
+            self._take(scene, costs, same_step)
 
     def undo(self) -> bool:
         """Undo the last step; returns False if there is none."""
@@ -181,22 +179,33 @@ class Studio:
         self._display.send(instructions.reset())
         _send(None, self._shown, self._display, self._encoder)
 
+    def _take(self, scene: Scene, costs: Tier, same_step: bool = False) -> None:
+        """Make a scene the current one by an edit of a cost, and note the step."""
+        before = self.scene
+        self._show(scene, costs)
+        if not (same_step and self._done):
+            self._done.append(before)
+        self._undone.clear()
+
     def _step(self, source: list[Scene], target: list[Scene]) -> bool:
         if not source:
             return False
         before = self.scene
-        self._show(source[-1])
+        self._show(source[-1], cost_of_edit(before, source[-1]) or Tier.NOTHING)
         source.pop()
         target.append(before)
         return True
 
-    def _show(self, scene: Scene) -> None:
-        """Recompute and send what changed. If that raises an error, the session is unchanged."""
+    def _show(self, scene: Scene, costs: Tier) -> None:
+        """Recompute and send what an edit changed. If that raises an error, the session is unchanged."""
         before, rendered = self._shown, self._rendering
-        if costs_at_least(before.scene, scene, Tier.MIX):
+        if costs >= Tier.MIX:
             lines, elements = before.picture.lines, before.picture.elements
             rendered = rendering(scene, lines, elements, rendered)
-        now = display_image(scene, rendered.picture, before)
+        if costs >= Tier.LEVELS:
+            now = display_image(scene, rendered.picture, before)
+        else:
+            now = DisplayImage(scene, before.picture, before.ranges, before.words)
         _send(before, now, self._display, self._encoder)
         self._rendering, self._shown = rendered, now
 

@@ -68,7 +68,7 @@ def lines_of(title: str, text: str, cls: type[Row]) -> Iterator[str]:
     if text:
         yield f"{text}\n"
     yield "| key | what it is | unit | value | default | an edit costs |\n|---|---|---|---|---|---|"
-    for key, (column, field) in keys_of(cls).items():
+    for key, (column, field, _) in keys_of(cls).items():
         if key not in LEFT_OUT.get(cls, ()):
             rule = column.kind.rule().removeprefix("must be ")
             cells = (f"`{key}`", column.help, column.unit, rule, default(cls, key, field), tier(column))

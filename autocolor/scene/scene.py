@@ -16,6 +16,7 @@ from autocolor.checks import Color, nearest, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.scene.changes import (
     LightChanges,
+    PaintChanges,
     PartChanges,
     SceneChanges,
     SceneFields,
@@ -23,10 +24,10 @@ from autocolor.scene.changes import (
     ViewChanges,
 )
 from autocolor.scene.columns.column import Column, Row, Tier, fields_of, row_label
-from autocolor.scene.columns.problems import REFUSED, Problem
+from autocolor.scene.columns.problems import REFUSED, Problem, RowError
 from autocolor.scene.columns.reference_kinds import Referring, references_of
 from autocolor.scene.columns.row_kinds import Nested, Rows
-from autocolor.scene.columns.rows import changed, cost
+from autocolor.scene.columns.rows import changed, cost, with_values
 from autocolor.scene.columns.value_kinds import Choice, ColorKind, CurveKind, Instance, Number, Text
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import default_lights, default_parts, default_surface, default_view
@@ -147,13 +148,26 @@ class Scene(Row):
         """The scene with some fields of one surface changed, including those of its reflectance and paint."""
         return self._with_row("surfaces", _place("surface", self.surfaces, name), changes)
 
+    def with_paint(self, name: str, /, **changes: Unpack[PaintChanges]) -> Scene:
+        """The scene with some colors of one surface changed; the same scene if they are those it has."""
+        place = _place("surface", self.surfaces, name)
+        surface = self.surfaces[place]
+        try:
+            paint = changed(surface.paint, changes)
+        except RowError as error:
+            raise RowError(error.found, row_label(surface)) from None
+        if paint == surface.paint:
+            return self
+        row = with_values(surface, {"paint": paint})
+        return with_values(self, {"surfaces": (*self.surfaces[:place], row, *self.surfaces[place + 1 :])})
+
     def with_part(self, name: str, /, **changes: Unpack[PartChanges]) -> Scene:
         """The scene with some fields of one part changed."""
         return self._with_row("parts", _place("part", self.parts, name), changes)
 
     def with_view(self, **changes: Unpack[ViewChanges]) -> Scene:
         """The scene with some fields of the view changed."""
-        return self._with_checked({"view": self.view.replace(**changes)})
+        return with_values(self, {"view": self.view.replace(**changes)})
 
     def only_lights(self, *names: str) -> Scene:
         """The scene with the named lights on and all others off (Paper: Figure 8)."""
@@ -167,17 +181,7 @@ class Scene(Row):
         # Tables refer to each other by name only: if no name changes, the references stay valid.
         if "name" in changes or not references_of(type(row)).keys().isdisjoint(changes):
             return changed(self, {table: rows})
-        return self._with_checked({table: rows})
-
-    def _with_checked(self, values: Mapping[str, object]) -> Scene:
-        """The scene with some fields replaced by values that are valid and keep all references valid.
-
-        The cached properties are copied too, as they depend on names only.
-        """
-        copy = object.__new__(Scene)
-        vars(copy).update(vars(self))
-        vars(copy).update(values)
-        return copy
+        return with_values(self, {table: rows})
 
     @cached_property
     def surface_number_of_part(self) -> tuple[int, ...]:

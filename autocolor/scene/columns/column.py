@@ -144,10 +144,11 @@ def _itself(value: object) -> object:
 
 
 class Key(NamedTuple):
-    """A key of a row in a file: its column, and the field of the row that contains it."""
+    """A key of a row in a file: its column, the field that contains it, whether it is inside the value."""
 
     column: Column
     field: str
+    is_inside: bool
 
 
 def keys_of(cls: type[Row]) -> Mapping[str, Key]:
@@ -155,7 +156,7 @@ def keys_of(cls: type[Row]) -> Mapping[str, Key]:
     found = _KEYS.get(cls)
     if found is None:
         found = _KEYS[cls] = {
-            key: Key(column, name)
+            key: Key(column, name, field.column.kind.has_keys_inside())
             for name, field in fields_of(cls).items()
             for key, column in field.column.kind.keys(name, field.column).items()
         }

@@ -77,7 +77,7 @@ class Number(Leaf):
             raise TypeError
         number = float(value)
         is_within = self.at_least <= number <= self.at_most and not (self.above and number == self.at_least)
-        if number != self.endless and not (is_within and math.isfinite(number)):
+        if number != self.endless and not (is_within and -math.inf < number < math.inf):
             raise ValueError
         return number
 

@@ -163,3 +163,15 @@ def test_unused_nodes_do_not_matter_to_what_is_created() -> None:
         mesh.part_names,
     )
     assert scene_of(with_stray).view == scene_of(mesh).view
+
+
+def test_a_change_of_paint_is_that_of_the_surface_and_the_same_paint_is_the_same_scene() -> None:
+    scene = scene_of(cube())
+    blue = {"object_color": "#0000ff", "blend": 0.25}
+    assert scene.with_paint("cube", **blue).equals(scene.with_surface("cube", **blue))  # type: ignore[arg-type]
+    paint = scene.surface("cube").paint
+    assert scene.with_paint("cube", blend=paint.blend) is scene
+    with pytest.raises(InputError, match="surface 'cube': blend must be a number from 0 to 1, not 2"):
+        scene.with_paint("cube", blend=2)
+    with pytest.raises(UsageError, match=r"there is no surface 'cub'; did you mean 'cube'\?"):
+        scene.with_paint("cub", blend=0.5)
