@@ -49,14 +49,14 @@ CUBE_QUADS = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 
 
 
 def cube(size: float = 1.0) -> Mesh:
-    """The cube from the origin to (size, size, size), wound outward."""
+    """The cube from the origin to (size, size, size), facing outward."""
     return Mesh(
         np.array(CUBE_NODES, np.float64) * size, np.array(CUBE_QUADS), np.zeros(6, np.intp), ("cube",)
     )
 
 
 def sphere(columns: int = 32, rows: int = 16, radius: float = 1.0) -> Mesh:
-    """A sphere around the origin, of quads and of triangles at the poles, wound outward."""
+    """A sphere around the origin, of quads and of triangles at the poles, facing outward."""
     coordinates = [(0.0, 0.0, -radius)]
     for row in range(1, rows):
         low = math.pi * (row / rows - 0.5)
