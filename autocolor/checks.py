@@ -26,7 +26,11 @@ def shown(value: object, most: int = 60) -> str:
         return "true" if value else "false"
     if isinstance(value, str):
         return repr(value) if len(value) <= most else f"{value[:most]!r}..."
-    text = repr(value)
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):
+        # A whole number of thousands of digits, or a list in lists in lists.
+        text = f"a very large {type(value).__name__}"
     return text if len(text) <= most else f"{text[:most]}..."
 
 
@@ -38,6 +42,16 @@ def listed(names: Iterable[str]) -> str:
     """
     *others, last = names
     return f"{', '.join(others)} and {last}" if others else last
+
+
+def either(names: Iterable[str]) -> str:
+    """Names of which one is meant, as in a sentence.
+
+    >>> either(["x", "y", "z"])
+    "'x', 'y' or 'z'"
+    """
+    *others, last = map(repr, names)
+    return f"{', '.join(others)} or {last}" if others else last
 
 
 def nearest(name: str, names: Iterable[str]) -> str:

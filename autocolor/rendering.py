@@ -19,7 +19,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.checks import nearest
+from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
@@ -54,10 +54,10 @@ def render(scene: Scene, lines: int = 480, elements: int = 640, algorithm: str =
     for what, size in (("lines", lines), ("elements", elements)):
         if isinstance(size, bool) or not isinstance(size, Integral) or not 1 <= size <= LARGEST_RASTER:
             raise UsageError(
-                f"{what} must be a whole number from 1 to {LARGEST_RASTER}, not {size!r}; choose another size"
+                f"{what} must be a whole number from 1 to {LARGEST_RASTER}, not {shown(size)}; choose another"
             )
-    if algorithm not in ALGORITHMS:
-        raise UsageError(f"there is no algorithm {algorithm!r}{nearest(str(algorithm), ALGORITHMS)}")
+    if not isinstance(algorithm, str) or algorithm not in ALGORITHMS:
+        raise UsageError(f"there is no algorithm {shown(algorithm)}{nearest(str(algorithm), ALGORITHMS)}")
     return rendering(scene, lines, elements, algorithm=algorithm).picture
 
 

@@ -137,7 +137,7 @@ class Studio:
         """Change fields of a light."""
         self.edit(self.scene.with_light(name, **changes))
 
-    def view(self, **changes: Unpack[ViewChanges]) -> None:
+    def view(self, /, **changes: Unpack[ViewChanges]) -> None:
         """Change fields of the view; everything is recomputed."""
         self.edit(self.scene.with_view(**changes))
 
@@ -183,7 +183,7 @@ class Studio:
         """Make a scene the current one by an edit of a cost, and note the step."""
         before = self.scene
         self._show(scene, costs)
-        if not (same_step and self._done):
+        if not (same_step and self._done and not self._undone):
             self._done.append(before)
         self._undone.clear()
 

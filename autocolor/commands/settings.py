@@ -24,6 +24,10 @@ MOST_PARTS: Final = 4
 Changes = dict[str, Any]
 
 
+class Inside(dict[str, Any]):
+    """Fields that are set one by one inside a field, unlike a table that is its value."""
+
+
 def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
     """The scene with each KEY=VALUE set, such as `lights.key.intensity=2` or `ambient=0.2`.
 
@@ -39,7 +43,7 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
                 f"--set must be KEY=VALUE, not {setting!r}; write it as in {EXAMPLES['lights']}"
             )
         table, name, path = _place(scene, key.strip())
-        _put(changes.setdefault((table, name), {}), path, value_of(text.strip()))
+        _put(changes.setdefault((table, name), {}), path, value_of(text.strip()), key.strip())
     for (table, name), fields in changes.items():
         scene = _changed(scene, table, name, fields)
     return scene
@@ -113,10 +117,15 @@ def _place(scene: Scene, key: str) -> tuple[str, str, list[str]]:
     return table, name, path
 
 
-def _put(fields: Changes, path: list[str], value: Any) -> None:
-    """Put a value at a path of nested dictionaries, which are created as needed."""
+def _put(fields: Changes, path: list[str], value: Any, key: str) -> None:
+    """Put a value at a path of nested dictionaries, which are created as needed.
+
+    Raises UsageError where a table and fields of it are set, for it would depend on their order.
+    """
     for name in path[:-1]:
-        if not isinstance(fields.get(name), dict):
-            fields[name] = {}
-        fields = fields[name]
+        fields = fields.setdefault(name, Inside())
+        if not isinstance(fields, Inside):
+            raise UsageError(f"--set {key}: {name} is set as a whole, too; leave one out")
+    if isinstance(fields.get(path[-1]), Inside):
+        raise UsageError(f"--set {key}: fields of it are set, too; leave one out")
     fields[path[-1]] = value

@@ -9,19 +9,21 @@ every control of a light the same three questions, each with a default that leav
 - `lit_points`: which points may be lit, judged by the points alone. Asked first: where it leaves a chunk of
   points dark, no ray is computed.
 - `least_cosine`: the least cos(L) that is lit. Of several controls the largest counts.
-- `factor`: what is left of the light elsewhere, 0 to 1, as a function of cos(L); factors are multiplied.
+- `factor`: what is left of the light elsewhere, 0 to 1, as a function of cos(L), of the distance, or of the
+  positions of the points. Factors are multiplied.
 
 To add one, give `Light` a field and write its class. A soft cone has the cosine of its outer angle as
 `least_cosine` and a ramp up to the inner angle as its `factor`. A flap along any plane is a `FlapSides` with
-the row of that plane.
+the row of that plane; a soft one has a ramp across the plane as its `factor`.
 """
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, TypeVar
+from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -38,10 +40,24 @@ ABOVE_ZERO: Final = float(np.finfo(np.float32).smallest_subnormal)
 """The least positive float32."""
 
 
+class LitPoints(NamedTuple):
+    """What a factor may depend on, at the points that may be lit.
+
+    `cos_light` is cos(L), (points,), None where no control of the light is `directed`. `distance()` is the
+    distance of the light, (points,), and `positions()` are columns of points, (3, points), both in camera
+    space and in `VisiblePoints.unit`; they are computed when they are asked for.
+    """
+
+    cos_light: Singles | None
+    distance: Callable[[], Singles]
+    positions: Callable[[], Singles]
+
+
 class LightControl(ABC):
     """One control of one light, ready for the visible points of one view.
 
-    A control with a `least_cosine` or a `factor` is `directed`: the light must have a direction.
+    A control that asks for cos(L), in `least_cosine` or in `factor`, is `directed`; it must not be made for a
+    light without a direction.
     """
 
     directed: bool = False
@@ -56,12 +72,13 @@ class LightControl(ABC):
         """Whether the points in some columns of `VisiblePoints.rows` may be lit; None for all of them."""
         return None
 
-    def factor(self, cos_light: Singles, out: Singles) -> Singles | None:
-        """What is left of the light at points that are lit, 0 to 1, written to `out`; None for all of it.
+    def factor(self, lit: LitPoints, out: Singles) -> Singles:
+        """What is left of the light at points that are lit, 0 to 1, written to `out`.
 
-        It must be finite wherever else it is computed. `out` may be the array of the cosines.
+        It must be finite wherever else it is computed. `out` may be the array of the cosines. A control
+        without this method leaves all of the light.
         """
-        return None
+        raise NotImplementedError
 
 
 Control = TypeVar("Control", bound=type[LightControl])
@@ -161,6 +178,7 @@ class Concentration(LightControl):
         """The concentration, if the light has any."""
         return cls(light.concentration) if light.concentration > 0 else None
 
-    def factor(self, cos_light: Singles, out: Singles) -> Singles:
+    def factor(self, lit: LitPoints, out: Singles) -> Singles:
         """cos^C(L)."""
-        return power(cos_light, self.exponent, out=out)
+        assert lit.cos_light is not None
+        return power(lit.cos_light, self.exponent, out=out)

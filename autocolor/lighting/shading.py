@@ -20,12 +20,12 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Booleans, Indices, Singles, dot
-from autocolor.lighting.light_controls import LightControl, controls_of
+from autocolor.lighting.light_controls import LightControl, LitPoints, controls_of
 from autocolor.lighting.light_planes import DIFFUSE, SPECULAR
 from autocolor.lighting.rays import CameraLight, camera_light, rays_to
 from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import Cosines, ReflectionModel
-from autocolor.visibility.visible_points import NORMAL, REFLECTED_VIEW, PointChunk, VisiblePoints
+from autocolor.visibility.visible_points import NORMAL, POINT, REFLECTED_VIEW, PointChunk, VisiblePoints
 
 FEW: Final = 0.3
 """Below this fraction of lit points it takes less time to pick them than to compute them all."""
@@ -76,7 +76,9 @@ def shade(
         return
 
     # Reflect the light there; where few points are lit, compute those alone.
-    at_points = _AtPoints(incidence, rays.cosines_with(REFLECTED_VIEW), rays.cos_light, rows, None)
+    at_points = _AtPoints(
+        incidence, rays.cosines_with(REFLECTED_VIEW), rays.cos_light, rays.length, rows, None
+    )
     ends = [each.stop for each in chunk.slices]
     of_surfaces = [models[each.surface_number] for each in chunk.slices]
     if count >= FEW * len(is_lit):
@@ -105,19 +107,34 @@ def _lit_points(controls: Sequence[LightControl], rows: Singles) -> Booleans | N
 class _AtPoints(NamedTuple):
     """cos(I), cos(E) and, for a directed light, cos(L) at some points, (points,) float32 each.
 
-    `rows` are those of the whole chunk, and `places` the places of the points there, None for all of it.
+    `length` and `rows` are those of the whole chunk, and `places` the places of the points there, None for
+    all of it.
     """
 
     incidence: Singles
     eye: Singles
     light: Singles | None
+    length: Singles
     rows: Singles
     places: Indices | None
 
     def chosen(self, places: Indices) -> _AtPoints:
         """Some points of the whole chunk."""
         light = None if self.light is None else self.light.take(places)
-        return _AtPoints(self.incidence.take(places), self.eye.take(places), light, self.rows, places)
+        return self._replace(
+            incidence=self.incidence.take(places), eye=self.eye.take(places), light=light, places=places
+        )
+
+    def lit(self) -> LitPoints:
+        """What a light control may ask about the points."""
+
+        def distance() -> Singles:
+            return self.length if self.places is None else self.length.take(self.places)
+
+        def positions() -> Singles:
+            return self.rows[POINT] if self.places is None else self.rows[POINT].take(self.places, axis=1)
+
+        return LitPoints(self.light, distance, positions)
 
     def cosines(self, start: int, end: int) -> Cosines:
         """What a reflection model needs at a slice of the points."""
@@ -143,7 +160,7 @@ def _reflect(
     Where `is_lit` is given, the other points become 0. The surfaces of the points end at `ends` and have
     these `models`. The arrays of the cosines are overwritten.
     """
-    multiplier = _multiplier(controls, at_points.light)
+    multiplier = _multiplier(controls, at_points)
     if is_lit is not None:
         lit = is_lit.astype(np.float32)
         multiplier = lit if multiplier is None else np.multiply(multiplier, lit, out=multiplier)
@@ -158,14 +175,14 @@ def _reflect(
             np.multiply(factor, multiplier, out=out[plane])
 
 
-def _multiplier(controls: Sequence[LightControl], cos_light: Singles | None) -> Singles | None:
-    """The product of the factors of all controls, or None; the last control may overwrite the cosines."""
-    if cos_light is None:
-        return None
+def _multiplier(controls: Sequence[LightControl], at_points: _AtPoints) -> Singles | None:
+    """The product of the factors of all controls, None where there is none; the cosines are overwritten."""
+    shaping = [control for control in controls if type(control).factor is not LightControl.factor]
+    lit = at_points.lit()
     multiplier: Singles | None = None
-    for control in controls:
-        out = cos_light if control is controls[-1] else np.empty_like(cos_light)
-        factor = control.factor(cos_light, out)
-        if factor is not None:
-            multiplier = factor if multiplier is None else np.multiply(multiplier, factor, out=multiplier)
+    for control in shaping:
+        # The last control may overwrite the cosines.
+        spare = lit.cos_light if control is shaping[-1] else None
+        factor = control.factor(lit, np.empty_like(at_points.incidence) if spare is None else spare)
+        multiplier = factor if multiplier is None else np.multiply(multiplier, factor, out=multiplier)
     return multiplier

@@ -44,7 +44,7 @@ class Flap(Row):
             ends = f"{self.minimum:g} to {self.maximum:g}"
             yield Problem((), f"the minimum must not be above the maximum, not {ends}; exchange them")
 
-    def replace(self, **changes: Unpack[FlapChanges]) -> Flap:
+    def replace(self, /, **changes: Unpack[FlapChanges]) -> Flap:
         """The flap with some fields changed."""
         return changed(self, changes)
 
@@ -59,7 +59,7 @@ class Flaps(Row):
     y: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Y that is lit.")] = None
     z: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Z that is lit.")] = None
 
-    def replace(self, **changes: Unpack[FlapsChanges]) -> Flaps:
+    def replace(self, /, **changes: Unpack[FlapsChanges]) -> Flaps:
         """The flaps with some changed; a table of fields changes only these fields of a flap."""
         return changed(self, changes)
 
@@ -150,7 +150,7 @@ class Light(Row):
         length = math.hypot(*scaled)
         return (scaled[0] / length, scaled[1] / length, scaled[2] / length)
 
-    def replace(self, **changes: Unpack[LightChanges]) -> Light:
+    def replace(self, /, **changes: Unpack[LightChanges]) -> Light:
         """The light with some fields changed; a new direction removes the aim, and vice versa.
 
         Raises InputError for an unknown field or an invalid value.

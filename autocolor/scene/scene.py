@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import islice
 from typing import Annotated, Any, Final, TypeVar, Unpack
 
@@ -120,7 +120,7 @@ class Scene(Row):
                     if others is not REFUSED:
                         yield from _missing_names(rows, name, referring, [row.name for row in others])
 
-    def replace(self, **changes: Unpack[SceneChanges]) -> Scene:
+    def replace(self, /, **changes: Unpack[SceneChanges]) -> Scene:
         """The scene with some fields changed."""
         return changed(self, changes)
 
@@ -165,7 +165,7 @@ class Scene(Row):
         """The scene with some fields of one part changed."""
         return self._with_row("parts", _place("part", self.parts, name), changes)
 
-    def with_view(self, **changes: Unpack[ViewChanges]) -> Scene:
+    def with_view(self, /, **changes: Unpack[ViewChanges]) -> Scene:
         """The scene with some fields of the view changed."""
         return with_values(self, {"view": self.view.replace(**changes)})
 
@@ -208,12 +208,8 @@ def _missing_names(
                 yield Problem((), text)
 
 
-@lru_cache(maxsize=1)
 def cost_of_edit(old: Scene, new: Scene) -> Tier | None:
-    """The cost of an edit from one scene to another; None if they are equal.
-
-    The result is cached, as the studio, the renderer and the mapping all need it for each edit.
-    """
+    """The cost of an edit from one scene to another, None where they are equal."""
     return cost(old, new)
 
 
@@ -235,12 +231,22 @@ def scene_of(
     missing = [name for name in surface_of_part or {} if name not in mesh.part_names]
     if missing:
         raise InputError(
-            f"there is no part {shown(name)} to take a surface{nearest(name, mesh.part_names)}"
+            f"there is no part {shown(name)} to take a surface{nearest(str(name), mesh.part_names)}"
             for name in missing
         )
     tables: dict[str, Any] = dict(fields)
-    given, view, lights = (tables.pop(name, None) for name in ("surfaces", "view", "lights"))
-    parts, surfaces = _with_default_surfaces(mesh, surface_of_part or {}, tuple(given or ()))
+    lights = tables.pop("lights", None)
+    # Surfaces and view are checked here, because what is created depends on them.
+    found: list[Problem] = []
+    given: Any
+    view: Any
+    given, view = (
+        None if value is None else fields_of(Scene)[name].column.kind.held(value, (name,), found)
+        for name, value in (("surfaces", tables.pop("surfaces", None)), ("view", tables.pop("view", None)))
+    )
+    if found:
+        raise RowError(found)
+    parts, surfaces = _with_default_surfaces(mesh, surface_of_part or {}, given or ())
     if view is None:
         view = default_view(mesh)
     if lights is None:

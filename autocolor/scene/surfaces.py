@@ -7,11 +7,13 @@ and reflectance properties.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import Annotated, ClassVar, Final, Unpack
 
 from autocolor.checks import Color
 from autocolor.scene.changes import PaintChanges, PartChanges, ReflectanceChanges, SurfaceChanges
 from autocolor.scene.columns.column import Column, Row, Tier
+from autocolor.scene.columns.problems import Problem, RowError
 from autocolor.scene.columns.reference_kinds import Reference
 from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.columns.rows import changed
@@ -20,6 +22,9 @@ from autocolor.scene.reflection_models import MODELS, Phong, ReflectionModel
 
 MOST_SURFACES: Final = 255
 """Surface numbers have 8 bits, and 0 means that nothing is visible."""
+
+MOST_LEVELS: Final = 1_000_000
+"""Assumed: more than any lookup table has."""
 
 PHONG: Final = Phong()
 """The default reflection model."""
@@ -34,7 +39,7 @@ class Part(Row):
     name: Annotated[str, Column(Text(), Tier.NOTHING, "The name of the part, as in the mesh.")]
     surface: Annotated[str, Column(Reference("surfaces"), Tier.FRAME, "The name of the part's surface.")]
 
-    def replace(self, **changes: Unpack[PartChanges]) -> Part:
+    def replace(self, /, **changes: Unpack[PartChanges]) -> Part:
         """The part with some fields changed."""
         return changed(self, changes)
 
@@ -65,8 +70,10 @@ class Reflectance(Row):
 
         Raises InputError.
         """
-        if isinstance(model, (float, int)):
-            exponent, model = model, PHONG
+        if isinstance(model, Real) and not isinstance(model, bool):
+            if exponent is not None:
+                raise RowError([Problem(("exponent",), "must stand once, not twice; leave one out")])
+            exponent, model = float(model), PHONG
         vars(self).update(diffuse=diffuse, specular=specular, model=model)
         self.__post_init__()
         if exponent is not None:
@@ -81,7 +88,7 @@ class Reflectance(Row):
         exponent: float = values["exponent"]
         return exponent
 
-    def replace(self, **changes: Unpack[ReflectanceChanges]) -> Reflectance:
+    def replace(self, /, **changes: Unpack[ReflectanceChanges]) -> Reflectance:
         """The reflectance with some fields changed; a new model starts with its default parameters."""
         return changed(self, changes)
 
@@ -120,7 +127,7 @@ class Paint(Row):
         ),
     ] = 100.0
 
-    def replace(self, **changes: Unpack[PaintChanges]) -> Paint:
+    def replace(self, /, **changes: Unpack[PaintChanges]) -> Paint:
         """The paint with some fields changed."""
         return changed(self, changes)
 
@@ -148,12 +155,12 @@ class Surface(Row):
     levels: Annotated[
         int | None,
         Column(
-            Whole(at_least=2),
+            Whole(at_least=2, at_most=MOST_LEVELS),
             Tier.LEVELS,
             "The number of lookup table entries; if absent, an equal share of the rest.",
         ),
     ] = None
 
-    def replace(self, **changes: Unpack[SurfaceChanges]) -> Surface:
+    def replace(self, /, **changes: Unpack[SurfaceChanges]) -> Surface:
         """The surface with some fields changed, including those of its reflectance and its paint."""
         return changed(self, changes)

@@ -97,6 +97,6 @@ class View(Row):
         axes.flags.writeable = False
         return axes
 
-    def replace(self, **changes: Unpack[ViewChanges]) -> View:
+    def replace(self, /, **changes: Unpack[ViewChanges]) -> View:
         """The view with some fields changed; a new direction removes the target, and vice versa."""
         return changed(self, changes)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from PIL import Image
 
-from autocolor import OutputError, Scene, Studio, image, render, save_image, scene_of
+from autocolor import InputError, OutputError, Scene, Studio, Surface, image, render, save_image, scene_of
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import scenes
@@ -40,3 +40,10 @@ def test_an_image_is_written_as_a_png_and_never_over_a_file_unasked(tmp_path: Pa
     with pytest.raises(OutputError, match="exists"):
         save_image(path, scene, picture)
     save_image(path, scene, picture, overwrite=True)
+
+
+def test_a_picture_of_other_surfaces_is_refused() -> None:
+    picture = render(scene_of(cube()), 24, 32)
+    other = scene_of(cube(), surfaces=[Surface("paint")], surface_of_part={"cube": "paint"})
+    with pytest.raises(InputError, match="a picture must be those of the scene, 'paint', not 'cube'"):
+        image(other, picture)

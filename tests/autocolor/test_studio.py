@@ -486,3 +486,13 @@ def test_a_display_with_fewer_words_or_entries_than_the_papers_is_refused(change
     smaller = dataclasses.replace(GMR_9300, name="small", **changes)  # type: ignore[arg-type]
     with pytest.raises(UsageError, match=r"must have 1024 words and entries, not \d+ and \d+ \(small\)"):
         Studio(wall_scene(), Ramtek9300(smaller))
+
+
+def test_the_first_edit_of_a_drag_after_an_undo_is_a_step_of_its_own() -> None:
+    studio, _ = opened()
+    for blend in (0.2, 0.3):
+        studio.edit(studio.scene.with_surface("body", blend=blend))
+    studio.undo()
+    studio.edit(studio.scene.with_surface("body", blend=0.4), same_step=True)
+    studio.undo()
+    assert studio.scene.surface("body").paint.blend == 0.2

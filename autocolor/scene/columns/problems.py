@@ -50,6 +50,9 @@ class RowError(InputError):
         self.row = row
         super().__init__(f"{row}: {each.sentence}" if row else each.sentence for each in self.found)
 
+    def __reduce__(self) -> tuple[type[RowError], tuple[object, ...]]:
+        return RowError, (self.found, self.row)
+
 
 class Refused:
     """The placeholder for an invalid value while the rules between columns are checked.

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from autocolor.checks import listed, nearest, shown
+from autocolor.checks import either, listed, nearest, shown
 from autocolor.scene.columns.column import Column, Kind, Row, Tier, keys_of
 from autocolor.scene.columns.problems import REFUSED, Path, Problem, RowError
 from autocolor.scene.columns.rows import changed, cost, made, plain
@@ -53,8 +53,9 @@ class Nested(Kind):
                 return changed(present, table)
             except RowError as error:
                 return _refused(error, self._path(path), problems)
-        # Make a new row if there was none or an invalid one; `held` will refuse anything else.
-        return self.held(table, path, problems) if present in (None, REFUSED) else present
+        # Make a new row if there was none or an invalid one; anything else is refused where it is held.
+        is_made = present is REFUSED or (present is None and not self.inline)
+        return self.held(table, path, problems) if is_made else present
 
     def written(self, name: str, value: Any) -> Mapping[str, object]:
         return plain(value) if self.inline else {name: plain(value)}
@@ -79,7 +80,7 @@ class Variant(Kind):
         return "str | Row"
 
     def rule(self) -> str:
-        return f"must be {', '.join(map(repr, self.classes))}"
+        return f"must be {either(self.classes)}"
 
     def name_of(self, value: Row) -> str:
         """The name of the class of a value."""
@@ -90,7 +91,7 @@ class Variant(Kind):
         return {name: column, **inner}
 
     def held(self, value: object, path: Path, problems: list[Problem]) -> object:
-        if isinstance(value, tuple(self.classes.values())):
+        if type(value) in self.classes.values():
             return value
         if isinstance(value, str) and value in self.classes:
             return self.classes[value]()

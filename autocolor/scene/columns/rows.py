@@ -13,6 +13,10 @@ MOST_KEYS: Final = 64
 """Assumed: an upper bound on the keys of any table."""
 
 
+PLAIN_TYPES: Final = frozenset((float, int, bool, str, tuple, list))
+"""Types of most values, none of them a table; asking for `Mapping` takes several times as long."""
+
+
 def changed(row: SomeRow, changes: Mapping[str, Any]) -> SomeRow:
     """The row with some fields or keys changed; a table for a row inside it changes that row's keys.
 
@@ -61,6 +65,9 @@ def _values_by_field(
 
     Problems are appended, and unknown names left out.
     """
+    if len(changes) > MOST_KEYS:
+        text = f"it must be a table of at most {MOST_KEYS} keys, not {len(changes):,}"
+        raise RowError([Problem((), text)], row_label(row))
     fields, keys = fields_of(type(row)), keys_of(type(row))
     values: dict[str, Any] = {}
     inside: dict[str, dict[str, Any]] = {}
@@ -70,8 +77,7 @@ def _values_by_field(
             inside.setdefault(key.field, {})[name] = value
         elif name not in fields:
             problems.append(unknown(name, {**fields, **keys}))
-        elif hasattr(value, "keys"):
-            # This is how `dict` tells a mapping; `Mapping` takes several times as long with cold caches.
+        elif type(value) not in PLAIN_TYPES and isinstance(value, Mapping):
             inside.setdefault(name, {}).update(value)
         else:
             values[name] = value
@@ -87,8 +93,6 @@ def made(cls: type[SomeRow], table: object) -> SomeRow:
     """
     if not isinstance(table, Mapping):
         raise RowError([Problem((), f"must be a table of {listed(keys_of(cls))}, not {shown(table)}")])
-    if len(table) > MOST_KEYS:
-        raise RowError([Problem((), f"it must be a table of at most {MOST_KEYS} keys, not {len(table):,}")])
     fields = fields_of(cls)
     row = object.__new__(cls)
     vars(row).update(

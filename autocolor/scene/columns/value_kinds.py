@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
 
-from autocolor.checks import nearest, shown
+from autocolor.checks import either, nearest, shown
 from autocolor.scene.columns.column import Kind, Tier
 from autocolor.scene.columns.problems import REFUSED, Path, Problem
 
 LARGEST_PLACE: Final = 1e36
 """Assumed: leaves room for the eye and the lights around the largest object."""
 
-NO_NUMBERS: Final = (bool, np.bool_, str, bytes)
+NO_NUMBERS: Final = (bool, np.bool_, str, bytes, bytearray)
 """Types that Python converts to numbers, but that are not accepted as numbers."""
+
+UNORDERED: Final = (str, bytes, bytearray, Mapping, Set)
+"""Types with elements that are not accepted as components in their order."""
 
 
 class Leaf(Kind):
@@ -87,20 +90,21 @@ class Number(Leaf):
 
 @dataclass(frozen=True)
 class Whole(Leaf):
-    """An integer of at least `at_least`."""
+    """A whole number within bounds."""
 
     at_least: int
+    at_most: int
 
     def accepts(self) -> str:
         return "int"
 
     def rule(self) -> str:
-        return f"must be a whole number of at least {self.at_least}"
+        return f"must be a whole number from {self.at_least} to {self.at_most}"
 
     def accepted(self, value: Any) -> int:
         _require(isinstance(value, (int, np.integer)) and not isinstance(value, bool))
         number = int(value)
-        _require(number >= self.at_least)
+        _require(self.at_least <= number <= self.at_most)
         return number
 
 
@@ -153,6 +157,7 @@ class ColorKind(Leaf):
             # fromhex skips spaces, but only six digits give three bytes.
             red, green, blue = bytes.fromhex(value[1:])
             return red, green, blue
+        _require(not isinstance(value, UNORDERED))
         given = list(value)
         parts = [int(part) for part in given if not isinstance(part, NO_NUMBERS)]
         _require(parts == given and len(parts) == 3 and min(parts) >= 0 and max(parts) <= 255)
@@ -175,6 +180,7 @@ class VectorKind(Leaf):
         return "Sequence[float]"
 
     def accepted(self, value: Any) -> tuple[float, float, float]:
+        _require(not isinstance(value, UNORDERED))
         given = list(value)
         _require(len(given) == 3 and not any(isinstance(component, NO_NUMBERS) for component in given))
         x, y, z = (float(component) for component in given)
@@ -196,8 +202,7 @@ class Choice(Leaf):
     names: tuple[str, ...]
 
     def rule(self) -> str:
-        *others, last = map(repr, self.names)
-        return f"must be {', '.join(others)} or {last}" if others else f"must be {last}"
+        return f"must be {either(self.names)}"
 
     def accepts(self) -> str:
         return f"Literal[{', '.join(map(json.dumps, self.names))}]"
@@ -228,10 +233,12 @@ class CurveKind(Leaf):
         if isinstance(value, str):
             _require(value in self.names)
             return value
-        points = tuple((float(x), float(y)) for x, y in value)
+        _require(not isinstance(value, UNORDERED))
+        along = Number(at_least=0, at_most=1).accepted
+        points = tuple((along(x), along(y)) for x, y in value)
         xs, ys = [x for x, _ in points], [y for _, y in points]
         _require(len(points) >= 2 and xs[0] == 0 and xs[-1] == 1 and all(a < b for a, b in pairwise(xs)))
-        _require(ys == sorted(ys) and 0 <= ys[0] <= ys[-1] <= 1)
+        _require(all(a <= b for a, b in pairwise(ys)))
         return points
 
     def advice(self, value: object) -> str:

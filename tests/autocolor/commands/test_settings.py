@@ -181,3 +181,10 @@ def test_a_setting_colors_the_picture(folder: Path, run: Run) -> None:
         == 0
     )
     assert (folder / "one.png").read_bytes() != (folder / "two.png").read_bytes()
+
+
+def test_a_table_and_its_fields_are_not_both_set_in_either_order(scene: Scene) -> None:
+    settings = ("lights.key.flaps.x={maximum = 1}", "lights.key.flaps.x.minimum=0")
+    for order in (settings, settings[::-1]):
+        with pytest.raises(UsageError, match=r"too; leave one out"):
+            with_settings(scene, order)

@@ -331,7 +331,7 @@ def change_scene(table: str, row: int | None = None, **fields: Any) -> Callable[
         (change_scene("mesh", part_names=[1]), "part names must be strings"),
         (change_scene("mesh", part_names=[[]]), "part names must be strings"),
         (change_scene("mesh", crease_angle=-1), "crease_angle must be a number from 0 to 180"),
-        (change_scene("surfaces", 0, levels=1), "levels must be a whole number of at least 2"),
+        (change_scene("surfaces", 0, levels=1), "levels must be a whole number from 2 to 1000000"),
         (change_scene("view", eye=[0, 0]), "view.eye must be three finite numbers"),
         (
             change_scene("view", **{str(number): 0 for number in range(99)}),

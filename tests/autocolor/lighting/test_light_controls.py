@@ -16,6 +16,7 @@ from autocolor.lighting.light_controls import (
     Cone,
     FlapSides,
     LightControl,
+    LitPoints,
     controls_of,
 )
 from autocolor.visibility.visible_points import POINT, VisiblePoints
@@ -28,9 +29,18 @@ def wall_points() -> VisiblePoints:
     return visible_surfaces(wall(), View((1, -4, 1), target=(0, 0, 0)), (1,), 12, 12)
 
 
+def lit_at(cosines: Singles) -> LitPoints:
+    """Points at these cosines from the light's direction, whose places nobody asks for."""
+
+    def nobody_asks() -> Singles:
+        raise AssertionError
+
+    return LitPoints(cosines, nobody_asks, nobody_asks)
+
+
 def factor(cosines: list[float], concentration: float) -> Singles:
     given_as = np.array(cosines, np.float32)
-    return Concentration(concentration).factor(given_as, out=np.empty_like(given_as))
+    return Concentration(concentration).factor(lit_at(given_as), out=np.empty_like(given_as))
 
 
 @given(numbers(0, 60), numbers(1e-6, 1))
@@ -54,7 +64,7 @@ def test_the_factor_never_leaves_0_to_1(cosines: list[float], concentration: flo
 
 def test_a_factor_may_overwrite_the_cosines() -> None:
     cosines = np.array([0.5, 1.0], np.float32)
-    assert Concentration(2.0).factor(cosines, out=cosines) is cosines
+    assert Concentration(2.0).factor(lit_at(cosines), out=cosines) is cosines
     assert cosines.tolist() == [0.25, 1.0]
 
 
@@ -147,8 +157,9 @@ def test_a_control_is_added_by_one_registered_class(monkeypatch: pytest.MonkeyPa
         def lit_points(self, rows: Singles) -> Booleans:
             return np.asarray(rows[POINT][0] > 0)
 
-        def factor(self, cos_light: Singles, out: Singles) -> Singles:
-            return np.divide(cos_light, 2, out=out)
+        def factor(self, lit: LitPoints, out: Singles) -> Singles:
+            assert lit.cos_light is not None
+            return np.divide(lit.cos_light, 2, out=out)
 
     light = Light("light", (0.0, -1.0, 0.0), direction=(0, 1, 0), concentration=3)
     controlled = render(wall_scene(lights=[light]), 40, 40)
@@ -162,3 +173,43 @@ def test_a_control_is_added_by_one_registered_class(monkeypatch: pytest.MonkeyPa
     right[points.pixels] = x > 0
     left_of_it = np.where((cos_light >= 0.9) & right, cos_light**3 * cos_light / 2, 0)
     assert controlled.intensity.ravel() == pytest.approx(left_of_it * free.intensity.ravel(), rel=1e-4)
+
+
+@pytest.mark.parametrize("is_aimed", [True, False])
+@pytest.mark.parametrize("few", [True, False])
+def test_a_factor_may_depend_on_distance_and_place_of_any_light(
+    monkeypatch: pytest.MonkeyPatch, is_aimed: bool, few: bool
+) -> None:
+    monkeypatch.setattr(light_controls, "CONTROLS", [*CONTROLS])
+
+    @light_controls.registered
+    class Falloff(LightControl):
+        """Less with the distance, and less to the right."""
+
+        def __init__(self, points: VisiblePoints) -> None:
+            self.points = points
+
+        @classmethod
+        def of(cls, light: Light, points: VisiblePoints) -> Falloff:
+            return cls(points)
+
+        def lit_points(self, rows: Singles) -> Booleans | None:
+            return np.asarray(rows[POINT][1] > 0.8 * rows[POINT][1].max()) if few else None
+
+        def factor(self, lit: LitPoints, out: Singles) -> Singles:
+            size = np.float32(self.points.radius)
+            out[:] = np.exp(-lit.distance() - lit.positions()[0] / size)
+            return out
+
+    given = {"direction": (0, 1, 0), "concentration": 2.0} if is_aimed else {}
+    light = Light("light", (0.0, -1.0, 0.0), **given)  # type: ignore[arg-type]
+    scene = wall_scene(lights=[light])
+    controlled = render(scene, 40, 40)
+    monkeypatch.undo()
+    free = render(scene, 40, 40)
+    points = visible_surfaces(wall(), scene.view, (1,), 40, 40)
+    away = np.linalg.norm(points.world_points - np.array(light.position), axis=1) / points.unit
+    expected = np.exp(-away - points.rows[POINT][0] / points.radius) * free.intensity.ravel()[points.pixels]
+    is_lit = points.rows[POINT][1] > 0.8 * points.rows[POINT][1].max() if few else True
+    intensities = controlled.intensity.ravel()[points.pixels]
+    assert intensities == pytest.approx(np.where(is_lit, expected, 0), rel=1e-4)

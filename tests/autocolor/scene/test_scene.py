@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from autocolor import InputError, Light, Mesh, Part, Scene, Surface, UsageError, scene_of
+from autocolor import InputError, Light, Mesh, Part, Scene, Surface, UsageError, View, scene_of
 from autocolor.scene.curves import CURVES
 from tests.autocolor.meshes import cube, grid
 from tests.autocolor.strategies import scenes
@@ -175,3 +175,23 @@ def test_a_change_of_paint_is_that_of_the_surface_and_the_same_paint_is_the_same
         scene.with_paint("cube", blend=2)
     with pytest.raises(UsageError, match=r"there is no surface 'cub'; did you mean 'cube'\?"):
         scene.with_paint("cub", blend=0.5)
+
+
+def test_tables_for_what_a_scene_is_made_of_are_taken_or_refused_in_a_sentence() -> None:
+    scene = scene_of(
+        cube(),
+        view={"eye": (5, 5, 5), "target": (0, 0, 0)},
+        surfaces=[{"name": "cube", "diffuse": 0.2}],  # type: ignore[list-item]
+    )
+    assert scene.view == View((5, 5, 5), target=(0, 0, 0))
+    assert scene.surface("cube").reflectance.diffuse == 0.2
+    wrong: list[dict[str, Any]] = [{"surfaces": [1]}, {"surfaces": 5}, {"view": 3}, {"lights": "key"}]
+    for fields in wrong:
+        with pytest.raises(InputError, match="must be"):
+            scene_of(cube(), **fields)
+
+
+def test_self_is_no_field() -> None:
+    fields: dict[str, Any] = {"self": 1}
+    with pytest.raises(InputError, match="view: there is no 'self'"):
+        scene_of(cube()).with_view(**fields)

@@ -20,7 +20,7 @@ from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong
         (lambda: Surface(""), "surface: name must be a string of at least one character, not ''"),
         (
             lambda: Surface("body", levels=1),
-            "surface 'body': levels must be a whole number of at least 2, not 1",
+            "surface 'body': levels must be a whole number from 2 to 1000000, not 1",
         ),
         (lambda: Surface("body", two_sided=1), "surface 'body': two_sided must be true or false, not 1"),  # type: ignore[arg-type]
     ],
@@ -113,3 +113,30 @@ def test_a_key_of_another_model_is_refused_by_name() -> None:
     )
     with pytest.raises(InputError, match=r"model must be .*, not 'phonk'; did you mean 'phong'\?"):
         Reflectance(model="phonk")
+
+
+def test_an_exponent_may_be_any_kind_of_number_and_stands_once() -> None:
+    for exponent in (np.float32(20), np.int64(20), 20):
+        assert Reflectance(0.7, 0.5, exponent).model == Phong(20)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="exponent must stand once, not twice; leave one out"):
+        Reflectance(0.7, 0.5, 20, exponent=3)
+
+
+@pytest.mark.parametrize("wrong", [None, 5, Phong(3), np.zeros(3)])
+def test_what_is_no_reflectance_is_refused_beside_one_of_its_keys_too(wrong: Any) -> None:
+    with pytest.raises(InputError, match="surface 'a': reflectance must be a Reflectance, not"):
+        Surface("a").replace(reflectance=wrong, diffuse=0.5)
+
+
+def test_a_class_that_derives_from_a_model_is_none_of_the_models() -> None:
+    class Duller(Phong):
+        pass
+
+    with pytest.raises(InputError, match="model must be 'phong', 'blinn' or 'cook-torrance', not"):
+        Reflectance(model=Duller())
+
+
+@pytest.mark.parametrize("value", [dict, {"x": 1}, type("Keyed", (), {"keys": 3})()])
+def test_a_value_with_keys_is_no_number(value: Any) -> None:
+    with pytest.raises(InputError, match="surface 'a': levels must be a whole number from 2 to 1000000, not"):
+        Surface("a").replace(levels=value)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import pytest
@@ -28,3 +29,11 @@ def test_a_problem_under_another_place_has_the_path_from_there(path: list[Any]) 
     problem = Problem(("z",), "must be so").under(tuple(path))
     assert problem.path == (*path, "z")
     assert problem.sentence.endswith("z must be so")
+
+
+def test_an_error_can_be_sent_to_another_process() -> None:
+    with pytest.raises(RowError) as caught:
+        Light("key", (1, 2), intensity=-1)  # type: ignore[arg-type]
+    error = caught.value
+    copy = pickle.loads(pickle.dumps(error))
+    assert (copy.problems, copy.found, copy.row) == (error.problems, error.found, error.row)

@@ -100,7 +100,7 @@ def test_a_key_of_another_variant_is_refused_by_name() -> None:
         "box 'a': turn must go with model = 'square', not with 'round'; leave it out, or change the other",
     )
     assert sentences(lambda: changed(Box("a"), {"model": "squar"})) == (
-        "box 'a': model must be 'round', 'square', not 'squar'; did you mean 'square'?",
+        "box 'a': model must be 'round' or 'square', not 'squar'; did you mean 'square'?",
     )
 
 

@@ -68,7 +68,7 @@ def test_what_is_no_table_makes_no_row(table: object) -> None:
 
 def test_a_table_of_very_many_keys_is_refused_at_once() -> None:
     assert sentences(lambda: made(Span, {f"key{number}": 0 for number in range(1000)})) == (
-        "it must be a table of at most 64 keys, not 1,000",
+        "span: it must be a table of at most 64 keys, not 1,000",
     )
 
 

@@ -64,9 +64,9 @@ def test_what_is_no_finite_number_is_refused(value: object) -> None:
         (Number(at_least=0, above=True), 0, "it must be a number above 0, not 0"),
         (Number(0, 180, above=True), 181, "it must be a number above 0 and at most 180, not 181"),
         (Number(endless=math.inf), -math.inf, "it must be a finite number, not -inf"),
-        (Whole(2), 1, "it must be a whole number of at least 2, not 1"),
-        (Whole(2), 2.0, "it must be a whole number of at least 2, not 2.0"),
-        (Whole(0), True, "it must be a whole number of at least 0, not true"),
+        (Whole(2, 9), 1, "it must be a whole number from 2 to 9, not 1"),
+        (Whole(2, 9), 2.0, "it must be a whole number from 2 to 9, not 2.0"),
+        (Whole(0, 9), True, "it must be a whole number from 0 to 9, not true"),
         (Switch(), 1, "it must be true or false, not 1"),
         (Switch(), None, "it must be true or false, not None"),
         (Text(), "", "it must be a string of at least one character, not ''"),
@@ -99,7 +99,7 @@ def test_a_value_that_breaks_a_rule_is_refused_in_a_sentence(
         (Number(), np.float32(0.5), 0.5),
         (Number(at_least=0, at_most=1), 1, 1.0),
         (Number(endless=math.inf), math.inf, math.inf),
-        (Whole(2), np.int64(5), 5),
+        (Whole(2, 9), np.int64(5), 5),
         (Switch(), np.False_, False),
         (Text(may_be_empty=True), "", ""),
         (VectorKind(), np.array([1, 2, 3], np.float32), (1.0, 2.0, 3.0)),
@@ -123,7 +123,7 @@ def test_a_value_is_held_in_one_type_whatever_it_came_in(kind: Kind, value: obje
     "value",
     [
         (1, 2), (1, 2, 3, 4), 3, "123", ("1", "2", "3"), (1, 2, math.nan), (1, 2, 1e37), (True, 0, 0), None,
-        (1, 2, []), {"x": 1},
+        (1, 2, []), {"x": 1}, {1: 0, 2: 0, 3: 0}, {1, 2, 3}, b"abc",
     ],
 )  # fmt: skip
 def test_what_is_no_vector_is_refused(value: object) -> None:
@@ -141,7 +141,8 @@ def test_a_color_is_a_text_or_three_whole_numbers(value: object) -> None:
     "value",
     [
         "red", "#fff", "0a10ff", "#0a10ff\n", "#0a 10f", "#0a10 f", "#0a10fg", "#\uff10a10ff", "", b"#0a10ff",
-        (1, 2), (1, 2, 256), (-1, 2, 3), (0.5, 1, 2), (True, False, True), 7, None,
+        (1, 2), (1, 2, 256), (-1, 2, 3), (0.5, 1, 2), (True, False, True), 7, None, {1, 2, 3},
+        {1: 0, 2: 0, 3: 0},
     ],
 )  # fmt: skip
 def test_what_is_no_color_is_refused(value: object) -> None:
@@ -158,3 +159,10 @@ def test_what_is_no_color_is_refused(value: object) -> None:
 )  # fmt: skip
 def test_points_that_fall_or_do_not_span_the_range_are_no_curve(points: object) -> None:
     assert "or rising points [x, y] from x = 0 to x = 1, not" in refusal(CurveKind({"linear": 1}), points)
+
+
+def test_a_number_of_thousands_of_digits_is_refused_without_writing_it() -> None:
+    huge = 10**5000
+    assert refusal(Whole(0, 9), huge) == "it must be a whole number from 0 to 9, not a very large int"
+    assert refusal(Number(), huge) == "it must be a finite number, not a very large int"
+    assert "a very large tuple" in refusal(VectorKind(), (huge, huge, huge))
