@@ -1,6 +1,6 @@
-"""Array types, each with one meaning, and the array operations that several rooms share.
+"""Array types, each with one meaning, and the array operations that several wings use.
 
-Runs are series of whole numbers one after another: the lines of an edge, the pixels of a segment, its keys.
+A run is an arithmetic series of whole numbers: the lines of an edge, or the pixels of a segment.
 Vectors stand in three rows, one for each axis, so that numpy works on long rows.
 """
 
@@ -51,10 +51,10 @@ MOST_MULTIPLIED: Final = 64
 
 
 def runs(first: Numbers, count: Numbers, step: Numbers | None = None) -> Numbers:
-    """Run after run: `first`, `first` + `step` and so on, `count` numbers of each.
+    """The runs `first`, `first` + `step`, ... of `count` numbers each, as one array, (numbers,) int64.
 
-    All are (runs,) int64, every count at least 1; the step is 1 where none is given. It is one running sum,
-    which in whole numbers is exact, even where it leaves 64 bits on the way.
+    The arguments are (runs,) int64, each count at least 1; without `step` it is 1. All runs come from one
+    cumulative sum. It is exact, because int64 wraps around: a sum that overflows on the way comes back.
 
     >>> runs(np.array([5, 1]), np.array([3, 2])).tolist()
     [5, 6, 7, 1, 2]

@@ -2,9 +2,9 @@
 
 | changed | recomputed |
 |---|---|
-| mesh, view, the surface of a part | everything |
+| mesh, view, the surface of a part, two_sided | everything |
 | a light's position, aim, concentration, flaps, cone | that light's two planes, the sum |
-| a surface's exponent | all lights, for the chunks of points that contain the surface; the sum |
+| a surface's reflection model | all lights, for the chunks of points that contain the surface; the sum |
 | a light's intensity or switch, ambient, D, S | the sum |
 | anything else | nothing |
 """

@@ -6,9 +6,10 @@ must be recomputed and sent.
 
 | changed | sent to the display |
 |---|---|
-| mesh, view, lights, ambient, D, S, N | all words |
+| mesh, view, parts, lights, ambient, D, S, reflection model, two_sided | all words |
 | mapping, scaling, numbers of levels | all words, the entries that differ |
 | object color, light color, blend, light percentage | the entries of one range, no words |
+| contrast, background | the entries that differ, no words |
 """
 
 from __future__ import annotations
@@ -124,7 +125,7 @@ class Studio:
         known = fields_of(Paint)
         for name in changes:
             if name not in known:
-                raise UsageError(f"recolor takes {', '.join(known)}, not {name!r}{nearest(name, known)}")
+                raise UsageError(f"recolor takes fields of a Paint, not {name!r}{nearest(name, known)}")
         scene = self.scene.with_paint(surface, **changes)
         if scene is not self.scene:
             self._take(scene, Tier.ENTRIES)

@@ -71,9 +71,22 @@ def lines_of(title: str, text: str, cls: type[Row]) -> Iterator[str]:
     for key, (column, field, _) in keys_of(cls).items():
         if key not in LEFT_OUT.get(cls, ()):
             rule = column.kind.rule().removeprefix("must be ")
-            cells = (f"`{key}`", column.help, column.unit, rule, default(cls, key, field), tier(column))
+            text = f"{column.help}{going_with(fields_of(cls)[field].column.kind, key)}"
+            cells = (f"`{key}`", text, column.unit, rule, default(cls, key, field), tier(column))
             yield f"| {' | '.join(cells)} |"
     yield ""
+
+
+def going_with(kind: Kind, key: str) -> str:
+    """A sentence with the variants that have the key, of inline rows too; nothing for any other key."""
+    if isinstance(kind, Nested) and kind.inline:
+        for name, field in fields_of(kind.row_class).items():
+            if isinstance(field.column.kind, Variant) and key != name:
+                return going_with(field.column.kind, key)
+    if not isinstance(kind, Variant):
+        return ""
+    names = [repr(name) for name, cls in kind.classes.items() if key in keys_of(cls)]
+    return f" Goes with {' or '.join(names)}." if names else ""
 
 
 def tier(column: Column) -> str:

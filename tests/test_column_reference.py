@@ -3,6 +3,7 @@ from __future__ import annotations
 import pytest
 
 from autocolor.scene.columns.column import Row, keys_of
+from autocolor.scene.surfaces import Surface
 from tests.column_reference import LEFT_OUT, ROOT, TABLES, document, lines_of
 
 
@@ -15,4 +16,11 @@ def test_the_document_is_up_to_date() -> None:
 def test_every_key_of_a_table_has_a_line_with_what_it_is(title: str, text: str, cls: type[Row]) -> None:
     lines = "\n".join(lines_of(title, text, cls))
     for key, (column, _, _) in keys_of(cls).items():
-        assert (f"| `{key}` | {column.help} |" in lines) == (key not in LEFT_OUT.get(cls, ()))
+        assert (f"| `{key}` | {column.help}" in lines) == (key not in LEFT_OUT.get(cls, ()))
+
+
+def test_a_parameter_of_a_variant_tells_which_ones_it_goes_with() -> None:
+    told = {
+        line.split("`")[1]: "Goes with" in line for line in lines_of("", "", Surface) if line[:3] == "| `"
+    }
+    assert {key for key, goes in told.items() if goes} == {"exponent", "roughness", "normal_reflectance"}

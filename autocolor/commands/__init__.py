@@ -1,4 +1,4 @@
 """The command line: one module for each command, imported only when the command is used.
 
-May import from all other packages.
+Uses everything else.
 """

@@ -35,7 +35,7 @@ def tables(
         path = written(report, Path(scene), force)
         click.echo(f"wrote {path}", err=True)
     elif as_json:
-        from autocolor.files.scenes.plain_scene import plain_scene
+        from autocolor.files.plain_scene import plain_scene
 
         click.echo(json.dumps(plain_scene(report.scene), indent=2))
     else:

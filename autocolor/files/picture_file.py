@@ -22,10 +22,10 @@ from typing import Any, Final, NamedTuple, NoReturn
 
 import numpy as np
 
-from autocolor.arrays import AnyArray
+from autocolor.arrays import LARGEST_SINGLE, AnyArray
 from autocolor.errors import InputError
+from autocolor.files.plain_scene import plain_scene, scene_of_plain
 from autocolor.files.reading import read_bytes, shown
-from autocolor.files.scenes.plain_scene import plain_scene, scene_of_plain
 from autocolor.files.writing import write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.scene.scene import Scene
@@ -40,7 +40,6 @@ MOST_VALUES: Final = 1_000_000
 LARGEST_ARRAY_HEADER: Final = 1024
 MOST_PROBLEMS: Final = 20
 LONGEST_PROBLEM: Final = 400
-LARGEST_SINGLE: Final = float(np.finfo(np.float32).max)
 
 ARRAY_HEADER: Final = re.compile(
     rb"\{'descr': '([^']*)', 'fortran_order': False, 'shape': \(((?:\d{1,12}, ?)*(?:\d{1,12})?)\), \} *\n"

@@ -1,4 +1,4 @@
-"""How much light reaches the eye: rays, reflection, light controls, light planes, and the picture.
+"""How much light reaches the eye: rays, light controls, light planes, their sum, and the picture.
 
 Uses `visibility`, `scene` and the ground.
 """

@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from autocolor.arrays import LARGEST_SINGLE
 from autocolor.errors import InputError
 from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import ReflectionModel
 from autocolor.scene.surfaces import Surface
-
-LARGEST: Final = float(np.finfo(np.float32).max)
 
 SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
 """The weights of a light's diffuse and specular planes, by surface number."""
@@ -43,8 +42,8 @@ def light_mix(
     Raises InputError where the sum would leave the range of float32: such an intensity is refused by name,
     never clipped into a level.
     """
-    if not ambient < LARGEST:
-        raise InputError(f"ambient must stay below {LARGEST:.3g}, not {ambient:g}; lower it")
+    if not ambient < LARGEST_SINGLE:
+        raise InputError(f"ambient must stay below {LARGEST_SINGLE:.3g}, not {ambient:g}; lower it")
     shining = [light for light in lights if light.shines]
     visible = {number: surfaces[number - 1] for number in models}
     strengths = {
@@ -78,10 +77,10 @@ def light_mix(
 def _refuse_overflow(surface: str, peaks: Mapping[str, float], ambient: float) -> None:
     """Refuse lights whose peaks have a sum float32 can't hold, naming the light that contributes most."""
     total = ambient + sum(peaks.values())
-    if math.isfinite(total) and total < LARGEST:
+    if math.isfinite(total) and total < LARGEST_SINGLE:
         return
     light = max(peaks, key=lambda name: peaks[name])
     raise InputError(
-        f"surface {surface!r} under light {light!r}: intensities must stay below {LARGEST:.3g}, not reach"
-        f" {total:g}; lower the light's intensity or the surface's diffuse and specular"
+        f"surface {surface!r} under light {light!r}: intensities must stay below {LARGEST_SINGLE:.3g}, not"
+        f" reach {total:g}; lower the light's intensity or the surface's diffuse and specular"
     )

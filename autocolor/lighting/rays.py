@@ -28,7 +28,7 @@ class CameraLight(NamedTuple):
     """A light in camera space, ready for the visible points of one view.
 
     `position` is relative to the middle of the object. Points at a squared distance of at most `close` are
-    close to the light. `direction` is the unit vector of its direction, None where nobody asks for cos(L).
+    close to the light. `direction` is a unit vector, or None if no light control uses cos(L).
     """
 
     position: Floats

@@ -16,7 +16,7 @@ import numpy as np
 from autocolor.arrays import Singles
 
 Fractions = Callable[[Singles], Singles]
-"""A function of a float32 array, which either modifies and returns the array or returns a new one."""
+"""A function of a float32 array: it may work in place and return its argument, or return a new array."""
 
 MappingCurve = Callable[[np.float32, np.float32, Singles], Fractions]
 """A function of the minimum, the maximum and all intensities; returns the function to fractions."""

@@ -21,7 +21,7 @@ NEAR: Final = 1e-6
 """Assumed: the near plane, as a fraction of the depth of the object's farthest corner."""
 
 LEAST_NEAR: Final = 1e-12
-"""Assumed: the near plane, in units, where even that corner is hardly before the eye."""
+"""Assumed: the near plane, in units, used where the farthest corner itself is almost at the eye."""
 
 LEAST_UNIT: Final = 2.0**-800
 """Assumed: far below the size of any object, and still a divisor for the farthest light."""

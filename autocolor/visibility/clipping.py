@@ -1,4 +1,4 @@
-"""Clipping at the near plane: what lies before it is cut off the polygons."""
+"""Clipping polygons at the near plane: only what lies beyond it is kept."""
 
 from __future__ import annotations
 

@@ -45,8 +45,8 @@ def not_occluded(
         [farthest[first, above], farthest[last, above], farthest[first, below], farthest[last, below]]
     )
 
-    # Compare with the nearest corner. Rounding the step of a segment may bring it nearer by half a unit a
-    # pixel.
+    # Compare with the nearest corner. Because the step of a segment is rounded, each pixel may come half
+    # a unit nearer.
     nearest = scale.keys(most_of_four(projected.inverse_depth[corners]))
     nearest += (extent // 2 + 2) * scale.segment_limit
     kept: Indices = polygons[(extent > size) | (nearest >= behind)]

@@ -76,8 +76,8 @@ def interpolated_points(
 
 
 def _pixels_of_surfaces(spans: VisibleSpans) -> Numbers:
-    """How many pixels each surface number has, from 0 on; the spans are sorted by surface."""
-    # One number more than there are, as the last surface ends where the next one would begin.
+    """The number of visible pixels of each surface, by surface number; the spans are sorted by surface."""
+    # One number more than there are surfaces: the last one ends where the next would begin.
     numbers = np.arange(int(spans.surface.max(initial=0)) + 2)
     ends = np.append(0, np.cumsum(spans.count))
     return np.diff(ends[np.searchsorted(spans.surface, numbers)])

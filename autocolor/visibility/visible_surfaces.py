@@ -53,7 +53,7 @@ def visible_surfaces(
     segment_edges = np.zeros((2, scale.segment_limit), np.int32)
     # Test the polygons that face the eye.
     depth_test(depth_buffer, segment_edges, projected, scale, np.flatnonzero(~projected.from_behind))
-    # Test those seen from behind that are not occluded by them, as most are.
+    # Test those seen from behind, except the many that the first ones occlude.
     behind = not_occluded(depth_buffer, projected, scale, np.flatnonzero(projected.from_behind))
     depth_test(depth_buffer, segment_edges, projected, scale, behind)
     # Keep the number of the nearest segment from each key.

@@ -26,7 +26,7 @@ def area(open_pixels: Dots, line: int, element: int) -> Dots:
     edges = np.diff(fenced.reshape(-1))
     starts, ends = np.flatnonzero(edges == 1) + 1, np.flatnonzero(edges == -1) + 1
     width = elements + 2
-    labels = joined(*links(starts, ends, width), len(starts))
+    labels = connected(*links(starts, ends, width), len(starts))
     mine = int(np.searchsorted(starts, line * width + element + 1, side="right")) - 1
     chosen = labels == labels[mine]
     marks = np.zeros(lines * width + 1, np.int8)
@@ -46,8 +46,8 @@ def links(starts: Indices, ends: Indices, width: int) -> tuple[Indices, Indices]
     return upper, lower
 
 
-def joined(one: Indices, other: Indices, count: int) -> Indices:
-    """A label for each of `count` runs, equal for runs that the pairs of `one` and `other` connect."""
+def connected(one: Indices, other: Indices, count: int) -> Indices:
+    """A label for each of `count` runs, the same for all runs of one connected group; the pairs touch."""
     labels = np.arange(count)
     while True:
         # Link the larger root to the smaller one, then shorten every path to its root.

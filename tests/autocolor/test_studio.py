@@ -331,9 +331,7 @@ def test_an_edit_that_is_refused_changes_nothing() -> None:
 def test_recolor_takes_only_what_colors() -> None:
     with pytest.raises(UsageError) as refusal:
         opened()[0].recolor("body", blent=0.5)  # type: ignore[call-arg]
-    assert str(refusal.value) == (
-        "recolor takes object_color, light_color, blend, light_percentage, not 'blent'; did you mean 'blend'?"
-    )
+    assert str(refusal.value) == ("recolor takes fields of a Paint, not 'blent'; did you mean 'blend'?")
 
 
 def test_the_same_scene_again_is_no_step_and_sends_nothing() -> None:

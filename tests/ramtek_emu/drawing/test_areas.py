@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
-from ramtek_emu.drawing.areas import area, joined, links
+from ramtek_emu.drawing.areas import area, connected, links
 from tests.ramtek_emu.strategies import thorough
 
 
@@ -66,7 +66,7 @@ def test_runs_touch_when_they_share_an_element_of_neighboring_lines() -> None:
 def test_things_that_links_lead_to_have_one_label(count: int, pairs: list[tuple[int, int]]) -> None:
     pairs = [(one % count, other % count) for one, other in pairs]
     one, other = (np.array([pair[side] for pair in pairs], np.intp) for side in (0, 1))
-    labels = joined(one, other, count).tolist()
+    labels = connected(one, other, count).tolist()
     groups = [{number} for number in range(count)]
     for first, second in pairs:
         merged = groups[first] | groups[second]

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, InputError, Light, Scene, read_picture, render, write_picture
 from autocolor.files import picture_file
-from autocolor.files.scenes.plain_scene import plain_scene, scene_of_plain
+from autocolor.files.plain_scene import plain_scene, scene_of_plain
 from autocolor.scene.columns.column import keys_of
 from autocolor.scene.surfaces import Paint, Reflectance, Surface
 from tests.autocolor.meshes import wall_scene
