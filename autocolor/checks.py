@@ -45,7 +45,7 @@ def listed(names: Iterable[str]) -> str:
 
 
 def either(names: Iterable[str]) -> str:
-    """Names of which one is meant, as in a sentence.
+    """The names as alternatives, as in a sentence.
 
     >>> either(["x", "y", "z"])
     "'x', 'y' or 'z'"
@@ -54,9 +54,10 @@ def either(names: Iterable[str]) -> str:
     return f"{', '.join(others)} or {last}" if others else last
 
 
-def nearest(name: str, names: Iterable[str]) -> str:
+def nearest(name: object, names: Iterable[str]) -> str:
     """A clause for a message: the closest of `names`, else all of them if they are few, else nothing."""
-    names, name = list(names), name[:LONGEST_NAME]
+    names = list(names)
+    name = (name if isinstance(name, str) else shown(name))[:LONGEST_NAME]
     close = [known for known in names if known.startswith(name)] or difflib.get_close_matches(
         name, names, n=1
     )

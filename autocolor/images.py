@@ -8,11 +8,9 @@ from __future__ import annotations
 from os import PathLike
 
 from autocolor.arrays import Bytes
-from autocolor.checks import listed
-from autocolor.errors import InputError
 from autocolor.files.writing import write_atomically
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import display_image
+from autocolor.mapping.display_image import check_surfaces, display_image
 from autocolor.scene.scene import Scene
 
 
@@ -20,14 +18,9 @@ def image(scene: Scene, picture: Picture) -> Bytes:
     """The picture in the colors of a scene, (lines, elements, 3) uint8: red, green, blue.
 
     The colors are the same as on a display. Raises InputError if an intensity is not finite, or
-    if the picture is of other surfaces.
+    if the surfaces of the picture are not those of the scene.
     """
-    names = tuple(surface.name for surface in scene.surfaces)
-    if picture.surfaces != names:
-        raise InputError(
-            f"the surfaces of a picture must be those of the scene, {listed(map(repr, names))}, not"
-            f" {listed(map(repr, picture.surfaces))}; render the scene, or take that of the picture"
-        )
+    check_surfaces(scene, picture)
     shown = display_image(scene, picture)
     colors: Bytes = shown.entries[shown.words]
     return colors

@@ -57,7 +57,7 @@ def render(scene: Scene, lines: int = 480, elements: int = 640, algorithm: str =
                 f"{what} must be a whole number from 1 to {LARGEST_RASTER}, not {shown(size)}; choose another"
             )
     if not isinstance(algorithm, str) or algorithm not in ALGORITHMS:
-        raise UsageError(f"there is no algorithm {shown(algorithm)}{nearest(str(algorithm), ALGORITHMS)}")
+        raise UsageError(f"there is no algorithm {shown(algorithm)}{nearest(algorithm, ALGORITHMS)}")
     return rendering(scene, lines, elements, algorithm=algorithm).picture
 
 

@@ -21,7 +21,7 @@ from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, display_image
+from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
 from autocolor.mapping.level_ranges import WORDS, LevelRange
 from autocolor.rendering import rendering
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges, ViewChanges
@@ -39,7 +39,11 @@ EntryEncoder = Callable[[int, Bytes], Words]
 
 
 def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
-    """Reset a display and show a picture in the colors of a scene; nothing is rendered."""
+    """Reset a display and show a picture in the colors of a scene; nothing is rendered.
+
+    Raises InputError if the surfaces of the picture are not those of the scene.
+    """
+    check_surfaces(scene, picture)
     display.send(instructions.reset())
     _send(None, display_image(scene, picture), display, encoder_of_entries(display))
 
@@ -116,7 +120,7 @@ class Studio:
         """The entries of the lookup table, (1024, 3) uint8, read-only."""
         return self._shown.entries
 
-    def recolor(self, surface: str, **changes: Unpack[PaintChanges]) -> None:
+    def recolor(self, surface: str, /, **changes: Unpack[PaintChanges]) -> None:
         """Change the colors of a surface; this sends entries, but no words.
 
         `changes` are fields of its Paint: object_color, light_color ("#rrggbb" or three numbers), blend,

@@ -47,14 +47,14 @@ WINGS = {
 IN_THE_DIALECT = ("autocolor", "ramtek_emu")
 """The packages whose constants are Final and whose array types are all in arrays.py."""
 
-TESTED_ROOM_BY_ROOM = ("autocolor", "ramtek_emu")
+TESTED_MODULE_BY_MODULE = ("autocolor", "ramtek_emu")
 """The packages of which every module has a file of tests at the mirrored place."""
 
 KNOWING_THE_DISPLAY = (
     "autocolor.__main__", "autocolor.files.writing", "autocolor.images", "autocolor.lighting.picture",
     "autocolor.studio",
 )  # fmt: skip
-ROOMS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
+WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
 DOORS_OF_THE_DISPLAY = {
     "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration",
     "ramtek_emu.errors", "ramtek_emu.host.host_port", "ramtek_emu.instructions", "ramtek_emu.png",
@@ -123,7 +123,7 @@ def test_the_display_knows_nothing_of_the_renderer(name: str) -> None:
 @pytest.mark.parametrize("name", [name for name in MODULES if outer(name) == "autocolor"])
 def test_the_renderer_knows_the_display_only_where_they_meet_and_only_by_its_doors(name: str) -> None:
     used = {each.target for each in imports_of(name) if outer(each.target) == "ramtek_emu"}
-    if name not in KNOWING_THE_DISPLAY and not name.startswith(ROOMS_KNOWING_THE_DISPLAY):
+    if name not in KNOWING_THE_DISPLAY and not name.startswith(WINGS_KNOWING_THE_DISPLAY):
         assert not used
     assert used <= DOORS_OF_THE_DISPLAY
 
@@ -157,10 +157,10 @@ def test_constants_are_final_and_array_types_stand_in_one_module(name: str) -> N
     assert ("NDArray" in source) == (name == f"{outer(name)}.arrays")
 
 
-@pytest.mark.parametrize("package", TESTED_ROOM_BY_ROOM)
-def test_every_room_has_its_tests_at_the_mirrored_place(package: str) -> None:
-    rooms = [path for path in (ROOT / package).rglob("*.py") if not path.stem.startswith("__")]
-    mirrored = {ROOT / "tests" / path.relative_to(ROOT).with_name(f"test_{path.name}") for path in rooms}
+@pytest.mark.parametrize("package", TESTED_MODULE_BY_MODULE)
+def test_every_module_has_its_tests_at_the_mirrored_place(package: str) -> None:
+    modules = [path for path in (ROOT / package).rglob("*.py") if not path.stem.startswith("__")]
+    mirrored = {ROOT / "tests" / path.relative_to(ROOT).with_name(f"test_{path.name}") for path in modules}
     assert sorted(str(path.relative_to(ROOT)) for path in mirrored if not path.is_file()) == []
 
 

@@ -32,8 +32,8 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
     """The scene with each KEY=VALUE set, such as `lights.key.intensity=2` or `ambient=0.2`.
 
     A key is the path of a field in a scene file. A value is written as in a scene file, but needs no quotes.
-    The settings of one row are applied together, so that their order does not matter. Raises UsageError for
-    an unknown key, InputError for an invalid value.
+    The settings of one row are applied together, so that their order does not matter, except that the last
+    value of a field counts. Raises UsageError for an unknown key, InputError for an invalid value.
     """
     changes: dict[tuple[str, str], Changes] = {}
     for setting in settings:
@@ -120,12 +120,13 @@ def _place(scene: Scene, key: str) -> tuple[str, str, list[str]]:
 def _put(fields: Changes, path: list[str], value: Any, key: str) -> None:
     """Put a value at a path of nested dictionaries, which are created as needed.
 
-    Raises UsageError where a table and fields of it are set, for it would depend on their order.
+    Raises UsageError where both a table and a field of it are set, because the result would depend on their
+    order.
     """
     for name in path[:-1]:
         fields = fields.setdefault(name, Inside())
         if not isinstance(fields, Inside):
-            raise UsageError(f"--set {key}: {name} is set as a whole, too; leave one out")
+            raise UsageError(f"--set {key}: {name} is also set as a whole; leave one out")
     if isinstance(fields.get(path[-1]), Inside):
-        raise UsageError(f"--set {key}: fields of it are set, too; leave one out")
+        raise UsageError(f"--set {key}: some of its fields are also set; leave one out")
     fields[path[-1]] = value

@@ -1,4 +1,4 @@
 """Reading scenes, meshes and picture files, and writing files atomically.
 
-Uses `mapping`, `lighting`, `scene` and the ground.
+Uses `lighting`, `scene` and the ground.
 """

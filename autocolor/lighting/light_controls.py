@@ -43,9 +43,9 @@ ABOVE_ZERO: Final = float(np.finfo(np.float32).smallest_subnormal)
 class LitPoints(NamedTuple):
     """What a factor may depend on, at the points that may be lit.
 
-    `cos_light` is cos(L), (points,), None where no control of the light is `directed`. `distance()` is the
-    distance of the light, (points,), and `positions()` are columns of points, (3, points), both in camera
-    space and in `VisiblePoints.unit`; they are computed when they are asked for.
+    `cos_light` is cos(L), (points,), or None if no control of the light is `directed`. `distance()` is the
+    distance to the light, (points,); `positions()` are the points in camera space around
+    `VisiblePoints.middle`, (3, points). Both are in `VisiblePoints.unit` and must not be modified.
     """
 
     cos_light: Singles | None
@@ -75,8 +75,8 @@ class LightControl(ABC):
     def factor(self, lit: LitPoints, out: Singles) -> Singles:
         """What is left of the light at points that are lit, 0 to 1, written to `out`.
 
-        It must be finite wherever else it is computed. `out` may be the array of the cosines. A control
-        without this method leaves all of the light.
+        It is also computed at points that are not lit, and must be finite there. `out` may be the array of
+        the cosines. A control without this method leaves all of the light.
         """
         raise NotImplementedError
 

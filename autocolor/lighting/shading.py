@@ -176,7 +176,7 @@ def _reflect(
 
 
 def _multiplier(controls: Sequence[LightControl], at_points: _AtPoints) -> Singles | None:
-    """The product of the factors of all controls, None where there is none; the cosines are overwritten."""
+    """The product of the factors of all controls, or None if there is none; cos(L) may be overwritten."""
     shaping = [control for control in controls if type(control).factor is not LightControl.factor]
     lit = at_points.lit()
     multiplier: Singles | None = None

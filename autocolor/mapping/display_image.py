@@ -9,6 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from autocolor.arrays import Bytes, Words
+from autocolor.checks import shown
+from autocolor.errors import InputError
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.color_blending import entries_of
 from autocolor.mapping.intensity_mapping import words_of
@@ -76,7 +78,8 @@ class DisplayImage:
 def display_image(scene: Scene, picture: Picture, before: DisplayImage | None = None) -> DisplayImage:
     """The display image of a scene and its picture.
 
-    Ranges and words are shared with the earlier image `before` where they did not change.
+    Ranges and words are shared with the earlier image `before` where they did not change. Raises InputError
+    if an intensity is not finite.
     """
     if before is not None and not costs_at_least(before.scene, scene, Tier.LEVELS):
         ranges = before.ranges
@@ -96,6 +99,16 @@ def display_image(scene: Scene, picture: Picture, before: DisplayImage | None = 
     else:
         words = words_of(picture, ranges, scene.scaling, scene.mapping)
     return DisplayImage(scene, picture, ranges, words)
+
+
+def check_surfaces(scene: Scene, picture: Picture) -> None:
+    """Raise InputError if the surfaces of a picture are not those of a scene, in the same order."""
+    names = [surface.name for surface in scene.surfaces]
+    if list(picture.surfaces) != names:
+        raise InputError(
+            f"the surfaces of a picture must be those of the scene, {shown(names)}, not"
+            f" {shown(list(picture.surfaces))}; render this scene, or use the scene that was rendered"
+        )
 
 
 def _floor(scene: Scene, picture: Picture, name: str) -> float:

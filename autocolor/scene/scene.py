@@ -231,7 +231,7 @@ def scene_of(
     missing = [name for name in surface_of_part or {} if name not in mesh.part_names]
     if missing:
         raise InputError(
-            f"there is no part {shown(name)} to take a surface{nearest(str(name), mesh.part_names)}"
+            f"there is no part {shown(name)} to take a surface{nearest(name, mesh.part_names)}"
             for name in missing
         )
     tables: dict[str, Any] = dict(fields)

@@ -72,8 +72,8 @@ class Reflectance(Row):
         """
         if isinstance(model, Real) and not isinstance(model, bool):
             if exponent is not None:
-                raise RowError([Problem(("exponent",), "must stand once, not twice; leave one out")])
-            exponent, model = float(model), PHONG
+                raise RowError([Problem(("exponent",), "must be given once, not twice; leave one out")])
+            exponent, model = model, PHONG  # type: ignore[assignment]
         vars(self).update(diffuse=diffuse, specular=specular, model=model)
         self.__post_init__()
         if exponent is not None:

@@ -1,4 +1,4 @@
 """The interactive screens, which are drawn into the frame buffer by display instructions.
 
-May import from `studio` and everything that `studio` uses.
+Uses `studio` and everything that `studio` uses.
 """

@@ -47,7 +47,7 @@ def links(starts: Indices, ends: Indices, width: int) -> tuple[Indices, Indices]
 
 
 def connected(one: Indices, other: Indices, count: int) -> Indices:
-    """A label for each of `count` runs, the same for all runs of one connected group; the pairs touch."""
+    """A label for each of `count` runs by union-find, equal where the pairs of `one` and `other` connect."""
     labels = np.arange(count)
     while True:
         # Link the larger root to the smaller one, then shorten every path to its root.

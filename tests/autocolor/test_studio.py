@@ -428,6 +428,15 @@ def test_a_saved_picture_is_sent_without_rendering() -> None:
     assert held(other) == held(display)
 
 
+def test_a_picture_of_other_surfaces_is_refused_and_leaves_the_display_as_it_was() -> None:
+    studio, display = opened()
+    before = held(display)
+    other = scene_of(cube(), surfaces=[Surface("paint")], surface_of_part={"cube": "paint"})
+    with pytest.raises(InputError, match="surfaces of a picture must be those of the scene"):
+        send_picture(other, studio.picture, display)
+    assert held(display) == before
+
+
 def test_everything_can_be_sent_again() -> None:
     studio, display = opened()
     before = held(display)

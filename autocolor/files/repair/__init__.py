@@ -1,4 +1,4 @@
 """Converting the polygons of a file to a mesh of triangles and quads, and reporting every repair.
 
-May import from the modules of `files`.
+Uses the modules of `files`, `scene` and the ground.
 """

@@ -1,4 +1,4 @@
 """Scene files: reading a scene.toml, reporting all its problems at once, and writing one.
 
-Uses `files/meshes` and the modules of `files`.
+Uses `files/meshes`, the modules of `files`, `scene` and the ground.
 """

@@ -75,5 +75,6 @@ REFUSED: Final[Any] = Refused()
 
 def unknown(name: object, known: Iterable[str]) -> Problem:
     """The problem of an unknown key, with the closest known one."""
-    clause = nearest(str(name), list(known))
-    return Problem((str(name),), f"there is no {shown(name)}{clause}", names_key=True)
+    text = name if isinstance(name, str) else shown(name)
+    clause = nearest(text, known)
+    return Problem((text,), f"there is no {shown(name)}{clause}", names_key=True)

@@ -12,7 +12,6 @@ from autocolor.scene.columns.problems import REFUSED, Problem, RowError, unknown
 MOST_KEYS: Final = 64
 """Assumed: an upper bound on the keys of any table."""
 
-
 PLAIN_TYPES: Final = frozenset((float, int, bool, str, tuple, list))
 """Types of most values, none of them a table; asking for `Mapping` takes several times as long."""
 

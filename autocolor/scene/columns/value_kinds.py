@@ -234,8 +234,10 @@ class CurveKind(Leaf):
             _require(value in self.names)
             return value
         _require(not isinstance(value, UNORDERED))
+        pairs = list(value)
+        _require(not any(isinstance(pair, UNORDERED) for pair in pairs))
         along = Number(at_least=0, at_most=1).accepted
-        points = tuple((along(x), along(y)) for x, y in value)
+        points = tuple((along(x), along(y)) for x, y in pairs)
         xs, ys = [x for x, _ in points], [y for _, y in points]
         _require(len(points) >= 2 and xs[0] == 0 and xs[-1] == 1 and all(a < b for a, b in pairwise(xs)))
         _require(all(a <= b for a, b in pairwise(ys)))

@@ -186,5 +186,9 @@ def test_a_setting_colors_the_picture(folder: Path, run: Run) -> None:
 def test_a_table_and_its_fields_are_not_both_set_in_either_order(scene: Scene) -> None:
     settings = ("lights.key.flaps.x={maximum = 1}", "lights.key.flaps.x.minimum=0")
     for order in (settings, settings[::-1]):
-        with pytest.raises(UsageError, match=r"too; leave one out"):
+        with pytest.raises(UsageError, match=r"also set.*; leave one out"):
             with_settings(scene, order)
+
+
+def test_the_last_value_of_a_field_counts(scene: Scene) -> None:
+    assert with_settings(scene, ("ambient=0.1", "ambient=0.2")).ambient == 0.2

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from autocolor import InputError, Paint, Part, Reflectance, Surface
+from autocolor.checks import shown
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong
 
 
@@ -14,6 +15,11 @@ from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong
     ("make", "sentence"),
     [
         (lambda: Reflectance(diffuse=-1), "diffuse must be a finite number of at least 0, not -1"),
+        (lambda: Reflectance(0.7, 0.5, -1), "exponent must be a finite number of at least 0, not -1"),
+        (
+            lambda: Reflectance(0.7, 0.5, 10**400),
+            f"exponent must be a finite number of at least 0, not {shown(10**400)}",
+        ),
         (lambda: Reflectance(exponent=math.inf), "exponent must be a finite number of at least 0, not inf"),
         (lambda: Paint(blend=1.5), "blend must be a number from 0 to 1, not 1.5"),
         (lambda: Paint(light_percentage=101), "light_percentage must be a number from 0 to 100, not 101"),
@@ -118,7 +124,7 @@ def test_a_key_of_another_model_is_refused_by_name() -> None:
 def test_an_exponent_may_be_any_kind_of_number_and_stands_once() -> None:
     for exponent in (np.float32(20), np.int64(20), 20):
         assert Reflectance(0.7, 0.5, exponent).model == Phong(20)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="exponent must stand once, not twice; leave one out"):
+    with pytest.raises(InputError, match="exponent must be given once, not twice; leave one out"):
         Reflectance(0.7, 0.5, 20, exponent=3)
 
 

@@ -155,6 +155,7 @@ def test_what_is_no_color_is_refused(value: object) -> None:
     [
         (), ((0, 0),), ((0, 0), (0.5, 1)), ((0, 0), (0.5, 0.2), (0.5, 0.3), (1, 1)), ((0, 1), (1, 0)),
         ((0, -1), (1, 1)), ((0, 0), (1, 2)), ((0, 0), (float("nan"), 0.5), (1, 1)), 3, ((0, 0, 0), (1, 1, 1)),
+        (b"\0\0", b"\1\1"), ({0: 1, 0.5: 2}, {1: 1, 0.7: 2}),
     ],
 )  # fmt: skip
 def test_points_that_fall_or_do_not_span_the_range_are_no_curve(points: object) -> None:
