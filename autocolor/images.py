@@ -21,9 +21,7 @@ def image(scene: Scene, picture: Picture) -> Bytes:
     if the surfaces of the picture are not those of the scene.
     """
     check_surfaces(scene, picture)
-    shown = display_image(scene, picture)
-    colors: Bytes = shown.entries[shown.words]
-    return colors
+    return display_image(scene, picture).colors
 
 
 def save_image(path: str | PathLike[str], scene: Scene, picture: Picture, *, overwrite: bool = False) -> None:

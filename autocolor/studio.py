@@ -44,7 +44,6 @@ def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
     Raises InputError if the surfaces of the picture are not those of the scene.
     """
     check_surfaces(scene, picture)
-    display.send(instructions.reset())
     _send(None, display_image(scene, picture), display, encoder_of_entries(display))
 
 
@@ -70,7 +69,9 @@ def encoder_of_entries(display: HostPort) -> EntryEncoder:
 
 
 def _send(before: DisplayImage | None, now: DisplayImage, display: HostPort, encoder: EntryEncoder) -> None:
-    """Send the entries and words that differ from those of `before`, or all of them if that is None."""
+    """Send what differs from `before`, entries and words; a reset and everything if that is None."""
+    if before is None:
+        display.send(instructions.reset())
     for first, entries in [(0, now.entries)] if before is None else now.loads_after(before):
         display.send(encoder(first, entries))
     if before is None or before.words is not now.words:
@@ -181,7 +182,6 @@ class Studio:
 
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
-        self._display.send(instructions.reset())
         _send(None, self._shown, self._display, self._encoder)
 
     def _take(self, scene: Scene, costs: Tier, same_step: bool = False) -> None:
@@ -217,7 +217,7 @@ class Studio:
     def _repr_png_(self) -> bytes:
         from ramtek_emu.png import png_bytes
 
-        return png_bytes(self.entries[self.words])
+        return png_bytes(self._shown.colors)
 
     def __repr__(self) -> str:
         return f"Studio({self.scene.name!r}, to undo {len(self._done)}, to redo {len(self._undone)})"

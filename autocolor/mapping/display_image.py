@@ -40,6 +40,12 @@ class DisplayImage:
         table.flags.writeable = False
         return table
 
+    @property
+    def colors(self) -> Bytes:
+        """The color of each pixel, (lines, elements, 3) uint8."""
+        colors: Bytes = self.entries[self.words]
+        return colors
+
     def entries_of(self, surface: Surface) -> Bytes:
         """The entries of one surface, (levels, 3) uint8, read-only."""
         floor = _floor(self.scene, self.picture, surface.name) if self.scene.contrast == "floor" else 0.0

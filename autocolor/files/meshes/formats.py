@@ -6,15 +6,14 @@ A file's format is recognized by its suffix, or by its first bytes if the suffix
 
 from __future__ import annotations
 
-import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError
+from autocolor.files.modules import import_modules_of
 from autocolor.files.reading import read_head
 from autocolor.files.repair.polygons import MeshReport
 
@@ -53,9 +52,7 @@ def register(mesh_format: MeshFormat) -> MeshFormat:
 @cache
 def mesh_formats() -> tuple[MeshFormat, ...]:
     """All registered formats, sorted by name."""
-    package = import_module(__name__.rpartition(".")[0])
-    for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
-        import_module(module.name)
+    import_modules_of(__name__.rpartition(".")[0])
     return tuple(sorted(_REGISTERED, key=lambda each: each.name))
 
 

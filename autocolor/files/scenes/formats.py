@@ -5,14 +5,13 @@ To add a format, put a module that calls `register` beside this one; nothing els
 
 from __future__ import annotations
 
-import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 from typing import Final, Protocol
 
+from autocolor.files.modules import import_modules_of
 from autocolor.files.reading import read_head
 from autocolor.files.scenes.scene_report import SceneReport
 
@@ -52,9 +51,7 @@ def register(scene_format: SceneFormat) -> SceneFormat:
 @cache
 def scene_formats() -> tuple[SceneFormat, ...]:
     """All registered formats, sorted by name."""
-    package = import_module(__name__.rpartition(".")[0])
-    for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
-        import_module(module.name)
+    import_modules_of(__name__.rpartition(".")[0])
     return tuple(sorted(_REGISTERED, key=lambda each: each.name))
 
 

@@ -62,7 +62,7 @@ class PointOrName(Referring):
     """A point, or the name of a row of another table that gives the point."""
 
     def rule(self) -> str:
-        return "must be three finite numbers of at most 1e36, or a name"
+        return f"{VectorKind().rule()}, or a name"
 
     def accepts(self) -> str:
         return "str | Sequence[float]"
