@@ -54,6 +54,10 @@ def either(names: Iterable[str]) -> str:
     return f"{', '.join(others)} or {last}" if others else last
 
 
+FEW: Final = 16
+"""Assumed: as many names can be listed in a message."""
+
+
 def nearest(name: object, names: Iterable[str]) -> str:
     """A clause for a message: the closest of `names`, else all of them if they are few, else nothing."""
     names = list(names)
@@ -63,6 +67,6 @@ def nearest(name: object, names: Iterable[str]) -> str:
     )
     if close:
         return f"; did you mean {close[0]!r}?"
-    if 0 < len(names) <= 12:
+    if 0 < len(names) <= FEW:
         return f"; known are {', '.join(map(repr, names))}"
     return ""

@@ -7,7 +7,7 @@ must be recomputed and sent.
 | changed | sent to the display |
 |---|---|
 | mesh, view, parts, lights, ambient, D, S, reflection model, two_sided | all words |
-| mapping, scaling, numbers of levels | all words, the entries that differ |
+| mapping, scaling, exposure, dither, numbers of levels | all words, the entries that differ |
 | object color, light color, blend, light percentage | the entries of one range, no words |
 | contrast, background | the entries that differ, no words |
 """
@@ -22,11 +22,12 @@ from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
+from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import WORDS, LevelRange
 from autocolor.rendering import rendering
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns.column import Tier, fields_of
-from autocolor.scene.scene import Scene, cost_of_edit
+from autocolor.scene.scene import AUTO, Scene, cost_of_edit
 from autocolor.scene.surfaces import Paint
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
 
@@ -146,6 +147,14 @@ class Studio:
     def view(self, /, **changes: Unpack[ViewChanges]) -> None:
         """Change fields of the view; everything is recomputed."""
         self.edit(self.scene.with_view(**changes))
+
+    def hold_exposure(self) -> None:
+        """Keep the intensity ranges of the current picture, so that less light looks darker from now on."""
+        self.edit(self.scene.replace(exposure=held_exposure(self.picture)))
+
+    def release_exposure(self) -> None:
+        """Let the intensity ranges follow the picture again."""
+        self.edit(self.scene.replace(exposure=AUTO))
 
     def edit(self, scene: Scene, same_step: bool = False) -> None:
         """Make a scene the current one; nothing happens if it equals the current one.

@@ -26,7 +26,7 @@ Written by `python -m tests.typed_changes` from the columns; do not edit it by h
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, TypedDict
 
 from autocolor.scene.columns.column import Row

@@ -18,6 +18,7 @@ Examples:
   autocolor render scenes/coupe -o coupe.png --save coupe.npz
   autocolor render car.obj --up y
   autocolor render scenes/coupe --light key -o key.png
+  autocolor render scenes/coupe --light key --hold-exposure -o key-alone.png
   autocolor render scenes/coupe --set lights.key.concentration=40 --set ambient=0.2
 """
 
@@ -47,6 +48,11 @@ Examples:
 @click.option(
     "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Set a field of the scene; repeatable."
 )
+@click.option(
+    "--hold-exposure",
+    is_flag=True,
+    help="Keep the exposure that the scene has without --light and --set, so that less light is darker.",
+)
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
 @click.pass_context
 def render(
@@ -56,13 +62,20 @@ def render(
     save: str | None,
     lights: tuple[str, ...],
     settings: tuple[str, ...],
+    hold_exposure: bool,
     force: bool,
     up: str,
     strict: bool,
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
     report = read(scene, up)
-    edited = with_settings(report.scene, settings)
+    original = report.scene
+    if hold_exposure:
+        from autocolor.mapping.exposure import held_exposure
+        from autocolor.rendering import render as rendered
+
+        original = original.replace(exposure=held_exposure(rendered(original)))
+    edited = with_settings(original, settings)
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None:

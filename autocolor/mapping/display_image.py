@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -13,11 +14,15 @@ from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.color_blending import entries_of
+from autocolor.mapping.exposure import mapped_ranges
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import Scene, costs_at_least
 from autocolor.scene.surfaces import Surface
+
+MAPPING: Final = ("scaling", "mapping", "exposure", "dither")
+"""The fields of a scene that its words depend on, besides the picture and the ranges; see `words_of`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +53,18 @@ class DisplayImage:
 
     def entries_of(self, surface: Surface) -> Bytes:
         """The entries of one surface, (levels, 3) uint8, read-only."""
-        floor = _floor(self.scene, self.picture, surface.name) if self.scene.contrast == "floor" else 0.0
+        floor = self._floors.get(surface.name, 0.0) if self.scene.contrast == "floor" else 0.0
         return entries_of(surface.paint, self.ranges[surface.name].levels, floor)
+
+    @cached_property
+    def _floors(self) -> Mapping[str, float]:
+        """The mapped minimum as a fraction of the maximum, for each visible surface by name."""
+        ranges = mapped_ranges(self.picture, self.scene.scaling, self.scene.exposure)
+        return {
+            self.picture.surfaces[number - 1]: extent.minimum / extent.maximum if extent.maximum > 0 else 0.0
+            for number, extent in ranges.items()
+            if number
+        }
 
     def loads_after(self, before: DisplayImage) -> Iterator[tuple[int, Bytes]]:
         """The runs of entries, as (first entry, colors), to load into a table that holds those of `before`.
@@ -77,34 +92,42 @@ class DisplayImage:
         if self.scene.contrast != other.scene.contrast:
             return False
         return self.scene.contrast == "stretch" or (
-            self.picture is other.picture and self.scene.scaling == other.scene.scaling
+            self.picture is other.picture
+            and self.scene.scaling == other.scene.scaling
+            and self.scene.exposure == other.scene.exposure
         )
 
 
 def display_image(scene: Scene, picture: Picture, before: DisplayImage | None = None) -> DisplayImage:
     """The display image of a scene and its picture.
 
-    Ranges and words are shared with the earlier image `before` where they did not change. Raises InputError
-    if an intensity is not finite.
+    Ranges and words are shared with the earlier image `before` where they did not change; the ranges depend
+    on the surfaces and on what is visible, not on the light. Raises InputError if an intensity is not finite.
     """
     if before is not None and not costs_at_least(before.scene, scene, Tier.LEVELS):
         ranges = before.ranges
     else:
-        in_use = {scene.parts[number].surface for number in scene.mesh.parts_in_use}
-        ranges = level_ranges(scene.surfaces, in_use)
+        ranges = level_ranges(scene.surfaces, _covered(scene, picture), scene.division)
         if before is not None and before.ranges == ranges:
             ranges = before.ranges
     if (
         before is not None
         and before.picture is picture
         and before.ranges is ranges
-        and before.scene.scaling == scene.scaling
-        and before.scene.mapping == scene.mapping
+        and all(getattr(before.scene, name) == getattr(scene, name) for name in MAPPING)
     ):
         words = before.words
     else:
-        words = words_of(picture, ranges, scene.scaling, scene.mapping)
+        words = words_of(picture, ranges, *(getattr(scene, name) for name in MAPPING))
     return DisplayImage(scene, picture, ranges, words)
+
+
+def _covered(scene: Scene, picture: Picture) -> Mapping[str, int]:
+    """How many pixels each surface in use covers."""
+    covered = {scene.parts[number].surface: 0 for number in scene.mesh.parts_in_use}
+    for surface in picture.slices:
+        covered[picture.surfaces[surface.surface_number - 1]] = surface.stop - surface.start
+    return covered
 
 
 def check_surfaces(scene: Scene, picture: Picture) -> None:
@@ -115,10 +138,3 @@ def check_surfaces(scene: Scene, picture: Picture) -> None:
             f"the surfaces of a picture must be those of the scene, {shown(names)}, not"
             f" {shown(list(picture.surfaces))}; render this scene, or use the scene that was rendered"
         )
-
-
-def _floor(scene: Scene, picture: Picture, name: str) -> float:
-    """The minimum intensity as a fraction of the maximum, for the surface or for the whole object."""
-    number = 0 if scene.scaling == "object" else picture.surfaces.index(name) + 1
-    extent = picture.relative_ranges.get(number)
-    return extent.minimum / extent.maximum if extent is not None and extent.maximum > 0 else 0.0

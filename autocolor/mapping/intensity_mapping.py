@@ -7,16 +7,19 @@ Blending", Figure 11: a word is the first word of the surface's range plus the l
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 
 from autocolor.arrays import Singles, Words
 from autocolor.errors import InputError
 from autocolor.lighting.picture import IntensityRange, Picture
+from autocolor.mapping.exposure import WHOLE, has_extent, mapped_ranges
 from autocolor.mapping.level_ranges import BACKGROUND, LevelRange
-from autocolor.mapping.rounding import halves_up
-from autocolor.scene.curves import CurvePoints, mapping_curve
+from autocolor.mapping.rounding import HALF, halves_up
+from autocolor.scene.curves import CurvePoints, Fractions, mapping_curve
+from autocolor.scene.scene import AUTO, Exposure
 from autocolor.visibility.visible_points import point_chunks
 
 
@@ -25,37 +28,45 @@ def words_of(
     ranges: Mapping[str, LevelRange],
     scaling: str = "surface",
     mapping: str | CurvePoints = "linear",
+    exposure: Exposure = AUTO,
+    dither: str = "off",
 ) -> Words:
     """The words of a picture, (lines, elements) uint16, read-only; BACKGROUND where nothing is visible.
 
-    The minimum and maximum intensity become the lowest and highest level: those of each surface if `scaling`
-    is "surface", those of the whole picture if it is "object". Where they are equal, every pixel gets the
-    highest level. Raises InputError if an intensity is not finite.
+    The minimum and the maximum of the range that is mapped for a surface (see `mapped_ranges`) become its
+    lowest and its highest level; intensities beyond it become the nearest of these. Where no range has an
+    extent, as with all lights off, every pixel gets the middle level: the object color, neither black nor a
+    highlight. Raises InputError if an intensity is not finite.
     """
     words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
-    extents = picture.relative_ranges
     for surface in picture.slices:
-        extent = extents[surface.surface_number]
+        extent = picture.relative_ranges[surface.surface_number]
         if not (np.isfinite(extent.minimum) and np.isfinite(extent.maximum)):
             name = picture.surfaces[surface.surface_number - 1]
             raise InputError(f"surface {name!r}: an intensity must be finite, not {extent.maximum:g}")
-    if scaling == "object":
-        of_all = fraction_of(extents[0], mapping, picture.relative)
-        fractions_of = dict.fromkeys(extents, of_all)
-    else:
-        fractions_of = {
-            surface.surface_number: fraction_of(
-                extents[surface.surface_number], mapping, picture.relative[surface.pixels]
-            )
-            for surface in picture.slices
-        }
+    extents = mapped_ranges(picture, scaling, exposure)
+    intensities_of = {surface.surface_number: picture.relative[surface.pixels] for surface in picture.slices}
+    fractions_of: dict[int, Fractions] = {}
+    for number in intensities_of:
+        # Surfaces that are mapped by the whole object's range share one function.
+        of = WHOLE if extents[number] is extents[WHOLE] else number
+        if of not in fractions_of:
+            everything = picture.relative if of == WHOLE else intensities_of[number]
+            found = picture.relative_ranges[of]
+            fractions_of[of] = fraction_of(extents[of], mapping, everything, found)
+        fractions_of[number] = fractions_of[of]
+    thresholds = ordered_thresholds(picture.lines, picture.elements) if dither == "ordered" else None
     for chunk in point_chunks(picture.slices):
         intensities, pixels = picture.relative[chunk.pixels], picture.pixels[chunk.pixels]
         here = np.empty(len(pixels), np.uint16)
         for surface in chunk.slices:
             first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
             fractions = fractions_of[surface.surface_number](intensities[surface.pixels])
-            np.copyto(here[surface.pixels], levels_of(fractions, levels, out=fractions), casting="unsafe")
+            if thresholds is None:
+                here_levels = levels_of(fractions, levels, out=fractions)
+            else:
+                here_levels = dithered_levels(fractions, levels, thresholds.take(pixels[surface.pixels]))
+            np.copyto(here[surface.pixels], here_levels, casting="unsafe")
             here[surface.pixels] += np.uint16(first)
         words[pixels] = here
     words.flags.writeable = False
@@ -68,13 +79,47 @@ def levels_of(fractions: Singles, levels: int, out: Singles | None = None) -> Si
     return halves_up(scaled, out=scaled)
 
 
-def fraction_of(
-    extent: IntensityRange, mapping: str | CurvePoints, everything: Singles
-) -> Callable[[Singles], Singles]:
-    """The function from intensities to fractions of the range, 0 to 1.
+def dithered_levels(fractions: Singles, levels: int, thresholds: Singles) -> Singles:
+    """The levels, 0 to levels - 1, for fractions from 0 to 1 and a threshold between 0 and 1 for each.
 
-    `everything` holds all intensities that are mapped with this range.
+    A fraction that lies between two levels gets the upper one where it exceeds the lower one by more than
+    the complement of the threshold. The lowest and the highest level stay whole.
     """
-    if extent.maximum == extent.minimum:
-        return np.ones_like
-    return mapping_curve(mapping)(np.float32(extent.minimum), np.float32(extent.maximum), everything)
+    scaled = fractions * np.float32(levels - 1)
+    scaled += thresholds
+    levels_below: Singles = np.floor(scaled, out=scaled)
+    return levels_below
+
+
+@lru_cache(maxsize=2)
+def ordered_thresholds(lines: int, elements: int) -> Singles:
+    """The thresholds of a raster, (lines * elements,) float32: 64 values in tiles of 8 x 8 pixels.
+
+    The order within a tile is that of B. E. Bayer, 1973, "An optimum method for two-level rendition of
+    continuous-tone pictures". The mean of the thresholds is a half, so dithering keeps the mean level.
+    """
+    tile = np.zeros((1, 1))
+    for _ in range(3):
+        tile = np.block([[4 * tile, 4 * tile + 2], [4 * tile + 3, 4 * tile + 1]])
+    tile = (tile + HALF) / tile.size
+    line, element = np.arange(lines) % len(tile), np.arange(elements) % len(tile)
+    thresholds = tile[np.ix_(line, element)].astype(np.float32).ravel()
+    thresholds.flags.writeable = False
+    return thresholds
+
+
+def fraction_of(
+    mapped: IntensityRange, mapping: str | CurvePoints, everything: Singles, found: IntensityRange
+) -> Fractions:
+    """The function from intensities to fractions of a range, 0 to 1; a half for a range without extent.
+
+    `everything` holds all intensities that are mapped with this range, and `found` is their own range; those
+    beyond the range that is mapped have the fractions of its ends.
+    """
+    if not has_extent(mapped):
+        return lambda intensities: np.full_like(intensities, HALF)
+    low, high = np.float32(mapped.minimum), np.float32(mapped.maximum)
+    if low <= found.minimum and found.maximum <= high:
+        return mapping_curve(mapping)(low, high, everything)
+    curve = mapping_curve(mapping)(low, high, np.clip(everything, low, high))
+    return lambda intensities: curve(np.clip(intensities, low, high))

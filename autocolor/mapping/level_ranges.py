@@ -1,14 +1,18 @@
 """Level ranges: the words that each surface owns.
 
 Paper: "Light Source Color Blending", Figure 11: the intensities of each surface type are mapped to a separate
-sequential range of the lookup table. Assumed: word 0 is the background, the sixteen highest
-words belong to the interactive screens, and the words between are divided equally among the surfaces in use,
-in table order.
+sequential range of the lookup table. Assumed: word 0 is the background, the sixteen highest words belong to
+the interactive screens, and the words between are divided among the surfaces in use, in table order.
+
+Assumed: they are divided in proportion to the square root of the pixels that a surface covers, which is its
+size in the picture: a gradient across twice the size is as smooth with twice the levels. In proportion to the
+pixels themselves, small surfaces would get too few levels.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+import math
+from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple
 
 from autocolor.errors import InputError
@@ -18,6 +22,9 @@ WORDS: Final = 1024
 BACKGROUND: Final = 0
 SCREEN_LEVELS: Final = 16
 FEWEST_LEVELS: Final = 2
+
+USEFUL_LEVELS: Final = 16
+"""Assumed: with fewer levels a surface shows visible steps; each gets as many while the words suffice."""
 
 
 class LevelRange(NamedTuple):
@@ -43,29 +50,72 @@ SCREEN_COLORS: Final = (
 """Assumed: the colors of the screens' words, which do not depend on the scene."""
 
 
-def level_ranges(surfaces: Sequence[Surface], in_use: Collection[str]) -> Mapping[str, LevelRange]:
+def level_ranges(
+    surfaces: Sequence[Surface], covered: Mapping[str, int], division: str = "covered"
+) -> Mapping[str, LevelRange]:
     """The level range of each surface in use, by name.
 
-    A surface gets the number of levels that it asks for; the others share the rest equally. Raises InputError
-    if that would leave fewer than two levels for one of them.
+    `covered` has the number of pixels that each surface in use covers in the picture, 0 for one that is not
+    seen. A surface gets the number of levels that it asks for; the others share the rest, equally or by what
+    they cover. Raises InputError if that would leave fewer than two levels for one of them.
     """
-    used = [surface for surface in surfaces if surface.name in in_use]
+    used = [surface for surface in surfaces if surface.name in covered]
     room = SCREENS.first - BACKGROUND - 1
     asked = sum(surface.levels for surface in used if surface.levels is not None)
-    sharing = sum(1 for surface in used if surface.levels is None)
-    share = (room - asked) // sharing if sharing else 0
-    if asked > room or (sharing and share < FEWEST_LEVELS):
+    sharing = [surface.name for surface in used if surface.levels is None]
+    if asked > room or (sharing and (room - asked) // len(sharing) < FEWEST_LEVELS):
         largest = max(
             (surface for surface in used if surface.levels), key=lambda surface: surface.levels or 0
         )
         raise InputError(
             f"surface {largest.name!r}: the levels must be at most {room} in all, {FEWEST_LEVELS} of them for"
-            f" each surface that asks for none, not {asked} and {sharing} such surfaces; ask for fewer levels"
+            f" each surface that asks for none, not {asked} and {len(sharing)} such surfaces; ask for fewer"
+            " levels"
         )
+    if division == "equal":
+        shares = [(room - asked) // len(sharing) for _ in sharing]
+    else:
+        shares = shares_of_words(room - asked, [covered[name] for name in sharing])
+    share_of = dict(zip(sharing, shares, strict=True))
     ranges = {}
     first = BACKGROUND + 1
     for surface in used:
-        levels = share if surface.levels is None else surface.levels
+        levels = share_of[surface.name] if surface.levels is None else surface.levels
         ranges[surface.name] = LevelRange(first, levels)
         first += levels
     return ranges
+
+
+def shares_of_words(words: int, pixels: Sequence[int]) -> list[int]:
+    """The words, divided in proportion to the square roots of some numbers of pixels.
+
+    Each share is at least USEFUL_LEVELS, or an equal share where the words do not suffice for that. Shares
+    are rounded down; the words that are left go, one each, to those that lost most, of equal ones to the
+    first.
+
+    >>> shares_of_words(1007, [160_000, 40_000, 100, 0])
+    [650, 325, 16, 16]
+    """
+    if not pixels:
+        return []
+    fewest = min(USEFUL_LEVELS, words // len(pixels))
+    weights = [math.sqrt(count) for count in pixels]
+    if not any(weights):
+        weights = [1.0] * len(pixels)
+    # Give the least share to those whose part of the words is smaller, until there is no such.
+    sharing = list(range(len(pixels)))
+    while True:
+        rest = words - fewest * (len(pixels) - len(sharing))
+        total = sum(weights[row] for row in sharing)
+        parts = {row: rest * weights[row] / total for row in sharing}
+        larger = [row for row in sharing if parts[row] >= fewest]
+        if len(larger) == len(sharing):
+            break
+        sharing = larger
+    shares = [fewest] * len(pixels)
+    for row, part in parts.items():
+        shares[row] = math.floor(part)
+    most_lost = sorted(sharing, key=lambda row: shares[row] - parts[row])
+    for row in most_lost[: words - sum(shares)]:
+        shares[row] += 1
+    return shares

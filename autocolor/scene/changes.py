@@ -5,7 +5,7 @@ Written by `python -m tests.typed_changes` from the columns; do not edit it by h
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, TypedDict
 
 from autocolor.scene.columns.column import Row
@@ -108,6 +108,9 @@ class SceneFields(TypedDict, total=False):
     scaling: Literal["surface", "object"]
     mapping: str | Sequence[Sequence[float]]
     contrast: Literal["stretch", "floor"]
+    exposure: str | Mapping[str, Sequence[float]] | Sequence[tuple[str, Sequence[float]]]
+    dither: Literal["off", "ordered"]
+    division: Literal["covered", "equal"]
     background: str | Sequence[int]
     name: str
 

@@ -25,7 +25,7 @@ from autocolor.scene.changes import (
 )
 from autocolor.scene.columns.column import Column, Row, Tier, fields_of, row_label
 from autocolor.scene.columns.problems import REFUSED, Problem, RowError
-from autocolor.scene.columns.reference_kinds import Referring, references_of
+from autocolor.scene.columns.reference_kinds import RangesByName, Referring, references_of
 from autocolor.scene.columns.row_kinds import Nested, Rows
 from autocolor.scene.columns.rows import changed, cost, with_values
 from autocolor.scene.columns.value_kinds import Choice, ColorKind, CurveKind, Instance, Number, Text
@@ -40,6 +40,15 @@ SomeTableRow = TypeVar("SomeTableRow", Part, Surface, Light)
 
 SCALINGS: Final = ("surface", "object")
 CONTRASTS: Final = ("stretch", "floor")
+DIVISIONS: Final = ("covered", "equal")
+DITHERS: Final = ("off", "ordered")
+
+AUTO: Final = "auto"
+OBJECT: Final = "object"
+"""In `exposure`, the name of the range of the whole object; a surface of this name cannot be held."""
+
+Exposure = str | tuple[tuple[str, tuple[float, float]], ...]
+"""AUTO, or held ranges: pairs of a name, OBJECT or that of a surface, and its minimum and maximum."""
 
 MOST_PROBLEMS: Final = 100
 
@@ -85,6 +94,31 @@ class Scene(Row):
             "Whether the lowest level is black, or in proportion to the minimum intensity.",
         ),
     ] = "stretch"
+    exposure: Annotated[
+        Exposure,
+        Column(
+            RangesByName("surfaces", AUTO, OBJECT),
+            Tier.LEVELS,
+            "Whether intensity ranges are those of the picture, or held: those of surfaces, of the object.",
+            "intensity",
+        ),
+    ] = AUTO
+    dither: Annotated[
+        str,
+        Column(
+            Choice(DITHERS),
+            Tier.LEVELS,
+            "Whether levels are rounded, or dithered by an ordered pattern.",
+        ),
+    ] = "off"
+    division: Annotated[
+        str,
+        Column(
+            Choice(DIVISIONS),
+            Tier.LEVELS,
+            "Whether surfaces get more levels the more of the picture they cover, or all the same number.",
+        ),
+    ] = "covered"
     background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (
         0,
         0,
@@ -112,13 +146,16 @@ class Scene(Row):
 
     def _reference_problems(self) -> Iterator[Problem]:
         """The problems of references to rows of other tables that do not exist."""
+        tables: list[tuple[type[Row], Sequence[Row]]] = [(Scene, (self,))]
         for table, field in fields_of(Scene).items():
             kind, rows = field.column.kind, vars(self)[table]
             if isinstance(kind, Rows) and rows is not REFUSED:
-                for name, referring in references_of(kind.row_class).items():
-                    others = vars(self)[referring.table]
-                    if others is not REFUSED:
-                        yield from _missing_names(rows, name, referring, [row.name for row in others])
+                tables.append((kind.row_class, rows))
+        for row_class, rows in tables:
+            for name, referring in references_of(row_class).items():
+                others = vars(self)[referring.table]
+                if others is not REFUSED:
+                    yield from _missing_names(rows, name, referring, [row.name for row in others])
 
     def replace(self, /, **changes: Unpack[SceneChanges]) -> Scene:
         """The scene with some fields changed."""
@@ -201,10 +238,12 @@ def _missing_names(
     """The problems of rows whose column `name` refers to names that are not in `known`."""
     found = set(known)
     for row in rows:
-        for wanted in referring.names_in(vars(row)[name]):
+        value = vars(row)[name]
+        for wanted in () if value is REFUSED else referring.names_in(value):
             if wanted not in found:
                 table = f"the {referring.table.removesuffix('s')} table"
-                text = f"{row_label(row)}: {name} {shown(wanted)} is not in {table}{nearest(wanted, known)}"
+                label = f"{row_label(row)}: " if row_label(row) else ""
+                text = f"{label}{name} {shown(wanted)} is not in {table}{nearest(wanted, known)}"
                 yield Problem((), text)
 
 

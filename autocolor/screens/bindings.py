@@ -40,6 +40,9 @@ class Actions(Protocol):
     def repaint(self, step: int) -> object:
         """Change the object color of the selected surface."""
 
+    def switch_exposure(self) -> object:
+        """Hold the exposure, or let it follow the picture."""
+
     def undo(self) -> object:
         """Undo the last step."""
 
@@ -115,6 +118,11 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
         (Chord("c"), Chord("c", shift=True)),
         "the next object color, the previous one",
         lambda viewer, number: viewer.repaint((1, -1)[number]),
+    ),
+    Binding(
+        (Chord("e"),),
+        "hold the exposure (less light is darker), release it",
+        lambda viewer, _: viewer.switch_exposure(),
     ),
     Binding((Chord("z", control=True),), "undo", lambda viewer, _: viewer.undo()),
     Binding(

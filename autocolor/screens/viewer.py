@@ -15,7 +15,7 @@ from autocolor.files.file_stem import file_stem
 from autocolor.files.scene_sources import read_scene
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.defaults import OBJECT_COLORS, framed
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import AUTO, Scene
 from autocolor.scene.view import View
 from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS, Actions
 from autocolor.screens.entries_screen import draw_entries
@@ -221,6 +221,15 @@ class Viewer:
         self.back()
         self._edit(self.studio.scene.with_light(light.name, on=not light.on))
         self.message = f"light {light.name} {'off' if light.on else 'on'}"
+
+    def switch_exposure(self) -> None:
+        """Hold the intensity ranges of the picture, or let them follow it again."""
+        self.back()
+        if self.studio.scene.exposure == AUTO:
+            self.studio.hold_exposure()
+        else:
+            self.studio.release_exposure()
+        self.message = f"exposure {'auto' if self.studio.scene.exposure == AUTO else 'held'}"
 
     def choose_surface(self, step: int) -> None:
         """Select another surface in use for the color keys, `step` positions further."""

@@ -136,7 +136,7 @@ def entry_of(paint: Paint, levels: int, level: int, floor: float = 0.0) -> tuple
 
 
 def divided(levels: Sequence[int | None]) -> list[tuple[int, int]]:
-    """First word and levels of each surface: 1024 less the background and sixteen of the screens."""
+    """First word and levels of each surface in equal shares: 1024 less the background and the screens' 16."""
     left = 1024 - 1 - 16 - sum(count for count in levels if count is not None)
     share = left // max(sum(1 for count in levels if count is None), 1)
     ranges: list[tuple[int, int]] = []

@@ -146,6 +146,11 @@ def surfaces(name: str) -> st.SearchStrategy[Surface]:
 
 MAPPINGS: list[Any] = [*CURVES, ((0, 0.1), (0.4, 0.8), (1, 1))]
 
+held_ranges = st.tuples(numbers(0, 2), numbers(0.01, 3)).map(lambda pair: (pair[0], pair[0] + pair[1]))
+exposures = st.just("auto") | st.dictionaries(
+    st.sampled_from(["body", "glass", "object"]), held_ranges, min_size=1
+)
+
 
 @st.composite
 def scenes(draw: st.DrawFn) -> Scene:
@@ -162,5 +167,8 @@ def scenes(draw: st.DrawFn) -> Scene:
         scaling=draw(st.sampled_from(["surface", "object"])),
         mapping=draw(st.sampled_from(MAPPINGS)),
         contrast=draw(st.sampled_from(["stretch", "floor"])),
+        exposure=draw(exposures),  # type: ignore[arg-type]
+        dither=draw(st.sampled_from(["off", "ordered"])),
+        division=draw(st.sampled_from(["covered", "equal"])),
         background=draw(colors),
     )

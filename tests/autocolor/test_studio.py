@@ -503,3 +503,51 @@ def test_the_first_edit_of_a_drag_after_an_undo_is_a_step_of_its_own() -> None:
     studio.edit(studio.scene.with_surface("body", blend=0.4), same_step=True)
     studio.undo()
     assert studio.scene.surface("body").paint.blend == 0.2
+
+
+def test_with_the_exposure_held_less_light_looks_darker_and_the_rest_stays() -> None:
+    studio = Studio(car().replace(contrast="floor"), Ramtek9300(SMALL))
+    before = studio.picture
+    studio.hold_exposure()
+    words = studio.words.copy()
+    studio.light("key", intensity=0.3)
+    assert (studio.words <= words).all()
+    assert (studio.words < words).any()
+    unchanged = before.intensity == studio.picture.intensity
+    assert (studio.words == words)[unchanged].all()
+    studio.light("key", intensity=1.0)
+    assert (studio.words == words).all()
+    studio.release_exposure()
+    assert studio.scene.exposure == "auto"
+
+
+def test_an_edit_of_light_or_color_moves_no_range_and_one_of_the_view_does() -> None:
+    studio = Studio(car(), Ramtek9300(SMALL))
+    ranges = studio.level_ranges
+    studio.light("key", intensity=0.3, position=(0, 0, 9))
+    studio.recolor("body", object_color="#123456")
+    studio.surface("glass", diffuse=0.1)
+    assert studio.level_ranges is ranges
+    studio.view(eye=(1.0, -2.0, 1.0))
+    assert dict(studio.level_ranges) != dict(ranges)
+
+
+def test_the_lights_alone_add_up_to_all_together_where_the_exposure_is_held_from_zero() -> None:
+    """Paper: Figure 8. With the ambient light in the first panel only."""
+    scene = car().replace(ambient=0.05, scaling="object", mapping="linear")
+    whole = Studio(scene, Ramtek9300(SMALL)).picture.ranges.whole
+    scene = scene.replace(exposure={"object": (0.0, whole.maximum)})
+    together = Studio(scene, Ramtek9300(SMALL))
+    seen = together.picture.surface_number > 0
+    firsts = np.zeros(256, int)
+    for number, name in enumerate(together.picture.surfaces, 1):
+        firsts[number] = together.level_ranges[name].first
+    first = firsts[together.picture.surface_number]
+    total = np.zeros(seen.shape, int)
+    for row, light in enumerate(scene.lights):
+        panel = scene.only_lights(light.name).replace(ambient=0.0 if row else scene.ambient)
+        alone = Studio(panel, Ramtek9300(SMALL))
+        assert alone.level_ranges == together.level_ranges
+        total += alone.words - first
+    off = np.abs(total - (together.words - first))[seen]
+    assert off.max() <= len(scene.lights) / 2

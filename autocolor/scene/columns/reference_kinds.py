@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from autocolor.scene.columns.column import Row, fields_of
-from autocolor.scene.columns.value_kinds import Leaf, Text, VectorKind
+from autocolor.scene.columns.value_kinds import LARGEST_PLACE, Leaf, Number, Text, VectorKind
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,48 @@ class PointOrName(Referring):
 
     def names_in(self, value: Any) -> Sequence[str]:
         return (value,) if isinstance(value, str) else ()
+
+
+@dataclass(frozen=True)
+class RangesByName(Referring):
+    """The word `none`, or ranges [minimum, maximum] by the name of a row, or by the name `others`.
+
+    They are held as pairs of a name and a range. Numbers are at least 0, and each maximum above its minimum.
+    """
+
+    none: str
+    others: str
+
+    def rule(self) -> str:
+        return (
+            f"must be {self.none!r}, or a table of ranges [minimum, maximum] from 0 to 1e36 by the names of"
+            f" {self.table} and {self.others!r}"
+        )
+
+    def accepts(self) -> str:
+        return "str | Mapping[str, Sequence[float]] | Sequence[tuple[str, Sequence[float]]]"
+
+    def accepted(self, value: Any) -> str | tuple[tuple[str, tuple[float, float]], ...]:
+        if isinstance(value, str):
+            if value != self.none:
+                raise ValueError
+            return self.none
+        pairs = list(value.items()) if isinstance(value, Mapping) else list(value)
+        intensity = Number(at_least=0, at_most=LARGEST_PLACE).accepted
+        ranges = tuple(
+            (Text().accepted(name), (intensity(minimum), intensity(maximum)))
+            for name, (minimum, maximum) in pairs
+        )
+        names = [name for name, _ in ranges]
+        if not ranges or len(set(names)) < len(names) or not all(low < high for _, (low, high) in ranges):
+            raise ValueError
+        return ranges
+
+    def names_in(self, value: Any) -> Sequence[str]:
+        return () if isinstance(value, str) else [name for name, _ in value if name != self.others]
+
+    def written(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: value if isinstance(value, str) else {key: list(limits) for key, limits in value}}
 
 
 def references_of(cls: type[Row]) -> Mapping[str, Referring]:

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import read_scene, render, write_picture
+from autocolor.mapping.display_image import display_image
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.meshes import wall_scene
 
@@ -31,7 +32,8 @@ def test_json_has_the_same_facts(folder: Path, run: Run) -> None:
     assert facts["lights"] == ["key", "key.2"]
     assert facts["pixels"] == len(picture.pixels)
     assert facts["intensities"] == list(picture.ranges.whole)
-    assert facts["surfaces"]["side"]["words"] == [504, 1006]
+    side = display_image(read_scene("scene"), picture).ranges["side"]
+    assert facts["surfaces"]["side"]["words"] == [side.first, side.last]
     assert facts["surfaces"]["side"]["intensities"] == list(picture.ranges.surfaces["side"])
     assert facts["repairs"] == []
     assert len(facts["created"]) == 2

@@ -184,3 +184,14 @@ def test_a_terminated_render_leaves_the_old_picture_whole(process: Run, folder: 
     )
     assert process(command=[sys.executable, "-c", program]).code == -signal.SIGKILL
     assert (folder / "two.png").read_bytes() == b"mine"
+
+
+def test_with_the_exposure_held_one_light_alone_is_darker(folder: Path, run: Run) -> None:
+    assert run("render", "scene", "--light", "key", "-o", "stretched.png").code == 0
+    assert run("render", "scene", "--light", "key", "--hold-exposure", "-o", "held.png").code == 0
+    assert run("render", "scene", "--hold-exposure", "-o", "all.png").code == 0
+    assert run("render", "scene", "-o", "plain.png").code == 0
+    held, stretched = pixels(folder / "held.png").astype(int), pixels(folder / "stretched.png").astype(int)
+    assert (held <= stretched).all()
+    assert held.sum() < 0.9 * stretched.sum()
+    assert (folder / "all.png").read_bytes() == (folder / "plain.png").read_bytes()

@@ -69,7 +69,7 @@ def test_ambient_and_both_coefficients_k_times_as_high_change_no_word(scene: Sce
 
 
 def words(scene: Scene) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
-    ranges = level_ranges(scene.surfaces, {part.surface for part in scene.parts})
+    ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
     return words_of(render(scene, 12, 16), ranges, scene.scaling, scene.mapping)
 
 

@@ -16,7 +16,7 @@ from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import costs_at_least
 from tests.autocolor.meshes import wall_scene
-from tests.autocolor.strategies import MAPPINGS, colors, numbers, paints, scenes
+from tests.autocolor.strategies import MAPPINGS, colors, exposures, numbers, paints, scenes
 
 LINES, ELEMENTS = 9, 12
 
@@ -50,6 +50,9 @@ edits = st.one_of(
     of_scene(contrast=st.sampled_from(["stretch", "floor"])),
     of_scene(scaling=st.sampled_from(["surface", "object"])),
     of_scene(mapping=st.sampled_from(MAPPINGS)),
+    of_scene(exposure=exposures),
+    of_scene(dither=st.sampled_from(["off", "ordered"])),
+    of_scene(division=st.sampled_from(["covered", "equal"])),
     of_scene(ambient=numbers(0, 1)),
     of_scene(lights=st.sampled_from([(), (Light("key", (0.0, -3.0, 2.0)),)])),
     of_scene(name=st.sampled_from(["scene", "another"])),

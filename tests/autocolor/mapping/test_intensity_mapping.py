@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 from typing import Any
@@ -11,7 +12,13 @@ from hypothesis import strategies as st
 
 from autocolor import InputError, LevelRange, Picture, Scene, render
 from autocolor.lighting.picture import IntensityRange
-from autocolor.mapping.intensity_mapping import fraction_of, levels_of, words_of
+from autocolor.mapping.intensity_mapping import (
+    dithered_levels,
+    fraction_of,
+    levels_of,
+    ordered_thresholds,
+    words_of,
+)
 from autocolor.mapping.level_ranges import level_ranges
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor.reference import level_of
@@ -55,10 +62,11 @@ def shown_by(mapping: Any, fraction: float) -> float:
 def test_every_level_is_the_one_of_the_slow_twin(steps: list[int], mapping: Any, levels: int) -> None:
     intensities = np.array(steps, np.float32) * np.float32(1.7)
     least, most = float(intensities.min()), float(intensities.max())
-    shown = fraction_of(IntensityRange(least, most), mapping, intensities)(intensities)
+    extent = IntensityRange(least, most)
+    shown = fraction_of(extent, mapping, intensities, extent)(intensities)
     for intensity, level in zip(intensities.tolist(), levels_of(shown, levels).tolist(), strict=True):
         if least == most:
-            assert level == levels - 1
+            assert level == levels // 2
             continue
         exact = shown_by(mapping, (intensity - least) / (most - least)) * (levels - 1) + 0.5
         if abs(exact - round(exact)) > 1e-3:
@@ -85,15 +93,74 @@ def test_the_whole_object_has_one_minimum_and_maximum() -> None:
 
 @pytest.mark.parametrize("scaling", ["surface", "object"])
 @pytest.mark.parametrize("mapping", MAPPINGS, ids=str)
-def test_a_surface_whose_minimum_is_its_maximum_takes_its_last_level(scaling: str, mapping: Any) -> None:
+def test_where_nothing_has_an_extent_every_pixel_has_the_middle_level(scaling: str, mapping: Any) -> None:
     words = words_of(picture_of([3.0, 3.0], [3.0]), RANGES, scaling, mapping)
-    assert words.tolist() == [[0, 11, 11, 112, 0]]
+    assert words.tolist() == [[0, 6, 6, 62, 0]]
+
+
+def test_a_surface_without_extent_is_mapped_by_the_range_of_the_whole_object() -> None:
+    words = words_of(picture_of([1.0, 5.0], [2.0, 2.0]), RANGES, "surface")
+    assert words.tolist() == [[0, 1, 11, 12 + 25, 12 + 25, 0]]
+
+
+def test_an_extent_within_rounding_of_its_maximum_counts_as_none() -> None:
+    almost = float(np.nextafter(np.float32(2), np.float32(3)))
+    words = words_of(picture_of([1.0, 5.0], [2.0, almost]), RANGES, "surface")
+    assert words.tolist() == [[0, 1, 11, 12 + 25, 12 + 25, 0]]
+
+
+def test_intensities_beyond_a_held_range_have_its_lowest_and_highest_level() -> None:
+    picture = picture_of([1, 2, 3, 4, 5], [1, 9])
+    held = (("a", (2.0, 4.0)),)
+    words = words_of(picture, RANGES, "surface", "linear", held)
+    assert words.tolist() == [[0, 1, 1, 6, 11, 11, 12, 112, 0]]
+
+
+@pytest.mark.parametrize("mapping", MAPPINGS, ids=str)
+def test_a_held_range_of_the_object_maps_every_surface(mapping: Any) -> None:
+    picture = picture_of([0, 5, 10], [5, 20])
+    held = (("object", (5.0, 10.0)),)
+    words = words_of(picture, RANGES, "object", mapping, held).ravel().tolist()
+    assert 1 <= words[1] == words[2] < words[3] == 11
+    assert 12 <= words[4] < words[5] == 112
+
+
+def test_a_held_range_is_one_of_intensities_and_not_of_the_scale_of_the_picture() -> None:
+    relative = picture_of([1, 2, 3])
+    doubled = dataclasses.replace(relative, relative=relative.relative / np.float32(2), scale=2.0)
+    held = (("a", (0.0, 4.0)),)
+    words = words_of(relative, RANGES, exposure=held)
+    assert words.tolist() == words_of(doubled, RANGES, exposure=held).tolist() == [[0, 4, 6, 9, 0]]
+
+
+@given(scenes())
+def test_dithering_changes_a_word_by_one_level_at_most(scene: Scene) -> None:
+    picture = render(scene, 12, 16)
+    ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
+    plain, dithered = (
+        words_of(picture, ranges, scene.scaling, scene.mapping, scene.exposure, dither).astype(int)
+        for dither in ("off", "ordered")
+    )
+    assert np.abs(plain - dithered).max() <= 1
+    numbers = picture.surface_number
+    for number in np.unique(numbers[numbers > 0]):
+        first, levels = ranges[picture.surfaces[number - 1]]
+        assert first <= dithered[numbers == number].min()
+        assert dithered[numbers == number].max() < first + levels
+
+
+def test_dithering_keeps_the_mean_of_a_level_that_lies_between_two() -> None:
+    for tenths in range(11):
+        fraction = np.full(64, tenths / 10, np.float32)
+        levels = dithered_levels(fraction, 2, ordered_thresholds(8, 8))
+        assert abs(levels.mean() - tenths / 10) <= 1 / 128
+    assert sorted(ordered_thresholds(8, 8).tolist()) == [(place + 0.5) / 64 for place in range(64)]
 
 
 @given(scenes())
 def test_every_word_is_the_backgrounds_or_in_its_surfaces_range(scene: Scene) -> None:
     picture = render(scene, 12, 16)
-    ranges = level_ranges(scene.surfaces, {part.surface for part in scene.parts})
+    ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
     words = words_of(picture, ranges, scene.scaling, scene.mapping)
     assert words.max() <= 1023
     assert (words[picture.surface_number == 0] == 0).all()
@@ -102,15 +169,13 @@ def test_every_word_is_the_backgrounds_or_in_its_surfaces_range(scene: Scene) ->
         if len(on_surface):
             assert on_surface.min() >= ranges[name].first
             assert on_surface.max() <= ranges[name].last
-            if scene.scaling == "surface":
-                assert on_surface.max() == ranges[name].last
     assert not words.flags.writeable
 
 
 @given(scenes())
 def test_a_brighter_pixel_of_a_surface_never_has_a_lower_word(scene: Scene) -> None:
     picture = render(scene, 12, 16)
-    ranges = level_ranges(scene.surfaces, {part.surface for part in scene.parts})
+    ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
     words = words_of(picture, ranges, scene.scaling, scene.mapping)
     for number in np.unique(picture.surface_number[picture.surface_number > 0]):
         of_surface = picture.surface_number == number

@@ -69,6 +69,7 @@ EDITS: dict[str, Callable[[Viewer], object]] = {
     "bracket": lambda viewer: viewer.on_key("[", typed="["),
     "bracket of a German keyboard": lambda viewer: viewer.on_key("8", typed="["),
     "closing bracket": lambda viewer: viewer.on_key("]", typed="]"),
+    "exposure": lambda viewer: viewer.on_key("e", typed="e"),
     "color": press_c,
     "color before": lambda viewer: viewer.on_key("c", shift=True, typed="C"),
 }
@@ -109,6 +110,19 @@ def test_keys_do_what_they_say(viewer: Viewer) -> None:
     EDITS["bracket of a German keyboard"](viewer)
     assert scene().surface("low").paint.blend == pytest.approx(0.55)
     assert viewer.message == "blend 0.55"
+
+
+def test_the_exposure_is_held_and_released(viewer: Viewer) -> None:
+    words = viewer.studio.words.copy()
+    viewer.on_key("e", typed="e")
+    assert viewer.message == "exposure held"
+    assert dict(viewer.studio.scene.exposure)["object"] == pytest.approx(  # type: ignore[arg-type]
+        tuple(viewer.studio.picture.ranges.whole)
+    )
+    viewer.on_key("1", typed="1")
+    assert not (viewer.studio.words > words).any()
+    viewer.on_key("e", typed="e")
+    assert (viewer.message, viewer.studio.scene.exposure) == ("exposure auto", "auto")
 
 
 def test_without_a_step_there_is_nothing_to_undo_or_to_do_again(viewer: Viewer) -> None:

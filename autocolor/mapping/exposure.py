@@ -1,0 +1,62 @@
+"""Exposure: the range of intensities that the levels of each surface show.
+
+Paper: "The Lighting Model": the minimum and the maximum intensity of each surface, or of the entire object,
+are mapped to the display. Departs: a scene can hold ranges, which then do not follow the picture, so that
+less light looks darker; intensities beyond a held range are shown as its nearest end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+from autocolor.arrays import LARGEST_SINGLE
+from autocolor.lighting.picture import IntensityRange, Picture
+from autocolor.scene.scene import AUTO, OBJECT, Exposure
+
+WHOLE: Final = 0
+"""The number of the whole object's range, beside those of the surfaces."""
+
+ROUNDING: Final = 2.0**-20
+"""Assumed: eight units in the last place of float32, which a sum of lights may be off by."""
+
+
+def has_extent(extent: IntensityRange) -> bool:
+    """Whether the minimum and the maximum differ by more than float32 rounding.
+
+    >>> has_extent(IntensityRange(0.25, 0.5)), has_extent(IntensityRange(0.5, 0.5000001))
+    (True, False)
+    """
+    return extent.maximum - extent.minimum > ROUNDING * extent.maximum
+
+
+def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping[int, IntensityRange]:
+    """The range that is mapped to the levels of each visible surface, by number; the whole object's is WHOLE.
+
+    Intensities are relative to the picture's scale. With the scaling "object" every surface has the object's
+    range. With "surface" each has its own; one without extent has the object's. A range that is held takes
+    the place of that of the picture. Assumed: an unlit floor has the intensity of the ambient light all
+    over, and should look as dark as that is beside the rest.
+    """
+    held: dict[str, IntensityRange] = {}
+    if not isinstance(exposure, str):
+        for name, limits in exposure:
+            held[name] = IntensityRange(*(min(limit / picture.scale, LARGEST_SINGLE) for limit in limits))
+    found = picture.relative_ranges
+    whole = held.get(OBJECT, found[WHOLE])
+    ranges = {WHOLE: whole}
+    for surface in picture.slices:
+        number = surface.surface_number
+        own = held.get(picture.surfaces[number - 1], found[number])
+        ranges[number] = own if scaling == "surface" and has_extent(own) else whole
+    return ranges
+
+
+def held_exposure(picture: Picture) -> Exposure:
+    """The exposure that holds the ranges of a picture; AUTO if none has an extent."""
+    held = []
+    for number, extent in picture.relative_ranges.items():
+        if has_extent(extent):
+            name = picture.surfaces[number - 1] if number else OBJECT
+            held.append((name, (extent.minimum * picture.scale, extent.maximum * picture.scale)))
+    return tuple(held) or AUTO
