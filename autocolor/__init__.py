@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from autocolor.lighting.picture import Picture as Picture
     from autocolor.mapping.level_ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
+    from autocolor.scene.creation import scene_of as scene_of
     from autocolor.scene.lights import Flap as Flap
     from autocolor.scene.lights import Flaps as Flaps
     from autocolor.scene.lights import Light as Light
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
     from autocolor.scene.reflection_models import CookTorrance as CookTorrance
     from autocolor.scene.reflection_models import Phong as Phong
     from autocolor.scene.scene import Scene as Scene
-    from autocolor.scene.scene import scene_of as scene_of
     from autocolor.scene.surfaces import Paint as Paint
     from autocolor.scene.surfaces import Part as Part
     from autocolor.scene.surfaces import Reflectance as Reflectance
@@ -75,7 +75,7 @@ _HOME: Final = {
     "read_scene": "files.scene_sources",
     "render": "rendering",
     "save_image": "images",
-    "scene_of": "scene.scene",
+    "scene_of": "scene.creation",
     "write_picture": "files.picture_file",
 }
 

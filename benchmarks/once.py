@@ -15,7 +15,7 @@ import numpy as np
 
 import autocolor
 from autocolor.rendering import rendering
-from autocolor.scene.scene import scene_of
+from autocolor.scene.creation import scene_of
 from benchmarks.cases import Case, Spread, ratios, spread, timed
 from benchmarks.hills import hills, side_of
 from benchmarks.memory import forget_peak, peak

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import autocolor
-from autocolor.scene.scene import scene_of
+from autocolor.scene.creation import scene_of
 from benchmarks.cases import Case
 from benchmarks.hills import hills, side_of
 from ramtek_emu import Configuration, Ramtek9300

@@ -32,8 +32,8 @@ from typing import Literal, TypedDict
 from autocolor.scene.columns.column import Row
 '''
 
-MADE_FROM_THE_MESH = ("mesh", "parts")
-"""The columns of a scene that `scene_of` makes from the mesh that it is given."""
+MADE_FROM_THE_MESH = ("mesh", "parts", "surfaces")
+"""The columns of a scene that `scene_of` makes from the mesh and the rows that it is given."""
 
 
 def source() -> str:
@@ -50,7 +50,9 @@ def classes_of_a_scene() -> str:
     """The type of what `scene_of` takes, and of the changes of a scene."""
     types = types_of(Scene)
     mesh = {name: types.pop(name) for name in MADE_FROM_THE_MESH}
-    fields = written("SceneFields(TypedDict", "Fields of a Scene that no mesh determines.", types)
+    fields = written(
+        "SceneFields(TypedDict", "Fields of a Scene besides its mesh, parts and surfaces.", types
+    )
     return fields + written("SceneChanges(SceneFields", "Changes of a Scene.", mesh)
 
 

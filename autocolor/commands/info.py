@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import Surfaces, ended, read, scene_options
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
@@ -25,9 +25,11 @@ Examples:
 @scene_options
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
-def info(context: click.Context, scene: str, as_json: bool, up: str, strict: bool) -> None:
+def info(
+    context: click.Context, scene: str, as_json: bool, up: str, surfaces: Surfaces, strict: bool
+) -> None:
     """Print the nodes, polygons, edges, parts, surfaces, lights, view and intensities of SCENE."""
-    report = read(scene, up)
+    report = read(scene, up, surfaces)
     facts = facts_of(report)
     if as_json:
         click.echo(json.dumps(facts, indent=2))

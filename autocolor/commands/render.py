@@ -10,7 +10,7 @@ from typing import Final
 import click
 
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import Surfaces, ended, read, scene_options
 from autocolor.commands.settings import with_settings
 
 EXAMPLES: Final = """\b
@@ -65,10 +65,11 @@ def render(
     hold_exposure: bool,
     force: bool,
     up: str,
+    surfaces: Surfaces,
     strict: bool,
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
-    report = read(scene, up)
+    report = read(scene, up, surfaces)
     original = report.scene
     if hold_exposure:
         from autocolor.mapping.exposure import held_exposure

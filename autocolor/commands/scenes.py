@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar
 
 import click
 
@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
 
 Command = TypeVar("Command", bound=Callable[..., Any])
+
+Surfaces = Literal["materials", "parts"]
+"""Where the surfaces of parts come from that none is given for."""
 
 REPAIRED: Final = 1
 """The exit code of a command that succeeds with --strict although something was skipped or repaired."""
@@ -27,17 +30,24 @@ def scene_options(command: Command) -> Command:
             show_default=True,
             help="Up axis of a mesh file; scene files give their own.",
         ),
+        click.option(
+            "--surfaces",
+            type=click.Choice(["materials", "parts"]),
+            default="materials",
+            show_default=True,
+            help="Where surfaces come from that are not given: materials of the mesh, or one for each part.",
+        ),
         click.argument("scene", type=click.Path()),
     ):
         command = decorate(command)
     return command
 
 
-def read(path: str, up: str) -> SceneReport:
+def read(path: str, up: str, surfaces: Surfaces) -> SceneReport:
     """Read a scene, and print a line on stderr for each repair."""
     from autocolor.files.scene_sources import read_scene_with_report
 
-    report = read_scene_with_report(path, up=up)
+    report = read_scene_with_report(path, up=up, surfaces=surfaces)
     for repair in report.repairs:
         click.echo(f"autocolor: {repair}", err=True)
     return report

@@ -6,7 +6,7 @@ from typing import Final
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import Surfaces, ended, read, scene_options
 
 EXAMPLES: Final = """\b
 Examples:
@@ -19,12 +19,12 @@ Examples:
 @scene_options
 @click.option("--to", "address", required=True, metavar="tcp://HOST:PORT", help="Address of the display.")
 @click.pass_context
-def show(context: click.Context, scene: str, address: str, up: str, strict: bool) -> None:
+def show(context: click.Context, scene: str, address: str, up: str, surfaces: Surfaces, strict: bool) -> None:
     """Render SCENE and show it on the display that listens at an address, such as `ramtek serve`."""
     from autocolor.studio import Studio
     from ramtek_emu import TcpPort, instructions
 
-    report = read(scene, up)
+    report = read(scene, up, surfaces)
     with TcpPort(address) as port:
         Studio(report.scene, port)
         # The reply to this read arrives only after everything sent before it was executed.

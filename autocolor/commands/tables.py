@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import Surfaces, ended, read, scene_options
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
@@ -27,10 +27,17 @@ Examples:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
 def tables(
-    context: click.Context, scene: str, write: bool, force: bool, as_json: bool, up: str, strict: bool
+    context: click.Context,
+    scene: str,
+    write: bool,
+    force: bool,
+    as_json: bool,
+    up: str,
+    surfaces: Surfaces,
+    strict: bool,
 ) -> None:
     """Print the parts, surfaces, lights and view of SCENE as a scene file, including those created for it."""
-    report = read(scene, up)
+    report = read(scene, up, surfaces)
     if write:
         path = written(report, Path(scene), force)
         click.echo(f"wrote {path}", err=True)

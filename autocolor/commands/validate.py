@@ -7,7 +7,7 @@ from typing import Final
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import Surfaces, ended, read, scene_options
 from autocolor.errors import InputError
 
 EXAMPLES: Final = """\b
@@ -21,10 +21,12 @@ Examples:
 @scene_options
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
-def validate(context: click.Context, scene: str, as_json: bool, up: str, strict: bool) -> None:
+def validate(
+    context: click.Context, scene: str, as_json: bool, up: str, surfaces: Surfaces, strict: bool
+) -> None:
     """List every problem of SCENE and every repair. The exit code is 65 if there is a problem."""
     try:
-        report = read(scene, up)
+        report = read(scene, up, surfaces)
     except InputError as error:
         if as_json:
             click.echo(json.dumps({"problems": error.problems, "repairs": []}, indent=2))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import Surfaces, ended, read, scene_options
 
 if TYPE_CHECKING:
     from autocolor.scene.scene import Scene
@@ -24,9 +24,17 @@ Examples:
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @click.pass_context
-def view(context: click.Context, scene: str, up: str, strict: bool, full_screen: bool, fit: bool) -> None:
+def view(
+    context: click.Context,
+    scene: str,
+    up: str,
+    surfaces: Surfaces,
+    strict: bool,
+    full_screen: bool,
+    fit: bool,
+) -> None:
     """Show SCENE in an interactive window; press F1 there for a list of keys."""
-    report = read(scene, up)
+    report = read(scene, up, surfaces)
     show(report.scene, full_screen, fit)
     context.exit(ended(report, strict))
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Literal
 
+from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.meshes.formats import (
     MeshFormat,
@@ -24,20 +26,29 @@ from autocolor.files.scenes.formats import (
     scene_suffixes,
 )
 from autocolor.files.scenes.scene_report import SceneReport, scene_report
+from autocolor.scene.creation import MATERIALS, PARTS
 from autocolor.scene.scene import Scene
 
 PathLike = str | os.PathLike[str]
 
 
-def read_scene(path: PathLike, *, strict: bool = False, up: str = "z", outside: bool = False) -> Scene:
+def read_scene(
+    path: PathLike,
+    *,
+    strict: bool = False,
+    up: str = "z",
+    outside: bool = False,
+    surfaces: Literal["materials", "parts"] = MATERIALS,
+) -> Scene:
     """The scene of a folder, a scene file (.toml), a mesh file (.obj) or a picture file (.npz).
 
     A folder must contain a `scene.toml`, or `nodes.csv` and `polygons.csv`. Whatever the source does not
     define is created with defaults. `up` is the up axis of a mesh that is read without a scene file. With
     `outside`, a scene file may name files outside its folder. With `strict`, a mesh that needs repair is
-    refused. Raises InputError with every problem, MissingInputError if a file does not exist.
+    refused. Parts that are given no surface have that of their material; with `surfaces="parts"`, each has
+    one of its own. Raises InputError with every problem, MissingInputError if a file does not exist.
     """
-    report = read_scene_with_report(path, up=up, outside=outside)
+    report = read_scene_with_report(path, up=up, outside=outside, surfaces=surfaces)
     if strict and report.repairs:
         raise InputError(
             [f"{repair}; correct the file, or read it without strict" for repair in report.repairs]
@@ -45,10 +56,18 @@ def read_scene(path: PathLike, *, strict: bool = False, up: str = "z", outside: 
     return report.scene
 
 
-def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = False) -> SceneReport:
+def read_scene_with_report(
+    path: PathLike,
+    *,
+    up: str = "z",
+    outside: bool = False,
+    surfaces: Literal["materials", "parts"] = MATERIALS,
+) -> SceneReport:
     """Like `read_scene`, but also returns messages about what was repaired, skipped and created."""
     if up not in UPS:
         raise UsageError(f"up must be 'x', 'y' or 'z', not {up!r}")
+    if surfaces not in (MATERIALS, PARTS):
+        raise UsageError(f"surfaces must be {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     path = Path(path)
     try:
         os.stat(path)
@@ -61,11 +80,13 @@ def read_scene_with_report(path: PathLike, *, up: str = "z", outside: bool = Fal
     if isinstance(found, SceneFormat):
         if up != "z":
             raise UsageError(f"up is for mesh files, not for {path}, which gives its own; leave it out")
-        return found.read(path, outside=outside)
+        return found.read(path, outside=outside, surfaces=surfaces)
     if path.is_dir():
         names = dict(zip(found.keys, found.in_folder, strict=True))
-        return _bare_mesh({key: path / name for key, name in names.items()}, path.resolve().name, up)
-    return _bare_mesh({"file": path}, path.stem, up)
+        return _bare_mesh(
+            {key: path / name for key, name in names.items()}, path.resolve().name, up, surfaces
+        )
+    return _bare_mesh({"file": path}, path.stem, up, surfaces)
 
 
 def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
@@ -92,8 +113,10 @@ def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
     return path, found
 
 
-def _bare_mesh(files: Mapping[str, Path], name: str, up: str) -> SceneReport:
+def _bare_mesh(
+    files: Mapping[str, Path], name: str, up: str, surfaces: Literal["materials", "parts"]
+) -> SceneReport:
     """The scene of a mesh, with everything else created from defaults."""
     read = read_mesh(files, up=up)
     entry = {**{key: file.name for key, file in files.items()}, "up": up}
-    return scene_report(read.mesh, repairs=read.repairs, mesh_files=(entry,), name=name or "scene")
+    return scene_report([read], mesh_files=(entry,), name=name or "scene", surfaces=surfaces)

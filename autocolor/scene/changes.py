@@ -46,6 +46,7 @@ class PartChanges(TypedDict, total=False):
 
     name: str
     surface: str
+    stage: bool
 
 
 class ReflectanceChanges(TypedDict, total=False):
@@ -99,9 +100,8 @@ class ViewChanges(TypedDict, total=False):
 
 
 class SceneFields(TypedDict, total=False):
-    """Fields of a Scene that no mesh determines."""
+    """Fields of a Scene besides its mesh, parts and surfaces."""
 
-    surfaces: Sequence[Row]
     lights: Sequence[Row]
     view: Row | ViewChanges
     ambient: float
@@ -120,3 +120,4 @@ class SceneChanges(SceneFields, total=False):
 
     mesh: object
     parts: Sequence[Row]
+    surfaces: Sequence[Row]

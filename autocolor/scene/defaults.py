@@ -7,7 +7,7 @@ created automatically by the system as they are needed. Assumed: all the values 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -36,10 +36,20 @@ OBJECT_COLORS: Final = (
 )  # fmt: skip
 """Assumed: distinguishable object colors, assigned to the surfaces in turn."""
 
+PLAIN_COLOR: Final = "#c9ccd2"
+"""Assumed: a light neutral gray, in which form is seen best."""
 
-def default_parts(mesh: Mesh, surface_of_part: Mapping[str, str]) -> tuple[Part, ...]:
-    """A part for each part name of the mesh; its surface is that in `surface_of_part`, else its own name."""
-    return tuple(Part(name, surface_of_part.get(name, name)) for name in mesh.part_names)
+
+MAPPING_FIELDS: Final = {"scaling": "object", "contrast": "floor"}
+"""Assumed: the fields of a scene that say how intensities are shown, where only a mesh is given."""
+
+
+def object_coordinates(mesh: Mesh, parts: Sequence[Part]) -> Floats:
+    """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage, if any."""
+    of_object = [number for number in mesh.parts_in_use if not parts[number].stage]
+    if not of_object or len(of_object) == len(mesh.parts_in_use):
+        return mesh.used_coordinates
+    return mesh.coordinates_of_parts(of_object)
 
 
 def default_surface(name: str, number: int) -> Surface:
@@ -47,28 +57,35 @@ def default_surface(name: str, number: int) -> Surface:
     return Surface(name, paint=Paint(object_color=OBJECT_COLORS[number % len(OBJECT_COLORS)]))  # type: ignore[arg-type]
 
 
-def default_view(mesh: Mesh) -> View:
-    """A view from the front left and slightly above, at the distance that frames the whole object."""
+def plain_surface(name: str) -> Surface:
+    """A glossy surface in a neutral color, for all parts of an object."""
+    return Surface(name, paint=Paint(object_color=PLAIN_COLOR))  # type: ignore[arg-type]
+
+
+def default_view(coordinates: Floats) -> View:
+    """A view from the front left and slightly above, at the distance that frames the whole object.
+
+    The object is given by the coordinates of its nodes, (nodes, 3), here and below.
+    """
     azimuth, elevation = math.radians(-125.0), math.radians(18.0)
     toward_eye = (
         math.cos(elevation) * math.cos(azimuth),
         math.cos(elevation) * math.sin(azimuth),
         math.sin(elevation),
     )
-    return framed(View(eye=toward_eye, target=(0.0, 0.0, 0.0)), mesh)
+    return framed(View(eye=toward_eye, target=(0.0, 0.0, 0.0)), coordinates)
 
 
-def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
+def framed(view: View, coordinates: Floats, filled: float = FILLED) -> View:
     """The view with the eye moved, but not turned, so that the object fills the picture, with a margin.
 
     Paper: Figure 5, RESCALE.
     """
     axes = view.axes
-    center, radius = _sphere_around(mesh)
-    if _is_a_point(mesh):
+    center, radius = sphere_around(coordinates)
+    points = coordinates.T
+    if _is_a_point(*bounds_of(coordinates)):
         points = center[:, None] + radius * np.array([[-0.5, 0.5]] * 3)
-    else:
-        points = mesh.used_coordinates.T
 
     # For an eye moved by `shift` and moved back by `distance`, a point is within the picture if
     # |x - shift| <= slope * (depth + distance), and likewise for y. The two extreme points of an axis give
@@ -91,29 +108,36 @@ def framed(view: View, mesh: Mesh, filled: float = FILLED) -> View:
     return view.replace(eye=tuple(eye), direction=tuple(forward))
 
 
-def _is_a_point(mesh: Mesh) -> bool:
-    """Whether the object is so small relative to its distance from the origin that it is a point."""
-    low, high = mesh.bounds
+def bounds_of(coordinates: Floats) -> tuple[Floats, Floats]:
+    """The least and the largest coordinates, (3,) each; zeros if there are none."""
+    if not len(coordinates):
+        return np.zeros(3), np.zeros(3)
+    rows = coordinates.T
+    return rows.min(axis=1), rows.max(axis=1)
+
+
+def _is_a_point(low: Floats, high: Floats) -> bool:
+    """Whether an object is so small relative to its distance from the origin that it is a point."""
     return float((high - low).max()) <= POINT * float(np.abs([low, high]).max())
 
 
-def _sphere_around(mesh: Mesh) -> tuple[Floats, float]:
-    """The center and radius of a sphere around the object; an object treated as a point gets some room."""
-    low, high = mesh.bounds
-    if _is_a_point(mesh):
+def sphere_around(coordinates: Floats) -> tuple[Floats, float]:
+    """The center and radius of a sphere around an object; one treated as a point gets some room."""
+    low, high = bounds_of(coordinates)
+    if _is_a_point(low, high):
         return (low + high) / 2, max(1.0, 1e3 * POINT * float(np.abs([low, high]).max()))
     # Scale by the largest extent first, as the squares of very small extents underflow.
     extent = (high - low).max()
     return (low + high) / 2, float(np.linalg.norm((high - low) / extent) * extent / 2)
 
 
-def default_lights(mesh: Mesh, view: View) -> tuple[Light, ...]:
+def default_lights(coordinates: Floats, view: View) -> tuple[Light, ...]:
     """Four studio lights aimed at the object, with positions relative to the view.
 
     As seen from the eye, the key light is at the upper left, the fill light at the right, the top light above
     and the rim light behind, as around a car in a photographer's studio (Paper: "Light Controls").
     """
-    center, radius = _sphere_around(mesh)
+    center, radius = sphere_around(coordinates)
     right, down, forward = view.axes
     if abs(forward[2]) > 0.99:
         up, away = -down, forward

@@ -98,8 +98,17 @@ class Mesh:
     @property
     def used_coordinates(self) -> Floats:
         """The coordinates of the nodes that polygons use, (nodes, 3), stored by columns."""
+        return self._coordinates_of(self.node_numbers)
+
+    def coordinates_of_parts(self, part_numbers: Sequence[int]) -> Floats:
+        """The coordinates of the nodes that the polygons of some parts use, (nodes, 3), stored by columns."""
+        chosen = np.zeros(len(self.part_names), np.bool_)
+        chosen[list(part_numbers)] = True
+        return self._coordinates_of(self.node_numbers[chosen[self.part_numbers]])
+
+    def _coordinates_of(self, node_numbers: Indices) -> Floats:
         used = np.zeros(len(self.coordinates), np.bool_)
-        used[self.node_numbers.T] = True
+        used[node_numbers.T] = True
         return self.coordinates if used.all() else self.coordinates.T[:, used].T
 
     @cached_property
@@ -137,7 +146,8 @@ class Mesh:
             return meshes[0]
         names = tuple(dict.fromkeys(name for mesh in meshes for name in mesh.part_names))
         first_nodes = np.cumsum([0] + [len(mesh.coordinates) for mesh in meshes[:-1]])
-        rows = [np.array([names.index(name) for name in mesh.part_names], dtype=np.intp) for mesh in meshes]
+        row_of = {name: row for row, name in enumerate(names)}
+        rows = [np.array([row_of[name] for name in mesh.part_names], dtype=np.intp) for mesh in meshes]
         return Mesh(
             np.concatenate([mesh.coordinates.T for mesh in meshes], axis=1).T,
             np.concatenate(

@@ -12,14 +12,14 @@ from functools import cached_property
 from itertools import islice
 from typing import Annotated, Any, Final, TypeVar, Unpack
 
+from autocolor.arrays import Floats
 from autocolor.checks import Color, nearest, shown
-from autocolor.errors import InputError, UsageError
+from autocolor.errors import UsageError
 from autocolor.scene.changes import (
     LightChanges,
     PaintChanges,
     PartChanges,
     SceneChanges,
-    SceneFields,
     SurfaceChanges,
     ViewChanges,
 )
@@ -30,7 +30,7 @@ from autocolor.scene.columns.row_kinds import Nested, Rows
 from autocolor.scene.columns.rows import changed, cost, with_values
 from autocolor.scene.columns.value_kinds import Choice, ColorKind, CurveKind, Instance, Number, Text
 from autocolor.scene.curves import CURVES, CurvePoints
-from autocolor.scene.defaults import default_lights, default_parts, default_surface, default_view
+from autocolor.scene.defaults import object_coordinates
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
@@ -55,7 +55,7 @@ MOST_PROBLEMS: Final = 100
 
 @dataclass(frozen=True, eq=False)
 class Scene(Row):
-    """All that is needed to render and color a picture; `scene_of` creates one with defaults.
+    """All that is needed to render and color a picture; `scene_of` makes one of a mesh.
 
     There is one part for each part name of the mesh, in the same order, and every part's surface is in the
     surface table. Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
@@ -215,8 +215,9 @@ class Scene(Row):
         rows = vars(self)[table]
         row = rows[place]
         rows = (*rows[:place], changed(row, changes), *rows[place + 1 :])
-        # Tables refer to each other by name only: if no name changes, the references stay valid.
-        if "name" in changes or not references_of(type(row)).keys().isdisjoint(changes):
+        # Tables refer to each other by name only: if no name changes, the references stay valid. What is
+        # cached of a scene depends on its parts.
+        if table == "parts" or "name" in changes or not references_of(type(row)).keys().isdisjoint(changes):
             return changed(self, {table: rows})
         return with_values(self, {table: rows})
 
@@ -225,6 +226,11 @@ class Scene(Row):
         """The surface number, counted from 1, of each part."""
         number = {surface.name: row + 1 for row, surface in enumerate(self.surfaces)}
         return tuple(number[part.surface] for part in self.parts)
+
+    @cached_property
+    def object_coordinates(self) -> Floats:
+        """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage."""
+        return object_coordinates(self.mesh, self.parts)
 
     def __repr__(self) -> str:
         return (
@@ -256,64 +262,6 @@ def costs_at_least(old: Scene, new: Scene, tier: Tier) -> bool:
     """Whether the cost of an edit from one scene to another is at least a tier."""
     costs = cost_of_edit(old, new)
     return costs is not None and costs >= tier
-
-
-def scene_of(
-    mesh: Mesh, *, surface_of_part: Mapping[str, str] | None = None, **fields: Unpack[SceneFields]
-) -> Scene:
-    """A scene of a mesh; tables that are not given are created with defaults.
-
-    Each part has the surface that `surface_of_part` names, or else the surface of its own name, which is
-    created if it is not given. If that would make more than MOST_SURFACES, the remaining parts share the last
-    one. `fields` are the other fields of Scene. Raises InputError.
-    """
-    missing = [name for name in surface_of_part or {} if name not in mesh.part_names]
-    if missing:
-        raise InputError(
-            f"there is no part {shown(name)} to take a surface{nearest(name, mesh.part_names)}"
-            for name in missing
-        )
-    tables: dict[str, Any] = dict(fields)
-    lights = tables.pop("lights", None)
-    # Surfaces and view are checked here, because what is created depends on them.
-    found: list[Problem] = []
-    given: Any
-    view: Any
-    given, view = (
-        None if value is None else fields_of(Scene)[name].column.kind.held(value, (name,), found)
-        for name, value in (("surfaces", tables.pop("surfaces", None)), ("view", tables.pop("view", None)))
-    )
-    if found:
-        raise RowError(found)
-    parts, surfaces = _with_default_surfaces(mesh, surface_of_part or {}, given or ())
-    if view is None:
-        view = default_view(mesh)
-    if lights is None:
-        lights = default_lights(mesh, view)
-    return Scene(mesh, parts, surfaces, lights, view, **tables)
-
-
-def _with_default_surfaces(
-    mesh: Mesh, surface_of_part: Mapping[str, str], given: tuple[Surface, ...]
-) -> tuple[tuple[Part, ...], tuple[Surface, ...]]:
-    """The parts, and the given surfaces with those created for the parts, up to MOST_SURFACES."""
-    parts = default_parts(mesh, surface_of_part)
-    names = {surface.name: None for surface in given} | {part.surface: None for part in parts}
-    kept = list(names)[:MOST_SURFACES]
-    if len(names) > MOST_SURFACES and len(given) < MOST_SURFACES:
-        shared = set(kept)
-        parts = tuple(part if part.surface in shared else Part(part.name, kept[-1]) for part in parts)
-    table = {surface.name: surface for surface in given}
-    if len(table) < len(given):
-        # The checks of Scene refuse repeated names.
-        return parts, given
-    # Create no surface for a name in surface_of_part, unless it is also the name of a part.
-    named = set(surface_of_part.values())
-    own = set(mesh.part_names)
-    for number, name in enumerate(kept):
-        if name not in table and (name not in named or name in own):
-            table[name] = default_surface(name, number)
-    return parts, tuple(table.values())
 
 
 def _place(kind: str, rows: Sequence[SomeTableRow], name: str) -> int:

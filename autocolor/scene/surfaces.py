@@ -38,6 +38,10 @@ class Part(Row):
 
     name: Annotated[str, Column(Text(), Tier.NOTHING, "The name of the part, as in the mesh.")]
     surface: Annotated[str, Column(Reference("surfaces"), Tier.FRAME, "The name of the part's surface.")]
+    stage: Annotated[
+        bool,
+        Column(Switch(), Tier.NOTHING, "Whether the part is not of the object, so that views leave it out."),
+    ] = False
 
     def replace(self, /, **changes: Unpack[PartChanges]) -> Part:
         """The part with some fields changed."""

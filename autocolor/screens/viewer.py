@@ -204,7 +204,7 @@ class Viewer:
     def rescale(self) -> None:
         """Move the eye so that the object fills the picture (Paper: Figure 5, RESCALE)."""
         scene = self.studio.scene
-        self._look(framed(scene.view, scene.mesh))
+        self._look(framed(scene.view, scene.object_coordinates))
 
     def tilt(self, degrees: float) -> None:
         """Rotate the horizontal axis of the picture plane (Paper: Figure 5, ANGLE)."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Final
 
 from autocolor.arrays import Floats, Indices
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.surfaces import Surface
 
 UPS: Final = ("x", "y", "z")
 
@@ -29,10 +31,16 @@ class Polygons:
 
 @dataclass(frozen=True)
 class MeshReport:
-    """A mesh that was read, with messages about what was repaired or skipped."""
+    """A mesh that was read, with messages about what was repaired or skipped.
+
+    `material_of_part` has the names of materials by part name, where the file gives any; `materials` are the
+    surfaces of those that it describes.
+    """
 
     mesh: Mesh
     repairs: tuple[str, ...] = ()
+    material_of_part: Mapping[str, str] = field(default_factory=dict)
+    materials: tuple[Surface, ...] = ()
 
 
 def upright(coordinates: Floats, up: str) -> Floats:

@@ -8,10 +8,11 @@ from typing import Final
 from autocolor.files.picture_file import read_picture
 from autocolor.files.scenes.formats import SceneFormat, register
 from autocolor.files.scenes.scene_report import SceneReport
+from autocolor.scene.creation import MATERIALS
 
 
-def read_picture_scene(path: Path, *, outside: bool = False) -> SceneReport:
-    """The scene of a picture file; `outside` has no effect, as it names no other files. Raises InputError."""
+def read_picture_scene(path: Path, *, outside: bool = False, surfaces: str = MATERIALS) -> SceneReport:
+    """The scene of a picture file, which is complete: the options have no effect. Raises InputError."""
     return SceneReport(read_picture(path).scene)
 
 

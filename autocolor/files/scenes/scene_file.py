@@ -16,38 +16,48 @@ from typing import Any, Final
 from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes
+from autocolor.files.repair.polygons import MeshReport
 from autocolor.files.scenes.formats import SceneFormat, register
 from autocolor.files.scenes.problems import SceneProblems
 from autocolor.files.scenes.scene_meshes import mesh_file, meshes_of
 from autocolor.files.scenes.scene_report import SceneReport, scene_report
 from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
-from autocolor.scene.columns.column import SomeRow, keys_of
+from autocolor.scene.changes import PartChanges
+from autocolor.scene.columns.column import SomeRow, fields_of, keys_of
 from autocolor.scene.columns.problems import REFUSED, Problem, RowError, unknown
 from autocolor.scene.columns.rows import changed, made
-from autocolor.scene.defaults import default_surface
-from autocolor.scene.mesh import Mesh
+from autocolor.scene.creation import MATERIALS
+from autocolor.scene.defaults import MAPPING_FIELDS, default_surface
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 
 FILE_KEYS: Final = tuple(key for key in keys_of(Scene) if key != "name")
 """The keys of a scene file; the scene's name is that of its folder or file."""
 
+OMITTED: Final = {
+    name: field.default()
+    for name, field in fields_of(Scene).items()
+    if name in MAPPING_FIELDS and field.default is not None
+}
+"""What omitted keys mean that are created for a bare mesh."""
+
 TABLES: Final = ("mesh", "parts", "surfaces")
 """The keys that cannot be read one by one, as they refer to each other."""
 
 
-def read_scene_file(path: Path, *, outside: bool = False) -> SceneReport:
+def read_scene_file(path: Path, *, outside: bool = False, surfaces: str = MATERIALS) -> SceneReport:
     """The scene of a scene file, and what was repaired and created.
 
-    With `outside`, mesh files may be outside the scene's folder. Raises InputError with every problem of the
-    file and its meshes, MissingInputError if missing files are the only problem.
+    With `outside`, mesh files may be outside the scene's folder; `surfaces` is as in `read_scene`. Raises
+    InputError with every problem of the file and its meshes, MissingInputError if missing files are the only
+    problem.
     """
     data = read_bytes(path, LARGEST_TEXT)
     document = parsed_toml(data, path.name)
     problems = SceneProblems(path.name, data, document)
 
     fields = _fields(problems, document)
-    surfaces = _surfaces(problems, document)
+    given = _surfaces(problems, document)
     entries = document.get("mesh", [])
     if not isinstance(entries, list):
         problems.note(("mesh",), f"must be tables, each written [[mesh]], not {shown(entries)}")
@@ -55,21 +65,18 @@ def read_scene_file(path: Path, *, outside: bool = False) -> SceneReport:
     elif not entries:
         problems.note((), 'there must be a [[mesh]] with file = "NAME.obj", not none; add one')
     reports = meshes_of(problems, entries, path.parent, outside=outside)
-    part_names = tuple(dict.fromkeys(name for report in reports for name in report.mesh.part_names))
-    are_known = len(reports) == len(entries)
-    surface_of_part = _parts(problems, document, part_names if are_known else None, tuple(surfaces))
+    parts = _parts(problems, document, reports if len(reports) == len(entries) else None, tuple(given))
     problems.raise_any()
 
     name = path.resolve().parent.name if path.name == "scene.toml" else path.stem
     try:
         return scene_report(
-            Mesh.joined([report.mesh for report in reports]),
-            repairs=tuple(repair for report in reports for repair in report.repairs),
+            reports,
             mesh_files=tuple(mesh_file(table) for table in entries),
-            surface_of_part=surface_of_part,
-            surfaces=tuple(surface for surface in surfaces.values() if surface is not None),
+            parts=parts if surfaces == MATERIALS else _with_own_surfaces(parts, reports),
+            surfaces=tuple(surface for surface in given.values() if surface is not None),
             name=name or "scene",
-            **fields,
+            **{**OMITTED, **fields},
         )
     except InputError as error:
         raise InputError([f"{path.name}, {problem}" for problem in error.problems]) from None
@@ -107,34 +114,41 @@ def _surface(name: str, number: int, table: Mapping[str, Any]) -> Surface:
 
 
 def _part(name: str, table: Mapping[str, Any]) -> Part:
-    return made(Part, {"name": name, **table})
+    return made(Part, {"surface": name, **table, "name": name})
 
 
 def _parts(
     problems: SceneProblems,
     document: Mapping[str, Any],
-    part_names: tuple[str, ...] | None,
+    reports: list[MeshReport] | None,
     surface_names: tuple[str, ...],
-) -> dict[str, str]:
-    """The surface name of each part that names one; names are not checked if `part_names` is None."""
-    surface_of_part: dict[str, str] = {}
-    known_parts = dict.fromkeys(part_names or ())
-    known_surfaces = dict.fromkeys((*surface_names, *known_parts))
+) -> dict[str, PartChanges]:
+    """The fields that the file gives for parts, by name; names are not checked if `reports` is None."""
+    fields: dict[str, PartChanges] = {}
+    known_parts = dict.fromkeys(name for report in reports or () for name in report.mesh.part_names)
+    materials = (name for report in reports or () for name in report.material_of_part.values())
+    known_surfaces = dict.fromkeys((*surface_names, *known_parts, *materials))
     for name, table in _named_tables(problems, document, "parts").items():
         if problems.full:
             break
         path = ("parts", name)
         part = _row(problems, path, table, partial(_part, name))
-        if part_names is None:
+        if reports is None:
             continue
         if name not in known_parts:
             problems.note(path, "no mesh has a part of this name", (name, known_parts))
-        if part is not None and part.surface not in known_surfaces:
-            rule = f"must be a surface or a part of the scene, not {shown(part.surface)}"
+        if part is not None and part.surface not in known_surfaces and "surface" in table:
+            rule = f"must be a surface, a part or a material of the scene, not {shown(part.surface)}"
             problems.note((*path, "surface"), rule, (part.surface, known_surfaces))
         elif part is not None:
-            surface_of_part[name] = part.surface
-    return surface_of_part
+            fields[name] = table
+    return fields
+
+
+def _with_own_surfaces(parts: Mapping[str, PartChanges], reports: list[MeshReport]) -> dict[str, PartChanges]:
+    """The fields of all parts; those that the file names no surface for have that of their own name."""
+    names = [name for report in reports for name in report.mesh.part_names]
+    return {name: {"surface": name, **parts.get(name, {})} for name in names}
 
 
 def _named_tables(problems: SceneProblems, document: Mapping[str, Any], key: str) -> dict[str, Any]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from autocolor.files.repair.polygons import MeshReport
+from autocolor.scene.creation import scene_of
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scene import Scene, scene_of
-from autocolor.scene.surfaces import MOST_SURFACES
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import MOST_SURFACES, Surface
 
 
 @dataclass(frozen=True)
@@ -25,28 +27,40 @@ class SceneReport:
 
 
 def scene_report(
-    mesh: Mesh,
-    *,
-    repairs: tuple[str, ...] = (),
-    mesh_files: tuple[Mapping[str, str], ...] = (),
-    **fields: Any,
+    reports: Sequence[MeshReport], *, mesh_files: tuple[Mapping[str, str], ...] = (), **fields: Any
 ) -> SceneReport:
-    """The report for a scene of a mesh; `fields` are passed to `scene_of`."""
-    scene = scene_of(mesh, **fields)
-    given = {surface.name for surface in fields.get("surfaces") or ()}
-    names = [repr(surface.name) for surface in scene.surfaces if surface.name not in given]
+    """The report for a scene of the meshes that were read; `fields` are passed to `scene_of`.
+
+    Of parts and materials of the same name in several meshes, the first counts.
+    """
+    mesh = Mesh.joined([report.mesh for report in reports])
+    material_of_part: dict[str, str] = {}
+    materials: dict[str, Surface] = {}
+    for report in reports:
+        material_of_part = {**report.material_of_part, **material_of_part}
+        materials = {**{surface.name: surface for surface in report.materials}, **materials}
+    scene = scene_of(mesh, material_of_part=material_of_part, materials=tuple(materials.values()), **fields)
+    surfaces = fields.get("surfaces", ())
+    given = set() if isinstance(surfaces, str) else {surface.name for surface in surfaces}
+    names = [surface.name for surface in scene.surfaces if surface.name not in given]
     created = []
     if fields.get("view") is None:
         created.append("a view was created that frames the object")
     if fields.get("lights") is None:
         created.append(f"{len(scene.lights)} studio lights were created")
     if len(names) == 1:
-        created.append(f"surface {names[0]} was created")
+        created.append(f"surface {names[0]!r} was created")
     elif names:
-        listed = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")
+        listed = ", ".join(map(repr, names[:12])) + (
+            f" and {len(names) - 12} more" if len(names) > 12 else ""
+        )
         created.append(f"{len(names)} surfaces were created: {listed}")
-    asked = fields.get("surface_of_part") or {}
-    sharing = sum(part.surface != asked.get(part.name, part.name) for part in scene.parts)
-    if sharing:
-        created.append(f"{sharing:,} parts share a surface, because a scene has at most {MOST_SURFACES}")
+    if len(scene.surfaces) == MOST_SURFACES:
+        of_last = sum(part.surface == scene.surfaces[-1].name for part in scene.parts)
+        if of_last > 1:
+            created.append(
+                f"{of_last:,} parts share surface {scene.surfaces[-1].name!r}, because a scene has at most"
+                f" {MOST_SURFACES}"
+            )
+    repairs = tuple(repair for report in reports for repair in report.repairs)
     return SceneReport(scene, repairs, tuple(created), mesh_files)

@@ -1,17 +1,19 @@
 """Reading a mesh from a Wavefront OBJ file.
 
 These statements are used: `v` (a weight or color after x y z is ignored); `f`, with node numbers that count
-from 1 or, if negative, back from the latest node (texture and normal numbers are ignored); and `g`, `o` and
-`usemtl`, which name the parts (see `statements`). A polygon may name nodes that are defined later. Quads stay
-quads, and shared nodes stay shared.
+from 1 or, if negative, back from the latest node (texture and normal numbers are ignored); `g`, `o` and
+`usemtl`, which name the parts and their materials (see `statements`); and `mtllib`, which names the files
+with the materials (see `materials`). A polygon may name nodes that are defined later. Quads stay quads, and
+shared nodes stay shared.
 
-Texture coordinates, normals and material files are ignored. Points, lines, curves and unknown statements are
-skipped and counted. Lines may end with LF, CR LF or CR, may be continued with a backslash, and may start with
-spaces or tabs.
+Texture coordinates and normals are ignored. Points, lines, curves and unknown statements are skipped and
+counted. Lines may end with LF, CR LF or CR, may be continued with a backslash, and may start with spaces or
+tabs.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from pathlib import Path
 from typing import Final
@@ -19,6 +21,7 @@ from typing import Final
 from autocolor.errors import InputError
 from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.obj.lines import read_obj_lines
+from autocolor.files.meshes.obj.materials import read_materials
 from autocolor.files.meshes.obj.plain import read_plain_obj
 from autocolor.files.meshes.obj.statements import Statements
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
@@ -46,14 +49,23 @@ def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) ->
         statements = Statements(path.stem)
         tables = read_obj_lines(data, path.name, statements)
     del data
+    parts = statements.parts()
     polygons = Polygons(
         tables.coordinates,
         tables.rows,
         tables.corner_counts,
         tables.part_numbers,
-        tuple(statements.numbers),
+        tuple(part.name for part in parts),
     )
-    return repaired(polygons, path.name, up=up, crease_angle=crease_angle, skipped=statements.sentences)
+    report = repaired(polygons, path.name, up=up, crease_angle=crease_angle, skipped=statements.sentences)
+    material_of_part = {part.name: part.material for part in parts if part.material is not None}
+    materials = read_materials(path, statements.libraries, tuple(dict.fromkeys(material_of_part.values())))
+    return dataclasses.replace(
+        report,
+        repairs=report.repairs + materials.sentences,
+        material_of_part=material_of_part,
+        materials=materials.surfaces,
+    )
 
 
 def _begins(head: bytes) -> bool:

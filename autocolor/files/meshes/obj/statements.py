@@ -1,21 +1,21 @@
-"""OBJ statements other than nodes and polygons: part names, and statements that are skipped.
+"""OBJ statements other than nodes and polygons: part names, materials, and statements that are skipped.
 
-A polygon belongs to the part of the latest `g` or `o` name before it; of several names after `g`, the first
-counts. Without such a name it belongs to the part of the current `usemtl` name, and without that to the part
-with the file's own name. So groups stay whole whatever materials they use, and a file with materials but no
-groups has one part for each material. `g` or `o` without a name ends the group.
+A polygon belongs to the group of the latest `g` or `o` name before it; of several names after `g`, the first
+counts. `g` or `o` without a name ends the group. A group is a part; where its polygons have several
+materials, it is a part for each of them, and all but the first add the material to their name: "hood", "hood
+chrome". Without a group the part has the name of the material, and without that the file's own name.
 """
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 from autocolor.files.reading import shown
 
 UNUSED: Final = frozenset(
-    b"vt vn s mg mtllib maplib usemap lod bevel c_interp d_interp shadow_obj trace_obj".split()
+    b"vt vn s mg maplib usemap lod bevel c_interp d_interp shadow_obj trace_obj".split()
 )
-"""Statements that are ignored without being counted; material files are never opened."""
+"""Statements that are ignored without being counted."""
 
 SKIPPED: Final = {
     b"p": "points",
@@ -27,22 +27,55 @@ SKIPPED: Final = {
 }
 
 
+class ObjPart(NamedTuple):
+    """A part of an OBJ file, and the name of its material, None without one."""
+
+    name: str
+    material: str | None
+
+
 class Statements:
-    """Keeps the current part name and counts skipped statements while a file is read."""
+    """Keeps the current group and material, and counts skipped statements, while a file is read."""
 
     def __init__(self, file_stem: str) -> None:
         self.file_stem = file_stem
         self.group: str | None = None
-        self.surface: str | None = None
-        self.numbers: dict[str, int] = {}
+        self.material: str | None = None
+        self.libraries: list[bytes] = []
+        self.numbers: dict[tuple[str | None, str | None], int] = {}
         self.skipped: dict[str, int] = {}
         self.unknown = ""
 
     @property
     def part_number(self) -> int:
-        """The part number of a polygon at the current position; a new part name gets the next number."""
-        name = self.group or self.surface or self.file_stem
-        return self.numbers.setdefault(name, len(self.numbers))
+        """The part number of a polygon at the current position: that of its group and material.
+
+        A new pair of them gets the next number.
+        """
+        return self.numbers.setdefault((self.group, self.material), len(self.numbers))
+
+    def parts(self) -> tuple[ObjPart, ...]:
+        """The parts in the order of their numbers, with different names."""
+        # First name those that have a name of their own, so that no part with an added name takes it.
+        names: dict[tuple[str | None, str | None], str] = {}
+        taken: set[str] = set()
+        added = []
+        for group, material in self.numbers:
+            name = group or material or self.file_stem
+            if name in taken:
+                added.append((group, material))
+            else:
+                names[group, material] = name
+                taken.add(name)
+        for group, material in added:
+            name = stem = f"{group} {material}" if group and material else group or material or self.file_stem
+            number = 1
+            while name in taken:
+                number += 1
+                name = f"{stem} {number}"
+            names[group, material] = name
+            taken.add(name)
+        return tuple(ObjPart(names[key], key[1]) for key in self.numbers)
 
     def read(self, line: bytes) -> bool:
         """Process one line; returns False if it is a node or a polygon, which the caller must read."""
@@ -53,11 +86,13 @@ class Statements:
         if keyword in (b"v", b"f"):
             return False
         if keyword == b"g":
-            self.group = _name(words[1]) if len(words) > 1 else None
+            self.group = name_of(words[1]) if len(words) > 1 else None
         elif keyword == b"o":
-            self.group = _name(line.split(None, 1)[1]) if len(words) > 1 else None
+            self.group = name_of(line.split(None, 1)[1]) if len(words) > 1 else None
         elif keyword == b"usemtl":
-            self.surface = _name(line.split(None, 1)[1]) if len(words) > 1 else None
+            self.material = name_of(line.split(None, 1)[1]) if len(words) > 1 else None
+        elif keyword == b"mtllib":
+            self.libraries.extend(line.split(None, 1)[1:])
         elif keyword not in UNUSED:
             # Name only the first unknown statement, to keep the report short.
             if keyword not in SKIPPED and not self.unknown:
@@ -72,7 +107,7 @@ class Statements:
         return tuple(f"skipped {what}: {count:,}" for what, count in self.skipped.items())
 
 
-def _name(text: bytes) -> str:
+def name_of(text: bytes) -> str:
     """The name as printable text of at most 200 characters; bytes that are not UTF-8 are read as Latin-1."""
     text = text.strip()[:200]
     try:

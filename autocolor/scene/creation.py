@@ -1,0 +1,148 @@
+"""Making a scene of a mesh: the tables that are not given are created.
+
+Paper: "Introduction": tables with the part, surface and lighting parameters can be supplied as input or
+created automatically by the system as they are needed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, Final, Literal, Unpack
+
+from autocolor.checks import nearest, shown
+from autocolor.errors import InputError
+from autocolor.scene.changes import PartChanges, SceneFields
+from autocolor.scene.columns.column import Row, fields_of
+from autocolor.scene.columns.problems import Problem, RowError
+from autocolor.scene.columns.rows import made
+from autocolor.scene.defaults import (
+    MAPPING_FIELDS,
+    default_lights,
+    default_surface,
+    default_view,
+    object_coordinates,
+    plain_surface,
+)
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
+
+SHARED: Final = "surface"
+"""The name of the surface that is created for all parts that have no other."""
+
+UNASSIGNED: Final = "\0"
+"""The surface of a part until one is found for it; no name has this character."""
+
+MATERIALS: Final = "materials"
+PARTS: Final = "parts"
+"""Where the surfaces of parts come from that none is given for: from their materials, or each has its own."""
+
+
+def scene_of(
+    mesh: Mesh,
+    *,
+    surfaces: Sequence[Row] | Literal["materials", "parts"] = MATERIALS,
+    parts: Mapping[str, PartChanges] | None = None,
+    surface_of_part: Mapping[str, str] | None = None,
+    material_of_part: Mapping[str, str] | None = None,
+    materials: Sequence[Surface] = (),
+    **fields: Unpack[SceneFields],
+) -> Scene:
+    """A scene of a mesh; tables and fields that are not given are created with defaults.
+
+    A part has the first of these surfaces that there is: the one that `parts` or `surface_of_part` names for
+    it; the given one of its own name; with `surfaces="parts"`, one of its own name, which is created; that of
+    its material, from `materials` or created; and else one that is created for all parts without another. If
+    that would make more than MOST_SURFACES, the remaining parts share the last one.
+
+    `parts` has fields of the parts by name, such as `{"floor": {"stage": True}}`; `fields` are the other
+    fields of Scene. Assumed: without `scaling` and `contrast` all surfaces share one range of intensities,
+    and are as dark as they are lit, so that a mesh keeps its form. Raises InputError.
+    """
+    found: list[Problem] = []
+    given = () if isinstance(surfaces, str) else _held("surfaces", surfaces, found)
+    rows = _part_rows(mesh, parts or {}, surface_of_part or {}, found)
+    tables: dict[str, Any] = {**MAPPING_FIELDS, **fields}
+    # The view is checked here, because the lights that are created depend on it.
+    view, lights = tables.pop("view", None), tables.pop("lights", None)
+    view = None if view is None else _held("view", view, found)
+    if found:
+        raise RowError(found)
+    own = set(mesh.part_names) if surfaces == PARTS else {surface.name for surface in given}
+    material_of_part = material_of_part or {}
+    rows = tuple(
+        row.replace(surface=row.name if row.name in own else material_of_part.get(row.name, SHARED))
+        if row.surface == UNASSIGNED
+        else row
+        for row in rows
+    )
+    rows, table = _with_created(rows, given, materials, material_of_part.values())
+    coordinates = object_coordinates(mesh, rows)
+    if view is None:
+        view = default_view(coordinates)
+    if lights is None:
+        lights = default_lights(coordinates, view)
+    return Scene(mesh, rows, table, lights, view, **tables)
+
+
+def _held(name: str, value: object, found: list[Problem]) -> Any:
+    return fields_of(Scene)[name].column.kind.held(value, (name,), found)
+
+
+def _part_rows(
+    mesh: Mesh,
+    parts: Mapping[str, PartChanges],
+    surface_of_part: Mapping[str, str],
+    found: list[Problem],
+) -> tuple[Part, ...]:
+    """The part table as far as it is given; the surface of a part without one is its own name."""
+    known = set(mesh.part_names)
+    missing = [name for name in (*parts, *surface_of_part) if name not in known]
+    if missing:
+        raise InputError(
+            f"there is no part {shown(name)} to take a surface{nearest(name, mesh.part_names)}"
+            for name in missing
+        )
+    rows = []
+    for name in mesh.part_names:
+        table = {"surface": UNASSIGNED, **parts.get(name, {}), "name": name}
+        if name in surface_of_part:
+            table["surface"] = surface_of_part[name]
+        try:
+            rows.append(made(Part, table))
+        except RowError as error:
+            found.extend(problem.under((PARTS, name)) for problem in error.found)
+    return tuple(rows)
+
+
+def _with_created(
+    rows: tuple[Part, ...],
+    given: tuple[Surface, ...],
+    materials: Sequence[Surface],
+    material_names: Collection[str],
+) -> tuple[tuple[Part, ...], tuple[Surface, ...]]:
+    """The parts, and the given surfaces with those created for the parts, up to MOST_SURFACES.
+
+    A surface is created for the name of a part or of a material, and for SHARED; other names are left for
+    the checks of Scene to refuse.
+    """
+    table = {surface.name: surface for surface in given}
+    if len(table) < len(given):
+        # The checks of Scene refuse repeated names.
+        return rows, given
+    of_material = {surface.name: surface for surface in materials}
+    names = {SHARED, *(row.name for row in rows), *material_names}
+    wanted = [name for name in dict.fromkeys(row.surface for row in rows) if name not in table]
+    kept = [name for name in wanted if name in names][: max(MOST_SURFACES - len(given), 0)]
+    for name in kept:
+        if name == SHARED:
+            table[name] = plain_surface(name)
+        else:
+            table[name] = of_material.get(name) or default_surface(name, len(table))
+    if kept and len(table) == MOST_SURFACES:
+        # Further parts share the last surface.
+        rows = tuple(
+            row if row.surface in table or row.surface not in names else row.replace(surface=kept[-1])
+            for row in rows
+        )
+    return rows, tuple(table.values())
