@@ -13,13 +13,12 @@ import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 from benchmarks import plots
 from benchmarks.machine import heading, machine
 
 RESULTS = Path(__file__).parent / "results"
-PARTS = ("targets", "scaling", "start", "steps")
+PARTS = ("targets", "scaling", "start", "steps", "form")
 """Modules with `measure` and `text`."""
 PROGRAMS = {"display": "benchmarks.display", "ports": "benchmarks.host_ports"}
 """Measurements that are programs of their own."""
@@ -54,9 +53,9 @@ def positive(text: str) -> int:
 def run_part(part: str, options: argparse.Namespace) -> bool:
     """Measure, print and write; whether a target was missed."""
     module = import_module(f"benchmarks.{part}")
-    chosen: dict[str, Any] = {} if options.rounds is None else {"rounds": options.rounds}
-    if "quick" in inspect.signature(module.measure).parameters:
-        chosen["quick"] = options.quick
+    accepted = inspect.signature(module.measure).parameters
+    given = {"rounds": options.rounds, "quick": options.quick}
+    chosen = {name: value for name, value in given.items() if name in accepted and value is not None}
     measured = module.measure(**chosen)
     table = module.text(measured)
     write(part, table, options)
