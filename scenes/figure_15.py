@@ -6,8 +6,11 @@ from typing import Any, Final
 
 from scenes.figures import Sheet, open_scene
 
-COLORS: Final[dict[str, Any]] = {"object_color": "#960c1c", "light_color": "#ffdccc"}
-"""The same two colors in all three: a deep red, and a lamp's warm white."""
+COLORS: Final[dict[str, Any]] = {"object_color": "#80081a", "light_color": "#ff9480"}
+"""The same two colors in all three: a deep red, and the copper of the flakes that catch the light."""
+
+METALLIC: Final = ((0.0, 0.0), (0.25, 0.15), (0.5, 0.36), (0.75, 0.65), (1.0, 1.0))
+"""Metallic paint is dark away from the highlight: a curve that lowers the middle of the range."""
 
 PANELS = (
     ("a", 1.0, "A. Object Color Only"),
@@ -19,6 +22,7 @@ PANELS = (
 def main() -> None:
     """Render once; then every panel is one range of the lookup table, and no word is written."""
     studio, display = open_scene("coupe")
+    studio.edit(studio.scene.replace(mapping=METALLIC))
     words_written = display.frame_buffer.written
     sheet = Sheet("15")
     for panel, blend, caption in PANELS:

@@ -62,7 +62,7 @@ def test_the_coupe_has_about_as_many_nodes_and_polygons_as_the_car_of_the_paper(
     assert np.abs(counts / (9619, 8136, 17940) - 1).max() < 0.01
 
 
-def test_the_coupe_has_named_parts_and_five_surfaces_and_a_floor(mesh: Mesh) -> None:
+def test_the_coupe_has_named_parts_and_seven_surfaces_on_a_stage(mesh: Mesh) -> None:
     scene = read_scene(SCENES / "coupe")
     assert len(CAR) >= 8
     assert set(CAR) | {"floor", "shade"} == set(mesh.part_names)
@@ -71,8 +71,11 @@ def test_the_coupe_has_named_parts_and_five_surfaces_and_a_floor(mesh: Mesh) -> 
         "glass",
         "trim",
         "rubber",
+        "tires",
+        "gaps",
         "lamps",
     }
+    assert {part.name for part in scene.parts if part.stage} == {"floor", "shade"}
     assert [light.name for light in scene.lights] == ["key", "side", "back", "rim"]
 
 

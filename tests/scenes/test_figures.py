@@ -9,7 +9,7 @@ from PIL import Image
 
 import autocolor
 from ramtek_emu import Ramtek9300
-from scenes import figure_04, figure_15, figures
+from scenes import figure_04, figure_10, figure_15, figures
 
 EXPECTED = {
     "04": {"figure-04.png", "figure-04-a.png", "figure-04-b.png", "figure-04-c.png"},
@@ -17,7 +17,7 @@ EXPECTED = {
     "07": {"figure-07.png"},
     "08": {"figure-08.png", *(f"figure-08-{name}.png" for name in ("key", "side", "back", "rim"))},
     "09": {"figure-09.png", "figure-09-a.png", "figure-09-b.png", "figure-09-c.png"},
-    "10": {"figure-10.png", "figure-10-a.png", "figure-10-b.png", "figure-10-c.png"},
+    "10": {"figure-10.png", *(f"figure-10-{panel}.png" for panel in "abcdef")},
     "15": {"figure-15.png", "figure-15-a.png", "figure-15-b.png", "figure-15-c.png"},
 }
 
@@ -75,3 +75,61 @@ def test_the_three_blends_of_figure_15_differ_only_in_the_body() -> None:
         differs = (field != fields[0]).any(axis=2)
         assert not differs[~body].any()
         assert differs[body].mean() > 0.5
+
+
+def test_the_levels_of_figure_8_add_up_to_those_of_figure_6_where_the_exposure_is_held_from_zero() -> None:
+    coupe = autocolor.read_scene(figures.SCENES / "coupe").replace(scaling="object", mapping="linear")
+    brightest = autocolor.render(coupe).ranges.whole.maximum
+    coupe = coupe.replace(exposure={"object": (0.0, brightest)})
+    together = autocolor.Studio(coupe, Ramtek9300())
+    total = np.zeros(together.words.shape, int)
+    for row, light in enumerate(coupe.lights):
+        # The ambient light is in one panel only.
+        panel = coupe.only_lights(light.name).replace(ambient=0.0 if row else coupe.ambient)
+        total += levels_of(autocolor.Studio(panel, Ramtek9300()))
+    assert np.abs(total - levels_of(together)).max() <= len(coupe.lights) / 2
+
+
+def levels_of(studio: autocolor.Studio) -> np.ndarray[tuple[int, ...], np.dtype[np.int_]]:
+    """The level at each pixel, 0 where nothing is seen."""
+    firsts = [0, *(studio.level_ranges[name].first for name in studio.picture.surfaces)]
+    return studio.words.astype(int) - np.array(firsts)[studio.picture.surface_number]
+
+
+def test_the_cone_of_figure_10_picks_out_one_object_of_the_row() -> None:
+    row = autocolor.read_scene(figures.SCENES / "row")
+    picked = row.with_light("lamp", aim=figure_10.BOWL, cone_angle=figure_10.IN_A_ROW[-1][1])
+    ranges = autocolor.render(picked).ranges.surfaces
+    lit = {name for name, (_, most) in ranges.items() if most > row.ambient * 1.001}
+    assert lit == {"bowl", "floor"}
+    every = autocolor.render(row.with_light("lamp", aim=figure_10.BOWL)).ranges.surfaces
+    assert all(most > 3 * row.ambient for _, most in every.values())
+
+
+def test_the_plane_of_figure_4_has_one_spot_that_is_lighter_than_its_paint() -> None:
+    studio = autocolor.Studio(autocolor.read_scene(figures.SCENES / "pyramid"), Ramtek9300())
+    paint = studio.scene.surface("plane").paint
+    first, levels = studio.level_ranges["plane"]
+    is_plane = studio.picture.surface_number == studio.picture.surfaces.index("plane") + 1
+    lines, elements = np.nonzero(is_plane & (studio.words - first > paint.blend * (levels - 1)))
+    assert 100 < len(lines) < 0.02 * is_plane.sum()
+    assert max(np.ptp(lines), np.ptp(elements)) < 100
+
+
+def test_no_gap_between_the_panels_of_the_coupe_is_lighter_than_its_paint() -> None:
+    studio = autocolor.Studio(autocolor.read_scene(figures.SCENES / "coupe"), Ramtek9300())
+    first, levels = studio.level_ranges["gaps"]
+    body = studio.picture.surface_number == studio.picture.surfaces.index("body") + 1
+    darkest_paint = np.percentile(studio.entries[studio.words[body]].max(axis=1), 1)
+    assert studio.entries[first : first + levels].max() < darkest_paint
+
+
+def test_under_a_light_at_the_eye_the_glass_of_the_coupe_is_darker_than_its_paint() -> None:
+    coupe = autocolor.read_scene(figures.SCENES / "coupe")
+    at_eye = coupe.replace(lights=[autocolor.Light("eye", coupe.view.eye)])
+    picture = autocolor.render(at_eye)
+    gray = autocolor.image(at_eye, picture).max(axis=2)
+    glass, body = (
+        gray[picture.surface_number == picture.surfaces.index(name) + 1] for name in ("glass", "body")
+    )
+    assert np.percentile(glass, 95) < np.percentile(body, 95)
