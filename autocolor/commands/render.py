@@ -75,7 +75,7 @@ def render(
         from autocolor.mapping.exposure import held_exposure
         from autocolor.rendering import render as rendered
 
-        original = original.replace(exposure=held_exposure(rendered(original)))
+        original = original.replace(exposure=held_exposure(rendered(original), original.exposure))
     edited = with_settings(original, settings)
     if lights:
         edited = edited.only_lights(*lights)

@@ -52,11 +52,14 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
     return ranges
 
 
-def held_exposure(picture: Picture) -> Exposure:
-    """The exposure that holds the ranges of a picture; AUTO if none has an extent."""
-    held = []
+def held_exposure(picture: Picture, exposure: Exposure = AUTO) -> Exposure:
+    """The exposure that holds the ranges of a picture, except those that `exposure` holds already.
+
+    A range without extent is not held; the result is AUTO if none has one.
+    """
+    held = {} if isinstance(exposure, str) else dict(exposure)
     for number, extent in picture.relative_ranges.items():
         if has_extent(extent):
             name = picture.surfaces[number - 1] if number else OBJECT
-            held.append((name, (extent.minimum * picture.scale, extent.maximum * picture.scale)))
-    return tuple(held) or AUTO
+            held.setdefault(name, (extent.minimum * picture.scale, extent.maximum * picture.scale))
+    return tuple(held.items()) or AUTO

@@ -17,11 +17,12 @@ from autocolor.scene.columns.problems import Problem, RowError
 from autocolor.scene.columns.rows import made
 from autocolor.scene.defaults import (
     MAPPING_FIELDS,
+    OBJECT_COLORS,
+    PLAIN_COLOR,
+    created_surface,
     default_lights,
-    default_surface,
     default_view,
     object_coordinates,
-    plain_surface,
 )
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
@@ -135,10 +136,8 @@ def _with_created(
     wanted = [name for name in dict.fromkeys(row.surface for row in rows) if name not in table]
     kept = [name for name in wanted if name in names][: max(MOST_SURFACES - len(given), 0)]
     for name in kept:
-        if name == SHARED:
-            table[name] = plain_surface(name)
-        else:
-            table[name] = of_material.get(name) or default_surface(name, len(table))
+        color = PLAIN_COLOR if name == SHARED else OBJECT_COLORS[len(table) % len(OBJECT_COLORS)]
+        table[name] = of_material.get(name) or created_surface(name, color)
     if kept and len(table) == MOST_SURFACES:
         # Further parts share the last surface.
         rows = tuple(

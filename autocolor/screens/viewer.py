@@ -15,7 +15,7 @@ from autocolor.files.file_stem import file_stem
 from autocolor.files.scene_sources import read_scene
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.defaults import OBJECT_COLORS, framed
-from autocolor.scene.scene import AUTO, Scene
+from autocolor.scene.scene import AUTO, Exposure, Scene
 from autocolor.scene.view import View
 from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS, Actions
 from autocolor.screens.entries_screen import draw_entries
@@ -43,6 +43,7 @@ class Viewer:
         self.studio = Studio(scene, self.display)
         self.saved: Path | None = None
         self.surface = 0
+        self._released: Exposure = AUTO
         self.page = "picture"
         self.message = "F1 help"
         self._edited_by = None
@@ -223,13 +224,16 @@ class Viewer:
         self.message = f"light {light.name} {'off' if light.on else 'on'}"
 
     def switch_exposure(self) -> None:
-        """Hold the intensity ranges of the picture, or let them follow it again."""
+        """Hold the intensity ranges of the picture; where all are held, hold only those that were before."""
         self.back()
-        if self.studio.scene.exposure == AUTO:
-            self.studio.hold_exposure()
+        before = self.studio.scene.exposure
+        self.studio.hold_exposure()
+        if self.studio.scene.exposure != before:
+            self._released = before
+            self.message = "exposure held"
         else:
-            self.studio.release_exposure()
-        self.message = f"exposure {'auto' if self.studio.scene.exposure == AUTO else 'held'}"
+            self._edit(self.studio.scene.replace(exposure=self._released))
+            self.message = "exposure released"
 
     def choose_surface(self, step: int) -> None:
         """Select another surface in use for the color keys, `step` positions further."""

@@ -24,10 +24,10 @@ BOUNDS = (
 )
 
 
-def measure(quick: bool = False, folders: Sequence[Path] = (), lines: int = 480) -> dict[str, Any]:
+def measure(quick: bool = False, paths: Sequence[Path] = (), lines: int = 480) -> dict[str, Any]:
     """The measures of every mesh from every side, and the worst of each mesh; in plain values."""
     rows = []
-    for subject in subjects(folders):
+    for subject in subjects(paths):
         found = {each.view_name: each.measures() for each in sights(subject, QUICK_LINES if quick else lines)}
         for view, measures in (*found.items(), (WORST, worst(list(found.values())))):
             broken = measures.broken(subject.is_curved)

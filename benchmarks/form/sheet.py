@@ -25,13 +25,13 @@ PAPER, INK = (255, 255, 255), (34, 34, 34)
 TRIAL: Final = "import pyvista; pyvista.Plotter(off_screen=True).screenshot(return_img=True)"
 
 
-def write_sheet(path: Path, folders: Sequence[Path] = ()) -> str:
+def write_sheet(path: Path, paths: Sequence[Path] = ()) -> str:
     """Write the pictures of all subjects as PNG; what is to be said of it, or nothing."""
     from PIL import Image, ImageDraw
 
     note = absence()
     across = (1 if note else 2) * WIDTH
-    every = list(subjects(folders))
+    every = list(subjects(paths))
     rows = -(-len(every) // COLUMNS)
     size = (COLUMNS * (across + GAP) + GAP, rows * (HEIGHT + CAPTION + GAP) + GAP)
     sheet = Image.new("RGB", size, PAPER)

@@ -17,6 +17,7 @@ import autocolor
 from autocolor import Mesh, Scene, View
 from autocolor.arrays import Bytes
 from autocolor.files.meshes.formats import mesh_suffixes
+from autocolor.files.repair.polygons import UPS
 from autocolor.mapping.display_image import display_image
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.defaults import default_lights, default_view, framed
@@ -71,15 +72,29 @@ class Sight:
         return measure(self.gray(scene), self.rendering.points.pixels, self.creases)
 
 
-def subjects(folders: Sequence[Path] = ()) -> Iterator[Subject]:
-    """Our own shapes, and every mesh file in some folders that can be read."""
+def subjects(paths: Sequence[Path] = ()) -> Iterator[Subject]:
+    """Our own shapes, some mesh files, and every mesh file in some folders.
+
+    A path may end in a colon and the up axis of its files, as in `car.obj:y`.
+    """
     for name, shape in shapes().items():
         yield Subject(name, autocolor.scene_of(shape.mesh), shape.is_curved)
-    for folder in folders:
-        for path in sorted(folder.iterdir()):
-            if path.suffix.lower() in mesh_suffixes():
-                scene = autocolor.read_scene(path)
-                yield Subject(path.stem, scene, is_curved(scene.mesh))
+    for path, up in map(path_and_up, paths):
+        files = sorted(path.iterdir()) if path.is_dir() else [path]
+        for file in files:
+            if file.suffix.lower() in mesh_suffixes():
+                scene = autocolor.read_scene(file, up=up)
+                yield Subject(file.stem, scene, is_curved(scene.mesh))
+
+
+def path_and_up(path: Path) -> tuple[Path, str]:
+    """The path without its up axis, and the axis, which is z unless it is given.
+
+    >>> path_and_up(Path("car.obj:y"))[1], path_and_up(Path("meshes"))[1]
+    ('y', 'z')
+    """
+    name, colon, up = path.name.rpartition(":")
+    return (path.with_name(name), up) if colon and up in UPS else (path, "z")
 
 
 def is_curved(mesh: Mesh) -> bool:
@@ -92,18 +107,20 @@ def is_curved(mesh: Mesh) -> bool:
 
 def views(mesh: Mesh) -> dict[str, View]:
     """The created view of a mesh and those from two other sides, each framing it."""
-    found = {"created": default_view(mesh)}
+    coordinates = mesh.used_coordinates
+    found = {"created": default_view(coordinates)}
     for name, (azimuth, elevation) in TURNED.items():
         turn, rise = math.radians(azimuth), math.radians(elevation)
         eye = (math.cos(rise) * math.cos(turn), math.cos(rise) * math.sin(turn), math.sin(rise))
-        found[name] = framed(View(eye=eye, target=(0.0, 0.0, 0.0)), mesh)
+        found[name] = framed(View(eye=eye, target=(0.0, 0.0, 0.0)), coordinates)
     return found
 
 
 def white(scene: Scene, view: View) -> Scene:
     """The scene from another side with the lights that are created for it, and with white surfaces."""
     surfaces = [surface.replace(object_color=WHITE, light_color=WHITE) for surface in scene.surfaces]
-    return scene.replace(view=view, lights=default_lights(scene.mesh, view), surfaces=surfaces)
+    lights = default_lights(scene.object_coordinates, view)
+    return scene.replace(view=view, lights=lights, surfaces=surfaces)
 
 
 def sights(subject: Subject, lines: int = 480) -> Iterator[Sight]:

@@ -66,3 +66,12 @@ def test_an_extent_of_a_few_units_in_the_last_place_is_none() -> None:
     assert not has_extent(IntensityRange(1.0, 1.0 + 4 * 2.0**-23))
     assert has_extent(IntensityRange(1.0, 1.0 + 16 * 2.0**-23))
     assert has_extent(IntensityRange(0.0, 1e-30))
+
+
+@given(scenes())
+def test_what_is_held_already_stays_held_as_it_is(scene: Scene) -> None:
+    exposure = held_exposure(render(scene, 9, 12), scene.exposure)
+    if not isinstance(scene.exposure, str):
+        held = dict(scene.exposure)
+        assert not isinstance(exposure, str)
+        assert {name: limits for name, limits in exposure if name in held} == held

@@ -24,6 +24,7 @@ from autocolor.files.paths import path_within
 from autocolor.files.reading import read_bytes, shown, text_problem
 from autocolor.mapping.rounding import half_up
 from autocolor.scene.columns.rows import changed
+from autocolor.scene.defaults import created_surface
 from autocolor.scene.surfaces import Surface
 
 LARGEST_LIBRARY: Final = 16 * 1024 * 1024
@@ -166,4 +167,4 @@ def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:
             changes["blend"] = 1.0
     if b"Ns" in values:
         changes["exponent"] = values[b"Ns"][0]
-    return changed(Surface(name), changes)
+    return changed(created_surface(name), changes)
