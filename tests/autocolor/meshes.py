@@ -8,7 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor import Mesh, Reflectance, Scene, Surface, View, scene_of
+from autocolor.scene.changes import SceneFields
 from tests.autocolor.strategies import Vector
+
+STRETCHED: SceneFields = {"scaling": "surface", "contrast": "stretch", "mapping": "linear"}
+"""How intensities are shown where a test rests on it: as in a scene file that does not say it."""
 
 
 def grid(columns: int, rows: int, corner: Vector, across: Vector, up: Vector, name: str = "wall") -> Mesh:
@@ -35,12 +39,17 @@ def wall_scene(
     two_sided: bool = True,
     **fields: object,
 ) -> Scene:
-    """A wall, seen from straight before it unless a view is given; no ambient light unless given."""
+    """A wall, seen from straight before it unless a view is given; no ambient light unless given.
+
+    Other parts than the wall have a surface of their own, and so do intensities, unless `fields` say it.
+    """
+    mesh = wall() if mesh is None else mesh
     return scene_of(
-        wall() if mesh is None else mesh,
+        mesh,
+        surface_of_part={name: name for name in mesh.part_names},
         surfaces=[Surface("wall", reflectance or Reflectance(0.7, 0.5, 20.0), two_sided=two_sided)],
         view=view or View((0.0, -4.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=25.0),
-        **{"ambient": 0.0, **fields},  # type: ignore[arg-type]
+        **{**STRETCHED, "ambient": 0.0, **fields},  # type: ignore[arg-type]
     )
 
 

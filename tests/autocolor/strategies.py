@@ -159,7 +159,7 @@ def scenes(draw: st.DrawFn) -> Scene:
     names = ["body", "glass"]
     return Scene(
         mesh,
-        tuple(Part(name, draw(st.sampled_from(names))) for name in mesh.part_names),
+        tuple(Part(name, draw(st.sampled_from(names)), draw(st.booleans())) for name in mesh.part_names),
         tuple(draw(surfaces(name)) for name in names),
         tuple(draw(lights(name)) for name in draw(st.sampled_from([(), ("key",), ("key", "fill", "rim")]))),
         draw(views() | outside_views()),

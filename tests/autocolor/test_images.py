@@ -9,7 +9,7 @@ from PIL import Image
 
 from autocolor import InputError, OutputError, Scene, Studio, Surface, image, render, save_image, scene_of
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import cube
+from tests.autocolor.meshes import STRETCHED, cube
 from tests.autocolor.strategies import scenes
 
 
@@ -21,7 +21,7 @@ def test_the_colors_are_those_of_the_field_of_a_display(scene: Scene) -> None:
 
 
 def test_a_picture_is_colored_by_any_scene_that_has_its_surfaces() -> None:
-    scene = scene_of(cube())
+    scene = scene_of(cube(), surfaces="parts", **STRETCHED)
     picture = render(scene, 48, 64)
     blue = scene.with_surface("cube", object_color="#0000ff", light_color="#0000ff")
     assert image(scene, picture).shape == (48, 64, 3)
@@ -43,7 +43,7 @@ def test_an_image_is_written_as_a_png_and_never_over_a_file_unasked(tmp_path: Pa
 
 
 def test_a_picture_of_other_surfaces_is_refused() -> None:
-    picture = render(scene_of(cube()), 24, 32)
+    picture = render(scene_of(cube(), surfaces="parts"), 24, 32)
     other = scene_of(cube(), surfaces=[Surface("paint")], surface_of_part={"cube": "paint"})
     with pytest.raises(InputError, match=r"must be those of the scene, \['paint'\], not \['cube'\]"):
         image(other, picture)

@@ -15,7 +15,7 @@ from autocolor import Flap, Flaps, InputError, Light, Mesh, Scene, Studio, Surfa
 from autocolor.mapping.level_ranges import SCREENS
 from autocolor.studio import send_picture
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, Ramtek9300
-from tests.autocolor.meshes import cube, grid, sphere, wall_scene
+from tests.autocolor.meshes import STRETCHED, cube, grid, sphere, wall_scene
 from tests.autocolor.strategies import colors, numbers, scenes, vectors
 
 SMALL = Configuration(name="small", elements=32, lines=24, planes=10)
@@ -45,7 +45,7 @@ def car() -> Scene:
             Light("fill", (-3.0, -2.0, 1.0), 0.4, flaps=Flaps(z=Flap(-0.5, 0.9, on=False))),
         ],
         view=View((1.0, -4.0, 1.0), target=(0.0, 0.0, 0.0), field_of_view=40.0),
-    )
+    ).replace(**STRETCHED)
 
 
 SURFACES = st.sampled_from(["body", "glass", "wheels"])

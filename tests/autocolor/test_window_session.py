@@ -49,7 +49,7 @@ class Session:
         self.environment["XDG_RUNTIME_DIR"] = str(folder)
         self.environment.pop("SDL_VIDEODRIVER", None)
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "autocolor", "view", "box.obj"],
+            [sys.executable, "-m", "autocolor", "view", "box.obj", "--surfaces", "parts"],
             cwd=folder,
             env=self.environment,
             stdout=subprocess.PIPE,
@@ -57,7 +57,9 @@ class Session:
             text=True,
         )
         self.display = Ramtek9300()
-        self.viewer = Viewer(read_scene(folder / "box.obj"), self.display, folder / "elsewhere")
+        self.viewer = Viewer(
+            read_scene(folder / "box.obj", surfaces="parts"), self.display, folder / "elsewhere"
+        )
 
     def tool(self, *arguments: str) -> str:
         return subprocess.run(

@@ -93,7 +93,10 @@ def test_the_levels_of_figure_8_add_up_to_those_of_figure_6_where_the_exposure_i
 def levels_of(studio: autocolor.Studio) -> np.ndarray[tuple[int, ...], np.dtype[np.int_]]:
     """The level at each pixel, 0 where nothing is seen."""
     firsts = [0, *(studio.level_ranges[name].first for name in studio.picture.surfaces)]
-    return studio.words.astype(int) - np.array(firsts)[studio.picture.surface_number]
+    levels: np.ndarray[tuple[int, ...], np.dtype[np.int_]] = (
+        studio.words.astype(int) - np.array(firsts)[studio.picture.surface_number]
+    )
+    return levels
 
 
 def test_the_cone_of_figure_10_picks_out_one_object_of_the_row() -> None:

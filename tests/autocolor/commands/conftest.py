@@ -34,6 +34,7 @@ SCENE = """\
 file = "two.obj"
 [surfaces."front.low"]
 object_color = "#102030"
+[surfaces.side]
 [[lights]]
 name = "key"
 position = [2.0, -3.0, 4.0]

@@ -41,7 +41,7 @@ def test_an_output_in_another_folder_is_written_there_alone(folder: Path, run: R
 
 
 def test_saving_alone_writes_no_png(folder: Path, run: Run) -> None:
-    assert run("render", "two.obj", "--save", "two.npz").err == "wrote two.npz\n"
+    assert run("render", "two.obj", "--surfaces", "parts", "--save", "two.npz").err == "wrote two.npz\n"
     assert not (folder / "two.png").exists()
     picture, scene = read_picture("two.npz")
     assert picture.surfaces == ("front.low", "side")
@@ -72,7 +72,7 @@ def test_an_unknown_light_is_told_the_nearest_right_name(folder: Path, run: Run)
 
 def test_the_up_axis_turns_a_bare_mesh(folder: Path, run: Run) -> None:
     for up in "xyz":
-        assert run("render", "two.obj", "--up", up, "-o", f"{up}.png").code == 0
+        assert run("render", "two.obj", "--surfaces", "parts", "--up", up, "-o", f"{up}.png").code == 0
     pictures = {(folder / f"{up}.png").read_bytes() for up in "xyz"}
     assert len(pictures) == 3
     wrong = run("render", "two.obj", "--up", "w")
@@ -195,3 +195,91 @@ def test_with_the_exposure_held_one_light_alone_is_darker(folder: Path, run: Run
     assert (held <= stretched).all()
     assert held.sum() < 0.9 * stretched.sum()
     assert (folder / "all.png").read_bytes() == (folder / "plain.png").read_bytes()
+
+
+CAR = """\
+mtllib car.mtl
+v 0 0 0
+v 1 0 0
+v 1 0 1
+v 0 0 1
+v 0 1 0
+v 0 1 1
+v 1 0 2
+v 0 0 2
+g front
+usemtl red
+f 1 2 3 4
+usemtl glass
+f 4 3 7 8
+g side
+usemtl rubber
+f 1 4 6 5
+"""
+LIBRARY = """\
+newmtl red
+Kd 1 0 0
+Ks 0
+newmtl glass
+Kd 0 0 1
+Ks 0
+newmtl rubber
+Kd 0 1 0
+Ks 0
+"""
+
+
+def test_a_mesh_is_rendered_in_the_colors_of_its_materials(folder: Path, run: Run) -> None:
+    (folder / "car.obj").write_text(CAR)
+    (folder / "car.mtl").write_text(LIBRARY)
+    assert run("render", "car.obj", "--save", "car.npz", "-o", "car.png") == (
+        0,
+        "",
+        "wrote car.png\nwrote car.npz\n",
+    )
+    picture, scene = read_picture("car.npz")
+    assert [(part.name, part.surface) for part in scene.parts] == [
+        ("front", "red"),
+        ("front glass", "glass"),
+        ("side", "rubber"),
+    ]
+    assert picture.surfaces == ("red", "glass", "rubber")
+    colors = pixels(folder / "car.png")
+    # Each object color is of one component; no other is shown where the surface is seen.
+    for number, component in ((1, 0), (2, 2), (3, 1)):
+        seen = colors[picture.surface_number == number]
+        assert len(seen)
+        assert seen[:, component].any()
+        assert not np.delete(seen, component, axis=1).any()
+
+
+def test_surfaces_of_parts_come_before_those_of_materials_where_that_is_asked(folder: Path, run: Run) -> None:
+    (folder / "car.obj").write_text(CAR)
+    (folder / "car.mtl").write_text(LIBRARY)
+    assert run("render", "car.obj", "--surfaces", "parts", "--save", "car.npz").code == 0
+    assert read_picture("car.npz").picture.surfaces == ("front", "front glass", "side")
+    setting = ("--set", "surfaces.front glass.object_color=#00ff00")
+    assert run("render", "car.obj", "--surfaces", "parts", *setting).code == 0
+    assert run("render", "car.obj", *setting, "--force").code == 2
+
+
+def test_a_scene_file_gives_surfaces_before_the_materials_do(folder: Path, run: Run) -> None:
+    (folder / "scene" / "two.obj").write_text(CAR)
+    (folder / "scene" / "car.mtl").write_text(LIBRARY)
+    (folder / "scene" / "scene.toml").write_text(
+        '[[mesh]]\nfile = "two.obj"\n[parts.side]\nsurface = "body"\nstage = true\n'
+        '[surfaces.body]\n[surfaces."front glass"]\n'
+    )
+    assert run("render", "scene", "--save", "scene.npz").code == 0
+    scene = read_picture("scene.npz").scene
+    assert [part.surface for part in scene.parts] == ["red", "front glass", "body"]
+    assert [surface.name for surface in scene.surfaces] == ["body", "front glass", "red"]
+    assert [part.stage for part in scene.parts] == [False, False, True]
+
+
+def test_what_is_left_out_of_materials_is_told_and_counts_under_strict(folder: Path, run: Run) -> None:
+    (folder / "car.obj").write_text(CAR)
+    (folder / "car.mtl").write_text(LIBRARY + "map_Kd car.png\n")
+    ran = run("render", "car.obj", "--strict")
+    assert (ran.code, ran.out) == (1, "")
+    assert ran.err == "autocolor: car.mtl: left out the textures of 1 material\nwrote car.png\n"

@@ -15,21 +15,25 @@ from tests.autocolor.meshes import wall_scene
 
 @click.command
 @scene_options
-def echo(scene: str, up: str, strict: bool) -> None:
+def echo(scene: str, up: str, surfaces: str, strict: bool) -> None:
     """Say what the options of a command are."""
-    click.echo(f"{scene} {up} {strict}")
+    click.echo(f"{scene} {up} {surfaces} {strict}")
 
 
 def said(*arguments: str) -> str:
     return CliRunner().invoke(echo, arguments).output
 
 
-def test_a_command_takes_a_scene_an_up_axis_and_whether_to_be_strict() -> None:
-    assert said("car.obj") == "car.obj z False\n"
-    assert said("--up", "y", "car.obj", "--strict") == "car.obj y True\n"
+def test_a_command_takes_a_scene_an_up_axis_where_surfaces_come_from_and_whether_to_be_strict() -> None:
+    assert said("car.obj") == "car.obj z materials False\n"
+    assert said("--up", "y", "car.obj", "--strict") == "car.obj y materials True\n"
+    assert said("--surfaces", "parts", "car.obj") == "car.obj z parts False\n"
 
 
-@pytest.mark.parametrize("arguments", [(), ("a.obj", "b.obj"), ("a.obj", "--up", "Z"), ("a.obj", "--up")])
+@pytest.mark.parametrize(
+    "arguments",
+    [(), ("a.obj", "b.obj"), ("a.obj", "--up", "Z"), ("a.obj", "--up"), ("a.obj", "--surfaces", "Parts")],
+)
 def test_other_arguments_are_wrong_usage(arguments: tuple[str, ...]) -> None:
     assert CliRunner().invoke(echo, arguments).exit_code == 2
 
@@ -37,13 +41,13 @@ def test_other_arguments_are_wrong_usage(arguments: tuple[str, ...]) -> None:
 def test_a_scene_is_read_without_a_word_where_nothing_is_repaired(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert read("scene", "z").scene.name == "scene"
+    assert read("scene", "z", "materials").scene.name == "scene"
     assert tuple(capsys.readouterr()) == ("", "")
 
 
 def test_each_repair_is_a_line_on_stderr(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\nl 1 2\n")
-    report = read("two.obj", "z")
+    report = read("two.obj", "z", "materials")
     out, err = capsys.readouterr()
     assert out == ""
     assert err.splitlines() == [f"autocolor: {repair}" for repair in report.repairs]
@@ -51,7 +55,7 @@ def test_each_repair_is_a_line_on_stderr(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_the_up_axis_is_that_of_the_mesh_file(folder: Path) -> None:
-    above = read("two.obj", "y").scene.mesh.coordinates
+    above = read("two.obj", "y", "materials").scene.mesh.coordinates
     assert above[2].tolist() == [1, -1, 0]
 
 
@@ -60,9 +64,9 @@ def test_what_cannot_be_read_is_refused_and_not_told(
 ) -> None:
     (folder / "bad.obj").write_text("v 0\n")
     with pytest.raises(InputError):
-        read("bad.obj", "z")
+        read("bad.obj", "z", "materials")
     with pytest.raises(MissingInputError):
-        read("none.obj", "z")
+        read("none.obj", "z", "materials")
     assert tuple(capsys.readouterr()) == ("", "")
 
 
@@ -77,5 +81,5 @@ def test_only_strict_makes_a_repair_an_exit_code(repairs: tuple[str, ...], stric
 @pytest.mark.parametrize("command", ["render", "view", "info", "validate", "show", "tables"])
 def test_every_command_that_reads_a_scene_takes_the_same_options(run: Run, command: str) -> None:
     shown = run(command, "--help").out
-    for option in ("SCENE", "--up [x|y|z]", "--strict"):
+    for option in ("SCENE", "--up [x|y|z]", "--surfaces [materials|parts]", "--strict"):
         assert option in shown

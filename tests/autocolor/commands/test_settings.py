@@ -58,6 +58,7 @@ def test_every_kind_of_key_can_be_set(scene: Scene) -> None:
             "surfaces.side.light_color=[1, 2, 3]",
             "surfaces.side.levels=20",
             "parts.side.surface=front.low",
+            "parts.side.stage=true",
         ),
     )
     assert (changed.ambient, changed.scaling, changed.contrast) == (0.25, "object", "floor")
@@ -68,6 +69,7 @@ def test_every_kind_of_key_can_be_set(scene: Scene) -> None:
     side = changed.surface("side")
     assert (side.reflectance.exponent, side.paint.light_color, side.levels) == (40, (1, 2, 3), 20)
     assert changed.part("side").surface == "front.low"
+    assert changed.part("side").stage
 
 
 def test_flaps_are_set_whole_or_field_by_field(scene: Scene) -> None:
@@ -175,11 +177,9 @@ def test_a_wrong_setting_ends_before_anything_is_written(
 
 
 def test_a_setting_colors_the_picture(folder: Path, run: Run) -> None:
-    assert run("render", "two.obj", "-o", "one.png").code == 0
-    assert (
-        run("render", "two.obj", "--set", "surfaces.front.low.object_color=#00ff00", "-o", "two.png").code
-        == 0
-    )
+    assert run("render", "scene", "-o", "one.png").code == 0
+    setting = "surfaces.front.low.object_color=#00ff00"
+    assert run("render", "scene", "--set", setting, "-o", "two.png").code == 0
     assert (folder / "one.png").read_bytes() != (folder / "two.png").read_bytes()
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Literal
 
 import pytest
 from click.testing import CliRunner
@@ -20,9 +21,15 @@ def mesh(tmp_path: Path) -> Path:
     return path
 
 
-def test_created_tables_fed_back_give_the_same_picture(mesh: Path) -> None:
-    bare = autocolor.read_scene(mesh)
-    result = CliRunner().invoke(tables, [str(mesh), "--write"])
+@pytest.mark.parametrize("surfaces", ["materials", "parts"])
+@pytest.mark.parametrize("materials", ["", "usemtl red\n"])
+def test_created_tables_fed_back_give_the_same_picture(
+    mesh: Path, surfaces: Literal["materials", "parts"], materials: str
+) -> None:
+    mesh.write_text(SQUARE.replace("f 1", f"{materials}f 1"))
+    mesh.with_suffix(".mtl").write_text("newmtl red\nKd 1 0.5 0\nKs 0.25\nNs 9\n")
+    bare = autocolor.read_scene(mesh, surfaces=surfaces)
+    result = CliRunner().invoke(tables, [str(mesh), "--surfaces", surfaces, "--write"])
     assert result.exit_code == 0, result.output
     again = autocolor.read_scene(mesh.parent)
     assert (again.parts, again.surfaces, again.lights) == (bare.parts, bare.surfaces, bare.lights)
@@ -45,11 +52,11 @@ def test_a_scene_file_is_not_overwritten_without_force(mesh: Path) -> None:
     assert isinstance(refused.exception, autocolor.OutputError)
     assert scene.read_text() == "ambient = 0.5\n"
     assert CliRunner().invoke(tables, [str(mesh), "--write", "--force"]).exit_code == 0
-    assert 'surface = "lid"' in scene.read_text()
+    assert 'surface = "surface"' in scene.read_text()
 
 
 def test_tables_as_json_hold_every_table(mesh: Path) -> None:
     values = json.loads(CliRunner().invoke(tables, [str(mesh), "--json"]).stdout)
-    assert values["parts"] == [{"name": "lid", "surface": "lid"}]
+    assert values["parts"] == [{"name": "lid", "surface": "surface", "stage": False}]
     assert len(values["lights"]) == 4
     assert {"surfaces", "view", "ambient", "mesh"} <= set(values)

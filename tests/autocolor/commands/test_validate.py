@@ -19,7 +19,9 @@ def test_every_problem_is_told_at_once(folder: Path, run: Run) -> None:
     assert (ran.code, ran.out) == (65, "")
     sentences = ran.err.splitlines()
     assert len(sentences) == 3
-    for sentence, line, right in zip(sentences, (1, 9, 10), ("'ambient'", "'aim'", "'minimum'"), strict=True):
+    for sentence, line, right in zip(
+        sentences, (1, 10, 11), ("'ambient'", "'aim'", "'minimum'"), strict=True
+    ):
         assert sentence.startswith(f"autocolor: scene.toml, line {line}, ")
         assert sentence.endswith(f"; did you mean {right}?")
     ran = run("validate", "scene", "--json")

@@ -4,11 +4,15 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from autocolor import Scene
 from autocolor.errors import InputError, MissingInputError, UsageError
 from autocolor.files.scene_sources import read_scene, read_scene_with_report
+from autocolor.scene.columns.column import fields_of
+from autocolor.scene.defaults import MAPPING_FIELDS
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 3\nv 0 1 0\ng hood\nf 1 2 3 4\n"
 
@@ -47,9 +51,9 @@ def test_up_is_the_up_axis_of_a_bare_mesh(folder: Path) -> None:
 def test_parts_beyond_the_surfaces_share_one_and_it_is_said(tmp_path: Path) -> None:
     path = tmp_path / "car.obj"
     path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 3\n" + "".join(f"o p{part}\nf 1 2 3\n" for part in range(300)))
-    report = read_scene_with_report(path)
+    report = read_scene_with_report(path, surfaces="parts")
     assert len(report.scene.surfaces) == 255
-    assert report.created[-1] == "45 parts share a surface, because a scene has at most 255"
+    assert report.created[-1] == "46 parts share surface 'p254', because a scene has at most 255"
 
 
 def test_strict_reading_refuses_repairs(folder: Path) -> None:
@@ -104,3 +108,25 @@ def test_an_up_axis_goes_with_a_mesh_alone(tmp_path: Path) -> None:
     (tmp_path / "scene.toml").write_text('[[mesh]]\nfile = "square.obj"\n')
     with pytest.raises(UsageError, match=r"up is for mesh files, not for .*scene\.toml, which gives"):
         read_scene(tmp_path, up="y")
+
+
+def test_surfaces_are_those_of_materials_or_of_parts(folder: Path) -> None:
+    (folder / "car.obj").write_text(CAR.replace("g hood\n", "g hood\nusemtl red\n"))
+    for name in ("car.obj", "scene.toml", ""):
+        assert [surface.name for surface in read_scene(folder / name).surfaces] == ["red"]
+        assert [part.surface for part in read_scene(folder / name, surfaces="parts").parts] == ["hood"]
+    wrong: Any = "part"
+    with pytest.raises(UsageError, match="surfaces must be 'materials' or 'parts', not 'part'"):
+        read_scene(folder, surfaces=wrong)
+
+
+def test_a_scene_file_that_leaves_out_how_intensities_are_shown_means_the_defaults_of_a_scene(
+    folder: Path,
+) -> None:
+    (folder / "scene.toml").write_text('[[mesh]]\nfile = "car.obj"\n')
+    scene, bare = read_scene(folder), read_scene(folder / "car.obj")
+    fields = fields_of(Scene)
+    assert {name: vars(scene)[name] for name in MAPPING_FIELDS} == {
+        name: default() for name in MAPPING_FIELDS if (default := fields[name].default) is not None
+    }
+    assert {name: vars(bare)[name] for name in MAPPING_FIELDS} == MAPPING_FIELDS

@@ -22,4 +22,8 @@ def test_every_field_and_every_key_has_a_type() -> None:
 
 def test_a_change_of_a_scene_may_say_more_than_what_makes_one_of_a_mesh() -> None:
     assert set(get_type_hints(SceneChanges)) == set(fields_of(Scene))
-    assert set(get_type_hints(SceneChanges)) - set(get_type_hints(SceneFields)) == {"mesh", "parts"}
+    assert set(get_type_hints(SceneChanges)) - set(get_type_hints(SceneFields)) == {
+        "mesh",
+        "parts",
+        "surfaces",
+    }

@@ -1,13 +1,15 @@
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Mesh, View, render, scene_of
+from autocolor import Mesh, Part, View, render, scene_of
 from autocolor.scene import defaults
-from autocolor.scene.defaults import default_lights, default_view, framed
+from autocolor.scene.defaults import default_lights, default_view, framed, object_coordinates
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import Vector, directions, meshes, numbers, vectors
 
@@ -49,10 +51,10 @@ def test_every_node_is_within_the_picture_with_space_on_all_sides(
 ) -> None:
     placed = resized(mesh, size, middle)
     if direction is None:
-        assert_framed(default_view(placed), placed)
+        assert_framed(default_view(placed.used_coordinates), placed)
     else:
         view = View((0, 0, 0), direction=direction, angle=angle, field_of_view=field_of_view)
-        around = framed(view, placed)
+        around = framed(view, placed.used_coordinates)
         assert_framed(around, placed)
         assert around.axes == pytest.approx(view.axes, abs=1e-9)
 
@@ -102,8 +104,8 @@ def test_created_lights_and_view_grow_with_the_object(size: float) -> None:
 
 
 def test_the_key_light_stands_at_the_upper_left_of_the_eye() -> None:
-    view = default_view(cube())
-    key = default_lights(cube(), view)[0]
+    view = default_view(cube().coordinates)
+    key = default_lights(cube().coordinates, view)[0]
     right, down, _ = view.axes @ (np.array(key.position) - 0.5)
     assert right < 0
     assert down < 0
@@ -111,13 +113,59 @@ def test_the_key_light_stands_at_the_upper_left_of_the_eye() -> None:
 
 
 def test_lights_are_created_for_a_view_from_above() -> None:
-    view = framed(View((0, 0, 5), direction=(0, 0, -1)), cube())
-    assert all(np.isfinite(light.position).all() for light in default_lights(cube(), view))
+    view = framed(View((0, 0, 5), direction=(0, 0, -1)), cube().coordinates)
+    assert all(np.isfinite(light.position).all() for light in default_lights(cube().coordinates, view))
 
 
 @given(meshes())
 def test_the_view_does_not_depend_on_how_many_nodes_are_looked_at_at_once(mesh: Mesh) -> None:
-    whole = default_view(mesh)
+    whole = default_view(mesh.used_coordinates)
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(defaults, "POINTS_AT_ONCE", 2)
-        assert default_view(mesh).eye == pytest.approx(whole.eye, abs=1e-9)
+        assert default_view(mesh.used_coordinates).eye == pytest.approx(whole.eye, abs=1e-9)
+
+
+def staged(mesh: Mesh, *names: str) -> list[Part]:
+    """The parts of a mesh; those of the names are stage."""
+    return [Part(name, "surface", stage=name in names) for name in mesh.part_names]
+
+
+def on_a_floor(mesh: Mesh) -> Mesh:
+    """The mesh with a part "floor" far greater than itself."""
+    return Mesh.joined([mesh, grid(1, 1, (-90, -90, 0), (180, 0, 0), (0, 180, 0), "floor")])
+
+
+@given(meshes(parts=3), st.sets(st.sampled_from(["part 0", "part 1", "part 2"])))
+def test_the_coordinates_of_the_object_are_those_of_all_parts_that_are_not_stage(
+    mesh: Mesh, stage: set[str]
+) -> None:
+    polygons = [
+        nodes
+        for nodes, part in zip(mesh.node_numbers.tolist(), mesh.part_numbers.tolist(), strict=True)
+        if mesh.part_names[part] not in stage
+    ]
+    # A scene of nothing but its stage is looked at as a whole.
+    nodes = sorted({node for polygon in polygons or mesh.node_numbers.tolist() for node in polygon})
+    assert object_coordinates(mesh, staged(mesh, *stage)).tolist() == mesh.coordinates[nodes].tolist()
+
+
+@pytest.mark.parametrize("mesh", [cube(), sphere()], ids=repr)
+def test_a_view_and_lights_are_the_same_with_a_floor_that_is_stage_and_without_it(mesh: Mesh) -> None:
+    coordinates = object_coordinates(on_a_floor(mesh), staged(on_a_floor(mesh), "floor"))
+    view = default_view(coordinates)
+    assert view == default_view(mesh.coordinates)
+    assert default_lights(coordinates, view) == default_lights(mesh.coordinates, view)
+    above = View((0, 0, 5), direction=(0, 0, -1), angle=20)
+    assert framed(above, coordinates) == framed(above, mesh.coordinates)
+
+
+def test_the_mesh_as_a_whole_is_the_object_where_all_of_it_is_stage() -> None:
+    mesh = on_a_floor(cube())
+    assert object_coordinates(mesh, staged(mesh, *mesh.part_names)) is object_coordinates(mesh, staged(mesh))
+
+
+def test_stage_without_polygons_changes_nothing() -> None:
+    mesh = dataclasses.replace(cube(), part_names=("cube", "none"))
+    assert object_coordinates(mesh, staged(mesh, "none")) is object_coordinates(mesh, staged(mesh))
+    # A part without polygons is not all of the object.
+    assert len(object_coordinates(mesh, staged(mesh, "cube"))) == 8

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from autocolor import InputError, Mesh
 from tests.autocolor.meshes import cube, grid, sphere
@@ -134,3 +135,19 @@ def test_joined_meshes_keep_their_polygons_and_share_parts_of_the_same_name(one:
 def test_the_parts_in_use_have_a_polygon() -> None:
     mesh = mesh_of(part_names=("hood", "door", "roof"), part_numbers=[1])
     assert mesh.parts_in_use == (1,)
+
+
+@given(meshes(parts=3), st.sets(st.integers(0, 2)))
+def test_the_coordinates_of_parts_are_those_of_the_nodes_of_their_polygons(
+    mesh: Mesh, chosen: set[int]
+) -> None:
+    nodes = sorted(
+        {
+            int(node)
+            for polygon, part in zip(mesh.node_numbers, mesh.part_numbers, strict=True)
+            if int(part) in chosen
+            for node in polygon
+        }
+    )
+    assert mesh.coordinates_of_parts(sorted(chosen)).tolist() == mesh.coordinates[nodes].tolist()
+    assert mesh.coordinates_of_parts(range(3)).tolist() == mesh.used_coordinates.tolist()

@@ -2,12 +2,14 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import given
 
-from autocolor import InputError, Light, Mesh, Part, Scene, Surface, UsageError, View, scene_of
+from autocolor import InputError, Light, Mesh, Part, Scene, UsageError, scene_of
+from autocolor.scene.columns.column import Tier
 from autocolor.scene.curves import CURVES
+from autocolor.scene.defaults import object_coordinates
+from autocolor.scene.scene import cost_of_edit
 from tests.autocolor.meshes import cube, grid
 from tests.autocolor.strategies import scenes
 
@@ -18,30 +20,9 @@ def car() -> Mesh:
     )
 
 
-def test_a_part_takes_the_surface_that_is_named_for_it_else_the_one_of_its_name_else_a_created_one() -> None:
-    scene = scene_of(
-        car(), surface_of_part={"door": "body"}, surfaces=[Surface("body"), Surface("hood", two_sided=False)]
-    )
-    assert [part.surface for part in scene.parts] == ["body", "hood", "pane"]
-    assert [surface.name for surface in scene.surfaces] == ["body", "hood", "pane"]
-    assert not scene.surface("hood").two_sided
-    assert scene.surface_number_of_part == (1, 2, 3)
-
-
-def test_a_part_that_names_no_known_surface_is_refused_with_the_nearest_name() -> None:
-    with pytest.raises(
-        InputError, match=r"part 'door': surface 'bod' is not in the surface table; did you mean 'body'\?"
-    ):
-        scene_of(car(), surface_of_part={"door": "bod"}, surfaces=[Surface("body")])
-
-
-def test_more_parts_than_surface_numbers_share_the_last_surface() -> None:
-    many = Mesh.joined(
-        [grid(1, 1, (0, number, 0), (1, 0, 0), (0, 0, 1), f"part {number}") for number in range(300)]
-    )
-    scene = scene_of(many)
-    assert len(scene.surfaces) == 255
-    assert scene.parts[299].surface == scene.surfaces[254].name
+def car_scene() -> Scene:
+    """A car on which every part has a surface of its own name."""
+    return scene_of(car(), surfaces="parts")
 
 
 @given(scenes())
@@ -52,7 +33,7 @@ def test_a_scene_replaced_by_nothing_shares_everything(scene: Scene) -> None:
 
 
 def test_an_edit_shares_all_that_it_does_not_change() -> None:
-    scene = scene_of(car())
+    scene = scene_of(car(), lights=[Light("key", (0, -1, 0)), Light("fill", (0, -2, 0))])
     edited = scene.with_light("key", intensity=2)
     assert edited.mesh is scene.mesh
     assert edited.surfaces is scene.surfaces
@@ -61,7 +42,7 @@ def test_an_edit_shares_all_that_it_does_not_change() -> None:
 
 
 def test_every_row_is_changed_by_its_name() -> None:
-    scene = scene_of(car(), surface_of_part={"pane": "hood"})
+    scene = scene_of(car(), surface_of_part={"door": "door", "pane": "hood", "hood": "hood"})
     assert scene.with_part("door", surface="hood").part("door").surface == "hood"
     assert scene.with_surface("hood", diffuse=0.1).surface("hood").reflectance.diffuse == 0.1
     assert scene.with_view(angle=5).view.angle == 5.0
@@ -79,7 +60,7 @@ def test_every_row_is_changed_by_its_name() -> None:
 )
 def test_an_unknown_name_is_refused_with_the_nearest_right_one(ask: Any, sentence: str) -> None:
     with pytest.raises(UsageError) as refusal:
-        ask(scene_of(car()))
+        ask(car_scene())
     assert str(refusal.value) == sentence
 
 
@@ -142,7 +123,7 @@ def test_a_table_of_something_else_is_refused(rows: dict[str, Any]) -> None:
 
 
 def test_scenes_are_equal_where_every_column_is_and_the_mesh_is_the_same() -> None:
-    scene = scene_of(cube())
+    scene = scene_of(cube(), surfaces="parts")
     assert scene.equals(scene.replace(ambient=scene.ambient))
     assert not scene.equals(scene.replace(ambient=3))
     assert not scene.equals(scene.with_surface("cube", blend=0.1))
@@ -154,19 +135,8 @@ def test_an_unknown_field_of_a_scene_is_refused() -> None:
         scene_of(cube()).replace(ambiant=1)  # type: ignore[call-arg]
 
 
-def test_unused_nodes_do_not_matter_to_what_is_created() -> None:
-    mesh = cube()
-    with_stray = Mesh(
-        np.concatenate([mesh.coordinates, [(1e25, 0, 0)]]),
-        mesh.node_numbers,
-        mesh.part_numbers,
-        mesh.part_names,
-    )
-    assert scene_of(with_stray).view == scene_of(mesh).view
-
-
 def test_a_change_of_paint_is_that_of_the_surface_and_the_same_paint_is_the_same_scene() -> None:
-    scene = scene_of(cube())
+    scene = scene_of(cube(), surfaces="parts")
     blue = {"object_color": "#0000ff", "blend": 0.25}
     assert scene.with_paint("cube", **blue).equals(scene.with_surface("cube", **blue))  # type: ignore[arg-type]
     paint = scene.surface("cube").paint
@@ -177,21 +147,19 @@ def test_a_change_of_paint_is_that_of_the_surface_and_the_same_paint_is_the_same
         scene.with_paint("cub", blend=0.5)
 
 
-def test_tables_for_what_a_scene_is_made_of_are_taken_or_refused_in_a_sentence() -> None:
-    scene = scene_of(
-        cube(),
-        view={"eye": (5, 5, 5), "target": (0, 0, 0)},
-        surfaces=[{"name": "cube", "diffuse": 0.2}],  # type: ignore[list-item]
-    )
-    assert scene.view == View((5, 5, 5), target=(0, 0, 0))
-    assert scene.surface("cube").reflectance.diffuse == 0.2
-    wrong: list[dict[str, Any]] = [{"surfaces": [1]}, {"surfaces": 5}, {"view": 3}, {"lights": "key"}]
-    for fields in wrong:
-        with pytest.raises(InputError, match="must be"):
-            scene_of(cube(), **fields)
-
-
 def test_self_is_no_field() -> None:
     fields: dict[str, Any] = {"self": 1}
     with pytest.raises(InputError, match="view: there is no 'self'"):
         scene_of(cube()).with_view(**fields)
+
+
+@given(scenes())
+def test_the_coordinates_of_the_object_follow_an_edit_of_the_stage(scene: Scene) -> None:
+    edited = scene.with_part("part 0", stage=not scene.part("part 0").stage)
+    for each in (scene, edited):
+        assert each.object_coordinates.tolist() == object_coordinates(each.mesh, each.parts).tolist()
+
+
+def test_to_make_a_part_stage_computes_nothing_again() -> None:
+    scene = scene_of(car())
+    assert cost_of_edit(scene, scene.with_part("door", stage=True)) == Tier.NOTHING

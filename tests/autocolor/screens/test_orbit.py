@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import View
+from autocolor import Mesh, View, scene_of
 from autocolor.screens.orbit import moved, target_of, turned
-from tests.autocolor.meshes import wall_scene
+from tests.autocolor.meshes import cube, grid, wall_scene
 
 
 def distance(view: View) -> float:
@@ -68,3 +68,12 @@ def test_going_around_from_straight_above_or_below_does_not_turn_the_picture(hei
     after = turned(scene, 1e-6, 0).axes
     assert after[0] == pytest.approx(before[0], abs=1e-5)
     assert float(after[2] @ before[2]) > np.cos(np.radians(6))
+
+
+def test_the_eye_goes_around_the_object_and_not_around_its_stage() -> None:
+    view = View((0.5, -4, 0.5), direction=(0, 1, 0))
+    floor = grid(1, 1, (-50, -50, 0), (100, 0, 0), (0, 100, 0), "floor")
+    alone = scene_of(cube(), view=view)
+    scene = scene_of(Mesh.joined([cube(), floor]), view=view, parts={"floor": {"stage": True}})
+    assert target_of(scene).tolist() == target_of(alone).tolist() == [0.5, 0.5, 0.5]
+    assert target_of(scene.with_part("floor", stage=False))[1] > 1

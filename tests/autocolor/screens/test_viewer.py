@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from autocolor import Light, Mesh, Scene, Surface, View, read_picture, scene_of
+from autocolor.scene.changes import PartChanges
+from autocolor.scene.defaults import framed
 from autocolor.screens.entries_screen import cell_words
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import cube
+from tests.autocolor.meshes import cube, grid
 
 KEY = Light("key", (2, -3, 4), aim=(0, 0, 0))
 
@@ -22,7 +24,13 @@ def box_scene() -> Scene:
     mesh = Mesh(cube().coordinates, cube().node_numbers, np.array([0, 0, 0, 1, 1, 1]), ("low", "high"))
     lights = [KEY, Light("fill", (-3, -3, 1), intensity=0.5)]
     view = View((-2, -3, 2), target=(0.5, 0.5, 0.5))
-    return scene_of(mesh, surfaces=[Surface("unused"), Surface("low")], lights=lights, view=view, name="box")
+    return scene_of(
+        mesh,
+        surfaces=[Surface(name) for name in ("unused", "low", "high")],
+        lights=lights,
+        view=view,
+        name="box",
+    )
 
 
 @pytest.fixture
@@ -122,7 +130,7 @@ def test_the_exposure_is_held_and_released(viewer: Viewer) -> None:
     viewer.on_key("1", typed="1")
     assert not (viewer.studio.words > words).any()
     viewer.on_key("e", typed="e")
-    assert (viewer.message, viewer.studio.scene.exposure) == ("exposure auto", "auto")
+    assert (viewer.message, viewer.studio.scene.exposure) == ("exposure released", "auto")
 
 
 def test_without_a_step_there_is_nothing_to_undo_or_to_do_again(viewer: Viewer) -> None:
@@ -382,7 +390,7 @@ def test_a_dropped_mesh_is_opened(viewer: Viewer, tmp_path: Path) -> None:
     viewer.on_key("s", typed="s")
     viewer.on_key("f1")
     viewer.on_drop(tmp_path / "roof.obj")
-    assert viewer.caption == "autocolor - roof - [roof] - F1 help"
+    assert viewer.caption == "autocolor - roof - [surface] - F1 help"
     assert viewer.page == "picture"
     assert is_true_to(viewer, viewer.studio.scene)
     control(viewer, "z")
@@ -420,3 +428,17 @@ def test_a_dropped_scene_is_saved_under_its_own_name(viewer: Viewer, tmp_path: P
     viewer.on_drop(tmp_path / "roof.obj")
     control(viewer, "s")
     assert {"box.npz", "roof.npz"} <= set(os.listdir(tmp_path))
+
+
+def test_rescale_frames_the_object_and_leaves_the_stage_out(tmp_path: Path) -> None:
+    floor = grid(1, 1, (-50, -50, 0), (100, 0, 0), (0, 100, 0), "floor")
+    view = View((-9, -9, 6), target=(0.5, 0.5, 0.5))
+    parts: dict[str, PartChanges] = {"floor": {"stage": True}}
+    scene = scene_of(Mesh.joined([cube(), floor]), view=view, parts=parts, lights=[KEY])
+    shown = Viewer(scene, Ramtek9300(), folder=tmp_path)
+    shown.on_key("r", typed="r")
+    assert shown.studio.scene.view == framed(view, cube().coordinates)
+    control(shown, "z")
+    shown.studio.edit(scene.with_part("floor", stage=False))
+    shown.on_key("r", typed="r")
+    assert shown.studio.scene.view == framed(view, Mesh.joined([cube(), floor]).coordinates)

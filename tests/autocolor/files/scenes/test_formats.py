@@ -20,8 +20,9 @@ ANOTHER = """
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.files.scenes.formats import SceneFormat, register
 
-def read(path, *, outside=False):
-    return read_scene_with_report(path.parent / path.read_text().split()[1], outside=outside)
+def read(path, *, outside=False, surfaces="materials"):
+    mesh = path.parent / path.read_text().split()[1]
+    return read_scene_with_report(mesh, outside=outside, surfaces=surfaces)
 
 def begins(head):
     return head.startswith(b"another")

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from autocolor import Reflectance
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.meshes.formats import mesh_suffixes
 from autocolor.files.scenes.scene_file import read_scene_file
@@ -24,10 +25,10 @@ def folder(tmp_path: Path) -> Path:
     return made
 
 
-def read(folder: Path, text: str | bytes, outside: bool = False) -> SceneReport:
+def read(folder: Path, text: str | bytes, outside: bool = False, surfaces: str = "materials") -> SceneReport:
     path = folder / "scene.toml"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return read_scene_file(path, outside=outside)
+    return read_scene_file(path, outside=outside, surfaces=surfaces)
 
 
 def refusal(folder: Path, text: str | bytes) -> list[str]:
@@ -39,12 +40,15 @@ def refusal(folder: Path, text: str | bytes) -> list[str]:
 def test_all_but_a_mesh_is_created(folder: Path) -> None:
     report = read(folder, MESH)
     assert report.scene.name == "coupe"
-    assert [(part.name, part.surface) for part in report.scene.parts] == [("hood", "hood"), ("roof", "roof")]
+    assert [(part.name, part.surface) for part in report.scene.parts] == [
+        ("hood", "surface"),
+        ("roof", "surface"),
+    ]
     assert [light.name for light in report.scene.lights] == ["key", "fill", "top", "rim"]
     assert report.created == (
         "a view was created that frames the object",
         "4 studio lights were created",
-        "2 surfaces were created: 'hood', 'roof'",
+        "surface 'surface' was created",
     )
     assert report.repairs == ()
     assert report.mesh_files == ({"file": "car.obj"},)
@@ -123,11 +127,11 @@ direction = [0, 0, -2]
     assert fill.direction == (0, 0, -2)
 
 
-def test_a_key_of_a_surface_that_is_left_out_is_as_created(folder: Path) -> None:
-    created = read(folder, MESH).scene.surface("hood")
-    assert read(folder, MESH + "[surfaces.hood]\nlevels = 99\n").scene.surface("hood") == created.replace(
-        levels=99
-    )
+def test_a_key_of_a_surface_that_is_left_out_has_its_default(folder: Path) -> None:
+    without = read(folder, MESH + "[surfaces.hood]\n").scene.surface("hood")
+    given = read(folder, MESH + "[surfaces.hood]\nlevels = 99\n").scene.surface("hood")
+    assert given == without.replace(levels=99)
+    assert given.reflectance == Reflectance()
 
 
 def test_lights_may_be_none(folder: Path) -> None:
@@ -236,7 +240,8 @@ def test_names_of_parts_and_surfaces_are_checked(folder: Path) -> None:
     text = MESH + '[parts.rof]\nsurface = "body"\n[parts.hood]\nsurface = "bodi"\n[surfaces.body]\n'
     assert refusal(folder, text) == [
         "scene.toml, line 3, [parts.rof]: no mesh has a part of this name; did you mean 'roof'?",
-        "scene.toml, line 6, [parts.hood]: surface must be a surface or a part of the scene, not 'bodi';"
+        "scene.toml, line 6, [parts.hood]: surface must be a surface, a part or a material of the"
+        " scene, not 'bodi';"
         " did you mean 'body'?",
     ]
 
@@ -389,3 +394,59 @@ def test_any_keys_with_any_values_are_read_or_refused(
     else:
         problems = ()
     assert len(set(problems)) == len(problems)
+
+
+def test_a_part_of_the_stage_needs_no_surface_and_is_not_framed(folder: Path) -> None:
+    (folder / "floor.obj").write_text("v -50 -50 0\nv 50 -50 0\nv 50 50 0\nv -50 50 0\no floor\nf 1 2 3 4\n")
+    both = MESH + '[[mesh]]\nfile = "floor.obj"\n'
+    alone, whole = read(folder, MESH).scene, read(folder, both).scene
+    scene = read(folder, both + "[parts.floor]\nstage = true\n").scene
+    assert [(part.name, part.surface, part.stage) for part in scene.parts] == [
+        ("hood", "surface", False),
+        ("roof", "surface", False),
+        ("floor", "surface", True),
+    ]
+    assert (scene.view, scene.lights) == (alone.view, alone.lights)
+    assert whole.view != alone.view
+
+
+def test_stage_is_true_or_false(folder: Path) -> None:
+    assert refusal(folder, MESH + "[parts.hood]\nstage = 1\n") == [
+        "scene.toml, line 4, [parts.hood]: stage must be true or false, not 1"
+    ]
+
+
+MATERIALS = "mtllib car.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\ng hood\nusemtl red\nf 1 2 3\ng door\nf 1 2 3\n"
+
+
+@pytest.mark.parametrize(
+    ("tables", "surfaces", "names"),
+    [
+        ("", "materials", ["red", "red"]),
+        ("", "parts", ["hood", "door"]),
+        ("[surfaces.hood]\n", "materials", ["hood", "red"]),
+        ("[surfaces.red]\n", "parts", ["hood", "door"]),
+        ('[parts.hood]\nsurface = "red"\n', "parts", ["red", "door"]),
+        ('[parts.hood]\nsurface = "body"\n[surfaces.body]\n', "materials", ["body", "red"]),
+        ('[parts.hood]\nsurface = "door"\n', "materials", ["door", "red"]),
+        ("[parts.hood]\nstage = true\n", "materials", ["red", "red"]),
+    ],
+)
+def test_surfaces_come_from_the_file_and_then_from_the_materials_of_the_mesh(
+    folder: Path, tables: str, surfaces: str, names: list[str]
+) -> None:
+    (folder / "car.obj").write_text(MATERIALS)
+    (folder / "car.mtl").write_text("newmtl red\nKd 1 0 0\n")
+    scene = read(folder, MESH + tables, surfaces=surfaces).scene
+    assert [part.surface for part in scene.parts] == names
+    if "red" in names and "surfaces.red" not in tables:
+        assert scene.surface("red").paint.object_color == (255, 0, 0)
+
+
+def test_a_surface_that_the_file_gives_counts_before_the_material_of_its_name(folder: Path) -> None:
+    (folder / "car.obj").write_text(MATERIALS)
+    (folder / "car.mtl").write_text("newmtl red\nKd 1 0 0\nKs 0\n")
+    scene = read(folder, MESH + '[surfaces.red]\nobject_color = "#102030"\n').scene
+    assert [surface.name for surface in scene.surfaces] == ["red"]
+    assert scene.surface("red").paint.object_color == (16, 32, 48)
+    assert scene.surface("red").reflectance == Reflectance()

@@ -8,10 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, Light, Mesh, Surface, View
+from autocolor.files.repair.polygons import MeshReport
 from autocolor.files.scenes.scene_report import scene_report
 from tests.autocolor.meshes import cube, wall_scene
 
 VIEW = View((0, -4, 0), target=(0, 0, 0))
+
+
+def read(mesh: Mesh, **fields: Any) -> list[MeshReport]:
+    """That one mesh was read."""
+    return [MeshReport(mesh, **fields)]
 
 
 def mesh_of(parts: int) -> Mesh:
@@ -21,19 +27,22 @@ def mesh_of(parts: int) -> Mesh:
 
 def created(parts: int = 1, **fields: Any) -> tuple[str, ...]:
     """What is said to be created where only a view and no lights are given, unless `fields` say otherwise."""
-    return scene_report(mesh_of(parts), **{"view": VIEW, "lights": (), **fields}).created
+    given = {"view": VIEW, "lights": (), "surfaces": "parts", **fields}
+    return scene_report(read(mesh_of(parts)), **given).created
 
 
 def test_of_a_bare_mesh_everything_is_created_and_said() -> None:
-    assert scene_report(cube()).created == (
+    assert scene_report(read(cube())).created == (
         "a view was created that frames the object",
         "4 studio lights were created",
-        "surface 'cube' was created",
+        "surface 'surface' was created",
     )
 
 
 def test_nothing_is_said_of_what_was_given() -> None:
-    report = scene_report(cube(), view=VIEW, lights=[Light("key", (0, -3, 0))], surfaces=[Surface("cube")])
+    report = scene_report(
+        read(cube()), view=VIEW, lights=[Light("key", (0, -3, 0))], surfaces=[Surface("cube")]
+    )
     assert report.created == ()
     assert report.scene.view == VIEW
 
@@ -45,9 +54,14 @@ def test_no_lights_are_lights_that_were_given() -> None:
 
 @given(st.integers(1, 30), st.data())
 def test_as_many_surfaces_are_said_as_the_scene_has_beside_the_given(parts: int, data: st.DataObject) -> None:
-    given_names = data.draw(st.sets(st.sampled_from([str(part) for part in range(parts)])))
+    names = [str(part) for part in range(parts)]
+    given_names = data.draw(st.sets(st.sampled_from(names)))
     report = scene_report(
-        mesh_of(parts), view=VIEW, lights=(), surfaces=[Surface(name) for name in sorted(given_names)]
+        read(mesh_of(parts)),
+        view=VIEW,
+        lights=(),
+        surfaces=[Surface(name) for name in sorted(given_names)],
+        surface_of_part={name: name for name in names},
     )
     missing = [surface.name for surface in report.scene.surfaces if surface.name not in given_names]
     assert len(missing) == parts - len(given_names)
@@ -70,15 +84,33 @@ def test_a_list_of_many_surfaces_is_cut_and_says_how_many_more() -> None:
 def test_a_part_that_shares_a_surface_as_asked_is_not_counted() -> None:
     shared = {str(part): "0" for part in range(300)}
     assert created(parts=300, surface_of_part=shared) == ("surface '0' was created",)
-    assert created(parts=300)[-1] == "45 parts share a surface, because a scene has at most 255"
+    assert created(parts=300)[-1] == "46 parts share surface '254', because a scene has at most 255"
 
 
 def test_the_repairs_and_mesh_files_are_handed_on() -> None:
-    report = scene_report(cube(), repairs=("car.obj: a repair",), mesh_files=({"file": "car.obj"},))
+    report = scene_report(read(cube(), repairs=("car.obj: a repair",)), mesh_files=({"file": "car.obj"},))
     assert report.repairs == ("car.obj: a repair",)
     assert report.mesh_files == ({"file": "car.obj"},)
 
 
 def test_a_scene_that_breaks_a_rule_is_refused() -> None:
     with pytest.raises(InputError, match="ambient must be a finite number of at least 0, not -1"):
-        scene_report(wall_scene().mesh, ambient=-1)
+        scene_report(read(wall_scene().mesh), ambient=-1)
+
+
+def test_of_parts_and_materials_of_several_meshes_the_first_count() -> None:
+    red, blue = Surface("red"), Surface("red", two_sided=False)
+    reports = [
+        *read(wall_scene().mesh, material_of_part={"wall": "red"}, materials=(red,)),
+        *read(wall_scene().mesh, material_of_part={"wall": "glass"}, materials=(blue,)),
+        *read(cube(), material_of_part={"cube": "red"}),
+    ]
+    report = scene_report(reports, view=VIEW, lights=())
+    assert [part.surface for part in report.scene.parts] == ["red", "red"]
+    assert report.scene.surfaces == (red,)
+    assert report.created == ("surface 'red' was created",)
+
+
+def test_the_repairs_of_all_meshes_are_told_in_their_order() -> None:
+    reports = [MeshReport(cube(), ("one", "two")), MeshReport(wall_scene().mesh, ("three",))]
+    assert scene_report(reports).repairs == ("one", "two", "three")

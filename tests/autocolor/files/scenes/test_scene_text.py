@@ -67,7 +67,7 @@ def test_any_names_are_written(names: list[str], tmp_path_factory: pytest.TempPa
 
 def test_what_was_created_is_written_out_and_read_back(tmp_path: Path) -> None:
     (tmp_path / "car.obj").write_text(MESH.format("hood", "roof"))
-    report = read_scene_with_report(tmp_path / "car.obj")
+    report = read_scene_with_report(tmp_path / "car.obj", surfaces="parts")
     assert len(report.created) == 3
     text = scene_text(report.scene, report.mesh_files)
     for table in ("[view]", "[[mesh]]", "[parts.hood]", "[surfaces.roof]", "[[lights]]"):

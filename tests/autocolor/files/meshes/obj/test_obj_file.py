@@ -97,9 +97,37 @@ def test_what_is_not_used_is_ignored(path: Path) -> None:
     assert read(path, text).repairs == ()
 
 
-def test_material_files_are_never_opened(path: Path) -> None:
+def test_a_material_file_that_is_a_pipe_is_never_opened(path: Path) -> None:
     os.mkfifo(path.with_name("a.mtl"))
-    assert len(read(path, "mtllib a.mtl\n" + SQUARE + "f 1 2 3 4\n").mesh.node_numbers) == 1
+    report = read(path, "mtllib a.mtl\n" + SQUARE + "usemtl red\nf 1 2 3 4\n")
+    assert report.material_of_part == {"red": "red"}
+    assert report.materials == ()
+    assert len(report.repairs) == 1
+
+
+@pytest.mark.parametrize("quads", ["f 1 2 3 4\n", "f -4 -3 -2 -1\n"])
+def test_parts_have_materials_and_these_their_surfaces(path: Path, quads: str) -> None:
+    path.with_name("a.mtl").write_text("newmtl red\nKd 1 0 0\nnewmtl unused\nKd 0 0 1\nmap_Kd a.png\n")
+    report = read(
+        path,
+        f"{SQUARE}{quads}mtllib a.mtl\ng hood\n{quads}usemtl red\n{quads}g door\n{quads}usemtl blue\n{quads}",
+    )
+    assert report.mesh.part_names == ("car", "hood", "hood red", "door", "door blue")
+    assert report.mesh.part_numbers.tolist() == [0, 1, 2, 3, 4]
+    assert report.material_of_part == {"hood red": "red", "door": "red", "door blue": "blue"}
+    (red,) = report.materials
+    assert (red.name, red.paint.object_color) == ("red", (255, 0, 0))
+    assert report.repairs == ()
+
+
+def test_problems_of_materials_come_after_those_of_the_mesh_and_do_not_refuse_it(path: Path) -> None:
+    path.with_name("a.mtl").write_text("newmtl red\nKd x\n")
+    report = read(path, f"mtllib a.mtl\nmtllib b.mtl\n{SQUARE}usemtl red\np 1\nf 1 2 3 4\n")
+    assert [repair.split(":")[0] for repair in report.repairs] == [
+        "car.obj",
+        "a.mtl, line 2",
+        "the materials have default colors",
+    ]
 
 
 def test_what_is_skipped_stands_in_the_report_with_the_name_of_the_file(path: Path) -> None:

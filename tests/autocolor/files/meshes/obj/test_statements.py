@@ -18,7 +18,7 @@ def read(text: str | bytes) -> tuple[Statements, list[int]]:
 
 
 def names_of(text: str | bytes) -> tuple[str, ...]:
-    return tuple(read(text)[0].numbers)
+    return tuple(part.name for part in read(text)[0].parts())
 
 
 @pytest.mark.parametrize(
@@ -30,8 +30,9 @@ def names_of(text: str | bytes) -> tuple[str, ...]:
         ("g hood left\n{f}", ("hood",)),
         ("o my car\n{f}", ("my car",)),
         ("usemtl red\n{f}usemtl blue paint\n{f}", ("red", "blue paint")),
-        ("g hood\nusemtl red\n{f}usemtl blue\n{f}", ("hood",)),
-        ("usemtl red\n{f}g hood\n{f}g\n{f}", ("red", "hood")),
+        ("g hood\nusemtl red\n{f}usemtl blue\n{f}", ("hood", "hood blue")),
+        ("g hood\n{f}usemtl red\n{f}g roof\n{f}g hood\n{f}", ("hood", "hood red", "roof")),
+        ("usemtl red\n{f}g hood\n{f}g\n{f}usemtl\n{f}", ("red", "hood", "car")),
         ("g empty\ng hood\n{f}", ("hood",)),
         ("g\n{f}", ("car",)),
         ("g h\u00e4ube\n{f}", ("h\u00e4ube",)),
@@ -83,7 +84,7 @@ def test_comments_and_unused_statements_leave_nothing_behind(line: bytes) -> Non
     statements = Statements("car")
     assert statements.read(line)
     assert statements.part_number == 0
-    assert tuple(statements.numbers) == ("car",)
+    assert statements.parts() == (("car", None),)
     assert statements.sentences == ()
 
 
@@ -93,7 +94,21 @@ def test_nodes_and_polygons_are_left_to_the_reader(line: bytes) -> None:
 
 
 statements_lines = st.sampled_from(
-    [b"g", b"g a b", b"o c d", b"o", b"usemtl e", b"usemtl", b"p 1", b"l 1", b"odd", b"v 1", b"f 1", b"s off"]
+    [
+        b"g",
+        b"g a b",
+        b"o c d",
+        b"o",
+        b"usemtl e",
+        b"usemtl",
+        b"mtllib h",
+        b"p 1",
+        b"l 1",
+        b"odd",
+        b"v 1",
+        b"f 1",
+        b"s off",
+    ]
 )
 
 
@@ -104,10 +119,83 @@ def test_every_line_is_one_of_four_things(lines: list[bytes]) -> None:
     statements = Statements("car")
     left = sum(not statements.read(line) for line in lines)
     keywords = [words[0] for line in lines if (words := line.split()) and not words[0].startswith(b"#")]
-    names = {b"g", b"o", b"usemtl"}
+    names = {b"g", b"o", b"usemtl", b"mtllib"}
     assert left == sum(keyword in (b"v", b"f") for keyword in keywords)
     skipped = [word for word in keywords if word not in {b"v", b"f", *names, *UNUSED}]
     assert sum(statements.skipped.values()) == len(skipped)
     known = {SKIPPED[word] for word in skipped if word in SKIPPED}
     assert len(statements.sentences) == len(known) + any(word not in SKIPPED for word in skipped)
     assert all(sentence.isprintable() for sentence in statements.sentences)
+
+
+def test_a_group_of_several_materials_is_a_part_for_each_of_them() -> None:
+    statements, part_numbers = read(
+        "usemtl red\ng hood\nf\nusemtl chrome\nf\ng door\nf\nusemtl red\nf\ng hood\nf\nusemtl\nf\n"
+    )
+    assert part_numbers == [0, 1, 2, 3, 0, 4]
+    assert statements.parts() == (
+        ("hood", "red"),
+        ("hood chrome", "chrome"),
+        ("door", "chrome"),
+        ("door red", "red"),
+        ("hood 2", None),
+    )
+
+
+def test_a_name_that_was_added_gives_way_to_those_that_stand_in_the_file() -> None:
+    assert names_of("g hood\nusemtl red\nf\nusemtl chrome\nf\ng hood chrome\no hood chrome\nf\n") == (
+        "hood",
+        "hood chrome 2",
+        "hood chrome",
+    )
+
+
+def test_the_libraries_are_the_arguments_of_their_statements_in_order() -> None:
+    statements, _ = read("mtllib car.mtl\nmtllib\n mtllib  my car.mtl more.mtl \nmtllib car.mtl\n")
+    assert [library.strip() for library in statements.libraries] == [
+        b"car.mtl",
+        b"my car.mtl more.mtl",
+        b"car.mtl",
+    ]
+
+
+SOME_NAMES = ["a", "b", "a b", "a b 2", "a 2", "car", "car 2", ""]
+
+
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from(["g", "o", "usemtl"]),
+            st.sampled_from(SOME_NAMES) | st.text("ab 2", max_size=4),
+            st.booleans(),
+        ),
+        max_size=20,
+    )
+)
+def test_the_names_of_parts_always_differ_and_each_part_has_one_material(
+    statements: list[tuple[str, str, bool]],
+) -> None:
+    text = "".join(f"{keyword} {name}\n" + "f\n" * is_used for keyword, name, is_used in statements)
+    left, part_numbers = read(text)
+    parts = left.parts()
+    assert len({part.name for part in parts}) == len(parts) == len({*part_numbers})
+    assert all(part.name for part in parts)
+    # The slow twin: the group and the material at each polygon.
+    group: str | None = None
+    material: str | None = None
+    expected = []
+    for keyword, name, is_used in statements:
+        words = name.split()
+        if keyword == "usemtl":
+            material = name.strip() or None
+        elif keyword == "g":
+            group = words[0] if words else None
+        else:
+            group = name.strip() or None
+        expected += [(group, material)] * is_used
+    by_pair = dict(zip(expected, part_numbers, strict=True))
+    assert [by_pair[pair] for pair in expected] == part_numbers
+    assert len(by_pair) == len(parts)
+    for (group, material), number in by_pair.items():
+        assert parts[number].material == material
+        assert parts[number].name.startswith(group or material or "car")
