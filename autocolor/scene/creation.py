@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any, Final, Literal, Unpack
 
 from autocolor.checks import nearest, shown
-from autocolor.errors import InputError
+from autocolor.errors import InputError, UsageError
 from autocolor.scene.changes import PartChanges, SceneFields
 from autocolor.scene.columns.column import Row, fields_of
 from autocolor.scene.columns.problems import Problem, RowError
@@ -60,6 +60,8 @@ def scene_of(
     fields of Scene. Assumed: without `scaling` and `contrast` all surfaces share one range of intensities,
     and are as dark as they are lit, so that a mesh keeps its form. Raises InputError.
     """
+    if isinstance(surfaces, str) and surfaces not in (MATERIALS, PARTS):
+        raise UsageError(f"surfaces must be rows, {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     found: list[Problem] = []
     given = () if isinstance(surfaces, str) else _held("surfaces", surfaces, found)
     rows = _part_rows(mesh, parts or {}, surface_of_part or {}, found)
@@ -101,8 +103,7 @@ def _part_rows(
     missing = [name for name in (*parts, *surface_of_part) if name not in known]
     if missing:
         raise InputError(
-            f"there is no part {shown(name)} to take a surface{nearest(name, mesh.part_names)}"
-            for name in missing
+            f"there is no part {shown(name)}{nearest(name, mesh.part_names)}" for name in missing
         )
     rows = []
     for name in mesh.part_names:
@@ -138,10 +139,11 @@ def _with_created(
     for name in kept:
         color = PLAIN_COLOR if name == SHARED else OBJECT_COLORS[len(table) % len(OBJECT_COLORS)]
         table[name] = of_material.get(name) or created_surface(name, color)
-    if kept and len(table) == MOST_SURFACES:
+    if len(table) == MOST_SURFACES:
         # Further parts share the last surface.
+        last = next(reversed(table))
         rows = tuple(
-            row if row.surface in table or row.surface not in names else row.replace(surface=kept[-1])
+            row if row.surface in table or row.surface not in names else row.replace(surface=last)
             for row in rows
         )
     return rows, tuple(table.values())

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, Light, Mesh, Part, Scene, Surface, View, scene_of
+from autocolor import InputError, Light, Mesh, Part, Scene, Surface, UsageError, View, scene_of
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.creation import SHARED
 from autocolor.scene.defaults import MAPPING_FIELDS
@@ -337,7 +337,7 @@ def test_tables_for_what_a_scene_is_made_of_are_taken_or_refused_in_a_sentence()
 
 def test_a_word_for_surfaces_that_is_none_of_the_two_is_refused() -> None:
     wrong: Any = "part"
-    with pytest.raises(InputError):
+    with pytest.raises(UsageError, match="surfaces must be rows, 'materials' or 'parts', not 'part'"):
         scene_of(cube(), surfaces=wrong)
 
 
@@ -348,9 +348,8 @@ def test_problems_of_the_view_and_of_the_surfaces_are_told_together() -> None:
     assert len(refused.value.problems) == 3
 
 
-def test_as_many_surfaces_as_there_can_be_leave_none_to_create() -> None:
+def test_as_many_surfaces_as_there_can_be_leave_none_to_create_and_share_the_last() -> None:
     full = [Surface(f"surface {number}") for number in range(MOST_SURFACES)]
     scene = scene_of(cube(), surfaces=full, surface_of_part={"cube": "surface 9"})
     assert scene.surfaces == tuple(full)
-    with pytest.raises(InputError, match="'surface' is not in the surface table"):
-        scene_of(cube(), surfaces=full)
+    assert scene_of(cube(), surfaces=full).parts[0].surface == full[-1].name

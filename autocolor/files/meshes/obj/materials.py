@@ -12,7 +12,9 @@ being read.
 
 from __future__ import annotations
 
+import io
 import math
+import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PureWindowsPath
@@ -31,6 +33,12 @@ LARGEST_LIBRARY: Final = 16 * 1024 * 1024
 MOST_LIBRARIES: Final = 100
 MOST_PROBLEMS: Final = 5
 """Assumed: problems that are reported of one library; the others are counted."""
+
+MOST_WORDS: Final = 8
+"""As many words of a line are looked at."""
+
+LARGEST: Final = 1e6
+"""Assumed: above every coefficient and exponent of a material."""
 
 NUMBER: Final = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
 
@@ -51,14 +59,16 @@ class Materials(NamedTuple):
 def read_materials(obj: Path, libraries: Sequence[bytes], wanted: Sequence[str]) -> Materials:
     """The surfaces of the materials in `wanted`, from the libraries that an OBJ file names.
 
-    `libraries` are the arguments of its `mtllib` statements. Without such a statement, a file beside it with
-    the same name and the suffix .mtl is read. Where a material is defined twice, the first one counts.
+    `libraries` are the arguments of its `mtllib` statements. Where none of them is found, a file beside it
+    with the same name and the suffix .mtl is read. Where a material is defined twice, the first one counts.
     """
     if not wanted:
         return Materials((), ())
+    missing: list[bytes] = []
+    paths = list(_paths(obj, libraries, missing))
     sentences: list[str] = []
     found: dict[str, Surface] = {}
-    for path in _paths(obj, libraries, sentences):
+    for path in paths:
         try:
             data = read_bytes(path, LARGEST_LIBRARY)
             if problem := text_problem(data):
@@ -69,33 +79,43 @@ def read_materials(obj: Path, libraries: Sequence[bytes], wanted: Sequence[str])
         surfaces, notes = materials_of(data, path.name, set(wanted))
         found = {**surfaces, **found}
         sentences.extend(notes)
+    sentences.extend(
+        f"the materials have default colors: there is no library {shown(name)} in the folder of {obj.name};"
+        " copy it there"
+        for name in missing[:MOST_PROBLEMS]
+    )
+    undefined = [name for name in wanted if name not in found]
+    if found and undefined:
+        more = f" and {len(undefined) - 3:,} more" if len(undefined) > 3 else ""
+        names = ", ".join(shown(name) for name in undefined[:3])
+        sentences.append(f"no library defines material {names}{more}; default colors are used")
     return Materials(tuple(found[name] for name in wanted if name in found), tuple(sentences))
 
 
-def _paths(obj: Path, libraries: Sequence[bytes], sentences: list[str]) -> Iterator[Path]:
-    """The paths of the libraries; what is missing is added to the sentences."""
-    if not libraries:
-        beside = obj.with_suffix(".mtl")
-        yield from [beside] if beside.is_file() else []
+def _paths(obj: Path, libraries: Sequence[bytes], missing: list[bytes]) -> Iterator[Path]:
+    """The paths of the libraries, at most MOST_LIBRARIES; the arguments of those not found are collected."""
+    folder = obj.parent
+    found: dict[str, Path] = {}
     for library in dict.fromkeys(libraries[:MOST_LIBRARIES]):
         # The argument is one name with spaces, or several names.
-        found = _path(obj.parent, library)
-        several = [_path(obj.parent, name) for name in library.split()]
-        if found is not None:
-            yield found
-        elif len(several) > 1 and any(several):
-            yield from (path for path in several if path is not None)
-        else:
-            sentences.append(
-                f"the materials have default colors: there is no library {shown(library)} in the folder of"
-                f" {obj.name}; copy it there"
-            )
+        path = _path(folder, library)
+        several = [path] if path else [_path(folder, name) for name in library.split()[:MOST_LIBRARIES]]
+        if not any(several):
+            missing.append(library)
+        found.update({os.path.realpath(path): path for path in several if path is not None})
+    if not found:
+        beside = _path(folder, os.fsencode(f"{obj.stem}.mtl"))
+        found = {} if beside is None else {"": beside}
+        # What is named may have been renamed together with the OBJ file.
+        if beside is not None:
+            missing.clear()
+    yield from list(found.values())[:MOST_LIBRARIES]
 
 
 def _path(folder: Path, name: bytes) -> Path | None:
     """The path of a library within the folder; None if there is no such file."""
     text = name_of(name.strip().strip(b'"'))
-    for candidate in (text, text.replace("\\", "/"), PureWindowsPath(text).name):
+    for candidate in dict.fromkeys((text, text.replace("\\", "/"), PureWindowsPath(text).name)):
         path = path_within([], folder, candidate)
         try:
             if path is not None and path.is_file():
@@ -108,12 +128,14 @@ def _path(folder: Path, name: bytes) -> Path | None:
 def materials_of(data: bytes, place: str, wanted: set[str]) -> tuple[Mapping[str, Surface], list[str]]:
     """The surfaces of the materials in `wanted` that a library defines, and what was left out or wrong."""
     problems: list[str] = []
+    more_problems = 0
     textured: set[str] = set()
     transparent: set[str] = set()
     tables: dict[str, dict[bytes, list[float]]] = {}
     name, table = "", dict[bytes, list[float]]()
-    for number, line in enumerate(re.split(rb"\r\n|\r|\n", data), start=1):
-        words = line.split(b"#", 1)[0].split()
+    lines = io.BytesIO(data.replace(b"\r\n", b"\n").replace(b"\r", b"\n"))
+    for number, line in enumerate(lines, start=1):
+        words = line.split(b"#", 1)[0].split(None, MOST_WORDS)
         if not words:
             continue
         keyword = words[0]
@@ -121,17 +143,18 @@ def materials_of(data: bytes, place: str, wanted: set[str]) -> tuple[Mapping[str
             name = name_of(line.split(None, 1)[1]) if len(words) > 1 else ""
             table = tables.setdefault(name, {}) if name in wanted and name not in tables else {}
         elif keyword in USED or keyword in TRANSPARENCY:
-            values = _numbers(words[1:])
-            if values is None:
-                rule = "must have finite numbers of at least 0" if keyword in USED else "must have a number"
+            values = _numbers(words[1:], math.inf if keyword == b"Kd" else LARGEST)
+            if values is None and len(problems) < MOST_PROBLEMS:
                 problems.append(
-                    f"{place}, line {number}: {keyword.decode()} {rule}, not {shown(b' '.join(words[1:]))};"
-                    " the default is used"
+                    f"{place}, line {number}: {keyword.decode()} must have one number or three, from 0 to"
+                    f" {LARGEST:g}, not {shown(b' '.join(words[1:]))}; the default is used"
                 )
+            elif values is None:
+                more_problems += 1
             elif keyword in USED:
                 table[keyword] = values
-            else:
-                transparent |= {name} if values[0] != TRANSPARENCY[keyword] else set()
+            elif values[0] != TRANSPARENCY[keyword]:
+                transparent.add(name)
         elif TEXTURES.fullmatch(keyword):
             textured.add(name)
     left_out = (("the textures", textured & wanted), ("the transparency", transparent & wanted))
@@ -140,19 +163,19 @@ def materials_of(data: bytes, place: str, wanted: set[str]) -> tuple[Mapping[str
         for what, names in left_out
         if names
     ]
-    sentences.extend(problems[:MOST_PROBLEMS])
-    if len(problems) > MOST_PROBLEMS:
-        sentences.append(f"{place}: {len(problems) - MOST_PROBLEMS:,} more such lines")
+    sentences.extend(problems)
+    if more_problems:
+        sentences.append(f"{place}: {more_problems:,} more such lines")
     return {name: _surface(name, values) for name, values in tables.items()}, sentences
 
 
-def _numbers(words: list[bytes]) -> list[float] | None:
-    """The numbers of a statement, one or three; None if they are not finite or below 0."""
+def _numbers(words: list[bytes], most: float) -> list[float] | None:
+    """The numbers of a statement, one or three; None if one is below 0 or not below `most`."""
     words = words[:3]
     if len(words) == 2 or not words or not all(NUMBER.fullmatch(word) for word in words):
         return None
     numbers = [float(word) for word in words]
-    return numbers if all(0 <= number < math.inf for number in numbers) else None
+    return numbers if all(0 <= number < most for number in numbers) else None
 
 
 def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:
