@@ -48,7 +48,7 @@ def not_occluded(
     # Compare with the nearest corner. Because the step of a segment is rounded, each pixel may come half
     # a unit nearer.
     nearest = scale.keys(most_of_four(projected.inverse_depth[corners]))
-    nearest += (extent // 2 + 2) * scale.segment_limit
+    nearest += (extent // 2 + 2) * scale.number_limit
     kept: Indices = polygons[(extent > size) | (nearest >= behind)]
     return kept
 

@@ -5,7 +5,9 @@ and stepping adds no rounding: a running sum over all segments is exact, and the
 literal one find the same number at every pixel. A key is off by at most half a unit for each pixel from the
 left end of its segment.
 
-The low bits of a key, below the depth, hold the number of the segment.
+The low bits of a key, below the depth, hold the number of the polygon, so that of equally near polygons the
+one with the highest number is visible: one that faces the eye if there is any, and of those the last one of
+the polygon table.
 """
 
 from __future__ import annotations
@@ -15,21 +17,24 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Numbers
+from autocolor.arrays import Floats, Indices, Numbers
 from autocolor.visibility.projection import Projection
 
 KEY_BITS: Final = 62
 """One less than the 63 bits of a positive number, because rounding may add to the nearest depth."""
 
+LEAST_NUMBER_BITS: Final = 16
+"""So many that float64 holds every depth, at most 46 bits, exactly, with some to spare."""
+
 
 @dataclass(frozen=True)
 class DepthScale:
-    """Keys are whole multiples of `segment_limit`; the inverse depth 1 is `factor` of them.
+    """Keys are whole multiples of `number_limit`; the inverse depth 1 is `factor` of them.
 
-    `segment_limit` is a power of two above the numbers of all segments.
+    `number_limit` is a power of two above the numbers of all polygons.
     """
 
-    segment_limit: int
+    number_limit: int
     factor: float
 
     def key(self, inverse_depth: float) -> int:
@@ -37,19 +42,37 @@ class DepthScale:
 
         Halves are rounded to the even number; this is no level that is displayed, and as exact either way.
         """
-        return round(inverse_depth * self.factor) * self.segment_limit
+        return round(inverse_depth * self.factor) * self.number_limit
 
     def keys(self, inverse_depth: Floats) -> Numbers:
-        """The keys of inverse depths, or of differences of them; the number of a segment can be added.
+        """The keys of inverse depths, or of differences of them; the number of a polygon can be added.
 
         A difference beyond the largest key can only belong to a segment of one pixel, which takes no step.
         """
         whole = np.rint(inverse_depth * self.factor)
-        most = 2.0**KEY_BITS / self.segment_limit
-        return np.clip(whole, -most, most, out=whole).astype(np.int64) * self.segment_limit
+        most = 2.0**KEY_BITS / self.number_limit
+        return np.clip(whole, -most, most, out=whole).astype(np.int64) * self.number_limit
 
 
 def depth_scale(projected: Projection) -> DepthScale:
-    """The finest scale that holds the nearest corner of a polygon and the numbers of all segments."""
-    segment_limit = 1 << (int(projected.first_segment[-1]) + 1).bit_length()
-    return DepthScale(segment_limit, 2.0 ** (KEY_BITS - segment_limit.bit_length() + 1) / projected.nearest)
+    """The scale that holds the nearest corner of a polygon and the numbers of all polygons."""
+    number_bits = max((2 * projected.corners.shape[1]).bit_length(), LEAST_NUMBER_BITS)
+    return DepthScale(1 << number_bits, 2.0 ** (KEY_BITS - number_bits) / projected.nearest)
+
+
+def numbers_of_polygons(projected: Projection, polygons: Indices) -> Numbers:
+    """The numbers that keys have for some polygons of the projection.
+
+    They are counted from 1; those of the polygons that face the eye come after those of all others.
+    """
+    numbers: Numbers = polygons + np.where(
+        projected.from_behind.take(polygons), 1, 1 + projected.corners.shape[1]
+    )
+    return numbers
+
+
+def polygons_of_numbers(projected: Projection, numbers: Numbers) -> Indices:
+    """The polygons of the projection that have some numbers, none of them 0."""
+    polygons = numbers - 1
+    polygons[polygons >= projected.corners.shape[1]] -= projected.corners.shape[1]
+    return polygons

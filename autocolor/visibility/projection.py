@@ -51,9 +51,8 @@ class Projection:
 
     `corners` and `corner_normals` are (4, polygons) intp: the node at each corner, and its column of
     `normals`, (3, normals) float32 in camera space. `polygon_numbers` are rows of the mesh's polygon table,
-    `from_behind` tells whether the eye sees the back. The segments of polygon p, one for each line that it
-    crosses, are numbered from first_segment[p] to before first_segment[p + 1]; `first_segment` is
-    (polygons + 1,) intp. No corner of a polygon has an inverse depth above `nearest`.
+    `from_behind` tells whether the eye sees the back, and `line_counts`, (polygons,) intp, how many lines cross
+    the polygon. No corner of a polygon has an inverse depth above `nearest`.
     """
 
     mesh: Mesh
@@ -71,7 +70,7 @@ class Projection:
     normals: Singles
     polygon_numbers: Indices
     from_behind: Booleans
-    first_segment: Indices
+    line_counts: Indices
     nearest: float
 
     @cached_property
@@ -106,8 +105,6 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
         polygon_numbers, from_behind = polygon_numbers[parents], from_behind[parents]
         first_lines = first_line[corners]
         line_counts = most_of_four(first_lines) - least_of_four(first_lines)
-    first_segment = np.zeros(corners.shape[1] + 1, np.intp)
-    np.cumsum(line_counts, out=first_segment[1:])
     nearest = float(inverse_depth.max(initial=1.0))
     if nearest * camera.near >= 1:
         # Nodes behind the near plane were put on it; no polygon uses them.
@@ -128,7 +125,7 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
         camera.normals,
         polygon_numbers,
         from_behind,
-        first_segment,
+        line_counts,
         nearest,
     )
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Numbers, ShortIndices, runs
-from autocolor.visibility.depth import DepthScale
+from autocolor.arrays import Floats, Indices, Numbers, runs
+from autocolor.visibility.depth import DepthScale, numbers_of_polygons
 from autocolor.visibility.edges import Edges, edges_of_sides
 from autocolor.visibility.projection import Projection
 
@@ -16,29 +16,25 @@ from autocolor.visibility.projection import Projection
 class Segments:
     """Segments that cover the center of a pixel; every array is (segments,).
 
-    `number` is counted from 1 in the order of polygons and lines. A segment covers `count` pixels from
-    `first_pixel` on, a flat place in the raster. Its depth key is `start` + k `step` at its pixel k, int64.
-    `down_edge` and `up_edge` are the edges that bound it, each known by its top corner.
+    `number` is that of the polygon, as keys have it. A segment covers `count` pixels from `first_pixel` on, a
+    flat place in the raster. Its depth key is `start` + k `step` at its pixel k, int64.
     """
 
-    number: Indices
+    number: Numbers
     first_pixel: Indices
     count: Indices
     start: Numbers
     step: Numbers
-    down_edge: ShortIndices
-    up_edge: ShortIndices
 
 
 def segments_of_polygons(projected: Projection, scale: DepthScale, polygons: Indices) -> Segments:
     """The segments of some polygons of the projection, in the order of polygons and lines."""
     # Let the lines cross the edges; both sides have the same polygons and lines in the same order.
     down_edges, up_edges = edges_of_sides(projected, polygons)
-    down_x, down_depth, down_edge = _crossings(down_edges)
-    up_x, up_depth, up_edge = _crossings(up_edges)
+    down_x, down_depth = _crossings(down_edges)
+    up_x, up_depth = _crossings(up_edges)
     line = runs(down_edges.first_line, down_edges.count)
-    first_segment = projected.first_segment[polygons]
-    number = runs(first_segment + 1, projected.first_segment[polygons + 1] - first_segment)
+    number = np.repeat(numbers_of_polygons(projected, polygons), projected.line_counts.take(polygons))
 
     # Pair the crossings to segments, and keep those that cover the center of a pixel: left <= center < right.
     first = _first_center(np.minimum(down_x, up_x), projected.elements)
@@ -59,19 +55,17 @@ def segments_of_polygons(projected: Projection, scale: DepthScale, polygons: Ind
         end - first,
         scale.keys(start),
         scale.keys(step),
-        down_edge.take(kept),
-        up_edge.take(kept),
     )
 
 
-def _crossings(edges: Edges) -> tuple[Floats, Floats, ShortIndices]:
-    """Where the lines cross the edges of one side: the screen x, the inverse depth, and the edge."""
+def _crossings(edges: Edges) -> tuple[Floats, Floats]:
+    """Where the lines cross the edges of one side: the screen x and the inverse depth."""
     lines_below = runs(np.zeros_like(edges.count), edges.count).astype(np.float64)
     x = lines_below * np.repeat(edges.x_step, edges.count)
     x += np.repeat(edges.x, edges.count)
     inverse_depth = lines_below * np.repeat(edges.inverse_depth_step, edges.count)
     inverse_depth += np.repeat(edges.inverse_depth, edges.count)
-    return x, inverse_depth, np.repeat(edges.top.astype(np.int32), edges.count)
+    return x, inverse_depth
 
 
 def _first_center(x: Floats, elements: int) -> Indices:

@@ -6,7 +6,7 @@ from hypothesis import given
 
 from autocolor import Mesh, View
 from autocolor.visibility.culling import not_occluded
-from autocolor.visibility.depth import depth_scale
+from autocolor.visibility.depth import depth_scale, polygons_of_numbers
 from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_surfaces import depth_test
 from tests.autocolor.meshes import sphere
@@ -20,13 +20,12 @@ def kept_and_visible(mesh: Mesh, view: View) -> tuple[set[int], set[int]]:
     projected = projection(mesh, view, *RASTER)
     scale = depth_scale(projected)
     depth_buffer = np.zeros(RASTER[0] * RASTER[1], np.int64)
-    segment_edges = np.zeros((2, scale.segment_limit), np.int32)
     behind = np.flatnonzero(projected.from_behind)
-    depth_test(depth_buffer, segment_edges, projected, scale, np.flatnonzero(~projected.from_behind))
+    depth_test(depth_buffer, projected, scale, np.flatnonzero(~projected.from_behind))
     kept = not_occluded(depth_buffer, projected, scale, behind)
-    depth_test(depth_buffer, segment_edges, projected, scale, behind)
-    segment = np.unique(depth_buffer & (scale.segment_limit - 1))
-    visible = np.searchsorted(projected.first_segment, segment[segment > 0] - 1, side="right") - 1
+    depth_test(depth_buffer, projected, scale, behind)
+    number = np.unique(depth_buffer & (scale.number_limit - 1))
+    visible = polygons_of_numbers(projected, number[number > 0])
     return set(kept.tolist()), set(visible.tolist()) & set(behind.tolist())
 
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.visibility.depth import DepthScale, depth_scale
+from autocolor.visibility.depth import DepthScale, depth_scale, numbers_of_polygons, polygons_of_numbers
 from autocolor.visibility.projection import projection
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
 
@@ -13,25 +13,39 @@ depths = st.floats(1e-9, 1.0)
 
 
 @given(meshes(), views() | outside_views(), rasters)
-def test_the_nearest_node_and_the_last_segment_fit_in_a_key(
+def test_the_nearest_node_and_the_number_of_any_polygon_fit_in_a_key(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     projected = projection(mesh, view, *raster)
     scale = depth_scale(projected)
-    largest = int(scale.keys(projected.inverse_depth).max(initial=0)) + scale.segment_limit - 1
+    largest = int(scale.keys(projected.inverse_depth).max(initial=0)) + scale.number_limit - 1
     assert 0 <= largest < 2**63
-    assert projected.first_segment[-1] < scale.segment_limit
+    polygons = np.arange(projected.corners.shape[1])
+    numbers = numbers_of_polygons(projected, polygons)
+    assert all(0 < number < scale.number_limit for number in numbers.tolist())
+
+
+@given(meshes(), views() | outside_views(), rasters)
+def test_of_the_numbers_those_that_face_the_eye_are_the_highest_and_each_tells_its_polygon(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    projected = projection(mesh, view, *raster)
+    polygons = np.arange(projected.corners.shape[1])
+    numbers = numbers_of_polygons(projected, polygons)
+    order = sorted(polygons.tolist(), key=lambda polygon: (not projected.from_behind[polygon], polygon))
+    assert np.argsort(numbers).tolist() == order
+    assert polygons_of_numbers(projected, numbers).tolist() == polygons.tolist()
 
 
 @given(st.integers(1, 24), depths, depths)
-def test_the_nearer_has_the_larger_key_whatever_the_numbers_of_the_segments_are(
+def test_the_nearer_has_the_larger_key_whatever_the_numbers_of_the_polygons_are(
     bits: int, one: float, other: float
 ) -> None:
     scale = DepthScale(1 << bits, 2.0 ** (62 - bits))
     near, far = (int(key) for key in scale.keys(np.array([max(one, other), min(one, other)])))
     assert near >= far
-    assert (near > far) == (near > far + scale.segment_limit - 1)
-    assert near % scale.segment_limit == 0
+    assert (near > far) == (near > far + scale.number_limit - 1)
+    assert near % scale.number_limit == 0
 
 
 @given(st.lists(st.floats(-1, 1)))

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View
-from autocolor.visibility.depth import DepthScale, depth_scale
+from autocolor.visibility.depth import DepthScale, depth_scale, polygons_of_numbers
 from autocolor.visibility.projection import Projection, projection
 from autocolor.visibility.segments import Segments, segments_of_polygons
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
@@ -17,6 +17,12 @@ def all_segments(mesh: Mesh, view: View, raster: tuple[int, int]) -> tuple[Proje
     projected = projection(mesh, view, *raster)
     scale = depth_scale(projected)
     return projected, scale, segments_of_polygons(projected, scale, np.arange(projected.corners.shape[1]))
+
+
+def places(projected: Projection, segments: Segments) -> list[tuple[int, int]]:
+    """The polygon and the line of each segment."""
+    polygons = polygons_of_numbers(projected, segments.number)
+    return list(zip(polygons.tolist(), (segments.first_pixel // projected.elements).tolist(), strict=True))
 
 
 def extent_on(projected: Projection, polygon: int, line: int) -> list[tuple[float, float]]:
@@ -42,35 +48,31 @@ def test_a_segment_covers_the_centers_between_two_crossings(
     projected, _, segments = all_segments(mesh, view, raster)
     found = dict(
         zip(
-            segments.number.tolist(),
+            places(projected, segments),
             zip(segments.first_pixel.tolist(), segments.count.tolist(), strict=True),
             strict=True,
         )
     )
-    number = 0
     for polygon in range(projected.corners.shape[1]):
         lines = projected.first_line[projected.corners[:, polygon]]
         for line in range(lines.min(), lines.max()):
-            number += 1
             (left, _), (right, _) = extent_on(projected, polygon, line)
             centers = [element for element in range(raster[1]) if left <= element + 0.5 < right]
             clear = min(abs(x - 0.5 - round(x - 0.5)) for x in (left, right)) > 1e-6 * max(
                 1, abs(left), abs(right)
             )
             if clear and centers:
-                assert found[number] == (line * raster[1] + centers[0], len(centers))
+                assert found[polygon, line] == (line * raster[1] + centers[0], len(centers))
             elif clear:
-                assert number not in found
-    assert set(found) <= set(range(1, number + 1))
-    assert number == projected.first_segment[-1]
+                assert (polygon, line) not in found
+    assert len(found) == len(segments.number)
 
 
 @given(meshes(), outside_views(), rasters)
 def test_the_keys_step_along_the_inverse_depth(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
     projected, scale, segments = all_segments(mesh, view, raster)
-    polygon_of = np.searchsorted(projected.first_segment, segments.number - 1, side="right") - 1
-    for row, polygon in enumerate(polygon_of.tolist()):
-        line, element = divmod(int(segments.first_pixel[row]), raster[1])
+    for row, (polygon, line) in enumerate(places(projected, segments)):
+        element = int(segments.first_pixel[row]) % raster[1]
         (left, left_depth), (right, right_depth) = extent_on(projected, polygon, line)
         if right - left < 1e-3:
             continue
@@ -78,26 +80,8 @@ def test_the_keys_step_along_the_inverse_depth(mesh: Mesh, view: View, raster: t
             fraction = (element + k + 0.5 - left) / (right - left)
             depth = left_depth + fraction * (right_depth - left_depth)
             key = int(segments.start[row]) + k * int(segments.step[row])
-            assert key % scale.segment_limit == 0
-            assert key / scale.segment_limit / scale.factor == pytest.approx(depth, rel=1e-6)
-
-
-@given(meshes(), outside_views(), rasters)
-def test_the_edges_of_a_segment_are_those_of_its_polygon_and_line(
-    mesh: Mesh, view: View, raster: tuple[int, int]
-) -> None:
-    projected, _, segments = all_segments(mesh, view, raster)
-    polygons = projected.corners.shape[1]
-    polygon_of = np.searchsorted(projected.first_segment, segments.number - 1, side="right") - 1
-    line = segments.first_pixel // raster[1]
-    for edge, turn in ((segments.down_edge, 1), (segments.up_edge, -1)):
-        assert (edge % polygons).tolist() == polygon_of.tolist()
-        corner = edge // polygons
-        top, bottom = (
-            projected.first_line[projected.corners[each, polygon_of]]
-            for each in (corner, (corner + turn) % 4)
-        )
-        assert ((top <= line) & (line < bottom)).all()
+            assert key % scale.number_limit == 0
+            assert key / scale.number_limit / scale.factor == pytest.approx(depth, rel=1e-6)
 
 
 @given(meshes(), outside_views(), rasters)
@@ -109,7 +93,7 @@ def test_polygons_of_opposite_winding_have_the_same_segments(
     for nodes in (mesh.node_numbers[:, :3], mesh.node_numbers[:, 2::-1]):
         turned = Mesh(mesh.coordinates, nodes, mesh.part_numbers, mesh.part_names)
         _, _, segments = all_segments(turned, view, raster)
-        tables = (segments.number, segments.first_pixel, segments.count, segments.start, segments.step)
+        tables = (segments.first_pixel, segments.count, segments.start, segments.step)
         rows.append([table.tolist() for table in tables])
     assert rows[0] == rows[1]
 
@@ -121,8 +105,7 @@ def test_the_segments_of_some_polygons_are_among_those_of_all(
     projected, scale, segments = all_segments(mesh, view, raster)
     some = np.arange(0, projected.corners.shape[1], 2)
     found = segments_of_polygons(projected, scale, some)
-    polygon_of = np.searchsorted(projected.first_segment, segments.number - 1, side="right") - 1
-    chosen = polygon_of % 2 == 0
+    chosen = polygons_of_numbers(projected, segments.number) % 2 == 0
     for one, other in zip(vars(found).values(), vars(segments).values(), strict=True):
         assert one.tolist() == other[chosen].tolist()
 
@@ -136,4 +119,4 @@ def test_a_rectangle_has_one_segment_on_each_of_its_lines() -> None:
     # Lines run downward from the top at 8.
     assert segments.first_pixel.tolist() == [8 * line + 1 for line in (2, 3, 4, 5)]
     assert segments.count.tolist() == [4, 4, 4, 4]
-    assert segments.number.tolist() == [1, 2, 3, 4]
+    assert segments.number.tolist() == [2] * 4

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -155,3 +156,24 @@ def test_every_pixel_whose_center_is_inside_is_covered_and_no_other() -> None:
             if left < element + 0.5 < right and bottom < lines - line - 0.5 < top
         ]
         assert sorted(points.pixels.tolist()) == inside
+
+
+def slivers(count: int) -> Mesh:
+    """Triangles from the top of the picture to its bottom, one behind the other."""
+    left = np.linspace(-1.3, 1.3, count)
+    feet = np.stack([left, np.linspace(0.0, 1.0, count), np.full(count, -1.2)], axis=1)
+    offsets = np.array([(0, 0, 0), (0.004, 0, 0), (0.01, 0, 2.4)])
+    corners = (feet[:, None] + offsets).reshape(-1, 3)
+    return Mesh(corners, np.arange(3 * count).reshape(-1, 3), np.zeros(count, np.intp), ("slivers",))
+
+
+def test_twice_as_many_polygons_as_high_as_the_picture_take_hardly_more_memory() -> None:
+    view = View((0.0, -4.0, 0.0), direction=(0.0, 1.0, 0.0), field_of_view=25.0)
+    peaks = []
+    for mesh in (slivers(4000), slivers(8000)):
+        assert mesh.normals
+        tracemalloc.start()
+        visible_surfaces(mesh, view, (1,), 400, 40)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < 1.5 * peaks[0]
