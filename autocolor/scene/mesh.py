@@ -137,7 +137,8 @@ class Mesh:
             return meshes[0]
         names = tuple(dict.fromkeys(name for mesh in meshes for name in mesh.part_names))
         first_nodes = np.cumsum([0] + [len(mesh.coordinates) for mesh in meshes[:-1]])
-        rows = [np.array([names.index(name) for name in mesh.part_names], dtype=np.intp) for mesh in meshes]
+        row_of_name = {name: row for row, name in enumerate(names)}
+        rows = [np.array([row_of_name[name] for name in mesh.part_names], dtype=np.intp) for mesh in meshes]
         return Mesh(
             np.concatenate([mesh.coordinates.T for mesh in meshes], axis=1).T,
             np.concatenate(

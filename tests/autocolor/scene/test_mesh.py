@@ -134,3 +134,23 @@ def test_joined_meshes_keep_their_polygons_and_share_parts_of_the_same_name(one:
 def test_the_parts_in_use_have_a_polygon() -> None:
     mesh = mesh_of(part_names=("hood", "door", "roof"), part_numbers=[1])
     assert mesh.parts_in_use == (1,)
+
+
+def test_joining_meshes_of_many_parts_takes_no_time_in_proportion_to_their_square() -> None:
+    class Name(str):
+        comparisons = 0
+
+        def __eq__(self, other: object) -> bool:
+            Name.comparisons += 1
+            return str.__eq__(self, other)
+
+        __hash__ = str.__hash__
+
+    count = 500
+    parts = [
+        Mesh(np.eye(3), np.array([[0, 1, 2]]), np.zeros(1, np.intp), (Name(f"part {number}"),))
+        for number in range(count)
+    ]
+    joined = Mesh.joined(parts)
+    assert joined.part_numbers.tolist() == list(range(count))
+    assert Name.comparisons < 20 * count

@@ -16,6 +16,7 @@ from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.strategies import (
     directions,
+    meshes,
     numbers,
     outside_views,
     rasters,
@@ -177,3 +178,40 @@ def test_twice_as_many_polygons_as_high_as_the_picture_take_hardly_more_memory()
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
     assert peaks[1] < 1.5 * peaks[0]
+
+
+@pytest.mark.parametrize("size", [1e-3, 1e-6, 1e-8])
+def test_a_thing_wholly_before_the_eye_is_visible_however_small_it_is_before_a_plate(size: float) -> None:
+    plate = grid(1, 1, (-1, 1, -1), (2, 0, 0), (0, 0, 2), "plate")
+    thing = grid(1, 1, (-size / 8, 0, -size / 8), (size / 4, 0, 0), (0, 0, size / 4), "thing")
+    view = View((0.0, -size, 0.0), direction=(0.0, 1.0, 0.0), field_of_view=30.0)
+    points = visible_surfaces(Mesh.joined([thing, plate]), view, (1, 2), 40, 40)
+    counts = np.bincount(points.polygon_numbers, minlength=2)
+    # A quarter of its distance is 0.25 / (2 tan 15) of the picture's height.
+    side = round(40 * 0.25 / (2 * math.tan(math.radians(15))))
+    assert abs(counts[0] - side**2) <= 2 * side + 1
+    assert counts.sum() == 40 * 40
+
+
+@given(meshes(), views() | outside_views(), rasters, st.lists(st.integers(0, 3), min_size=8, max_size=8))
+def test_which_corner_of_a_polygon_is_written_first_changes_no_pixel(
+    mesh: Mesh, view: View, raster: tuple[int, int], turns: list[int]
+) -> None:
+    numbers = [np.roll(row, turn) for row, turn in zip(mesh.node_numbers.tolist(), turns, strict=False)]
+    # Sharp edges: the mean of several normals may be rounded in another order.
+    pictures = [
+        visible_surfaces(
+            Mesh(mesh.coordinates, rows, mesh.part_numbers, mesh.part_names, crease_angle=0.0),
+            view,
+            (1, 2),
+            *raster,
+        )
+        for rows in (mesh.node_numbers, np.array(numbers, np.intp))
+    ]
+    tables = []
+    for points in pictures:
+        order = np.argsort(points.pixels)
+        tables.append((points.pixels[order].tolist(), points.polygon_numbers[order].tolist()))
+    assert tables[0] == tables[1]
+    ordered = [points.world_points[np.argsort(points.pixels)] for points in pictures]
+    assert ordered[0] == pytest.approx(ordered[1], abs=1e-4)
