@@ -18,17 +18,16 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 
 NEAR: Final = 1e-6
-"""Assumed: the near plane where the object reaches behind the eye, as a fraction of the depth of its farthest
-corner.
+"""Assumed: the near plane where the object reaches behind the eye; what is nearer vanishes.
 
-What is nearer vanishes.
+It is a fraction of the depth of the farthest corner.
 """
 
 LEAST_NEAR: Final = 1e-9
 """Assumed: the least depth of the near plane, in units.
 
-What lies wholly before the eye is clipped only here: it doesn't vanish, however small it is or near. Closer to
-the eye, crossings would be rounded by more than a thousandth of a pixel.
+An object wholly before the eye is clipped only here: nothing of it vanishes that is farther, however small
+it is. Closer to the eye, crossings would be rounded by more than a thousandth of a pixel.
 """
 
 LEAST_UNIT: Final = 2.0**-800

@@ -23,19 +23,24 @@ from autocolor.visibility.projection import Projection
 KEY_BITS: Final = 62
 """One less than the 63 bits of a positive number, because rounding may add to the nearest depth."""
 
+MOST_ROUNDED: Final = 1 << 10
+"""In units: a plane's depth below 2^62 is exact to 2^9 of them in float64."""
+
 LEAST_NUMBER_BITS: Final = 16
 """So many that float64 holds every depth, at most 46 bits, exactly, with some to spare."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DepthScale:
     """Keys are whole multiples of `number_limit`; the inverse depth 1 is `factor` of them.
 
-    `number_limit` is a power of two above the numbers of all polygons.
+    `number_limit` is a power of two above the numbers of all polygons. `planes`, (polygons,) intp, is the
+    shared plane of which each polygon has the depth, -1 for none; None if all have none.
     """
 
     number_limit: int
     factor: float
+    planes: Indices | None = None
 
     def key(self, inverse_depth: float) -> int:
         """The key of an inverse depth, or of a difference of two.
@@ -57,7 +62,41 @@ class DepthScale:
 def depth_scale(projected: Projection) -> DepthScale:
     """The scale that holds the nearest corner of a polygon and the numbers of all polygons."""
     number_bits = max((2 * projected.corners.shape[1]).bit_length(), LEAST_NUMBER_BITS)
-    return DepthScale(1 << number_bits, 2.0 ** (KEY_BITS - number_bits) / projected.nearest)
+    factor = 2.0 ** (KEY_BITS - number_bits) / projected.nearest
+    return DepthScale(1 << number_bits, factor, _planes_that_fit(projected, factor))
+
+
+def _planes_that_fit(projected: Projection, factor: float) -> Indices | None:
+    """The shared plane of each polygon if its depths are whole numbers that a key can hold, else -1."""
+    # The farthest corner has an inverse depth of about 1 or more: what is rounded must not make it negative.
+    if plane_rounding(projected) > 0.5 * factor or not len(projected.planes.columns):
+        return None
+    a, b, c = np.abs(projected.planes.linear) * factor
+    fits = np.append(a * projected.elements + b * projected.lines + c < 2.0**KEY_BITS, False)
+    columns = projected.planes.columns
+    planes = np.where(fits.take(columns), columns, -1)
+    return planes if planes.max(initial=-1) >= 0 else None
+
+
+def plane_rounding(projected: Projection) -> int:
+    """By how many units the rounded depth of a shared plane may be off: by half a unit a pixel, and more."""
+    return projected.elements + MOST_ROUNDED
+
+
+def plane_keys(
+    projected: Projection, scale: DepthScale, planes: Indices, lines: Indices, elements: Indices
+) -> tuple[Numbers, Numbers]:
+    """The keys of shared planes at pixels, and their steps from pixel to pixel.
+
+    All polygons of a plane have the same there, because they are stepped from the middle of the line wherever
+    a segment begins. What overflows on the way comes back, because int64 wraps around.
+    """
+    a, b, c = np.take(projected.planes.linear, planes, axis=1)
+    middle = projected.elements // 2
+    start = np.rint((a * (middle + 0.5) + b * (lines + 0.5) + c) * scale.factor).astype(np.int64)
+    step = np.rint(a * scale.factor).astype(np.int64)
+    start += (elements - middle) * step
+    return start * scale.number_limit, step * scale.number_limit
 
 
 def numbers_of_polygons(projected: Projection, polygons: Indices) -> Numbers:

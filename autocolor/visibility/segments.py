@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from autocolor.arrays import Floats, Indices, Numbers, runs
-from autocolor.visibility.depth import DepthScale, numbers_of_polygons
+from autocolor.visibility.depth import DepthScale, numbers_of_polygons, plane_keys
 from autocolor.visibility.edges import Edges, edges_of_sides
 from autocolor.visibility.projection import Projection
 
@@ -49,13 +49,22 @@ def segments_of_polygons(projected: Projection, scale: DepthScale, polygons: Ind
     step = (up_depth - down_depth) / (up_x - down_x)
     start = np.where(down_x <= up_x, down_depth, up_depth)
     start += (first + 0.5 - np.minimum(down_x, up_x)) * step
-    return Segments(
+    found = Segments(
         number.take(kept),
         line.take(kept) * projected.elements + first,
         end - first,
         scale.keys(start),
         scale.keys(step),
     )
+    if scale.planes is not None:
+        # Let the polygons of a shared plane have its depth.
+        planes = scale.planes.take(polygons)
+        plane = np.repeat(planes, projected.line_counts.take(polygons)).take(kept)
+        row = np.flatnonzero(plane >= 0)
+        found.start[row], found.step[row] = plane_keys(
+            projected, scale, plane[row], line.take(kept[row]), first[row]
+        )
+    return found
 
 
 def _crossings(edges: Edges) -> tuple[Floats, Floats]:

@@ -15,7 +15,13 @@ import numpy as np
 
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
-from autocolor.visibility.depth import DepthScale, depth_scale, numbers_of_polygons
+from autocolor.visibility.depth import (
+    DepthScale,
+    depth_scale,
+    numbers_of_polygons,
+    plane_keys,
+    polygons_of_numbers,
+)
 from autocolor.visibility.edges import edges
 from autocolor.visibility.interpolation import interpolated_points
 from autocolor.visibility.projection import Projection, projection
@@ -82,7 +88,7 @@ def watkins(
         # Add the edges that begin on this line, and drop those that ended above it.
         active = [edge for edge in active if edge.end_line > line] + buckets.get(line, [])
         # Find the visible spans from left to right.
-        for segment, first, end in visible_spans(segments_of_line(active, scale, line, elements)):
+        for segment, first, end in visible_spans(segments_of_line(active, projected, scale, line)):
             number_at_pixel[line * elements + first : line * elements + end] = segment.number
 
     return interpolated_points(projected, number_at_pixel, surface_numbers, one_sided)
@@ -114,7 +120,9 @@ def y_buckets(projected: Projection) -> dict[int, list[Edge]]:
     return buckets
 
 
-def segments_of_line(active: list[Edge], scale: DepthScale, line: int, elements: int) -> list[Segment]:
+def segments_of_line(
+    active: list[Edge], projected: Projection, scale: DepthScale, line: int
+) -> list[Segment]:
     """The segments of a line that cover the center of a pixel, sorted by their left ends."""
     pairs: dict[int, list[Edge]] = {}
     for edge in active:
@@ -124,13 +132,27 @@ def segments_of_line(active: list[Edge], scale: DepthScale, line: int, elements:
         # Pair the crossings of the polygon: one edge leads down the raster, the other back up.
         down, up = sorted(pair, key=lambda edge: not edge.descends)
         left, right = sorted((down.crossing(line), up.crossing(line)), key=lambda crossing: crossing[0])
-        first = min(max(math.ceil(left[0] - 0.5), 0), elements)
-        end = min(max(math.ceil(right[0] - 0.5), 0), elements)
+        first = min(max(math.ceil(left[0] - 0.5), 0), projected.elements)
+        end = min(max(math.ceil(right[0] - 0.5), 0), projected.elements)
         if end > first:
             step = (right[1] - left[1]) / (right[0] - left[0])
             start = left[1] + (first + 0.5 - left[0]) * step
-            segments.append(Segment(number, first, end, scale.key(start), scale.key(step)))
+            keys = key_of_plane(projected, scale, number, line, first)
+            segments.append(Segment(number, first, end, *(keys or (scale.key(start), scale.key(step)))))
     return sorted(segments, key=lambda segment: segment.first)
+
+
+def key_of_plane(
+    projected: Projection, scale: DepthScale, number: int, line: int, element: int
+) -> tuple[int, int] | None:
+    """The depth key at a pixel and its step, if the polygon shares its plane's."""
+    if scale.planes is None:
+        return None
+    plane = scale.planes[polygons_of_numbers(projected, np.array([number]))]
+    if plane[0] < 0:
+        return None
+    start, step = plane_keys(projected, scale, plane, np.array([line]), np.array([element]))
+    return int(start[0]), int(step[0])
 
 
 def visible_spans(segments: list[Segment]) -> Iterator[tuple[Segment, int, int]]:

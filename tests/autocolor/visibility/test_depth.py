@@ -5,8 +5,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
-from autocolor.visibility.depth import DepthScale, depth_scale, numbers_of_polygons, polygons_of_numbers
+from autocolor.visibility.depth import (
+    DepthScale,
+    depth_scale,
+    numbers_of_polygons,
+    plane_keys,
+    plane_rounding,
+    polygons_of_numbers,
+)
 from autocolor.visibility.projection import projection
+from tests.autocolor.meshes import decal_on_ground, grid
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
 
 depths = st.floats(1e-9, 1.0)
@@ -58,3 +66,34 @@ def test_one_key_is_the_same_as_many(inverse_depths: list[float]) -> None:
 def test_a_step_beyond_all_depths_is_still_a_whole_number() -> None:
     scale = DepthScale(1 << 16, 2.0**46)
     assert scale.keys(np.array([1e30, -1e30])).tolist() == [2**62, -(2**62)]
+
+
+@given(st.integers(0, 1 << 32), outside_views() | st.none())
+def test_the_key_of_a_shared_plane_is_the_same_wherever_its_steps_begin(seed: int, view: View | None) -> None:
+    mesh, before = decal_on_ground(seed)
+    projected = projection(mesh, view or before, 48, 64)
+    scale = depth_scale(projected)
+    if scale.planes is None:
+        return
+    lines, elements = (each.ravel() for each in np.mgrid[0:48, 0:64])
+    starts, steps = plane_keys(projected, scale, np.zeros_like(lines), lines, elements)
+    assert len(set(steps.tolist())) == 1
+    assert (np.diff(starts.reshape(48, 64), axis=1) == steps[0]).all()
+    expected = projected.planes.inverse_depth(np.zeros_like(lines), elements + 0.5, lines + 0.5)
+    inside = (expected > 0.5 * projected.inverse_depth.min()) & (expected < projected.nearest)
+    units = starts[inside] // scale.number_limit
+    assert np.abs(units - expected[inside] * scale.factor).max(initial=0) <= plane_rounding(projected)
+    assert (starts % scale.number_limit == 0).all()
+
+
+def test_a_plane_whose_depths_no_key_can_hold_leaves_its_polygons_their_own() -> None:
+    two = [grid(1, 1, (-side, -1, 0), (2 * side, 0, 0), (0, 2 * side, 0), str(side)) for side in (1, 0.5)]
+    upright = [
+        grid(1, 1, (-side, 9, -1), (2 * side, 0, 0), (0, 0, 2), f"upright {side}") for side in (1, 0.5)
+    ]
+    view = View((0.0, -4.0, 1e-6), direction=(0, 1, 0))
+    projected = projection(Mesh.joined([*two, *upright]), view, 3, 3)
+    assert sorted(set(projected.planes.columns.tolist())) in ([0], [1], [0, 1])
+    scale = depth_scale(projected)
+    assert scale.planes is not None
+    assert len(set(scale.planes.tolist()) - {-1}) == 1

@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
+from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import cube, grid, sphere
+from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.strategies import (
     directions,
@@ -215,3 +216,36 @@ def test_which_corner_of_a_polygon_is_written_first_changes_no_pixel(
     assert tables[0] == tables[1]
     ordered = [points.world_points[np.argsort(points.pixels)] for points in pictures]
     assert ordered[0] == pytest.approx(ordered[1], abs=1e-4)
+
+
+def part(mesh: Mesh, number: int) -> Mesh:
+    chosen = mesh.part_numbers == number
+    return Mesh(mesh.coordinates, mesh.node_numbers[chosen], mesh.part_numbers[chosen], mesh.part_names)
+
+
+@pytest.mark.parametrize("rounding", ROUNDINGS)
+@given(seed=st.integers(0, 1 << 32))
+def test_a_decal_hides_its_ground_at_every_pixel_that_both_cover(rounding: str, seed: int) -> None:
+    mesh, view = decal_on_ground(seed, rounding)
+    raster = (120, 160)
+    ground, decal = (
+        set(visible_surfaces(part(mesh, number), view, (1, 2), *raster).pixels.tolist()) for number in (0, 1)
+    )
+    points = visible_surfaces(mesh, view, (1, 2), *raster)
+    on_decal = mesh.part_numbers[points.polygon_numbers] == 1
+    assert set(points.pixels[on_decal].tolist()) == decal
+    assert set(points.pixels[~on_decal].tolist()) == ground - decal
+
+
+@given(seed=st.integers(0, 1 << 32))
+def test_of_polygons_in_a_plane_those_that_face_the_eye_hide_the_others(seed: int) -> None:
+    mesh, view = decal_on_ground(seed)
+    raster = (60, 80)
+    numbers = mesh.node_numbers.copy()
+    numbers[mesh.part_numbers == 1] = numbers[mesh.part_numbers == 1, ::-1]
+    both = Mesh(mesh.coordinates, numbers, mesh.part_numbers, mesh.part_names)
+    facing = int(projection(part(mesh, 0), view, *raster).from_behind.any())
+    points = visible_surfaces(both, view, (1, 2), *raster)
+    on_top = points.pixels[mesh.part_numbers[points.polygon_numbers] == facing]
+    alone = visible_surfaces(part(both, facing), view, (1, 2), *raster).pixels
+    assert sorted(on_top.tolist()) == sorted(alone.tolist())
