@@ -23,6 +23,10 @@ def moved(mesh: Mesh, coordinates: npt.NDArray[np.float64]) -> Mesh:
     return Mesh(coordinates, mesh.node_numbers, mesh.part_numbers, mesh.part_names)
 
 
+def shifted(mesh: Mesh, *by: float) -> Mesh:
+    return moved(mesh, mesh.coordinates + np.array(by))
+
+
 @given(st.integers(0, 1 << 32), st.sampled_from(ROUNDINGS))
 def test_a_decal_and_its_ground_share_a_plane_however_their_corners_are_rounded(
     seed: int, rounding: str
@@ -49,7 +53,7 @@ def test_a_polygon_is_turned_if_it_runs_the_other_way_round_than_its_plane(seed:
 
 @pytest.mark.parametrize("factor", [2.0**-60, 2.0**60])
 def test_planes_are_found_alike_in_meshes_of_any_size(factor: float) -> None:
-    mesh = Mesh.joined([cube(), moved(DECAL, DECAL.coordinates + (0.5, 0, 0.5))])
+    mesh = Mesh.joined([cube(), shifted(DECAL, 0.5, 0, 0.5)])
     shared, other = mesh.shared_planes, moved(mesh, mesh.coordinates * factor).shared_planes
     assert shared is not None
     assert other is not None
@@ -72,7 +76,7 @@ def test_a_flat_side_whose_polygons_repeat_their_nodes_or_differ_in_winding_is_o
 
 
 def test_patches_side_by_side_share_no_plane() -> None:
-    beside = [moved(DECAL, DECAL.coordinates + (step, 0, 0)) for step in (0, 0.7, 1.4)]
+    beside = [shifted(DECAL, step, 0, 0) for step in (0, 0.7, 1.4)]
     assert found(*beside) is None
     assert found(*beside, beside[1]) is not None
 
@@ -86,7 +90,7 @@ def test_a_polygon_folded_over_its_neighbor_shares_its_plane() -> None:
 
 @pytest.mark.parametrize(("height", "shares"), [(0.0, True), (1e-6, True), (1e-5, False), (1e-3, False)])
 def test_a_decal_just_above_its_ground_has_a_plane_of_its_own(height: float, shares: bool) -> None:
-    assert (found(GROUND, moved(DECAL, DECAL.coordinates + (0, height, 0))) is not None) == shares
+    assert (found(GROUND, shifted(DECAL, 0, height, 0)) is not None) == shares
 
 
 @pytest.mark.parametrize("sides", [12, 100, 1000])
@@ -99,7 +103,10 @@ def test_the_sides_of_a_cylinder_share_no_plane_even_if_the_cylinder_is_there_tw
         first, second = np.arange(sides), np.roll(np.arange(sides), -1)
         quads = np.stack([first, second, second + sides, first + sides], axis=1)
         return Mesh(
-            np.concatenate([ring, ring + (0, 0, 1)]), quads, np.zeros(sides, np.intp), (f"side {turn}",)
+            np.concatenate([ring, ring + np.array([0, 0, 1])]),
+            quads,
+            np.zeros(sides, np.intp),
+            (f"side {turn}",),
         )
 
     assert found(around(0.0), around(0.5)) is None

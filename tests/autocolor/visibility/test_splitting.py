@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -13,7 +15,7 @@ BOW_TIE = [(0, 0), (4, 3), (4, 0), (0, 5)]
 
 
 def triangles(
-    corners: list[tuple[float, float]], order: npt.NDArray[np.intp], depths: list[float] | None = None
+    corners: Sequence[tuple[float, float]], order: npt.NDArray[np.intp], depths: Sequence[float] | None = None
 ) -> list[frozenset[int]]:
     """The nodes of the two triangles of a quad, first the one that comes first."""
     x, y = np.array(corners, np.float64).T
