@@ -28,7 +28,7 @@ MOST_PLANES: Final = 8
 MOST_GROUNDS: Final = 1 << 14
 """Assumed: only so many of a mesh's polygons, the widest, are compared with all others in their cells."""
 
-SHARPEST: Final = 5e-4
+SHARPEST: Final = 2e-4
 """Assumed: how far a corner may be off a plane, as a fraction of its polygon's width."""
 
 POLYGONS_AT_ONCE: Final = 1 << 13
@@ -79,7 +79,7 @@ def coplanar_groups(coordinate_rows: Floats, node_rows: Indices, tolerance: floa
     parents = np.arange(node_rows.shape[1])
     grids, widths = _cells(coordinate_rows, node_rows, tolerance)
     rank = max(len(widths) - MOST_GROUNDS, 0)
-    grounds = widths >= np.partition(widths, rank)[rank] if len(widths) else widths > 0
+    grounds = widths >= np.sort(widths)[rank:][:1]
     left = np.flatnonzero(widths)
     slot_count = 4 << len(widths).bit_length()
     for keys in grids:

@@ -31,6 +31,9 @@ MOST_OFFSET: Final = 4.0
 DIRECTIONS: Final = 16
 """In how many directions patches may lie apart."""
 
+MOST_PATCHES: Final = 64
+"""Of how many patches in a plane each is compared with each; of more it is assumed that some overlap."""
+
 
 @dataclass(frozen=True, eq=False)
 class SharedPlanes:
@@ -131,7 +134,7 @@ def _may_overlap(places: Indices, groups: Indices, found: Facets, normals: Float
     shared = (keys[1:] == keys[:-1]) & (groups[polygon[1:]] == groups[polygon[:-1]])
     folded = shared & (forward[1:] == forward[:-1])
     folded[1:] |= shared[1:] & shared[:-1]
-    # Find the patches of each group, and whether some straight lines lie between them all.
+    # Find the patches of each group, and whether straight lines lie between them.
     parents = np.arange(len(groups))
     unite(parents, polygon[:-1][shared], polygon[1:][shared])
     overlapping = ~_lie_apart(group_numbers(parents), groups, found.corners, normals)
@@ -140,25 +143,29 @@ def _may_overlap(places: Indices, groups: Indices, found: Facets, normals: Float
 
 
 def _lie_apart(patches: Indices, groups: Indices, corners: Floats, normals: Floats) -> Booleans:
-    """For each group whether its patches don't overlap as seen along some direction of the plane."""
-    group_of_patch = np.empty(int(patches.max(initial=-1)) + 1, np.intp)
-    group_of_patch[patches] = groups
+    """For each group whether no two of its patches overlap as seen along every direction of the plane."""
     order = np.argsort(patches, kind="stable")
     first = np.flatnonzero(np.diff(patches[order], prepend=-1))
-    lie_apart = np.bincount(group_of_patch, minlength=int(groups.max(initial=-1)) + 1) < 2
-    if lie_apart.all():
+    group = groups[order[first]]
+    counts = np.bincount(group, minlength=int(groups.max(initial=-1)) + 1)
+    lie_apart = counts <= MOST_PATCHES
+    if counts.max(initial=0) < 2:
         return lie_apart
+    # Find the interval that each patch covers along each direction.
     across = cross(normals, np.eye(3)[np.abs(normals).argmin(axis=0)].T)
     along = cross(normals, across)
-    for angle in np.arange(DIRECTIONS) * (np.pi / DIRECTIONS):
+    low, high = np.empty((2, DIRECTIONS, len(first)))
+    for row, angle in enumerate(np.arange(DIRECTIONS) * (np.pi / DIRECTIONS)):
         direction = np.cos(angle) * across + np.sin(angle) * along
         reached = np.einsum("in,icn->cn", direction, corners)[:, order]
-        low = np.minimum.reduceat(reached.min(axis=0), first)
-        high = np.maximum.reduceat(reached.max(axis=0), first)
-        rows = np.lexsort((low, group_of_patch))
-        overlap = high[rows[:-1]] > low[rows[1:]] + TOLERANCE
-        overlap &= group_of_patch[rows[:-1]] == group_of_patch[rows[1:]]
-        apart = np.ones_like(lie_apart)
-        apart[group_of_patch[rows[1:][overlap]]] = False
-        lie_apart |= apart
+        low[row] = np.minimum.reduceat(reached.min(axis=0), first)
+        high[row] = np.maximum.reduceat(reached.max(axis=0), first)
+    # Compare each patch with those that follow it in its group.
+    by_group = np.argsort(group, kind="stable")
+    for distance in range(1, int(counts[lie_apart].max(initial=0))):
+        one, other = by_group[:-distance], by_group[distance:]
+        pairs = np.flatnonzero((group[one] == group[other]) & lie_apart[group[one]])
+        one, other = one[pairs], other[pairs]
+        overlap = (high[:, one] > low[:, other] + TOLERANCE) & (high[:, other] > low[:, one] + TOLERANCE)
+        lie_apart[group[one[overlap.all(axis=0)]]] = False
     return lie_apart

@@ -56,9 +56,9 @@ def segments_of_polygons(projected: Projection, scale: DepthScale, polygons: Ind
         scale.keys(start),
         scale.keys(step),
     )
-    if scale.planes is not None:
+    planes = None if scale.planes is None else scale.planes.take(polygons)
+    if planes is not None and planes.max(initial=-1) >= 0:
         # Let the polygons of a shared plane have its depth.
-        planes = scale.planes.take(polygons)
         plane = np.repeat(planes, projected.line_counts.take(polygons)).take(kept)
         row = np.flatnonzero(plane >= 0)
         found.start[row], found.step[row] = plane_keys(

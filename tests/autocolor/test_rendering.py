@@ -21,7 +21,6 @@ from autocolor.visibility.visible_points import PointChunk
 from tests.autocolor.meshes import cube, sphere
 from tests.autocolor.strategies import scenes
 
-
 ROOT = Path(__file__).resolve().parents[2]
 
 

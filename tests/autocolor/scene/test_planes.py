@@ -76,7 +76,7 @@ def test_a_flat_side_whose_polygons_repeat_their_nodes_or_differ_in_winding_is_o
 
 
 def test_patches_side_by_side_share_no_plane() -> None:
-    beside = [shifted(DECAL, step, 0, 0) for step in (0, 0.7, 1.4)]
+    beside = [shifted(DECAL, x, 0, z) for x in (0, 0.7, 1.4) for z in (0, 0.8)]
     assert found(*beside) is None
     assert found(*beside, beside[1]) is not None
 
