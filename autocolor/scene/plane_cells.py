@@ -8,7 +8,6 @@ that are left. So polygons are never united over a chain of small differences, s
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -71,6 +70,14 @@ def facets(coordinate_rows: Floats, node_rows: Indices) -> Facets:
     return Facets(corners, np.where(flat, normals, 0.0), corners.mean(axis=1), areas, widths)
 
 
+def facet_normals(coordinate_rows: Floats, node_rows: Indices) -> Floats:
+    """The normals of facets alone, (3, n)."""
+    normals = np.empty((3, node_rows.shape[1]))
+    for chunk in chunks(node_rows.shape[1], POLYGONS_AT_ONCE):
+        normals[:, chunk] = facets(coordinate_rows, node_rows[:, chunk]).normals
+    return normals
+
+
 def coplanar_groups(coordinate_rows: Floats, node_rows: Indices, tolerance: float) -> Indices:
     """Union-find parents of the polygons, those united that seem to lie in one plane.
 
@@ -89,7 +96,8 @@ def coplanar_groups(coordinate_rows: Floats, node_rows: Indices, tolerance: floa
         counts *= np.bincount(slots.compress(grounds.take(left)), minlength=slot_count) > 0
         candidates = left.compress(counts.take(slots) > 1)
         candidates = candidates[np.argsort(keys.take(candidates), kind="stable")]
-        for chunk in _whole_cells(keys.take(candidates)):
+        # A chunk may end within a cell; the seeds of its two parts meet in the other grids.
+        for chunk in chunks(len(candidates), POLYGONS_AT_ONCE):
             polygons = candidates[chunk]
             seeds, members = _compared(
                 coordinate_rows, node_rows[:, polygons], keys.take(polygons), tolerance
@@ -117,14 +125,6 @@ def _cells(coordinate_rows: Floats, node_rows: Indices, tolerance: float) -> tup
             cells = np.floor(numbers / CELL + shift).astype(np.int64)
             row[chunk] = MIXERS @ cells
     return keys, widths
-
-
-def _whole_cells(keys: Numbers) -> list[slice]:
-    """Sorted keys in slices of about `POLYGONS_AT_ONCE`, equal keys in one slice."""
-    ends = np.flatnonzero(np.diff(keys, append=keys[-1:] - 1)) + 1
-    picked = np.searchsorted(ends, np.arange(POLYGONS_AT_ONCE, len(keys), POLYGONS_AT_ONCE))
-    bounds = [0, *np.unique(ends[picked]).tolist(), len(keys)]
-    return [slice(first, end) for first, end in pairwise(bounds) if end > first]
 
 
 def _compared(

@@ -18,7 +18,7 @@ import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot
 from autocolor.scene.fans import places_of_corners
-from autocolor.scene.plane_cells import SHARPEST, Facets, coplanar_groups, facets
+from autocolor.scene.plane_cells import SHARPEST, Facets, coplanar_groups, facet_normals, facets
 from autocolor.scene.union_find import group_numbers, unite
 
 TOLERANCE: Final = 2e-6
@@ -70,17 +70,23 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     polygons = np.flatnonzero(np.bincount(groups).take(groups) > 1)
     polygons = polygons[np.argsort(groups[polygons], kind="stable")]
     groups = groups[polygons]
-    # Drop those that are too far from the plane of the others, and what can't overlap.
-    for overlapping in (False, True, False):
+    # Drop those that are one patch, before anything large is computed.
+    normals = facet_normals(scaled, node_rows[:, polygons])
+    first = np.searchsorted(groups, groups)
+    turned = dot(normals, np.take(normals, first, axis=1)) < 0
+    places = places_of_corners(coordinate_rows, node_rows[:, polygons])
+    _, several = _patches(places, groups, turned)
+    polygons, groups, places = polygons[several], groups[several], places[:, several]
+    # Drop those that are too far from the plane of the others, or lie beside all of them.
+    for beside in (False, True, False):
         found = facets(scaled, node_rows[:, polygons])
         normals, _, off = _fitted(found, groups)
         kept = off <= np.minimum(tolerance, SHARPEST * found.widths)
-        if overlapping:
-            places = places_of_corners(coordinate_rows, node_rows[:, polygons])
-            kept &= _may_overlap(places, groups, found, normals)
-        polygons, groups = polygons[kept], groups[kept]
-        several = np.bincount(groups, minlength=1).take(groups) > 1
-        polygons, groups = polygons[several], groups[several]
+        if beside:
+            patches, several = _patches(places, groups, dot(found.normals, normals) < 0)
+            kept &= several & ~_lie_apart(patches, groups, found.corners, normals)[groups]
+        kept &= np.bincount(groups[kept], minlength=1 + int(groups.max(initial=0))).take(groups) > 1
+        polygons, groups, places = polygons[kept], groups[kept], places[:, kept]
         if not len(polygons):
             return None
 
@@ -122,11 +128,14 @@ def _fitted(found: Facets, groups: Indices) -> tuple[Floats, Floats, Floats]:
     return normals, points, np.abs(np.einsum("in,icn->cn", normals, away)).max(axis=0)
 
 
-def _may_overlap(places: Indices, groups: Indices, found: Facets, normals: Floats) -> Booleans:
-    """For each polygon whether those of its group may overlap; `places` as from `places_of_corners`."""
+def _patches(places: Indices, groups: Indices, turned: Booleans) -> tuple[Indices, Booleans]:
+    """The patch of each polygon, and whether its group is more than one simple patch.
+
+    `places` is as from `places_of_corners`. An edge with two polygons on one side, which overlap, joins none.
+    """
     start, end = places, np.roll(places, -1, axis=0)
     keys = (np.minimum(start, end) * (int(places.max(initial=0)) + 1) + np.maximum(start, end)).T.ravel()
-    forward = ((start < end) ^ (dot(found.normals, normals) < 0)).T.ravel()
+    forward = ((start < end) ^ turned).T.ravel()
     edges = np.flatnonzero((start != end).T.ravel())
     # Edges are in the order of the groups, and so are equal ones after a stable sort.
     edges = edges[np.argsort(keys[edges], kind="stable")]
@@ -134,12 +143,13 @@ def _may_overlap(places: Indices, groups: Indices, found: Facets, normals: Float
     shared = (keys[1:] == keys[:-1]) & (groups[polygon[1:]] == groups[polygon[:-1]])
     folded = shared & (forward[1:] == forward[:-1])
     folded[1:] |= shared[1:] & shared[:-1]
-    # Find the patches of each group, and whether straight lines lie between them.
+    # Unite polygons across their edges, but for those that are folded.
     parents = np.arange(len(groups))
-    unite(parents, polygon[:-1][shared], polygon[1:][shared])
-    overlapping = ~_lie_apart(group_numbers(parents), groups, found.corners, normals)
-    overlapping[groups[polygon[1:][folded]]] = True
-    return overlapping[groups]
+    joined = shared & ~folded
+    unite(parents, polygon[:-1][joined], polygon[1:][joined])
+    several = np.bincount(groups[parents == np.arange(len(groups))], minlength=1) > 1
+    several[groups[polygon[1:][folded]]] = True
+    return group_numbers(parents), several[groups]
 
 
 def _lie_apart(patches: Indices, groups: Indices, corners: Floats, normals: Floats) -> Booleans:
@@ -148,8 +158,8 @@ def _lie_apart(patches: Indices, groups: Indices, corners: Floats, normals: Floa
     first = np.flatnonzero(np.diff(patches[order], prepend=-1))
     group = groups[order[first]]
     counts = np.bincount(group, minlength=int(groups.max(initial=-1)) + 1)
-    lie_apart = counts <= MOST_PATCHES
-    if counts.max(initial=0) < 2:
+    lie_apart = (counts > 1) & (counts <= MOST_PATCHES)
+    if not lie_apart.any():
         return lie_apart
     # Find the interval that each patch covers along each direction.
     across = cross(normals, np.eye(3)[np.abs(normals).argmin(axis=0)].T)

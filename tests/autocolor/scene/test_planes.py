@@ -145,3 +145,14 @@ def test_corners_are_as_near_to_their_plane_as_it_says(mesh: Mesh) -> None:
 def test_a_mesh_without_polygons_or_without_extent_has_no_shared_planes() -> None:
     assert shared_planes(np.empty((0, 3)), np.empty((0, 4), np.intp)) is None
     assert shared_planes(np.ones((3, 3)), np.array([[0, 1, 2, 2], [0, 1, 2, 2]])) is None
+
+
+def test_a_third_polygon_at_an_edge_shares_the_plane_of_the_two_others() -> None:
+    # Two halves of a square, and a smaller triangle at their diagonal.
+    corners = np.array([(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1), (0.4, 0, 0.6)], np.float64)
+    numbers = np.array([(0, 1, 2, 2), (0, 2, 3, 3), (0, 2, 4, 4)])
+    for order in ([0, 1, 2], [2, 0, 1], [0, 2, 1]):
+        shared = shared_planes(corners, numbers[order])
+        assert shared is not None
+        over = shared.plane_of_polygon[np.argsort(order)].tolist()
+        assert over[1:] == [0, 0]
