@@ -17,11 +17,17 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Numbers
-from autocolor.visibility.projection import Projection
+from autocolor.arrays import Floats, Indices, Numbers, chunks_of_runs
+from autocolor.visibility.extents import extents_of_polygons
+from autocolor.visibility.projection import Projection, most_of_four
 
 KEY_BITS: Final = 62
 """One less than the 63 bits of a positive number, because rounding may add to the nearest depth."""
+
+CLOSE: Final = 1024.0
+"""Corners of a larger inverse depth are close to the eye."""
+
+EXTENTS_AT_ONCE: Final = 1 << 16
 
 MOST_ROUNDED: Final = 1 << 10
 """In units: a plane's depth below 2^62 is exact to 2^9 of them in float64."""
@@ -60,10 +66,27 @@ class DepthScale:
 
 
 def depth_scale(projected: Projection) -> DepthScale:
-    """The scale that holds the nearest corner of a polygon and the numbers of all polygons."""
+    """The scale that holds the nearest depth at the center of a pixel and the numbers of all polygons."""
     number_bits = max((2 * projected.corners.shape[1]).bit_length(), LEAST_NUMBER_BITS)
-    factor = 2.0 ** (KEY_BITS - number_bits) / projected.nearest
+    factor = 2.0 ** (KEY_BITS - number_bits) / _nearest_at_pixels(projected)
     return DepthScale(1 << number_bits, factor, _planes_that_fit(projected, factor))
+
+
+def _nearest_at_pixels(projected: Projection) -> float:
+    """An inverse depth that no polygon exceeds at the center of a pixel.
+
+    A corner may be so near the eye that no depth would be left for what is far away, but outside of the
+    picture: then look at the pixels of the nearest polygons.
+    """
+    if projected.nearest <= CLOSE:
+        return projected.nearest
+    close = np.flatnonzero(most_of_four(projected.inverse_depth[projected.corners]) > CLOSE)
+    nearest = CLOSE
+    for chunk, _ in chunks_of_runs(projected.line_counts.take(close), EXTENTS_AT_ONCE):
+        extents = extents_of_polygons(projected, close[chunk])
+        last = extents.start + (extents.count - 1) * extents.step
+        nearest = max(nearest, float(np.maximum(extents.start, last).max(initial=0.0)))
+    return min(nearest, projected.nearest)
 
 
 def _planes_that_fit(projected: Projection, factor: float) -> Indices | None:

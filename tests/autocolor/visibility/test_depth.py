@@ -6,6 +6,8 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, View
 from autocolor.visibility.depth import (
+    KEY_BITS,
+    LEAST_NUMBER_BITS,
     DepthScale,
     depth_scale,
     numbers_of_polygons,
@@ -14,6 +16,7 @@ from autocolor.visibility.depth import (
     polygons_of_numbers,
 )
 from autocolor.visibility.projection import projection
+from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import decal_on_ground, grid
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
 
@@ -97,3 +100,16 @@ def test_a_plane_whose_depths_no_key_can_hold_leaves_its_polygons_their_own() ->
     scale = depth_scale(projected)
     assert scale.planes is not None
     assert len(set(scale.planes.tolist()) - {-1}) == 1
+
+
+def test_a_corner_beside_the_eye_leaves_the_depths_in_the_picture_as_fine_as_before() -> None:
+    far = grid(1, 1, (-1, 1, -1), (2, 0, 0), (0, 0, 2), "far")
+    beside = grid(1, 1, (0.5, 1e-8, -1), (0, 1, 0), (0, 0, 2), "beside")
+    view = View((0.0, 0.0, 0.0), direction=(0, 1, 0), field_of_view=70)
+    projected = projection(Mesh.joined([far, beside]), view, 48, 64)
+    assert projected.nearest > 1e7
+    assert depth_scale(projected).factor > 2.0**KEY_BITS / 2.0**LEAST_NUMBER_BITS / 2048
+    # A wall just behind another is hidden by it, however near the eye a third one begins.
+    behind = grid(1, 1, (-1, 1 + 1e-5, -1), (2, 0, 0.3), (0, 0, 2), "behind")
+    points = visible_surfaces(Mesh.joined([far, beside, behind]), view, (1, 2, 3), 48, 64)
+    assert not (points.polygon_numbers == 2)[points.world_points[:, 2] < 0.69].any()

@@ -8,9 +8,11 @@ from hypothesis import given
 
 from autocolor import Mesh, View
 from autocolor.visibility.depth import DepthScale, depth_scale, polygons_of_numbers
+from autocolor.visibility.extents import extents_of_polygons
 from autocolor.visibility.projection import Projection, projection
 from autocolor.visibility.segments import Segments, segments_of_polygons
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
+from tests.autocolor.visibility.test_extents import extent_on
 
 
 def all_segments(mesh: Mesh, view: View, raster: tuple[int, int]) -> tuple[Projection, DepthScale, Segments]:
@@ -25,47 +27,17 @@ def places(projected: Projection, segments: Segments) -> list[tuple[int, int]]:
     return list(zip(polygons.tolist(), (segments.first_pixel // projected.elements).tolist(), strict=True))
 
 
-def extent_on(projected: Projection, polygon: int, line: int) -> list[tuple[float, float]]:
-    """Screen x and inverse depth where a line crosses the polygon's outline, from left to right."""
-    crossings = []
-    corners = projected.corners[:, polygon].tolist()
-    for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
-        if (projected.first_line[a] <= line) != (projected.first_line[b] <= line):
-            fraction = (line + 0.5 - projected.y[a]) / (projected.y[b] - projected.y[a])
-            crossings.append(
-                tuple(
-                    float(table[a] + fraction * (table[b] - table[a]))
-                    for table in (projected.x, projected.inverse_depth)
-                )
-            )
-    return sorted(crossings)  # type: ignore[arg-type]
-
-
 @given(meshes(), views() | outside_views(), rasters)
-def test_a_segment_covers_the_centers_between_two_crossings(
+def test_the_segments_are_the_extents_of_the_polygons(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     projected, _, segments = all_segments(mesh, view, raster)
-    found = dict(
-        zip(
-            places(projected, segments),
-            zip(segments.first_pixel.tolist(), segments.count.tolist(), strict=True),
-            strict=True,
-        )
-    )
-    for polygon in range(projected.corners.shape[1]):
-        lines = projected.first_line[projected.corners[:, polygon]]
-        for line in range(lines.min(), lines.max()):
-            (left, _), (right, _) = extent_on(projected, polygon, line)
-            centers = [element for element in range(raster[1]) if left <= element + 0.5 < right]
-            clear = min(abs(x - 0.5 - round(x - 0.5)) for x in (left, right)) > 1e-6 * max(
-                1, abs(left), abs(right)
-            )
-            if clear and centers:
-                assert found[polygon, line] == (line * raster[1] + centers[0], len(centers))
-            elif clear:
-                assert (polygon, line) not in found
-    assert len(found) == len(segments.number)
+    polygons = np.arange(projected.corners.shape[1])
+    extents = extents_of_polygons(projected, polygons)
+    rows = zip(extents.row.tolist(), extents.line.tolist(), strict=True)
+    assert places(projected, segments) == list(rows)
+    assert (segments.first_pixel % raster[1]).tolist() == extents.first.tolist()
+    assert segments.count.tolist() == extents.count.tolist()
 
 
 @given(meshes(), outside_views(), rasters)
@@ -82,20 +54,6 @@ def test_the_keys_step_along_the_inverse_depth(mesh: Mesh, view: View, raster: t
             key = int(segments.start[row]) + k * int(segments.step[row])
             assert key % scale.number_limit == 0
             assert key / scale.number_limit / scale.factor == pytest.approx(depth, rel=1e-6)
-
-
-@given(meshes(), outside_views(), rasters)
-def test_polygons_of_opposite_winding_have_the_same_segments(
-    mesh: Mesh, view: View, raster: tuple[int, int]
-) -> None:
-    # Triangles only: a quad that must be split may be split along its other diagonal.
-    rows = []
-    for nodes in (mesh.node_numbers[:, :3], mesh.node_numbers[:, 2::-1]):
-        turned = Mesh(mesh.coordinates, nodes, mesh.part_numbers, mesh.part_names)
-        _, _, segments = all_segments(turned, view, raster)
-        tables = (segments.first_pixel, segments.count, segments.start, segments.step)
-        rows.append([table.tolist() for table in tables])
-    assert rows[0] == rows[1]
 
 
 @given(meshes(), views(), rasters)
