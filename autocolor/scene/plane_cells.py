@@ -62,12 +62,11 @@ def facets(coordinate_rows: Floats, node_rows: Indices) -> Facets:
     areas = lengths(normals)
     # The diagonals of a triangle are two of its sides.
     diameters = np.sqrt(np.maximum(dot(across, across), dot(along, along)))
-    flat = areas > 1e-12 * diameters**2
+    flat = areas > np.maximum(1e-12 * diameters**2, 1e-200)
     areas *= flat
-    with np.errstate(divide="ignore", invalid="ignore"):
-        normals *= np.where(flat, 1 / areas, 0.0)
-        widths = np.where(flat, areas / diameters, 0.0)
-    return Facets(corners, np.where(flat, normals, 0.0), corners.mean(axis=1), areas, widths)
+    normals *= flat / np.where(flat, areas, 1.0)
+    widths = areas / np.where(flat, diameters, 1.0)
+    return Facets(corners, normals, corners.mean(axis=1), areas, widths)
 
 
 def facet_normals(coordinate_rows: Floats, node_rows: Indices) -> Floats:

@@ -51,7 +51,7 @@ def test_a_polygon_is_turned_if_it_runs_the_other_way_round_than_its_plane(seed:
     assert (shared.turned == reversed_).all() or (shared.turned == ~reversed_).all()
 
 
-@pytest.mark.parametrize("factor", [2.0**-60, 2.0**60])
+@pytest.mark.parametrize("factor", [2.0**-1000, 2.0**-60, 2.0**60])
 def test_planes_are_found_alike_in_meshes_of_any_size(factor: float) -> None:
     mesh = Mesh.joined([cube(), shifted(DECAL, 0.5, 0, 0.5)])
     shared, other = mesh.shared_planes, moved(mesh, mesh.coordinates * factor).shared_planes
