@@ -21,9 +21,6 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 """Row numbers of tables, counts of rows, and places in a raster: what numpy indexes with."""
 
-ShortIndices = NDArray[np.int32]
-"""Indices where the size of `Indices` would cost too much memory."""
-
 Numbers = NDArray[np.int64]
 """Whole numbers to calculate with: depth keys, runs."""
 

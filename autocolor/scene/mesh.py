@@ -20,6 +20,7 @@ from autocolor.errors import InputError
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.columns.value_kinds import Number
 from autocolor.scene.node_normals import CREASE_ANGLE, NodeNormals, node_normals
+from autocolor.scene.planes import SharedPlanes, shared_planes
 
 CREASE_ANGLES: Final = Number(at_least=0, at_most=180)
 """The crease angles that there may be, in degrees."""
@@ -94,6 +95,11 @@ class Mesh:
     def normals(self) -> NodeNormals:
         """Unit normals at the corners of the polygons, computed from the adjoining polygons."""
         return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
+
+    @cached_property
+    def shared_planes(self) -> SharedPlanes | None:
+        """The planes in which polygons may overlap; None if there is none."""
+        return shared_planes(self.coordinates, self.node_numbers)
 
     @property
     def used_coordinates(self) -> Floats:

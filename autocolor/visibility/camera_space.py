@@ -18,10 +18,17 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 
 NEAR: Final = 1e-6
-"""Assumed: the near plane, as a fraction of the depth of the object's farthest corner."""
+"""Assumed: the near plane where the object reaches behind the eye; what is nearer vanishes.
 
-LEAST_NEAR: Final = 1e-12
-"""Assumed: the near plane, in units, used where the farthest corner itself is almost at the eye."""
+It is a fraction of the depth of the farthest corner.
+"""
+
+LEAST_NEAR: Final = 1e-9
+"""Assumed: the least depth of the near plane, in units.
+
+An object wholly before the eye is clipped only here: nothing of it vanishes that is farther, however small
+it is. Closer to the eye, crossings would be rounded by more than a thousandth of a pixel.
+"""
 
 LEAST_UNIT: Final = 2.0**-800
 """Assumed: far below the size of any object, and still a divisor for the farthest light."""
@@ -52,10 +59,16 @@ def camera_space(mesh: Mesh, view: View) -> CameraPolygons:
     axes, eye = view.axes, np.array(view.eye)
     box = (np.array(list(itertools.product(*np.stack(mesh.bounds, axis=1)))) - eye) @ axes.T
     unit = max(2.0 ** math.frexp(float(np.abs(box).max()))[1], LEAST_UNIT)
+    near = max(NEAR * float(box[:, 2].max()) / unit, LEAST_NEAR)
+    positions = rotated(axes / unit, mesh.coordinates.T, view.eye)
+    if positions[2].min(initial=near) < near:
+        # Nothing needs to be clipped where all corners lie before the eye.
+        nearest = float(positions[2].take(mesh.node_numbers.T).min(initial=near))
+        near = max(nearest, LEAST_NEAR) if nearest > 0 else near
     return CameraPolygons(
         unit,
-        max(NEAR * float(box[:, 2].max()) / unit, LEAST_NEAR),
-        rotated(axes / unit, mesh.coordinates.T, view.eye),
+        near,
+        positions,
         rotated(axes, mesh.normals.vectors.T),
         mesh.node_numbers.T,
         mesh.normals.numbers.T,

@@ -68,7 +68,16 @@ class _Clipped:
         depths = polygons.positions[2, polygons.corners[:, column]].tolist()
         left_nodes: list[int] = []
         left_rows: list[int] = []
-        for corner, following in ((0, 1), (1, 2), (2, 3), (3, 0)):
+        # Begin where the polygon comes out of the near plane, whichever corner is written first.
+        steps = [(corner, (corner + 1) % 4) for corner in range(4)]
+        begin = min(
+            (step for step in steps if depths[step[0]] < near <= depths[step[1]]),
+            key=lambda step: polygons.positions[:, [nodes[step[1]], nodes[step[0]]]].T.tolist(),
+        )[0]
+        for corner, following in steps[begin:] + steps[:begin]:
+            # A triangle repeats a node.
+            if nodes[corner] == nodes[following]:
+                continue
             if depths[corner] >= near:
                 left_nodes.append(nodes[corner])
                 left_rows.append(rows[corner])

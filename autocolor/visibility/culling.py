@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Indices, Numbers
-from autocolor.visibility.depth import DepthScale
+from autocolor.visibility.depth import DepthScale, plane_rounding
 from autocolor.visibility.projection import Projection, least_of_four, most_of_four
 
 FITTING: Final = 0.9
@@ -48,7 +48,13 @@ def not_occluded(
     # Compare with the nearest corner. Because the step of a segment is rounded, each pixel may come half
     # a unit nearer.
     nearest = scale.keys(most_of_four(projected.inverse_depth[corners]))
-    nearest += (extent // 2 + 2) * scale.segment_limit
+    nearest += (extent // 2 + 2) * scale.number_limit
+    if scale.planes is not None:
+        plane = scale.planes.take(polygons)
+        row = np.flatnonzero(plane >= 0)
+        at_corners = corners[:, row]
+        depths = projected.planes.inverse_depth(plane[row], projected.x[at_corners], projected.y[at_corners])
+        nearest[row] = scale.keys(most_of_four(depths)) + plane_rounding(projected) * scale.number_limit
     kept: Indices = polygons[(extent > size) | (nearest >= behind)]
     return kept
 

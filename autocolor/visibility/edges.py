@@ -25,6 +25,18 @@ UP_SIDE: Final[Side] = -1
 """The edges that lead back up."""
 
 
+TOP_CORNERS: Final = {
+    side: np.array(
+        [sum(c for c in range(4) if w >> c & 1 and not w >> (c + side & 3) & 1) for w in range(16)]
+    )
+    for side in (DOWN_SIDE, UP_SIDE)
+}
+"""The top corner of the edge of a side that a line crosses.
+
+It is looked up by which corners lie at or above the line: the sum of 2^c of those corners c.
+"""
+
+
 @dataclass(frozen=True, eq=False)
 class Edges:
     """Edges and how to step them from line to line; every array is (edges,).
@@ -100,8 +112,17 @@ def edges_of_sides(projected: Projection, polygons: Indices) -> tuple[Edges, Edg
     return side(DOWN_SIDE, [0, 1, 2, 3]), side(UP_SIDE, [0, 3, 2, 1])
 
 
-def bottom_of_edge(projected: Projection, top: Indices, side: Side) -> Indices:
-    """The bottom corner of each edge of a side, given the top corner."""
-    corner, polygon = np.divmod(top, projected.corners.shape[1])
-    bottom: Indices = ((corner + side) & 3) * projected.corners.shape[1] + polygon
-    return bottom
+def edges_on_lines(
+    projected: Projection, polygons: Indices, lines: Indices, side: Side
+) -> tuple[Indices, Indices]:
+    """The top and the bottom corner of the edge of a side that crosses a line of each polygon.
+
+    Each polygon must cross its line.
+    """
+    count = projected.corners.shape[1]
+    # Number the ways in which corners can lie at or above the line.
+    corners = np.take(projected.corners, polygons, axis=1)
+    above = projected.first_line.take(corners) <= lines
+    way = np.packbits(above, axis=0, bitorder="little")[0]
+    top = TOP_CORNERS[side].take(way)
+    return top * count + polygons, ((top + side) & 3) * count + polygons

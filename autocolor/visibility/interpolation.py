@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Numbers, ShortIndices, Singles, chunks_of_runs, dot, runs
+from autocolor.arrays import Numbers, Singles, chunks_of_runs, dot, runs
 from autocolor.visibility.projection import Projection
 from autocolor.visibility.visible_points import (
     NORMAL,
@@ -32,16 +32,15 @@ PIXELS_AT_ONCE: Final = 1 << 14
 
 def interpolated_points(
     projected: Projection,
-    segment_at_pixel: Numbers,
-    segment_edges: ShortIndices,
+    number_at_pixel: Numbers,
     surface_numbers: tuple[int, ...],
     one_sided: frozenset[int],
 ) -> VisiblePoints:
-    """What is visible at each pixel, given the segment there as in `visible_spans`.
+    """What is visible at each pixel, given the number of the polygon there as in `visible_spans`.
 
     `surface_numbers` and `one_sided` are those of `visible_surfaces`.
     """
-    spans = visible_spans(projected, segment_at_pixel, segment_edges, surface_numbers)
+    spans = visible_spans(projected, number_at_pixel, surface_numbers)
     start, step = along_spans(projected, spans)
     # Turn the normals of polygons seen from behind to the eye.
     behind = projected.from_behind[spans.polygon]

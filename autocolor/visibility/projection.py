@@ -20,6 +20,8 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 from autocolor.visibility.camera_space import CameraPolygons, camera_space
 from autocolor.visibility.clipping import clipped_at_near_plane
+from autocolor.visibility.plane_depths import PlanesOnRaster, planes_on_raster
+from autocolor.visibility.splitting import split_quads
 
 ROUNDING: Final = 1e-6
 """In pixels, far above the rounding of a crossing."""
@@ -51,9 +53,9 @@ class Projection:
 
     `corners` and `corner_normals` are (4, polygons) intp: the node at each corner, and its column of
     `normals`, (3, normals) float32 in camera space. `polygon_numbers` are rows of the mesh's polygon table,
-    `from_behind` tells whether the eye sees the back. The segments of polygon p, one for each line that it
-    crosses, are numbered from first_segment[p] to before first_segment[p + 1]; `first_segment` is
-    (polygons + 1,) intp. No corner of a polygon has an inverse depth above `nearest`.
+    `from_behind` tells whether the eye sees the back, and `line_counts`, (polygons,) intp, how many lines
+    cross the polygon. No corner of a polygon has an inverse depth above `nearest`. `planes` are those that
+    polygons share.
     """
 
     mesh: Mesh
@@ -71,8 +73,9 @@ class Projection:
     normals: Singles
     polygon_numbers: Indices
     from_behind: Booleans
-    first_segment: Indices
+    line_counts: Indices
     nearest: float
+    planes: PlanesOnRaster
 
     @cached_property
     def middle(self) -> Floats:
@@ -102,12 +105,14 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     # Split the quads that some line crosses four times.
     quads = np.flatnonzero(np.concatenate([each.zigzag for each in found]))
     if len(quads):
-        corners, corner_normals, parents = _split(quads, x, y, corners, corner_normals)
+        corners, corner_normals, parents = split_quads(quads, x, y, camera.positions, corners, corner_normals)
         polygon_numbers, from_behind = polygon_numbers[parents], from_behind[parents]
         first_lines = first_line[corners]
         line_counts = most_of_four(first_lines) - least_of_four(first_lines)
-    first_segment = np.zeros(corners.shape[1] + 1, np.intp)
-    np.cumsum(line_counts, out=first_segment[1:])
+    planes, in_planes, behind = planes_on_raster(
+        mesh.shared_planes, camera, view.eye, view.axes, focal, (lines, elements), polygon_numbers
+    )
+    from_behind[in_planes] = behind
     nearest = float(inverse_depth.max(initial=1.0))
     if nearest * camera.near >= 1:
         # Nodes behind the near plane were put on it; no polygon uses them.
@@ -128,8 +133,9 @@ def projection(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
         camera.normals,
         polygon_numbers,
         from_behind,
-        first_segment,
+        line_counts,
         nearest,
+        planes,
     )
 
 
@@ -202,31 +208,3 @@ def most_of_four(rows: AnyArray) -> AnyArray:
     """The most of four rows."""
     most: AnyArray = np.maximum(np.maximum(rows[0], rows[1]), np.maximum(rows[2], rows[3]))
     return most
-
-
-def _split(
-    quads: Indices, x: Floats, y: Floats, corners: Indices, corner_normals: Indices
-) -> tuple[Indices, Indices, Indices]:
-    """The polygons with some quads replaced by two triangles each, and the column that each came from.
-
-    A quad is split from corner 0 to corner 2 where the other two lie on either side of that diagonal, else
-    from 1 to 3, so that a dart is split at its notch. The triangles take the place of their quad.
-    """
-    quad_x, quad_y = x[corners[:, quads]], y[corners[:, quads]]
-    side = [
-        (quad_x[2] - quad_x[0]) * (quad_y[corner] - quad_y[0])
-        - (quad_y[2] - quad_y[0]) * (quad_x[corner] - quad_x[0])
-        for corner in (1, 3)
-    ]
-    from_zero = side[0] * side[1] < 0
-    orders = np.where(from_zero, [[0], [1], [2], [0], [2], [3]], [[1], [2], [3], [1], [3], [0]])
-    parents = np.sort(np.concatenate([np.arange(corners.shape[1]), quads]))
-    first = quads + np.arange(len(quads))
-    split_corners, split_normals = corners[:, parents], corner_normals[:, parents]
-    for row, (half, corner) in zip(orders, [(h, c) for h in (0, 1) for c in (0, 1, 2)], strict=True):
-        split_corners[corner, first + half] = corners[row, quads]
-        split_normals[corner, first + half] = corner_normals[row, quads]
-    for table in (split_corners, split_normals):
-        table[3, first] = table[2, first]
-        table[3, first + 1] = table[2, first + 1]
-    return split_corners, split_normals, parents

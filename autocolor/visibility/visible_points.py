@@ -1,4 +1,8 @@
-"""The visible points: the polygon, the point and the normal at each pixel, in camera space, by surface."""
+"""The visible points: the polygon, the point and the normal at each pixel, in camera space, by surface.
+
+Assumed: points are float32 around the middle of the whole object's bounding box, exact to a sixteen-millionth
+of its size. Lights on a thing of 0.001 units before a plate of 1,000 are off by some 2 % of the brightest.
+"""
 
 from __future__ import annotations
 

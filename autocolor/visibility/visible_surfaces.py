@@ -3,7 +3,7 @@
 Paper: "Introduction", [3, 21]: Watkins' scan-line algorithm. Departs: only the geometry is Watkins': the
 edges, where the lines cross them, and the segments between the crossings. He keeps the active segments of a
 line sorted by x and takes the nearest in each interval; here the nearest segment at each pixel is kept by a
-depth buffer of keys that carry the number of the segment. So nothing is sorted, and every step is one array
+depth buffer of keys that carry the number of the polygon. So nothing is sorted, and every step is one array
 operation over the segments of all lines, some hundred times faster in numpy. The literal algorithm is in
 `watkins`; both see the same polygon at every pixel, and tests hold that.
 
@@ -19,7 +19,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Indices, Numbers, ShortIndices, chunks, chunks_of_runs, runs
+from autocolor.arrays import Indices, Numbers, chunks_of_runs, runs
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 from autocolor.visibility.culling import not_occluded
@@ -29,7 +29,7 @@ from autocolor.visibility.projection import Projection, projection
 from autocolor.visibility.segments import segments_of_polygons
 from autocolor.visibility.visible_points import VisiblePoints
 
-POLYGONS_AT_ONCE: Final = 1 << 15
+SEGMENTS_AT_ONCE: Final = 1 << 16
 FRAGMENTS_AT_ONCE: Final = 1 << 16
 
 
@@ -50,35 +50,25 @@ def visible_surfaces(
     projected = projection(mesh, view, lines, elements)
     scale = depth_scale(projected)
     depth_buffer = np.zeros(lines * elements, np.int64)
-    segment_edges = np.zeros((2, scale.segment_limit), np.int32)
     # Test the polygons that face the eye.
-    depth_test(depth_buffer, segment_edges, projected, scale, np.flatnonzero(~projected.from_behind))
+    depth_test(depth_buffer, projected, scale, np.flatnonzero(~projected.from_behind))
     # Test those seen from behind, except the many that the first ones occlude.
     behind = not_occluded(depth_buffer, projected, scale, np.flatnonzero(projected.from_behind))
-    depth_test(depth_buffer, segment_edges, projected, scale, behind)
-    # Keep the number of the nearest segment from each key.
-    depth_buffer &= scale.segment_limit - 1
+    depth_test(depth_buffer, projected, scale, behind)
+    # Keep the number of the nearest polygon from each key.
+    depth_buffer &= scale.number_limit - 1
     # Interpolate point and normal along what is visible of the segments.
-    return interpolated_points(projected, depth_buffer, segment_edges, surface_numbers, one_sided)
+    return interpolated_points(projected, depth_buffer, surface_numbers, one_sided)
 
 
-def depth_test(
-    depth_buffer: Numbers,
-    segment_edges: ShortIndices,
-    projected: Projection,
-    scale: DepthScale,
-    polygons: Indices,
-) -> None:
+def depth_test(depth_buffer: Numbers, projected: Projection, scale: DepthScale, polygons: Indices) -> None:
     """Keep in the depth buffer, (lines * elements,), the largest key of some polygons at each pixel.
 
-    The largest key is that of the nearest segment, and of equally near ones the last. `segment_edges`,
-    (2, numbers), gets the edges on the down side and on the up side by the number of the segment.
+    The largest key is that of the nearest polygon, and of equally near ones the one with the highest number.
     """
-    for chunk in chunks(len(polygons), POLYGONS_AT_ONCE):
+    for chunk, _ in chunks_of_runs(projected.line_counts.take(polygons), SEGMENTS_AT_ONCE):
         # Find the segments of the polygons on all lines.
         segments = segments_of_polygons(projected, scale, polygons[chunk])
-        segment_edges[0][segments.number] = segments.down_edge
-        segment_edges[1][segments.number] = segments.up_edge
         # Step the keys along each segment, and keep the largest at each pixel.
         keys = segments.start + segments.number
         for part, _ in chunks_of_runs(segments.count, FRAGMENTS_AT_ONCE):

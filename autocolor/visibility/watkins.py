@@ -15,19 +15,27 @@ import numpy as np
 
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
-from autocolor.visibility.depth import DepthScale, depth_scale
+from autocolor.visibility.depth import (
+    DepthScale,
+    depth_scale,
+    numbers_of_polygons,
+    plane_keys,
+    polygons_of_numbers,
+)
 from autocolor.visibility.edges import edges
 from autocolor.visibility.interpolation import interpolated_points
-from autocolor.visibility.projection import Projection, least_of_four, projection
+from autocolor.visibility.projection import Projection, projection
 from autocolor.visibility.visible_points import VisiblePoints
 
 
 @dataclass
 class Edge:
-    """An active edge: its values at the first line that it crosses, and what each further line adds."""
+    """An active edge: its values at the first line that it crosses, and what each further line adds.
 
-    top: int
-    polygon: int
+    `number` is that of its polygon, as depth keys have it.
+    """
+
+    number: int
     descends: bool
     first_line: int
     end_line: int
@@ -46,21 +54,19 @@ class Edge:
 class Segment:
     """The extent of a polygon on a line: its pixels from `first` to before `end`.
 
-    The depth key is `start` at the first pixel and `step` more at each further one. `down_edge` and `up_edge`
-    are its two edges, each known by its top corner.
+    The depth key is `start` at the first pixel and `step` more at each further one. `number` is that of the
+    polygon, as depth keys have it.
     """
 
-    polygon: int
+    number: int
     first: int
     end: int
     start: int
     step: int
-    down_edge: int
-    up_edge: int
 
     def key(self, element: int) -> tuple[int, int]:
-        """The depth key at a pixel, the nearer the larger; of equal keys that of the later polygon wins."""
-        return self.start + (element - self.first) * self.step, self.polygon
+        """The depth key at a pixel, the nearer the larger; of equal keys the higher number wins."""
+        return self.start + (element - self.first) * self.step, self.number
 
 
 def watkins(
@@ -76,20 +82,16 @@ def watkins(
     scale = depth_scale(projected)
     buckets = y_buckets(projected)
     active: list[Edge] = []
-    segment_at_pixel = np.zeros(lines * elements, np.int64)
-    segment_edges = np.zeros((2, int(projected.first_segment[-1]) + 1), np.int32)
-    top_line = least_of_four(projected.first_line[projected.corners])
+    number_at_pixel = np.zeros(lines * elements, np.int64)
 
     for line in range(lines):
         # Add the edges that begin on this line, and drop those that ended above it.
         active = [edge for edge in active if edge.end_line > line] + buckets.get(line, [])
         # Find the visible spans from left to right.
-        for segment, first, end in visible_spans(segments_of_line(active, scale, line, elements)):
-            number = int(projected.first_segment[segment.polygon] + line - top_line[segment.polygon]) + 1
-            segment_edges[:, number] = segment.down_edge, segment.up_edge
-            segment_at_pixel[line * elements + first : line * elements + end] = number
+        for segment, first, end in visible_spans(segments_of_line(active, projected, scale, line)):
+            number_at_pixel[line * elements + first : line * elements + end] = segment.number
 
-    return interpolated_points(projected, segment_at_pixel, segment_edges, surface_numbers, one_sided)
+    return interpolated_points(projected, number_at_pixel, surface_numbers, one_sided)
 
 
 def y_buckets(projected: Projection) -> dict[int, list[Edge]]:
@@ -100,12 +102,12 @@ def y_buckets(projected: Projection) -> dict[int, list[Edge]]:
     ends = (starts + polygons) % max(projected.corners.size, 1)
     descends = first_lines.ravel()[starts] < first_lines.ravel()[ends]
     found = edges(projected, np.where(descends, starts, ends), np.where(descends, ends, starts))
+    numbers = numbers_of_polygons(projected, starts % max(polygons, 1))
     buckets: dict[int, list[Edge]] = {}
     for row in range(len(starts)):
         first_line = int(found.first_line[row])
         edge = Edge(
-            int(found.top[row]),
-            int(found.top[row]) % polygons,
+            int(numbers[row]),
             bool(descends[row]),
             first_line,
             first_line + int(found.count[row]),
@@ -118,23 +120,39 @@ def y_buckets(projected: Projection) -> dict[int, list[Edge]]:
     return buckets
 
 
-def segments_of_line(active: list[Edge], scale: DepthScale, line: int, elements: int) -> list[Segment]:
+def segments_of_line(
+    active: list[Edge], projected: Projection, scale: DepthScale, line: int
+) -> list[Segment]:
     """The segments of a line that cover the center of a pixel, sorted by their left ends."""
     pairs: dict[int, list[Edge]] = {}
     for edge in active:
-        pairs.setdefault(edge.polygon, []).append(edge)
+        pairs.setdefault(edge.number, []).append(edge)
     segments = []
-    for polygon, pair in pairs.items():
+    for number, pair in pairs.items():
         # Pair the crossings of the polygon: one edge leads down the raster, the other back up.
         down, up = sorted(pair, key=lambda edge: not edge.descends)
         left, right = sorted((down.crossing(line), up.crossing(line)), key=lambda crossing: crossing[0])
-        first = min(max(math.ceil(left[0] - 0.5), 0), elements)
-        end = min(max(math.ceil(right[0] - 0.5), 0), elements)
+        first = min(max(math.ceil(left[0] - 0.5), 0), projected.elements)
+        end = min(max(math.ceil(right[0] - 0.5), 0), projected.elements)
         if end > first:
             step = (right[1] - left[1]) / (right[0] - left[0])
             start = left[1] + (first + 0.5 - left[0]) * step
-            segments.append(Segment(polygon, first, end, scale.key(start), scale.key(step), down.top, up.top))
+            keys = key_of_plane(projected, scale, number, line, first)
+            segments.append(Segment(number, first, end, *(keys or (scale.key(start), scale.key(step)))))
     return sorted(segments, key=lambda segment: segment.first)
+
+
+def key_of_plane(
+    projected: Projection, scale: DepthScale, number: int, line: int, element: int
+) -> tuple[int, int] | None:
+    """The depth key at a pixel and its step, if the polygon shares its plane's."""
+    if scale.planes is None:
+        return None
+    plane = scale.planes[polygons_of_numbers(projected, np.array([number]))]
+    if plane[0] < 0:
+        return None
+    start, step = plane_keys(projected, scale, plane, np.array([line]), np.array([element]))
+    return int(start[0]), int(step[0])
 
 
 def visible_spans(segments: list[Segment]) -> Iterator[tuple[Segment, int, int]]:

@@ -1,5 +1,11 @@
 from __future__ import annotations
 
+import ctypes
+import os
+import platform
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,11 +14,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, UsageError, View, render, scene_of
+from autocolor import rendering as room
 from autocolor.lighting.shading import shade
 from autocolor.rendering import Rendering, rendering
 from autocolor.visibility.visible_points import PointChunk
 from tests.autocolor.meshes import cube, sphere
 from tests.autocolor.strategies import scenes
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def two_surfaces() -> Scene:
@@ -226,3 +235,40 @@ def test_flaps_cut_only_their_own_light() -> None:
         render(scene, 12, 12).intensity.tobytes()
         == render(scene.only_lights("b"), 12, 12).intensity.tobytes()
     )
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="needs glibc")
+@pytest.mark.skipif(platform.libc_ver()[1] < "2.35", reason="older glibc keeps no more than 32 MB")
+def test_the_memory_of_large_arrays_is_kept_from_picture_to_picture() -> None:
+    code = """
+import resource
+import numpy
+from autocolor import rendering
+rendering._keep_large_arrays()
+numpy.ones(64 << 20, numpy.uint8)
+before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+numpy.ones(64 << 20, numpy.uint8)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+"""
+    # One fault for each page of 4096 bytes would be 16,384.
+    environment = {**os.environ, "NUMPY_MADVISE_HUGEPAGE": "0"}
+    output = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    assert int(output.stdout) < 1000
+
+
+@pytest.mark.parametrize("problem", [TypeError, OSError, AttributeError])
+def test_a_picture_needs_no_glibc(problem: type[Exception], monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(_: object) -> None:
+        raise problem
+
+    monkeypatch.setattr(ctypes, "CDLL", fails)
+    room._keep_large_arrays.cache_clear()
+    assert render(two_surfaces(), 6, 8).surface_number.any()

@@ -151,3 +151,23 @@ def test_the_coordinates_of_parts_are_those_of_the_nodes_of_their_polygons(
     )
     assert mesh.coordinates_of_parts(sorted(chosen)).tolist() == mesh.coordinates[nodes].tolist()
     assert mesh.coordinates_of_parts(range(3)).tolist() == mesh.used_coordinates.tolist()
+
+
+def test_joining_meshes_of_many_parts_takes_no_time_in_proportion_to_their_square() -> None:
+    class Name(str):
+        comparisons = 0
+
+        def __eq__(self, other: object) -> bool:
+            Name.comparisons += 1
+            return str.__eq__(self, other)
+
+        __hash__ = str.__hash__
+
+    count = 500
+    parts = [
+        Mesh(np.eye(3), np.array([[0, 1, 2]]), np.zeros(1, np.intp), (Name(f"part {number}"),))
+        for number in range(count)
+    ]
+    joined = Mesh.joined(parts)
+    assert joined.part_numbers.tolist() == list(range(count))
+    assert Name.comparisons < 20 * count

@@ -12,7 +12,7 @@ from autocolor.visibility import camera_space as room
 from autocolor.visibility.camera_space import camera_space, rotated
 from tests.autocolor import reference
 from tests.autocolor.meshes import cube, sphere
-from tests.autocolor.strategies import meshes, outside_views, vectors, views
+from tests.autocolor.strategies import Vector, meshes, outside_views, vectors, views
 
 
 @given(meshes(), views() | outside_views())
@@ -60,11 +60,34 @@ def test_an_object_of_any_size_has_the_same_positions_in_its_unit(power: int) ->
     assert cameras[0].near == cameras[1].near
 
 
-def test_the_near_plane_is_a_millionth_of_the_depth_of_the_farthest_corner() -> None:
-    camera = camera_space(cube(), View((0.5, -3.0, 0.5), direction=(0, 1, 0)))
+def test_the_near_plane_of_what_reaches_behind_the_eye_is_a_millionth_of_its_farthest_depth() -> None:
+    camera = camera_space(cube(5.0), View((2.5, 1.0, 2.5), direction=(0, 1, 0)))
     assert camera.near * camera.unit == pytest.approx(4e-6)
     behind = camera_space(cube(), View((0.5, 3.0, 0.5), direction=(0, 1, 0)))
     assert behind.near == room.LEAST_NEAR
+
+
+@pytest.mark.parametrize("nearest", [1e-3, 1e-7, 1e-8])
+@pytest.mark.parametrize("stray", [(), ((0.5, -9.0, 0.0),)])
+def test_the_near_plane_clips_nothing_of_what_lies_wholly_before_the_eye(
+    nearest: float, stray: tuple[Vector, ...]
+) -> None:
+    mesh = Mesh.joined([cube(), cube(nearest)])
+    # A node that no polygon uses may lie behind the eye.
+    whole = Mesh(
+        np.concatenate([mesh.coordinates, np.reshape(stray, (-1, 3))]),
+        mesh.node_numbers,
+        mesh.part_numbers,
+        mesh.part_names,
+    )
+    camera = camera_space(whole, View((0.0, -nearest, 0.0), direction=(0, 1, 0)))
+    used = camera.positions[2, camera.corners]
+    assert 0 < camera.near <= used.min() == pytest.approx(nearest / camera.unit)
+
+
+def test_the_near_plane_is_never_nearer_than_the_rounding_of_crossings_allows() -> None:
+    camera = camera_space(cube(), View((0.5, -1e-12, 0.5), direction=(0, 1, 0)))
+    assert camera.near == room.LEAST_NEAR
 
 
 @given(vectors(), st.sampled_from([1, 7, 1000]))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View
-from autocolor.visibility.edges import DOWN_SIDE, UP_SIDE, Edges, Side, bottom_of_edge, edges_of_sides
+from autocolor.visibility.edges import DOWN_SIDE, UP_SIDE, Edges, Side, edges_of_sides, edges_on_lines
 from autocolor.visibility.projection import Projection, projection
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
 
@@ -34,8 +34,13 @@ def test_the_edges_of_both_sides_cross_the_same_lines_of_the_same_polygons(
             for top, first, count in zip(found.top, found.first_line, found.count, strict=True)
             for line in range(first, first + count)
         ]
-        assert bottom_of_edge(projected, found.top, side).tolist() == found.bottom.tolist()
-        assert len(expected) == projected.first_segment[-1]
+        # Each line finds its edge again.
+        row = np.repeat(np.arange(len(found.top)), found.count)
+        numbers, lines = np.array(expected, np.intp).reshape(-1, 2).T
+        top, bottom = edges_on_lines(projected, numbers, lines, side)
+        assert top.tolist() == found.top[row].tolist()
+        assert bottom.tolist() == found.bottom[row].tolist()
+    assert len(expected) == projected.line_counts.sum()
 
 
 @given(meshes(), views() | outside_views(), rasters)

@@ -7,10 +7,12 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View
-from autocolor.visibility.depth import DepthScale, depth_scale
+from autocolor.visibility.depth import DepthScale, depth_scale, polygons_of_numbers
+from autocolor.visibility.extents import extents_of_polygons
 from autocolor.visibility.projection import Projection, projection
 from autocolor.visibility.segments import Segments, segments_of_polygons
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
+from tests.autocolor.visibility.test_extents import extent_on
 
 
 def all_segments(mesh: Mesh, view: View, raster: tuple[int, int]) -> tuple[Projection, DepthScale, Segments]:
@@ -19,58 +21,30 @@ def all_segments(mesh: Mesh, view: View, raster: tuple[int, int]) -> tuple[Proje
     return projected, scale, segments_of_polygons(projected, scale, np.arange(projected.corners.shape[1]))
 
 
-def extent_on(projected: Projection, polygon: int, line: int) -> list[tuple[float, float]]:
-    """Screen x and inverse depth where a line crosses the polygon's outline, from left to right."""
-    crossings = []
-    corners = projected.corners[:, polygon].tolist()
-    for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
-        if (projected.first_line[a] <= line) != (projected.first_line[b] <= line):
-            fraction = (line + 0.5 - projected.y[a]) / (projected.y[b] - projected.y[a])
-            crossings.append(
-                tuple(
-                    float(table[a] + fraction * (table[b] - table[a]))
-                    for table in (projected.x, projected.inverse_depth)
-                )
-            )
-    return sorted(crossings)  # type: ignore[arg-type]
+def places(projected: Projection, segments: Segments) -> list[tuple[int, int]]:
+    """The polygon and the line of each segment."""
+    polygons = polygons_of_numbers(projected, segments.number)
+    return list(zip(polygons.tolist(), (segments.first_pixel // projected.elements).tolist(), strict=True))
 
 
 @given(meshes(), views() | outside_views(), rasters)
-def test_a_segment_covers_the_centers_between_two_crossings(
+def test_the_segments_are_the_extents_of_the_polygons(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     projected, _, segments = all_segments(mesh, view, raster)
-    found = dict(
-        zip(
-            segments.number.tolist(),
-            zip(segments.first_pixel.tolist(), segments.count.tolist(), strict=True),
-            strict=True,
-        )
-    )
-    number = 0
-    for polygon in range(projected.corners.shape[1]):
-        lines = projected.first_line[projected.corners[:, polygon]]
-        for line in range(lines.min(), lines.max()):
-            number += 1
-            (left, _), (right, _) = extent_on(projected, polygon, line)
-            centers = [element for element in range(raster[1]) if left <= element + 0.5 < right]
-            clear = min(abs(x - 0.5 - round(x - 0.5)) for x in (left, right)) > 1e-6 * max(
-                1, abs(left), abs(right)
-            )
-            if clear and centers:
-                assert found[number] == (line * raster[1] + centers[0], len(centers))
-            elif clear:
-                assert number not in found
-    assert set(found) <= set(range(1, number + 1))
-    assert number == projected.first_segment[-1]
+    polygons = np.arange(projected.corners.shape[1])
+    extents = extents_of_polygons(projected, polygons)
+    rows = zip(extents.row.tolist(), extents.line.tolist(), strict=True)
+    assert places(projected, segments) == list(rows)
+    assert (segments.first_pixel % raster[1]).tolist() == extents.first.tolist()
+    assert segments.count.tolist() == extents.count.tolist()
 
 
 @given(meshes(), outside_views(), rasters)
 def test_the_keys_step_along_the_inverse_depth(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
     projected, scale, segments = all_segments(mesh, view, raster)
-    polygon_of = np.searchsorted(projected.first_segment, segments.number - 1, side="right") - 1
-    for row, polygon in enumerate(polygon_of.tolist()):
-        line, element = divmod(int(segments.first_pixel[row]), raster[1])
+    for row, (polygon, line) in enumerate(places(projected, segments)):
+        element = int(segments.first_pixel[row]) % raster[1]
         (left, left_depth), (right, right_depth) = extent_on(projected, polygon, line)
         if right - left < 1e-3:
             continue
@@ -78,40 +52,8 @@ def test_the_keys_step_along_the_inverse_depth(mesh: Mesh, view: View, raster: t
             fraction = (element + k + 0.5 - left) / (right - left)
             depth = left_depth + fraction * (right_depth - left_depth)
             key = int(segments.start[row]) + k * int(segments.step[row])
-            assert key % scale.segment_limit == 0
-            assert key / scale.segment_limit / scale.factor == pytest.approx(depth, rel=1e-6)
-
-
-@given(meshes(), outside_views(), rasters)
-def test_the_edges_of_a_segment_are_those_of_its_polygon_and_line(
-    mesh: Mesh, view: View, raster: tuple[int, int]
-) -> None:
-    projected, _, segments = all_segments(mesh, view, raster)
-    polygons = projected.corners.shape[1]
-    polygon_of = np.searchsorted(projected.first_segment, segments.number - 1, side="right") - 1
-    line = segments.first_pixel // raster[1]
-    for edge, turn in ((segments.down_edge, 1), (segments.up_edge, -1)):
-        assert (edge % polygons).tolist() == polygon_of.tolist()
-        corner = edge // polygons
-        top, bottom = (
-            projected.first_line[projected.corners[each, polygon_of]]
-            for each in (corner, (corner + turn) % 4)
-        )
-        assert ((top <= line) & (line < bottom)).all()
-
-
-@given(meshes(), outside_views(), rasters)
-def test_polygons_of_opposite_winding_have_the_same_segments(
-    mesh: Mesh, view: View, raster: tuple[int, int]
-) -> None:
-    # Triangles only: a quad that must be split may be split along its other diagonal.
-    rows = []
-    for nodes in (mesh.node_numbers[:, :3], mesh.node_numbers[:, 2::-1]):
-        turned = Mesh(mesh.coordinates, nodes, mesh.part_numbers, mesh.part_names)
-        _, _, segments = all_segments(turned, view, raster)
-        tables = (segments.number, segments.first_pixel, segments.count, segments.start, segments.step)
-        rows.append([table.tolist() for table in tables])
-    assert rows[0] == rows[1]
+            assert key % scale.number_limit == 0
+            assert key / scale.number_limit / scale.factor == pytest.approx(depth, rel=1e-6)
 
 
 @given(meshes(), views(), rasters)
@@ -121,8 +63,7 @@ def test_the_segments_of_some_polygons_are_among_those_of_all(
     projected, scale, segments = all_segments(mesh, view, raster)
     some = np.arange(0, projected.corners.shape[1], 2)
     found = segments_of_polygons(projected, scale, some)
-    polygon_of = np.searchsorted(projected.first_segment, segments.number - 1, side="right") - 1
-    chosen = polygon_of % 2 == 0
+    chosen = polygons_of_numbers(projected, segments.number) % 2 == 0
     for one, other in zip(vars(found).values(), vars(segments).values(), strict=True):
         assert one.tolist() == other[chosen].tolist()
 
@@ -136,4 +77,4 @@ def test_a_rectangle_has_one_segment_on_each_of_its_lines() -> None:
     # Lines run downward from the top at 8.
     assert segments.first_pixel.tolist() == [8 * line + 1 for line in (2, 3, 4, 5)]
     assert segments.count.tolist() == [4, 4, 4, 4]
-    assert segments.number.tolist() == [1, 2, 3, 4]
+    assert segments.number.tolist() == [2] * 4

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -10,11 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
+from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import cube, grid, sphere
+from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.strategies import (
     directions,
+    meshes,
     numbers,
     outside_views,
     rasters,
@@ -155,3 +158,94 @@ def test_every_pixel_whose_center_is_inside_is_covered_and_no_other() -> None:
             if left < element + 0.5 < right and bottom < lines - line - 0.5 < top
         ]
         assert sorted(points.pixels.tolist()) == inside
+
+
+def slivers(count: int) -> Mesh:
+    """Triangles from the top of the picture to its bottom, one behind the other."""
+    left = np.linspace(-1.3, 1.3, count)
+    feet = np.stack([left, np.linspace(0.0, 1.0, count), np.full(count, -1.2)], axis=1)
+    offsets = np.array([(0, 0, 0), (0.004, 0, 0), (0.01, 0, 2.4)])
+    corners = (feet[:, None] + offsets).reshape(-1, 3)
+    return Mesh(corners, np.arange(3 * count).reshape(-1, 3), np.zeros(count, np.intp), ("slivers",))
+
+
+def test_twice_as_many_polygons_as_high_as_the_picture_take_hardly_more_memory() -> None:
+    view = View((0.0, -4.0, 0.0), direction=(0.0, 1.0, 0.0), field_of_view=25.0)
+    peaks = []
+    for mesh in (slivers(4000), slivers(8000)):
+        assert mesh.normals
+        tracemalloc.start()
+        visible_surfaces(mesh, view, (1,), 400, 40)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < 1.5 * peaks[0]
+
+
+@pytest.mark.parametrize("size", [1e-3, 1e-6, 1e-8])
+def test_a_thing_wholly_before_the_eye_is_visible_however_small_it_is_before_a_plate(size: float) -> None:
+    plate = grid(1, 1, (-1, 1, -1), (2, 0, 0), (0, 0, 2), "plate")
+    thing = grid(1, 1, (-size / 8, 0, -size / 8), (size / 4, 0, 0), (0, 0, size / 4), "thing")
+    view = View((0.0, -size, 0.0), direction=(0.0, 1.0, 0.0), field_of_view=30.0)
+    points = visible_surfaces(Mesh.joined([thing, plate]), view, (1, 2), 40, 40)
+    counts = np.bincount(points.polygon_numbers, minlength=2)
+    # A quarter of its distance is 0.25 / (2 tan 15) of the picture's height.
+    side = round(40 * 0.25 / (2 * math.tan(math.radians(15))))
+    assert abs(counts[0] - side**2) <= 2 * side + 1
+    assert counts.sum() == 40 * 40
+
+
+@given(meshes(), views() | outside_views(), rasters, st.lists(st.integers(0, 3), min_size=8, max_size=8))
+def test_which_corner_of_a_polygon_is_written_first_changes_no_pixel(
+    mesh: Mesh, view: View, raster: tuple[int, int], turns: list[int]
+) -> None:
+    numbers = [np.roll(row, turn) for row, turn in zip(mesh.node_numbers.tolist(), turns, strict=False)]
+    # Sharp edges: the mean of several normals may be rounded in another order.
+    pictures = [
+        visible_surfaces(
+            Mesh(mesh.coordinates, rows, mesh.part_numbers, mesh.part_names, crease_angle=0.0),
+            view,
+            (1, 2),
+            *raster,
+        )
+        for rows in (mesh.node_numbers, np.array(numbers, np.intp))
+    ]
+    tables = []
+    for points in pictures:
+        order = np.argsort(points.pixels)
+        tables.append((points.pixels[order].tolist(), points.polygon_numbers[order].tolist()))
+    assert tables[0] == tables[1]
+    ordered = [points.world_points[np.argsort(points.pixels)] for points in pictures]
+    assert ordered[0] == pytest.approx(ordered[1], abs=1e-4)
+
+
+def part(mesh: Mesh, number: int) -> Mesh:
+    chosen = mesh.part_numbers == number
+    return Mesh(mesh.coordinates, mesh.node_numbers[chosen], mesh.part_numbers[chosen], mesh.part_names)
+
+
+@pytest.mark.parametrize("rounding", ROUNDINGS)
+@given(seed=st.integers(0, 1 << 32))
+def test_a_decal_hides_its_ground_at_every_pixel_that_both_cover(rounding: str, seed: int) -> None:
+    mesh, view = decal_on_ground(seed, rounding)
+    raster = (120, 160)
+    ground, decal = (
+        set(visible_surfaces(part(mesh, number), view, (1, 2), *raster).pixels.tolist()) for number in (0, 1)
+    )
+    points = visible_surfaces(mesh, view, (1, 2), *raster)
+    on_decal = mesh.part_numbers[points.polygon_numbers] == 1
+    assert set(points.pixels[on_decal].tolist()) == decal
+    assert set(points.pixels[~on_decal].tolist()) == ground - decal
+
+
+@given(seed=st.integers(0, 1 << 32))
+def test_of_polygons_in_a_plane_those_that_face_the_eye_hide_the_others(seed: int) -> None:
+    mesh, view = decal_on_ground(seed)
+    raster = (60, 80)
+    numbers = mesh.node_numbers.copy()
+    numbers[mesh.part_numbers == 1] = numbers[mesh.part_numbers == 1, ::-1]
+    both = Mesh(mesh.coordinates, numbers, mesh.part_numbers, mesh.part_names)
+    facing = int(projection(part(mesh, 0), view, *raster).from_behind.any())
+    points = visible_surfaces(both, view, (1, 2), *raster)
+    on_top = points.pixels[mesh.part_numbers[points.polygon_numbers] == facing]
+    alone = visible_surfaces(part(both, facing), view, (1, 2), *raster).pixels
+    assert sorted(on_top.tolist()) == sorted(alone.tolist())

@@ -11,7 +11,7 @@ from autocolor import Mesh, View
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
-from tests.autocolor.meshes import cube, grid, sphere
+from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
 from tests.autocolor.strategies import meshes, outside_views, rasters, soups, views
 
 
@@ -37,6 +37,15 @@ def test_batch_and_watkins_agree_where_polygons_pass_through_each_other(
     mesh: Mesh, view: View, raster: tuple[int, int]
 ) -> None:
     assert_same(visible_surfaces(mesh, view, (1,), *raster), watkins(mesh, view, (1,), *raster))
+
+
+@given(st.integers(0, 1 << 32), st.sampled_from(ROUNDINGS), rasters, outside_views() | st.none())
+def test_batch_and_watkins_agree_on_decals(
+    seed: int, rounding: str, raster: tuple[int, int], view: View | None
+) -> None:
+    mesh, before = decal_on_ground(seed, rounding)
+    arguments = (mesh, view or before, (1, 2), *raster)
+    assert_same(visible_surfaces(*arguments), watkins(*arguments))
 
 
 THROUGH_EACH_OTHER = Mesh(

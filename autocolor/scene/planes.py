@@ -1,0 +1,181 @@
+"""Planes that several polygons share and in which they may overlap, such as those of a decal and its ground.
+
+Assumed: polygons lie in one plane if no corner is farther from it than two millionths of the mesh's size,
+which is more than float32, or six decimals, round the corners of a mesh of a unit or more. A polygon
+narrower than a five-hundredth of the mesh may be rounded to too different a plane; it is then left out. Of
+more than 16,384 polygons, one of those that share a plane must be among the 16,384 widest.
+
+Polygons that can't overlap are left out, too: those that are one patch in which at most two meet at each
+edge, one on either side, as where a flat side is divided; and patches that lie side by side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from autocolor.arrays import Booleans, Floats, Indices, cross, dot
+from autocolor.scene.fans import places_of_corners
+from autocolor.scene.plane_cells import SHARPEST, Facets, coplanar_groups, facet_normals, facets
+from autocolor.scene.union_find import group_numbers, unite
+
+TOLERANCE: Final = 2e-6
+"""Assumed: the largest distance of a corner from its plane, as a fraction of the size of the mesh."""
+
+MOST_OFFSET: Final = 4.0
+"""Assumed: the tolerance is in proportion to the largest coordinate, as float32 is rounded, up to so much."""
+
+
+DIRECTIONS: Final = 16
+"""In how many directions patches may lie apart."""
+
+MOST_PATCHES: Final = 64
+"""Of how many patches in a plane each is compared with each; of more it is assumed that some overlap."""
+
+
+@dataclass(frozen=True, eq=False)
+class SharedPlanes:
+    """Planes, each of several polygons.
+
+    `normals` and `points` are (3, planes): a unit normal and a point of each. No corner is farther from its
+    plane than `distances`, (planes,). `plane_of_polygon`, (polygons,) intp, is a column of them, -1 for none;
+    `turned`, (polygons,), tells which polygons have a normal against that of their plane.
+    """
+
+    normals: Floats
+    points: Floats
+    distances: Floats
+    plane_of_polygon: Indices
+    turned: Booleans
+
+
+def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | None:
+    """The planes in which polygons may overlap; None if there is none."""
+    coordinate_rows, node_rows = coordinates.T, node_numbers.T
+    used = np.zeros(coordinate_rows.shape[1], np.bool_)
+    used[node_rows] = True
+    low = coordinate_rows.min(axis=1, where=used, initial=np.inf)
+    high = coordinate_rows.max(axis=1, where=used, initial=-np.inf)
+    extent = float((high - low).max())
+    if not 0 < extent < np.inf:
+        return None
+    middle = low / 2 + high / 2
+    tolerance = TOLERANCE * min(max(float(np.abs([low, high]).max()) / extent, 1.0), MOST_OFFSET)
+    scaled = (coordinate_rows - middle[:, None]) / extent
+
+    # Find groups of polygons that seem to lie in one plane, and sort the polygons by group.
+    groups = group_numbers(coplanar_groups(scaled, node_rows, tolerance))
+    polygons = np.flatnonzero(np.bincount(groups).take(groups) > 1)
+    polygons = polygons[np.argsort(groups[polygons], kind="stable")]
+    groups = groups[polygons]
+    # Drop those that are one patch, before anything large is computed.
+    normals = facet_normals(scaled, node_rows[:, polygons])
+    first = np.searchsorted(groups, groups)
+    turned = dot(normals, np.take(normals, first, axis=1)) < 0
+    places = places_of_corners(coordinate_rows, node_rows[:, polygons])
+    _, several = _patches(places, groups, turned)
+    polygons, groups, places = polygons[several], groups[several], places[:, several]
+    # Drop those that are too far from the plane of the others, or lie beside all of them.
+    for beside in (False, True, False):
+        found = facets(scaled, node_rows[:, polygons])
+        normals, _, off = _fitted(found, groups)
+        kept = off <= np.minimum(tolerance, SHARPEST * found.widths)
+        if beside:
+            patches, several = _patches(places, groups, dot(found.normals, normals) < 0)
+            kept &= several & ~_lie_apart(patches, groups, found.corners, normals)[groups]
+        kept &= np.bincount(groups[kept], minlength=1 + int(groups.max(initial=0))).take(groups) > 1
+        polygons, groups, places = polygons[kept], groups[kept], places[:, kept]
+        if not len(polygons):
+            return None
+
+    found = facets(scaled, node_rows[:, polygons])
+    normals, points, off = _fitted(found, groups)
+    numbers = _renumbered(groups)
+    first = np.flatnonzero(np.diff(numbers, prepend=-1))
+    plane_of_polygon = np.full(node_rows.shape[1], -1, np.intp)
+    plane_of_polygon[polygons] = numbers
+    turned = np.zeros(node_rows.shape[1], np.bool_)
+    turned[polygons] = dot(found.normals, normals) < 0
+    return SharedPlanes(
+        normals[:, first],
+        points[:, first] * extent + middle[:, None],
+        np.maximum.reduceat(off, first) * extent,
+        plane_of_polygon,
+        turned,
+    )
+
+
+def _renumbered(groups: Indices) -> Indices:
+    """Sorted group numbers without gaps."""
+    numbers: Indices = np.cumsum(np.diff(groups, prepend=groups[:1]) != 0)
+    return numbers
+
+
+def _fitted(found: Facets, groups: Indices) -> tuple[Floats, Floats, Floats]:
+    """For each facet the normal and a point of the plane fitted to its group, and how far it is off."""
+    numbers = _renumbered(groups)
+    if not len(numbers):
+        return found.normals, found.centers, found.areas
+    first = np.flatnonzero(np.diff(numbers, prepend=-1))
+    weights = found.areas / np.add.reduceat(found.areas, first)[numbers]
+    points = np.add.reduceat(weights * found.centers, first, axis=1)[:, numbers]
+    away = found.corners - points[:, None]
+    spread = np.add.reduceat(np.einsum("n,icn,jcn->nij", weights, away, away), first, axis=0)
+    # The normal is the direction in which the corners spread least.
+    normals: Floats = np.linalg.eigh(spread)[1][:, :, 0].T[:, numbers]
+    return normals, points, np.abs(np.einsum("in,icn->cn", normals, away)).max(axis=0)
+
+
+def _patches(places: Indices, groups: Indices, turned: Booleans) -> tuple[Indices, Booleans]:
+    """The patch of each polygon, and whether its group is more than one simple patch.
+
+    `places` is as from `places_of_corners`. An edge with two polygons on one side, which overlap, joins none.
+    """
+    start, end = places, np.roll(places, -1, axis=0)
+    keys = (np.minimum(start, end) * (int(places.max(initial=0)) + 1) + np.maximum(start, end)).T.ravel()
+    forward = ((start < end) ^ turned).T.ravel()
+    edges = np.flatnonzero((start != end).T.ravel())
+    # Edges are in the order of the groups, and so are equal ones after a stable sort.
+    edges = edges[np.argsort(keys[edges], kind="stable")]
+    keys, forward, polygon = keys[edges], forward[edges], edges >> 2
+    shared = (keys[1:] == keys[:-1]) & (groups[polygon[1:]] == groups[polygon[:-1]])
+    folded = shared & (forward[1:] == forward[:-1])
+    folded[1:] |= shared[1:] & shared[:-1]
+    # Unite polygons across their edges, but for those that are folded.
+    parents = np.arange(len(groups))
+    joined = shared & ~folded
+    unite(parents, polygon[:-1][joined], polygon[1:][joined])
+    several = np.bincount(groups[parents == np.arange(len(groups))], minlength=1) > 1
+    several[groups[polygon[1:][folded]]] = True
+    return group_numbers(parents), several[groups]
+
+
+def _lie_apart(patches: Indices, groups: Indices, corners: Floats, normals: Floats) -> Booleans:
+    """For each group whether no two of its patches overlap as seen along every direction of the plane."""
+    order = np.argsort(patches, kind="stable")
+    first = np.flatnonzero(np.diff(patches[order], prepend=-1))
+    group = groups[order[first]]
+    counts = np.bincount(group, minlength=int(groups.max(initial=-1)) + 1)
+    lie_apart = (counts > 1) & (counts <= MOST_PATCHES)
+    if not lie_apart.any():
+        return lie_apart
+    # Find the interval that each patch covers along each direction.
+    across = cross(normals, np.eye(3)[np.abs(normals).argmin(axis=0)].T)
+    along = cross(normals, across)
+    low, high = np.empty((2, DIRECTIONS, len(first)))
+    for row, angle in enumerate(np.arange(DIRECTIONS) * (np.pi / DIRECTIONS)):
+        direction = np.cos(angle) * across + np.sin(angle) * along
+        reached = np.einsum("in,icn->cn", direction, corners)[:, order]
+        low[row] = np.minimum.reduceat(reached.min(axis=0), first)
+        high[row] = np.maximum.reduceat(reached.max(axis=0), first)
+    # Compare each patch with those that follow it in its group.
+    by_group = np.argsort(group, kind="stable")
+    for distance in range(1, int(counts[lie_apart].max(initial=0))):
+        one, other = by_group[:-distance], by_group[distance:]
+        pairs = np.flatnonzero((group[one] == group[other]) & lie_apart[group[one]])
+        one, other = one[pairs], other[pairs]
+        overlap = (high[:, one] > low[:, other] + TOLERANCE) & (high[:, other] > low[:, one] + TOLERANCE)
+        lie_apart[group[one[overlap.all(axis=0)]]] = False
+    return lie_apart

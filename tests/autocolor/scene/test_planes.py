@@ -1,0 +1,158 @@
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Mesh
+from autocolor.scene.planes import SharedPlanes, shared_planes
+from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
+from tests.autocolor.strategies import meshes
+
+GROUND = grid(3, 2, (-1, 0, -1), (2, 0, 0), (0, 0, 2), "ground")
+DECAL = grid(2, 2, (-0.4, 0, -0.3), (0.5, 0, 0.1), (-0.1, 0, 0.5), "decal")
+
+
+def found(*parts: Mesh) -> SharedPlanes | None:
+    return Mesh.joined(parts).shared_planes
+
+
+def moved(mesh: Mesh, coordinates: npt.NDArray[np.float64]) -> Mesh:
+    return Mesh(coordinates, mesh.node_numbers, mesh.part_numbers, mesh.part_names)
+
+
+def shifted(mesh: Mesh, *by: float) -> Mesh:
+    return moved(mesh, mesh.coordinates + np.array(by))
+
+
+@given(st.integers(0, 1 << 32), st.sampled_from(ROUNDINGS))
+def test_a_decal_and_its_ground_share_a_plane_however_their_corners_are_rounded(
+    seed: int, rounding: str
+) -> None:
+    mesh, _ = decal_on_ground(seed, rounding)
+    shared = mesh.shared_planes
+    assert shared is not None
+    assert (shared.plane_of_polygon == 0).all()
+    corners = mesh.coordinates[mesh.node_numbers]
+    off = np.abs((corners - shared.points[:, 0]) @ shared.normals[:, 0])
+    assert off.max() == pytest.approx(shared.distances[0], abs=1e-12)
+    assert shared.distances[0] < {"none": 1e-12, "float32": 1e-6, "decimals": 2e-6}[rounding]
+
+
+@given(st.integers(0, 1 << 32))
+def test_a_polygon_is_turned_if_it_runs_the_other_way_round_than_its_plane(seed: int) -> None:
+    mesh, _ = decal_on_ground(seed)
+    reversed_ = np.random.default_rng(seed).random(len(mesh.node_numbers)) < 0.5
+    rows = np.where(reversed_[:, None], mesh.node_numbers[:, ::-1], mesh.node_numbers)
+    shared = shared_planes(mesh.coordinates, rows)
+    assert shared is not None
+    assert (shared.turned == reversed_).all() or (shared.turned == ~reversed_).all()
+
+
+@pytest.mark.parametrize("factor", [2.0**-1000, 2.0**-60, 2.0**60])
+def test_planes_are_found_alike_in_meshes_of_any_size(factor: float) -> None:
+    mesh = Mesh.joined([cube(), shifted(DECAL, 0.5, 0, 0.5)])
+    shared, other = mesh.shared_planes, moved(mesh, mesh.coordinates * factor).shared_planes
+    assert shared is not None
+    assert other is not None
+    assert other.plane_of_polygon.tolist() == shared.plane_of_polygon.tolist()
+    # The front of the cube and the decal.
+    assert np.flatnonzero(shared.plane_of_polygon >= 0).tolist() == [2, 6, 7, 8, 9]
+
+
+@pytest.mark.parametrize("mesh", [cube(), sphere(), sphere(300, 150), GROUND, Mesh.joined([GROUND])])
+def test_polygons_that_only_adjoin_share_no_plane(mesh: Mesh) -> None:
+    assert mesh.shared_planes is None
+
+
+def test_a_flat_side_whose_polygons_repeat_their_nodes_or_differ_in_winding_is_one_patch() -> None:
+    nodes = GROUND.node_numbers
+    apart = GROUND.coordinates[nodes].reshape(-1, 3)
+    numbers = np.arange(len(apart)).reshape(-1, 4)
+    numbers[::2] = numbers[::2, ::-1]
+    assert shared_planes(apart, numbers) is None
+
+
+def test_patches_side_by_side_share_no_plane() -> None:
+    beside = [shifted(DECAL, x, 0, z) for x in (0, 0.7, 1.4) for z in (0, 0.8)]
+    assert found(*beside) is None
+    assert found(*beside, beside[1]) is not None
+
+
+def test_a_polygon_folded_over_its_neighbor_shares_its_plane() -> None:
+    corners = np.array([(0, 0, 0), (1, 0, 0), (1, 0, 1), (0.2, 0, 0.9)], np.float64)
+    folded = shared_planes(corners, np.array([(0, 1, 2, 2), (0, 1, 3, 3)]))
+    assert folded is not None
+    assert folded.plane_of_polygon.tolist() == [0, 0]
+
+
+@pytest.mark.parametrize(("height", "shares"), [(0.0, True), (1e-6, True), (1e-5, False), (1e-3, False)])
+def test_a_decal_just_above_its_ground_has_a_plane_of_its_own(height: float, shares: bool) -> None:
+    assert (found(GROUND, shifted(DECAL, 0, height, 0)) is not None) == shares
+
+
+@pytest.mark.parametrize("sides", [12, 100, 1000])
+def test_the_sides_of_a_cylinder_share_no_plane_even_if_the_cylinder_is_there_twice_turned_a_little(
+    sides: int,
+) -> None:
+    def around(turn: float) -> Mesh:
+        angle = (np.arange(sides) + turn) * (2 * np.pi / sides)
+        ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(sides)], axis=1)
+        first, second = np.arange(sides), np.roll(np.arange(sides), -1)
+        quads = np.stack([first, second, second + sides, first + sides], axis=1)
+        return Mesh(
+            np.concatenate([ring, ring + np.array([0, 0, 1])]),
+            quads,
+            np.zeros(sides, np.intp),
+            (f"side {turn}",),
+        )
+
+    assert found(around(0.0), around(0.5)) is None
+    # Where it is there twice and not turned, each side has a plane for its two polygons and no other.
+    shared = found(around(0.0), Mesh.joined([around(0.0)]))
+    assert shared is not None
+    assert np.bincount(shared.plane_of_polygon).tolist() == [2] * sides
+
+
+def test_a_smooth_mesh_of_many_facets_has_no_shared_planes() -> None:
+    flat = grid(200, 200, (-1, -1, 0), (2, 0, 0), (0, 2, 0))
+    x, y, _ = flat.coordinates.T
+    hills = moved(flat, np.stack([x, y, np.sin(3 * x) * np.cos(4 * y) / 3], axis=1))
+    quads = hills.node_numbers
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    assert (
+        Mesh(hills.coordinates, triangles, np.zeros(len(triangles), np.intp), ("hills",)).shared_planes
+        is None
+    )
+
+
+@given(meshes())
+def test_corners_are_as_near_to_their_plane_as_it_says(mesh: Mesh) -> None:
+    shared = mesh.shared_planes
+    if shared is not None:
+        polygons = np.flatnonzero(shared.plane_of_polygon >= 0)
+        plane = shared.plane_of_polygon[polygons]
+        assert sorted(set(plane.tolist())) == list(range(len(shared.distances)))
+        assert (np.bincount(plane) > 1).all()
+        away = mesh.coordinates[mesh.node_numbers[polygons]] - shared.points.T[plane][:, None]
+        off = np.abs((away * shared.normals.T[plane][:, None]).sum(axis=2)).max(axis=1)
+        assert (off <= shared.distances[plane] + 1e-12).all()
+        assert shared.distances.max() < 1e-4
+
+
+def test_a_mesh_without_polygons_or_without_extent_has_no_shared_planes() -> None:
+    assert shared_planes(np.empty((0, 3)), np.empty((0, 4), np.intp)) is None
+    assert shared_planes(np.ones((3, 3)), np.array([[0, 1, 2, 2], [0, 1, 2, 2]])) is None
+
+
+def test_a_third_polygon_at_an_edge_shares_the_plane_of_the_two_others() -> None:
+    # Two halves of a square, and a smaller triangle at their diagonal.
+    corners = np.array([(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1), (0.4, 0, 0.6)], np.float64)
+    numbers = np.array([(0, 1, 2, 2), (0, 2, 3, 3), (0, 2, 4, 4)])
+    for order in ([0, 1, 2], [2, 0, 1], [0, 2, 1]):
+        shared = shared_planes(corners, numbers[order])
+        assert shared is not None
+        over = shared.plane_of_polygon[np.argsort(order)].tolist()
+        assert over[1:] == [0, 0]
