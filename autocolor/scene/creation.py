@@ -57,8 +57,10 @@ def scene_of(
     that would make more than MOST_SURFACES, the remaining parts share the last one.
 
     `parts` has fields of the parts by name, such as `{"floor": {"stage": True}}`; `fields` are the other
-    fields of Scene. Assumed: without `scaling` and `contrast` all surfaces share one range of intensities,
-    and are as dark as they are lit, so that a mesh keeps its form. Raises InputError.
+    fields of Scene. Raises InputError, UsageError for another word than "materials" or "parts".
+
+    Assumed: without `scaling` and `contrast` all surfaces share one range of intensities, and are as dark as
+    they are lit, so that a mesh keeps its form.
     """
     if isinstance(surfaces, str) and surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be rows, {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
