@@ -150,7 +150,9 @@ class Studio:
 
     def hold_exposure(self) -> None:
         """Keep the intensity ranges of the current picture, so that less light looks darker from now on."""
-        self.edit(self.scene.replace(exposure=held_exposure(self.picture, self.scene.exposure)))
+        self.edit(
+            self.scene.replace(exposure=held_exposure(self.picture, self.scene.scaling, self.scene.exposure))
+        )
 
     def release_exposure(self) -> None:
         """Let the intensity ranges follow the picture again."""

@@ -11,7 +11,7 @@ import click
 
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.scenes import Surfaces, ended, read, scene_options
-from autocolor.commands.settings import with_settings
+from autocolor.commands.settings import created_again, with_settings
 
 EXAMPLES: Final = """\b
 Examples:
@@ -75,8 +75,10 @@ def render(
         from autocolor.mapping.exposure import held_exposure
         from autocolor.rendering import render as rendered
 
-        original = original.replace(exposure=held_exposure(rendered(original), original.exposure))
-    edited = with_settings(original, settings)
+        original = original.replace(
+            exposure=held_exposure(rendered(original), original.scaling, original.exposure)
+        )
+    edited = created_again(report, with_settings(original, settings))
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None:

@@ -9,6 +9,7 @@ import click
 from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:
+    from autocolor.files.scenes.scene_report import SceneReport
     from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = {
@@ -47,6 +48,25 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
     for (table, name), fields in changes.items():
         scene = _changed(scene, table, name, fields)
     return scene
+
+
+def created_again(report: SceneReport, edited: Scene) -> Scene:
+    """The edited scene of a report, with its view and lights as they would be created for what was set.
+
+    A view that was created frames the object again if other fields of it were set than where it is and looks
+    to, or which parts are stage; lights that were created are created again if the latter were set.
+    """
+    from autocolor.scene.defaults import default_lights, framed
+
+    original = report.scene
+    is_same_object = [part.stage for part in original.parts] == [part.stage for part in edited.parts]
+    before, view = original.view, edited.view
+    is_placed = (before.eye, before.direction, before.target) != (view.eye, view.direction, view.target)
+    if report.is_view_created and not is_placed and not (is_same_object and before == view):
+        edited = edited.replace(view=framed(view, edited.object_coordinates))
+    if report.are_lights_created and not is_same_object and edited.lights == original.lights:
+        edited = edited.replace(lights=default_lights(edited.object_coordinates, edited.view))
+    return edited
 
 
 def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:

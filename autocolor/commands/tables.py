@@ -40,7 +40,7 @@ def tables(
     report = read(scene, up, surfaces)
     if write:
         path = written(report, Path(scene), force)
-        click.echo(f"wrote {path}", err=True)
+        click.echo(f"wrote {path}; render it by naming its folder or itself, not the mesh", err=True)
     elif as_json:
         from autocolor.files.plain_scene import plain_scene
 

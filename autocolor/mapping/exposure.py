@@ -33,10 +33,10 @@ def has_extent(extent: IntensityRange) -> bool:
 def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping[int, IntensityRange]:
     """The range that is mapped to the levels of each visible surface, by number; the whole object's is WHOLE.
 
-    Intensities are relative to the picture's scale. With the scaling "object" every surface has the object's
-    range. With "surface" each has its own; one without extent has the object's. A range that is held takes
-    the place of that of the picture. Assumed: an unlit floor has the intensity of the ambient light all
-    over, and should look as dark as that is beside the rest.
+    Intensities are relative to the picture's scale. A surface has its held range; else the object's, if that
+    is held or the scaling is "object"; else its own in the picture. One without extent has the object's.
+    Assumed: an unlit floor has the intensity of the ambient light all over, and should look as dark as that
+    is beside the rest.
     """
     held: dict[str, IntensityRange] = {}
     if not isinstance(exposure, str):
@@ -44,22 +44,24 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
             held[name] = IntensityRange(*(min(limit / picture.scale, LARGEST_SINGLE) for limit in limits))
     found = picture.relative_ranges
     whole = held.get(OBJECT, found[WHOLE])
+    shares_whole = scaling == "object" or OBJECT in held
     ranges = {WHOLE: whole}
     for surface in picture.slices:
         number = surface.surface_number
-        own = held.get(picture.surfaces[number - 1], found[number])
-        ranges[number] = own if scaling == "surface" and has_extent(own) else whole
+        own = held.get(picture.surfaces[number - 1], whole if shares_whole else found[number])
+        ranges[number] = own if has_extent(own) else whole
     return ranges
 
 
-def held_exposure(picture: Picture, exposure: Exposure = AUTO) -> Exposure:
-    """The exposure that holds the ranges of a picture, except those that `exposure` holds already.
+def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> Exposure:
+    """The exposure that holds the ranges that are mapped now, so that no word changes.
 
     A range without extent is not held; the result is AUTO if none has one.
     """
     held = {} if isinstance(exposure, str) else dict(exposure)
+    each_has_its_own = scaling == "surface" and OBJECT not in held
     for number, extent in picture.relative_ranges.items():
-        if has_extent(extent):
+        if (number == WHOLE or each_has_its_own) and has_extent(extent):
             name = picture.surfaces[number - 1] if number else OBJECT
             held.setdefault(name, (extent.minimum * picture.scale, extent.maximum * picture.scale))
     return tuple(held.items()) or AUTO

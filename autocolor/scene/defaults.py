@@ -27,6 +27,9 @@ ASPECT: Final = 640 / 480
 POINT: Final = 1e-12
 """Assumed: an object smaller than this fraction of its distance from the origin is treated as a point."""
 
+MOST_STEPS: Final = 8
+"""Steps to center an object; three are usually enough."""
+
 POINTS_AT_ONCE: Final = 1 << 14
 """Few enough that numpy multiplies in one thread; waiting for threads is slow on shared processors."""
 
@@ -115,12 +118,39 @@ def framed(view: View, coordinates: Floats, filled: float = FILLED) -> View:
         most = np.maximum(most, (camera_points[:2] - reach).max(axis=1))
         nearest = min(nearest, float(camera_points[2].min()))
         size = max(size, float(np.abs(camera_points).max()))
-    shifts = (least + most) / 2
     distances = (most - least) / (2 * slopes)
     distance = max(*distances.tolist(), size * 1e-3 - nearest)
+    shifts = _centering_shifts(axes, points, center, distance, (least + most) / 2)
     eye = center + axes.T @ np.array([*shifts, -distance])
     forward = axes[2]
     return view.replace(eye=tuple(eye), direction=tuple(forward))
+
+
+def _centering_shifts(
+    axes: Floats, points: Floats, center: Floats, distance: float, shifts: Floats
+) -> Floats:
+    """The shifts of the eye, right and down, for which the object is in the middle of the picture.
+
+    Each step solves for the two points that are then at the borders; no more than a few are needed.
+    """
+    for _ in range(MOST_STEPS):
+        # The point that is farthest to either side, per axis: its screen coordinate, place and depth.
+        borders = np.full((2, 2, 3), np.nan)
+        for chunk in chunks(points.shape[1], POINTS_AT_ONCE):
+            camera_points = axes @ (points[:, chunk] - center[:, None])
+            depth = camera_points[2] + distance
+            for axis in (0, 1):
+                on_screen = (camera_points[axis] - shifts[axis]) / depth
+                for side, row in ((0, int(on_screen.argmin())), (1, int(on_screen.argmax()))):
+                    known = borders[axis, side, 0]
+                    if not (known <= on_screen[row] if side == 0 else known >= on_screen[row]):
+                        borders[axis, side] = on_screen[row], camera_points[axis, row], depth[row]
+        weights = 1 / borders[..., 2]
+        centered = (borders[..., 1] * weights).sum(axis=1) / weights.sum(axis=1)
+        if (np.abs(centered - shifts) <= 1e-9 * distance).all():
+            break
+        shifts = centered
+    return shifts
 
 
 def bounds_of(coordinates: Floats) -> tuple[Floats, Floats]:

@@ -99,7 +99,7 @@ class Scene(Row):
         Column(
             RangesByName("surfaces", AUTO, OBJECT),
             Tier.LEVELS,
-            "Whether intensity ranges are those of the picture, or held: those of surfaces, of the object.",
+            "Whether ranges are the picture's, or held: by surface, or of the object for all others.",
             "intensity",
         ),
     ] = AUTO

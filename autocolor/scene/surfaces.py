@@ -161,7 +161,7 @@ class Surface(Row):
         Column(
             Whole(at_least=2, at_most=MOST_LEVELS),
             Tier.LEVELS,
-            "The number of lookup table entries; if absent, an equal share of the rest.",
+            "The number of lookup table entries; if absent, a share of the rest.",
         ),
     ] = None
 

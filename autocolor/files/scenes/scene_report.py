@@ -18,12 +18,15 @@ class SceneReport:
     """A scene, with messages about what was repaired or skipped in its files, and about what was created.
 
     `mesh_files` are the `[[mesh]]` tables with which a scene file can name the same mesh (see `scene_text`).
+    `is_view_created` and `are_lights_created` tell whether the source gave none.
     """
 
     scene: Scene
     repairs: tuple[str, ...] = ()
     created: tuple[str, ...] = ()
     mesh_files: tuple[Mapping[str, str], ...] = ()
+    is_view_created: bool = False
+    are_lights_created: bool = False
 
 
 def scene_report(
@@ -63,4 +66,11 @@ def scene_report(
                 f" {MOST_SURFACES}"
             )
     repairs = tuple(repair for report in reports for repair in report.repairs)
-    return SceneReport(scene, repairs, tuple(created), mesh_files)
+    return SceneReport(
+        scene,
+        repairs,
+        tuple(created),
+        mesh_files,
+        fields.get("view") is None,
+        fields.get("lights") is None,
+    )

@@ -6,8 +6,10 @@ import click
 import pytest
 
 from autocolor import Scene, read_scene
-from autocolor.commands.settings import value_of, with_settings
+from autocolor.commands.settings import created_again, value_of, with_settings
 from autocolor.errors import InputError, UsageError
+from autocolor.files.scene_sources import read_scene_with_report
+from autocolor.scene.defaults import default_lights, framed
 from tests.autocolor.commands.conftest import Run
 
 
@@ -192,3 +194,41 @@ def test_a_table_and_its_fields_are_not_both_set_in_either_order(scene: Scene) -
 
 def test_the_last_value_of_a_field_counts(scene: Scene) -> None:
     assert with_settings(scene, ("ambient=0.1", "ambient=0.2")).ambient == 0.2
+
+
+def test_a_created_view_frames_what_is_left_when_a_part_becomes_stage(folder: Path) -> None:
+    report = read_scene_with_report("two.obj")
+    edited = created_again(report, with_settings(report.scene, ("parts.side.stage=true",)))
+    alone = framed(report.scene.view, edited.object_coordinates)
+    assert edited.view == alone != report.scene.view
+    assert edited.lights == default_lights(edited.object_coordinates, alone) != report.scene.lights
+
+
+def test_a_created_view_with_another_field_of_view_still_frames_the_object(folder: Path) -> None:
+    report = read_scene_with_report("two.obj")
+    edited = created_again(report, with_settings(report.scene, ("view.field_of_view=10",)))
+    assert edited.view == framed(edited.view, edited.object_coordinates)
+    assert edited.lights == report.scene.lights
+
+
+@pytest.mark.parametrize(
+    ("source", "settings"),
+    [
+        ("two.obj", ("view.eye=[1, -5, 2]", "view.target=[0, 0, 0]", "view.field_of_view=10")),
+        ("two.obj", ("ambient=0.5", "lights.key.intensity=2")),
+        ("two.obj", ()),
+    ],
+)
+def test_what_was_set_is_kept_as_it_is(folder: Path, source: str, settings: tuple[str, ...]) -> None:
+    report = read_scene_with_report(source)
+    edited = with_settings(report.scene, settings)
+    assert created_again(report, edited) is edited
+
+
+def test_a_view_and_lights_that_the_scene_gives_stay_where_they_are(folder: Path) -> None:
+    path = folder / "scene" / "scene.toml"
+    path.write_text(path.read_text() + "[view]\neye = [1, -4, 2]\ntarget = [0, 0, 0]\n")
+    report = read_scene_with_report("scene")
+    settings = ("parts.side.stage=true", "view.field_of_view=10")
+    edited = with_settings(report.scene, settings)
+    assert created_again(report, edited) is edited

@@ -14,9 +14,8 @@ from tests.autocolor.strategies import scenes
 
 @given(scenes())
 def test_holding_the_exposure_of_a_picture_changes_no_word(scene: Scene) -> None:
-    scene = scene.replace(exposure="auto")
     picture = render(scene, 9, 12)
-    held = scene.replace(exposure=held_exposure(picture))
+    held = scene.replace(exposure=held_exposure(picture, scene.scaling, scene.exposure))
     now, then = display_image(scene, picture), display_image(held, picture)
     assert then.words.tolist() == now.words.tolist()
     assert then.entries.tolist() == now.entries.tolist()
@@ -26,22 +25,26 @@ def test_holding_the_exposure_of_a_picture_changes_no_word(scene: Scene) -> None
 def test_every_range_that_is_mapped_is_held_or_found_in_the_picture(scene: Scene) -> None:
     picture = render(scene, 9, 12)
     ranges = mapped_ranges(picture, scene.scaling, scene.exposure)
-    found = picture.relative_ranges
     held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
+    found = picture.relative_ranges
 
-    def expected(name: str, number: int) -> tuple[float, float]:
-        low, high = held.get(
-            name, (found[number].minimum * picture.scale, found[number].maximum * picture.scale)
-        )
-        return low / picture.scale, high / picture.scale
+    def in_scale(name: str) -> IntensityRange:
+        low, high = held[name]
+        return IntensityRange(low / picture.scale, high / picture.scale)
 
-    whole = pytest.approx(expected("object", 0))
-    assert tuple(ranges[0]) == whole
+    whole = in_scale("object") if "object" in held else found[0]
+    assert tuple(ranges[0]) == pytest.approx(whole)
     for surface in picture.slices:
-        number = surface.surface_number
-        own = expected(picture.surfaces[number - 1], number)
-        uses_own = scene.scaling == "surface" and has_extent(IntensityRange(*own))
-        assert tuple(ranges[number]) == (pytest.approx(own) if uses_own else whole)
+        name = picture.surfaces[surface.surface_number - 1]
+        if name in held:
+            expected = in_scale(name)
+        elif "object" in held or scene.scaling == "object":
+            expected = whole
+        else:
+            expected = found[surface.surface_number]
+        if not has_extent(expected):
+            expected = whole
+        assert tuple(ranges[surface.surface_number]) == pytest.approx(expected)
 
 
 def test_half_the_light_is_half_as_bright_where_the_exposure_is_held() -> None:
@@ -58,7 +61,7 @@ def test_half_the_light_is_half_as_bright_where_the_exposure_is_held() -> None:
 
 def test_nothing_is_held_where_nothing_has_an_extent() -> None:
     scene = wall_scene(lights=())
-    assert held_exposure(render(scene, 9, 12)) == "auto"
+    assert held_exposure(render(scene, 9, 12), scene.scaling) == "auto"
 
 
 def test_an_extent_of_a_few_units_in_the_last_place_is_none() -> None:
@@ -70,7 +73,7 @@ def test_an_extent_of_a_few_units_in_the_last_place_is_none() -> None:
 
 @given(scenes())
 def test_what_is_held_already_stays_held_as_it_is(scene: Scene) -> None:
-    exposure = held_exposure(render(scene, 9, 12), scene.exposure)
+    exposure = held_exposure(render(scene, 9, 12), scene.scaling, scene.exposure)
     if not isinstance(scene.exposure, str):
         held = dict(scene.exposure)
         assert not isinstance(exposure, str)

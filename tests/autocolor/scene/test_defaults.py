@@ -59,6 +59,19 @@ def test_every_node_is_within_the_picture_with_space_on_all_sides(
         assert around.axes == pytest.approx(view.axes, abs=1e-9)
 
 
+@given(meshes(), st.one_of(st.none(), directions), st.sampled_from([10.0, 30.0, 90.0]))
+def test_a_framed_object_is_in_the_middle_of_the_picture(
+    mesh: Mesh, direction: Vector | None, field_of_view: float
+) -> None:
+    view = View((0, 0, 0), direction=direction or (1, 2, -1), field_of_view=field_of_view)
+    placed = framed(view, mesh.used_coordinates)
+    used = mesh.coordinates[np.unique(mesh.node_numbers)]
+    right, down, deep = ((used - np.array(placed.eye)) @ placed.axes.T).T
+    if np.ptp(used, axis=0).max() > 1e-6:
+        for across in (right, down):
+            assert (across / deep).max() == pytest.approx(-(across / deep).min(), abs=1e-6)
+
+
 @pytest.mark.parametrize("mesh", [cube(), sphere(), grid(2, 2, (0, 0, 0), (3, 0, 0), (0, 0, 1))], ids=repr)
 def test_a_framed_object_fills_the_picture(mesh: Mesh) -> None:
     picture = render(scene_of(mesh), 120, 160)

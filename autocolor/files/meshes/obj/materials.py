@@ -1,9 +1,10 @@
 """Material libraries of OBJ files (MTL): the surfaces that their materials describe.
 
 These statements are used: `newmtl` begins a material; `Kd` is the object color; the largest component of `Ks`
-is S, the specular reflectance; `Ns` is N, the exponent. A material without specular reflectance keeps its
-object color at every level. D stays the default, because `Kd` is a color and no intensity. Textures and
-transparency are left out, and the report says so. Everything else is ignored.
+is S, the specular reflectance, which is 0 without such a statement; `Ns` is N, the exponent. A material
+without specular reflectance keeps its object color at every level. D stays the default, because `Kd` is a
+color and no intensity. Textures and transparency are left out, and the report says so. Everything else is
+ignored.
 
 A library must be in the folder of the OBJ file, or below it. One that is named elsewhere, as by an absolute
 path, is looked for there by its file name. Problems in a library are reported, and do not keep the mesh from
@@ -184,10 +185,9 @@ def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:
     if b"Kd" in values:
         parts = [min(half_up(255 * min(part, 1.0)), 255) for part in values[b"Kd"]]
         changes["object_color"] = parts * 3 if len(parts) == 1 else parts
-    if b"Ks" in values:
-        changes["specular"] = max(values[b"Ks"])
-        if changes["specular"] == 0:
-            changes["blend"] = 1.0
+    changes["specular"] = max(values.get(b"Ks", [0.0]))
+    if changes["specular"] == 0:
+        changes["blend"] = 1.0
     if b"Ns" in values:
         changes["exponent"] = values[b"Ns"][0]
     return changed(created_surface(name), changes)

@@ -18,6 +18,7 @@ from autocolor.files.meshes.obj.materials import (
     read_materials,
 )
 from autocolor.files.reading import read_bytes
+from autocolor.scene.defaults import created_surface
 
 RED = b"newmtl red\nKd 1 0 0\n"
 BLUE = b"newmtl blue\nKd 0 0 1\n"
@@ -68,11 +69,14 @@ def test_kd_is_the_object_color_and_nothing_else(statement: str, color: tuple[in
 def test_the_largest_component_of_ks_is_s_and_nothing_else(statement: str, specular: float) -> None:
     surface = red(statement)
     assert surface.reflectance.specular == specular
-    assert surface == of_nothing().replace(specular=specular)
+    assert surface == created_surface("red").replace(specular=specular)
 
 
-def test_a_material_without_specular_reflectance_keeps_its_object_color_at_every_level() -> None:
-    surface = red("Kd 1 0 0\nKs 0 0 0")
+@pytest.mark.parametrize("statements", ["Kd 1 0 0\nKs 0 0 0", "Kd 1 0 0"])
+def test_a_material_without_specular_reflectance_keeps_its_object_color_at_every_level(
+    statements: str,
+) -> None:
+    surface = red(statements)
     assert (surface.reflectance.specular, surface.paint.blend) == (0, 1)
 
 
