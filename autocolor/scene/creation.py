@@ -17,8 +17,7 @@ from autocolor.scene.columns.problems import Problem, RowError
 from autocolor.scene.columns.rows import made
 from autocolor.scene.defaults import (
     MAPPING_FIELDS,
-    OBJECT_COLORS,
-    PLAIN_COLOR,
+    color_in_turn,
     created_surface,
     default_lights,
     default_view,
@@ -139,7 +138,7 @@ def _with_created(
     wanted = [name for name in dict.fromkeys(row.surface for row in rows) if name not in table]
     kept = [name for name in wanted if name in names][: max(MOST_SURFACES - len(given), 0)]
     for name in kept:
-        color = PLAIN_COLOR if name == SHARED else OBJECT_COLORS[len(table) % len(OBJECT_COLORS)]
+        color = None if name == SHARED else color_in_turn(len(table))
         table[name] = of_material.get(name) or created_surface(name, color)
     if len(table) == MOST_SURFACES:
         # Further parts share the last surface.

@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, chunks
+from autocolor.checks import Color
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
@@ -39,12 +40,18 @@ OBJECT_COLORS: Final = (
 )  # fmt: skip
 """Assumed: distinguishable object colors, assigned to the surfaces in turn."""
 
-PLAIN_COLOR: Final = "#b0cae8"
-"""Assumed: a light steel blue, for the one surface of an object that has no other."""
-
 CREATED_REFLECTANCE: Final = Reflectance(0.7, 0.63, exponent=32.0)
-CREATED_BLEND: Final = 0.8
-"""Assumed: what the surfaces of a bare mesh reflect, and where they shift to the light color."""
+"""Assumed: what the surfaces of a bare mesh reflect."""
+
+PLAIN_PAINT: Final = Paint((176, 202, 232), blend=0.8)
+"""Assumed: a light steel blue, for the one surface of all parts that have no other."""
+
+COLORED_PAINT: Final = Paint(PLAIN_PAINT.object_color, blend=0.88, light_percentage=60.0)
+"""Assumed: what is not the object color of other surfaces of a bare mesh.
+
+A side that is lit evenly may be the brightest of the object, and should still have its color: with the light
+color from 0.8 of the range on, the top of a red box is pink.
+"""
 
 
 MAPPING_FIELDS: Final = {
@@ -71,13 +78,20 @@ def object_coordinates(mesh: Mesh, parts: Sequence[Part]) -> Floats:
 
 
 def default_surface(name: str, number: int) -> Surface:
-    """A glossy surface; its object color is chosen by the number of the surface, counted from 0."""
-    return Surface(name, paint=Paint(object_color=OBJECT_COLORS[number % len(OBJECT_COLORS)]))  # type: ignore[arg-type]
+    """The surface of a table without keys; its object color depends on its number, counted from 0."""
+    return Surface(name).replace(object_color=color_in_turn(number))
 
 
-def created_surface(name: str, object_color: str = PLAIN_COLOR) -> Surface:
-    """A surface for parts that are given none: glossy, and with the light color in its highlights only."""
-    return Surface(name, CREATED_REFLECTANCE, Paint(object_color=object_color, blend=CREATED_BLEND))  # type: ignore[arg-type]
+def color_in_turn(number: int) -> str:
+    """The object color of a surface by its number, counted from 0."""
+    return OBJECT_COLORS[number % len(OBJECT_COLORS)]
+
+
+def created_surface(name: str, object_color: str | Color | None = None) -> Surface:
+    """A glossy surface for parts that are given none; without an object color it has the plain one."""
+    if object_color is None:
+        return Surface(name, CREATED_REFLECTANCE, PLAIN_PAINT)
+    return Surface(name, CREATED_REFLECTANCE, COLORED_PAINT.replace(object_color=object_color))
 
 
 def default_view(coordinates: Floats) -> View:

@@ -27,7 +27,7 @@ from autocolor.files.paths import path_within
 from autocolor.files.reading import read_bytes, shown, text_problem
 from autocolor.mapping.rounding import half_up
 from autocolor.scene.columns.rows import changed
-from autocolor.scene.defaults import created_surface
+from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.surfaces import Surface
 
 LARGEST_LIBRARY: Final = 16 * 1024 * 1024
@@ -190,4 +190,4 @@ def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:
         changes["blend"] = 1.0
     if b"Ns" in values:
         changes["exponent"] = values[b"Ns"][0]
-    return changed(created_surface(name), changes)
+    return changed(created_surface(name, COLORED_PAINT.object_color), changes)

@@ -18,7 +18,7 @@ from autocolor.files.meshes.obj.materials import (
     read_materials,
 )
 from autocolor.files.reading import read_bytes
-from autocolor.scene.defaults import created_surface
+from autocolor.scene.defaults import COLORED_PAINT, created_surface
 
 RED = b"newmtl red\nKd 1 0 0\n"
 BLUE = b"newmtl blue\nKd 0 0 1\n"
@@ -69,7 +69,7 @@ def test_kd_is_the_object_color_and_nothing_else(statement: str, color: tuple[in
 def test_the_largest_component_of_ks_is_s_and_nothing_else(statement: str, specular: float) -> None:
     surface = red(statement)
     assert surface.reflectance.specular == specular
-    assert surface == created_surface("red").replace(specular=specular)
+    assert surface == created_surface("red", COLORED_PAINT.object_color).replace(specular=specular)
 
 
 @pytest.mark.parametrize("statements", ["Kd 1 0 0\nKs 0 0 0", "Kd 1 0 0"])
