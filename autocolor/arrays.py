@@ -121,6 +121,19 @@ def cross(one: Floats, other: Floats) -> Floats:
     return products
 
 
+def bounds_of(points: Floats) -> tuple[Floats, Floats]:
+    """The least and the largest coordinates of points, (n, 3); zeros if there are none.
+
+    >>> low, high = bounds_of(np.array([[1.0, 5.0, 0.0], [2.0, 3.0, 0.0]]))
+    >>> low.tolist(), high.tolist()
+    ([1.0, 3.0, 0.0], [2.0, 5.0, 0.0])
+    """
+    if not len(points):
+        return np.zeros(3), np.zeros(3)
+    rows = points.T
+    return rows.min(axis=1), rows.max(axis=1)
+
+
 def lengths(vectors: Floats) -> Floats:
     """The length of each vector of (3, ...).
 

@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+import numpy as np
+
 from autocolor.arrays import LARGEST_SINGLE
 from autocolor.lighting.picture import IntensityRange, Picture
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
@@ -41,14 +43,19 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
     held: dict[str, IntensityRange] = {}
     if not isinstance(exposure, str):
         for name, limits in exposure:
-            held[name] = IntensityRange(*(min(limit / picture.scale, LARGEST_SINGLE) for limit in limits))
+            # As exact as intensities are, so that what is too narrow for them has no extent.
+            low, high = (min(limit / picture.scale, LARGEST_SINGLE) for limit in limits)
+            held[name] = IntensityRange(float(np.float32(low)), float(np.float32(high)))
     found = picture.relative_ranges
     whole = held.get(OBJECT, found[WHOLE])
     shares_whole = scaling == "object" or OBJECT in held
     ranges = {WHOLE: whole}
     for surface in picture.slices:
         number = surface.surface_number
-        own = held.get(picture.surfaces[number - 1], whole if shares_whole else found[number])
+        name = picture.surfaces[number - 1]
+        own = whole if shares_whole else found[number]
+        if name != OBJECT:
+            own = held.get(name, own)
         ranges[number] = own if has_extent(own) else whole
     return ranges
 
@@ -63,5 +70,7 @@ def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> 
     for number, extent in picture.relative_ranges.items():
         if (number == WHOLE or each_has_its_own) and has_extent(extent):
             name = picture.surfaces[number - 1] if number else OBJECT
+            if number and name == OBJECT:
+                continue
             held.setdefault(name, (extent.minimum * picture.scale, extent.maximum * picture.scale))
     return tuple(held.items()) or AUTO

@@ -35,8 +35,8 @@ def words_of(
 
     The minimum and the maximum of the range that is mapped for a surface (see `mapped_ranges`) become its
     lowest and its highest level; intensities beyond it become the nearest of these. Where no range has an
-    extent, as with all lights off, every pixel gets the middle level: the object color, neither black nor a
-    highlight. Raises InputError if an intensity is not finite.
+    extent, as with all lights off, every pixel gets the middle level, which is neither black nor a highlight.
+    Raises InputError if an intensity is not finite.
     """
     words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
     for surface in picture.slices:
@@ -62,7 +62,7 @@ def words_of(
         for surface in chunk.slices:
             first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
             fractions = fractions_of[surface.surface_number](intensities[surface.pixels])
-            if thresholds is None:
+            if thresholds is None or not has_extent(extents[surface.surface_number]):
                 here_levels = levels_of(fractions, levels, out=fractions)
             else:
                 here_levels = dithered_levels(fractions, levels, thresholds.take(pixels[surface.pixels]))

@@ -6,7 +6,7 @@ created automatically by the system as they are needed.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Final, Literal, Unpack
 
 from autocolor.checks import nearest, shown
@@ -51,36 +51,46 @@ def scene_of(
     """A scene of a mesh; tables and fields that are not given are created with defaults.
 
     A part has the first of these surfaces that there is: the one that `parts` or `surface_of_part` names for
-    it; the given one of its own name; with `surfaces="parts"`, one of its own name, which is created; that of
-    its material, from `materials` or created; and else one that is created for all parts without another. If
-    that would make more than MOST_SURFACES, the remaining parts share the last one.
+    it; the given one of its own name; with `surfaces="parts"`, one of its own, which is created like that of
+    its material; that of its material, from `materials` or created; and else one that is created for all
+    parts without another. If that would make more than MOST_SURFACES, the remaining parts share the last one.
 
     `parts` has fields of the parts by name, such as `{"floor": {"stage": True}}`; `fields` are the other
     fields of Scene. Raises InputError, UsageError for another word than "materials" or "parts".
 
-    Assumed: without `scaling` and `contrast` all surfaces share one range of intensities, and are as dark as
-    they are lit, so that a mesh keeps its form.
+    Assumed: the mapping belongs to the lights. Where lights are created, so are ambient, scaling, mapping and
+    contrast, chosen so that the mesh keeps its form; with given lights they have the defaults of Scene.
     """
     if isinstance(surfaces, str) and surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be rows, {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     found: list[Problem] = []
     given = () if isinstance(surfaces, str) else _held("surfaces", surfaces, found)
     rows = _part_rows(mesh, parts or {}, surface_of_part or {}, found)
-    tables: dict[str, Any] = {**MAPPING_FIELDS, **fields}
+    tables: dict[str, Any] = {**(MAPPING_FIELDS if fields.get("lights") is None else {}), **fields}
     # The view is checked here, because the lights that are created depend on it.
     view, lights = tables.pop("view", None), tables.pop("lights", None)
     view = None if view is None else _held("view", view, found)
     if found:
         raise RowError(found)
-    own = set(mesh.part_names) if surfaces == PARTS else {surface.name for surface in given}
     material_of_part = material_of_part or {}
+    of_material = {surface.name: surface for surface in materials}
+    if surfaces == PARTS:
+        # A part's own surface is like that of its material.
+        of_part = {name: of_material.get(material_of_part.get(name, "")) for name in mesh.part_names}
+        of_material = {name: surface.replace(name=name) for name, surface in of_part.items() if surface}
+        material_of_part = {name: name for name in mesh.part_names}
+    own = {surface.name for surface in given}
+    shared = SHARED
+    while shared in material_of_part.values():
+        shared += " for all others"
     rows = tuple(
-        row.replace(surface=row.name if row.name in own else material_of_part.get(row.name, SHARED))
+        row.replace(surface=row.name if row.name in own else material_of_part.get(row.name, shared))
         if row.surface == UNASSIGNED
         else row
         for row in rows
     )
-    rows, table = _with_created(rows, given, materials, material_of_part.values())
+    names = {row.name for row in rows} | set(material_of_part.values())
+    rows, table = _with_created(rows, given, of_material, names, shared)
     coordinates = object_coordinates(mesh, rows)
     if view is None:
         view = default_view(coordinates)
@@ -99,7 +109,7 @@ def _part_rows(
     surface_of_part: Mapping[str, str],
     found: list[Problem],
 ) -> tuple[Part, ...]:
-    """The part table as far as it is given; the surface of a part without one is its own name."""
+    """The part table as far as it is given; the surface of a part without one is UNASSIGNED."""
     known = set(mesh.part_names)
     missing = [name for name in (*parts, *surface_of_part) if name not in known]
     if missing:
@@ -121,30 +131,31 @@ def _part_rows(
 def _with_created(
     rows: tuple[Part, ...],
     given: tuple[Surface, ...],
-    materials: Sequence[Surface],
-    material_names: Collection[str],
+    of_material: Mapping[str, Surface],
+    names: set[str],
+    shared: str,
 ) -> tuple[tuple[Part, ...], tuple[Surface, ...]]:
     """The parts, and the given surfaces with those created for the parts, up to MOST_SURFACES.
 
-    A surface is created for the name of a part or of a material, and for SHARED; other names are left for
-    the checks of Scene to refuse.
+    A surface is created for some `names`, those of parts and materials, and for `shared`; other names are
+    left for the checks of Scene to refuse.
     """
     table = {surface.name: surface for surface in given}
     if len(table) < len(given):
         # The checks of Scene refuse repeated names.
         return rows, given
-    of_material = {surface.name: surface for surface in materials}
-    names = {SHARED, *(row.name for row in rows), *material_names}
-    wanted = [name for name in dict.fromkeys(row.surface for row in rows) if name not in table]
-    kept = [name for name in wanted if name in names][: max(MOST_SURFACES - len(given), 0)]
-    for name in kept:
-        color = None if name == SHARED else color_in_turn(len(table))
-        table[name] = of_material.get(name) or created_surface(name, color)
+    wanted = dict.fromkeys(row.surface for row in rows if row.surface in names or row.surface == shared)
+    missing = [name for name in wanted if name not in table]
+    for name in missing[: max(MOST_SURFACES - len(given), 0)]:
+        if name == shared:
+            table[name] = created_surface(name)
+        else:
+            table[name] = of_material.get(name) or created_surface(name, color_in_turn(len(table)))
     if len(table) == MOST_SURFACES:
         # Further parts share the last surface.
         last = next(reversed(table))
         rows = tuple(
-            row if row.surface in table or row.surface not in names else row.replace(surface=last)
+            row.replace(surface=last) if row.surface in wanted and row.surface not in table else row
             for row in rows
         )
     return rows, tuple(table.values())

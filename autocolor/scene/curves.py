@@ -105,9 +105,14 @@ def logarithm(fractions: Singles) -> Singles:
 def equalize(minimum: np.float32, maximum: np.float32, intensities: Singles) -> Fractions:
     """Histogram equalization: levels become equally frequent.
 
-    The fraction of an intensity is its cumulative share of all intensities above the minimum.
+    The fraction of an intensity is its cumulative share of all intensities above the minimum. It is 0 at the
+    minimum and 1 at the maximum, also where no intensity reaches them. Where ranges are held, what is within
+    them is still spread evenly, so that less light hardly looks darker.
     """
-    values, counts = np.unique(intensities, return_counts=True)
+    ends = [
+        end for end, found in ((minimum, intensities.min()), (maximum, intensities.max())) if end != found
+    ]
+    values, counts = np.unique(np.append(intensities, ends), return_counts=True)
     below = np.cumsum(counts) - counts[0]
     shares: Singles = (below / max(below[-1], 1)).astype(np.float32)
     return lambda given: shares[np.searchsorted(values, given)]

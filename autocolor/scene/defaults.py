@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, chunks
+from autocolor.arrays import Floats, bounds_of, chunks
 from autocolor.checks import Color
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
@@ -165,14 +165,6 @@ def _centering_shifts(
             break
         shifts = centered
     return shifts
-
-
-def bounds_of(coordinates: Floats) -> tuple[Floats, Floats]:
-    """The least and the largest coordinates, (3,) each; zeros if there are none."""
-    if not len(coordinates):
-        return np.zeros(3), np.zeros(3)
-    rows = coordinates.T
-    return rows.min(axis=1), rows.max(axis=1)
 
 
 def _is_a_point(low: Floats, high: Floats) -> bool:

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices
+from autocolor.arrays import AnyArray, Floats, Indices, bounds_of
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.scene.columns.problems import Problem
@@ -120,10 +120,7 @@ class Mesh:
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """The least and the largest coordinates of the nodes that polygons use; zeros for an empty mesh."""
-        if not len(self.node_numbers):
-            return np.zeros(3), np.zeros(3)
-        rows = self.used_coordinates.T
-        return rows.min(axis=1), rows.max(axis=1)
+        return bounds_of(self.used_coordinates)
 
     @cached_property
     def parts_in_use(self) -> tuple[int, ...]:

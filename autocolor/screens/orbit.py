@@ -7,9 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats
+from autocolor.arrays import Floats, bounds_of
 from autocolor.checks import Vector
-from autocolor.scene.defaults import bounds_of
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 

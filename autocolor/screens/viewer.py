@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Unpack
+from typing import NamedTuple, Unpack
 
 from autocolor.errors import AutocolorError
 from autocolor.files.file_stem import file_stem
 from autocolor.files.scene_sources import read_scene
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.defaults import OBJECT_COLORS, framed
-from autocolor.scene.scene import AUTO, Exposure, Scene
+from autocolor.scene.scene import Exposure, Scene
 from autocolor.scene.view import View
 from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS, Actions
 from autocolor.screens.entries_screen import draw_entries
@@ -24,6 +24,13 @@ from autocolor.screens.keys import Binding
 from autocolor.screens.orbit import moved, turned
 from autocolor.studio import Studio
 from ramtek_emu import HostPort, RamtekError
+
+
+class Hold(NamedTuple):
+    """The exposure before it was held, and the one that holds it."""
+
+    before: Exposure
+    held: Exposure
 
 
 class Viewer:
@@ -43,7 +50,7 @@ class Viewer:
         self.studio = Studio(scene, self.display)
         self.saved: Path | None = None
         self.surface = 0
-        self._released: Exposure = AUTO
+        self._hold: Hold | None = None
         self.page = "picture"
         self.message = "F1 help"
         self._edited_by = None
@@ -224,16 +231,18 @@ class Viewer:
         self.message = f"light {light.name} {'off' if light.on else 'on'}"
 
     def switch_exposure(self) -> None:
-        """Hold the intensity ranges of the picture; where all are held, hold only those that were before."""
+        """Hold the intensity ranges of the picture; if they were held by this, hold what was held before."""
         self.back()
-        before = self.studio.scene.exposure
-        self.studio.hold_exposure()
-        if self.studio.scene.exposure != before:
-            self._released = before
-            self.message = "exposure held"
-        else:
-            self._edit(self.studio.scene.replace(exposure=self._released))
+        present = self.studio.scene.exposure
+        if self._hold is not None and present == self._hold.held:
+            self._edit(self.studio.scene.replace(exposure=self._hold.before))
             self.message = "exposure released"
+            return
+        self.studio.hold_exposure()
+        held = self.studio.scene.exposure
+        if held != present:
+            self._hold = Hold(present, held)
+        self.message = "exposure held" if held != present else "there is nothing more to hold"
 
     def choose_surface(self, step: int) -> None:
         """Select another surface in use for the color keys, `step` positions further."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from autocolor.checks import shown
 from autocolor.files.repair.polygons import MeshReport
 from autocolor.scene.creation import scene_of
 from autocolor.scene.mesh import Mesh
@@ -32,16 +33,9 @@ class SceneReport:
 def scene_report(
     reports: Sequence[MeshReport], *, mesh_files: tuple[Mapping[str, str], ...] = (), **fields: Any
 ) -> SceneReport:
-    """The report for a scene of the meshes that were read; `fields` are passed to `scene_of`.
-
-    Of parts and materials of the same name in several meshes, the first counts.
-    """
+    """The report for a scene of the meshes that were read; `fields` are passed to `scene_of`."""
     mesh = Mesh.joined([report.mesh for report in reports])
-    material_of_part: dict[str, str] = {}
-    materials: dict[str, Surface] = {}
-    for report in reports:
-        material_of_part = {**report.material_of_part, **material_of_part}
-        materials = {**{surface.name: surface for surface in report.materials}, **materials}
+    material_of_part, materials, conflicts = _joined_materials(reports)
     scene = scene_of(mesh, material_of_part=material_of_part, materials=tuple(materials.values()), **fields)
     surfaces = fields.get("surfaces", ())
     given = set() if isinstance(surfaces, str) else {surface.name for surface in surfaces}
@@ -65,7 +59,7 @@ def scene_report(
                 f"{of_last:,} parts share surface {scene.surfaces[-1].name!r}, because a scene has at most"
                 f" {MOST_SURFACES}"
             )
-    repairs = tuple(repair for report in reports for repair in report.repairs)
+    repairs = (*(repair for report in reports for repair in report.repairs), *conflicts)
     return SceneReport(
         scene,
         repairs,
@@ -74,3 +68,31 @@ def scene_report(
         fields.get("view") is None,
         fields.get("lights") is None,
     )
+
+
+def _joined_materials(
+    reports: Sequence[MeshReport],
+) -> tuple[dict[str, str], dict[str, Surface], tuple[str, ...]]:
+    """The materials of parts, the surfaces of materials, and a message for each conflict of several meshes.
+
+    Where two files describe a material of the same name differently, that of the later one is renamed. A part
+    that several meshes have is one part, and has the first material that one of them gives it.
+    """
+    material_of_part: dict[str, str] = {}
+    materials: dict[str, Surface] = {}
+    conflicts = []
+    for report in reports:
+        renamed = {}
+        for surface in report.materials:
+            name, number = surface.name, 1
+            while name in materials and materials[name].replace(name=surface.name) != surface:
+                number += 1
+                name = f"{surface.name} {number}"
+            renamed[surface.name] = name
+            materials.setdefault(name, surface if name == surface.name else surface.replace(name=name))
+        for part, material in report.material_of_part.items():
+            name = renamed.get(material, material)
+            kept = material_of_part.setdefault(part, name)
+            if kept != name:
+                conflicts.append(f"part {shown(part)} is in several meshes: it has material {shown(kept)}")
+    return material_of_part, materials, tuple(conflicts)

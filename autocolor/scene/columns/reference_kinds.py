@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
+from autocolor.arrays import LARGEST_SINGLE
 from autocolor.scene.columns.column import Row, fields_of
-from autocolor.scene.columns.value_kinds import LARGEST_PLACE, Leaf, Number, Text, VectorKind
+from autocolor.scene.columns.value_kinds import Leaf, Number, Text, VectorKind
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ class RangesByName(Referring):
 
     def rule(self) -> str:
         return (
-            f"must be {self.none!r}, or a table of ranges [minimum, maximum] from 0 to 1e36 by the names of"
+            f"must be {self.none!r}, or a table of ranges [minimum, maximum] from 0 to 3.4e38 by the names of"
             f" {self.table} and {self.others!r}"
         )
 
@@ -99,7 +100,7 @@ class RangesByName(Referring):
                 raise ValueError
             return self.none
         pairs = list(value.items()) if isinstance(value, Mapping) else list(value)
-        intensity = Number(at_least=0, at_most=LARGEST_PLACE).accepted
+        intensity = Number(at_least=0, at_most=LARGEST_SINGLE).accepted
         ranges = tuple(
             (Text().accepted(name), (intensity(minimum), intensity(maximum)))
             for name, (minimum, maximum) in pairs

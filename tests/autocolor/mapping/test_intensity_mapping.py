@@ -3,6 +3,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -187,3 +188,35 @@ def test_a_brighter_pixel_of_a_surface_never_has_a_lower_word(scene: Scene) -> N
 def test_an_intensity_that_is_not_finite_is_refused_by_name(wrong: float) -> None:
     with pytest.raises(InputError, match="surface 'b': an intensity must be finite, not "):
         words_of(picture_of([1, 2], [1, wrong]), RANGES)
+
+
+@pytest.mark.parametrize("mapping", MAPPINGS, ids=str)
+def test_everything_above_a_held_range_has_the_highest_level_and_below_it_the_lowest(mapping: Any) -> None:
+    picture = picture_of([5, 6, 7], [5, 9])
+    bright = words_of(picture, RANGES, "object", mapping, (("object", (1.0, 4.0)),))
+    dark = words_of(picture, RANGES, "object", mapping, (("object", (10.0, 40.0)),))
+    assert bright.tolist() == [[0, 11, 11, 11, 112, 112, 0]]
+    lowest = words_of(picture_of([5, 6], [5, 9]), RANGES, "object", mapping).ravel()[1] - 1
+    assert dark.tolist() == [[0, *[1 + lowest] * 3, *dark.ravel()[4:6].tolist(), 0]]
+    assert dark.ravel()[4] == dark.ravel()[5]
+
+
+def test_a_held_range_too_narrow_for_float32_has_no_extent() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for limits in ((0.0, 1e-300), (1e-38, 1.1e-38), (3e38, 3.1e38), (1.0, 1.0000001)):
+            words = words_of(picture_of([1, 2, 3]), RANGES, exposure=(("a", limits),))
+            assert words.min() >= 0
+            assert words.max() <= 11
+
+
+def test_a_surface_named_object_has_no_held_range_of_its_own() -> None:
+    picture = dataclasses.replace(picture_of([1, 2, 3], [10, 20]), surfaces=("object", "b"))
+    ranges = {"object": LevelRange(1, 11), "b": LevelRange(12, 101)}
+    held = words_of(picture, ranges, exposure=(("b", (10.0, 20.0)),))
+    assert held.tolist() == words_of(picture, ranges).tolist()
+
+
+def test_dithering_leaves_what_has_no_extent_alone() -> None:
+    words = words_of(picture_of([3.0] * 30), {"a": LevelRange(1, 10)}, dither="ordered")
+    assert set(words.ravel().tolist()) == {0, 6}

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from autocolor import InputError, Light, Mesh, Part, Scene, Surface, UsageError, View, scene_of
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.creation import SHARED
-from autocolor.scene.defaults import MAPPING_FIELDS
+from autocolor.scene.defaults import MAPPING_FIELDS, created_surface
 from autocolor.scene.surfaces import MOST_SURFACES
 from tests.autocolor.meshes import cube, grid
 
@@ -72,10 +72,29 @@ def test_a_given_surface_counts_before_the_description_of_its_material() -> None
     assert surfaces_of_parts(scene) == ["red", SHARED, SHARED]
 
 
-def test_a_material_of_the_name_of_the_shared_surface_is_the_shared_surface() -> None:
+def test_a_material_of_the_name_of_the_shared_surface_is_not_shared() -> None:
     material = Surface(SHARED, levels=30)
     scene = scene_of(car(), material_of_part={"door": SHARED}, materials=(material,))
-    assert scene.surfaces == (material,)
+    assert scene.surfaces == (material, created_surface(f"{SHARED} for all others"))
+    assert surfaces_of_parts(scene) == [SHARED, *[f"{SHARED} for all others"] * 2]
+
+
+def test_surfaces_of_parts_are_like_those_of_their_materials() -> None:
+    red = Surface("red", levels=30)
+    of_material = {"door": "red", "hood": "red", "pane": "unknown"}
+    scene = scene_of(car(), surfaces="parts", material_of_part=of_material, materials=(red,))
+    assert scene.surfaces[:2] == (red.replace(name="door"), red.replace(name="hood"))
+    assert scene.surfaces[2].name == "pane"
+    assert scene.surfaces[2].levels is None
+
+
+def test_the_mapping_is_created_with_the_lights_and_not_without() -> None:
+    created, given = scene_of(car()), scene_of(car(), lights=[Light("key", (1, 2, 3))])
+    fields = scene_of(car(), lights=[], ambient=0.3)
+    for name, value in MAPPING_FIELDS.items():
+        assert getattr(created, name) == value
+        assert getattr(given, name) == vars(Scene)[name] != value
+    assert (fields.ambient, fields.scaling) == (0.3, "surface")
 
 
 def test_a_part_takes_the_surface_that_is_named_for_it_else_the_given_one_of_its_name_else_a_shared_one() -> (
@@ -113,7 +132,7 @@ def expected_surface(
         return part
     if part in material_of_part:
         return material_of_part[part]
-    return "surface"
+    return "surface" if "surface" not in material_of_part.values() else "surface for all others"
 
 
 some_parts = st.lists(st.sampled_from([*PARTS, "red", "surface"]), unique=True, min_size=1)
@@ -154,7 +173,10 @@ def test_every_part_has_the_first_surface_that_there_is(
     assert names_of(scene.surfaces)[: len(first)] == first
     assert created == [name for name in dict.fromkeys(surfaces_of_parts(scene)) if name not in first]
     for surface in scene.surfaces:
-        described = surface.name in ("red", "surface")
+        material = material_of_part.get(surface.name) if surfaces == "parts" else surface.name
+        described = material in ("red", "surface")
+        if surfaces != "parts" and material == "surface":
+            described = "surface" in material_of_part.values()
         assert surface.levels == (99 if surface.name in first else 77 if described else None)
 
 

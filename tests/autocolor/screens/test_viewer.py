@@ -133,6 +133,23 @@ def test_the_exposure_is_held_and_released(viewer: Viewer) -> None:
     assert (viewer.message, viewer.studio.scene.exposure) == ("exposure released", "auto")
 
 
+def test_the_exposure_is_released_also_after_it_was_held_again(viewer: Viewer) -> None:
+    def press() -> None:
+        viewer.on_key("e", typed="e")
+
+    for digit in "12":
+        viewer.on_key(digit, typed=digit)
+    press()
+    viewer.on_key("1", typed="1")
+    press()
+    press()
+    assert viewer.studio.scene.exposure == "auto"
+    control(viewer, "z")
+    assert viewer.studio.scene.exposure != "auto"
+    press()
+    assert viewer.studio.scene.exposure == "auto"
+
+
 def test_without_a_step_there_is_nothing_to_undo_or_to_do_again(viewer: Viewer) -> None:
     control(viewer, "z")
     assert viewer.message == "nothing to undo"

@@ -1,7 +1,8 @@
 """Material libraries of OBJ files (MTL): the surfaces that their materials describe.
 
 These statements are used: `newmtl` begins a material; `Kd` is the object color; the largest component of `Ks`
-is S, the specular reflectance, which is 0 without such a statement; `Ns` is N, the exponent. A material
+is S, the specular reflectance, which is 0 without such a statement or where `illum` is 0 or 1; `Ns` is N, the
+exponent, at least 1. A material
 without specular reflectance keeps its object color at every level. D stays the default, because `Kd` is a
 color and no intensity. Textures and transparency are left out, and the report says so. Everything else is
 ignored.
@@ -22,6 +23,7 @@ from pathlib import Path, PureWindowsPath
 from typing import Any, Final, NamedTuple
 
 from autocolor.errors import InputError
+from autocolor.files.meshes.obj.lines import NUMBER
 from autocolor.files.meshes.obj.statements import name_of
 from autocolor.files.paths import path_within
 from autocolor.files.reading import read_bytes, shown, text_problem
@@ -30,7 +32,9 @@ from autocolor.scene.columns.rows import changed
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.surfaces import Surface
 
-LARGEST_LIBRARY: Final = 16 * 1024 * 1024
+LARGEST_LIBRARIES: Final = 4 * 1024 * 1024
+"""Assumed: bytes of all libraries of a file, those of some ten thousand materials."""
+
 MOST_LIBRARIES: Final = 100
 MOST_PROBLEMS: Final = 5
 """Assumed: problems that are reported of one library; the others are counted."""
@@ -41,13 +45,17 @@ MOST_WORDS: Final = 8
 LARGEST: Final = 1e6
 """Assumed: above every coefficient and exponent of a material."""
 
-NUMBER: Final = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?")
-
 TEXTURES: Final = re.compile(rb"map_\w+|bump|disp|decal|refl|norm", re.IGNORECASE)
 TRANSPARENCY: Final = {b"d": 1.0, b"Tr": 0.0}
 """The statements of transparency, and their values for what is not transparent."""
 
-USED: Final = (b"Kd", b"Ks", b"Ns")
+USED: Final = (b"Kd", b"Ks", b"Ns", b"illum")
+
+WITHOUT_HIGHLIGHT: Final = (0.0, 1.0)
+"""The illumination models, `illum`, in which nothing reflects specularly."""
+
+LEAST_EXPONENT: Final = 1.0
+"""Assumed: some programs write 0 for the roughest material, which would be a highlight all over."""
 
 
 class Materials(NamedTuple):
@@ -69,9 +77,13 @@ def read_materials(obj: Path, libraries: Sequence[bytes], wanted: Sequence[str])
     paths = list(_paths(obj, libraries, missing))
     sentences: list[str] = []
     found: dict[str, Surface] = {}
+    left = LARGEST_LIBRARIES
     for path in paths:
+        if len(found) == len(wanted):
+            break
         try:
-            data = read_bytes(path, LARGEST_LIBRARY)
+            data = read_bytes(path, left)
+            left -= len(data)
             if problem := text_problem(data):
                 raise InputError(f"{path.name}: a material library {problem}")
         except InputError as error:
@@ -185,9 +197,10 @@ def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:
     if b"Kd" in values:
         parts = [min(half_up(255 * min(part, 1.0)), 255) for part in values[b"Kd"]]
         changes["object_color"] = parts * 3 if len(parts) == 1 else parts
-    changes["specular"] = max(values.get(b"Ks", [0.0]))
+    has_highlight = values.get(b"illum", [2.0])[0] not in WITHOUT_HIGHLIGHT
+    changes["specular"] = max(values.get(b"Ks", [0.0])) if has_highlight else 0.0
     if changes["specular"] == 0:
         changes["blend"] = 1.0
     if b"Ns" in values:
-        changes["exponent"] = values[b"Ns"][0]
+        changes["exponent"] = max(values[b"Ns"][0], LEAST_EXPONENT)
     return changed(created_surface(name, COLORED_PAINT.object_color), changes)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from autocolor import InputError, Light, Mesh, Surface, View
 from autocolor.files.repair.polygons import MeshReport
 from autocolor.files.scenes.scene_report import scene_report
+from autocolor.scene.defaults import created_surface
 from tests.autocolor.meshes import cube, wall_scene
 
 VIEW = View((0, -4, 0), target=(0, 0, 0))
@@ -114,3 +115,26 @@ def test_of_parts_and_materials_of_several_meshes_the_first_count() -> None:
 def test_the_repairs_of_all_meshes_are_told_in_their_order() -> None:
     reports = [MeshReport(cube(), ("one", "two")), MeshReport(wall_scene().mesh, ("three",))]
     assert scene_report(reports).repairs == ("one", "two", "three")
+
+
+def test_materials_of_one_name_that_differ_are_kept_apart() -> None:
+    def report(part: str, color: tuple[int, int, int]) -> MeshReport:
+        material = created_surface("Material", color)
+        mesh = dataclasses.replace(cube(), part_names=(part,))
+        return MeshReport(mesh, material_of_part={part: "Material"}, materials=(material,))
+
+    read = [report("hood", (255, 0, 0)), report("door", (0, 0, 255)), report("roof", (255, 0, 0))]
+    scene = scene_report(read).scene
+    assert [part.surface for part in scene.parts] == ["Material", "Material 2", "Material"]
+    assert [surface.paint.object_color for surface in scene.surfaces] == [(255, 0, 0), (0, 0, 255)]
+
+
+def test_a_part_of_several_meshes_has_the_first_material_and_the_others_are_told() -> None:
+    read = [
+        MeshReport(cube()),
+        MeshReport(cube(), material_of_part={"cube": "red"}),
+        MeshReport(cube(), material_of_part={"cube": "blue"}),
+    ]
+    report = scene_report(read)
+    assert report.scene.parts[0].surface == "red"
+    assert report.repairs == ("part 'cube' is in several meshes: it has material 'red'",)

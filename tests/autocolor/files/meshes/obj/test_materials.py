@@ -80,11 +80,20 @@ def test_a_material_without_specular_reflectance_keeps_its_object_color_at_every
     assert (surface.reflectance.specular, surface.paint.blend) == (0, 1)
 
 
-@pytest.mark.parametrize("exponent", [0, 0.75, 32, 1000])
-def test_ns_is_n_and_nothing_else(exponent: float) -> None:
-    surface = red(f"Ns {exponent}")
+@pytest.mark.parametrize(("ns", "exponent"), [(0, 1), (0.75, 1), (32, 32), (1000, 1000)])
+def test_ns_is_n_but_at_least_1_and_nothing_else(ns: float, exponent: float) -> None:
+    surface = red(f"Ns {ns}")
     assert surface.reflectance.exponent == exponent
     assert surface == of_nothing().replace(exponent=exponent)
+
+
+@pytest.mark.parametrize(("illum", "specular"), [(0, 0), (1, 0), (2, 0.5), (3, 0.5)])
+def test_an_illumination_model_without_highlight_reflects_nothing_specularly(
+    illum: int, specular: float
+) -> None:
+    surface = red(f"Ks 0.5 0.5 0.5\nillum {illum}")
+    assert surface.reflectance.specular == specular
+    assert surface.paint.blend == (1 if specular == 0 else COLORED_PAINT.blend)
 
 
 def test_the_color_does_not_change_d() -> None:
