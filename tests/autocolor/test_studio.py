@@ -551,3 +551,14 @@ def test_the_lights_alone_add_up_to_all_together_where_the_exposure_is_held_from
         total += alone.words - first
     off = np.abs(total - (together.words - first))[seen]
     assert off.max() <= len(scene.lights) / 2
+
+
+@pytest.mark.parametrize("division", ["covered", "equal"])
+def test_recoloring_a_dithered_picture_writes_no_word(division: Any) -> None:
+    display = Ramtek9300(SMALL)
+    studio = Studio(car().replace(dither="ordered", division=division, exposure={"object": (0, 1)}), display)
+    written = display.frame_buffer.written
+    studio.recolor("body", object_color="#123456", blend=0.2)
+    studio.recolor("glass", light_color="#ffeedd", light_percentage=40)
+    assert display.frame_buffer.written == written
+    assert (display.field() == display.entries[display.words]).all()
