@@ -18,7 +18,9 @@ import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot
 from autocolor.scene.fans import places_of_corners
-from autocolor.scene.plane_cells import SHARPEST, Facets, coplanar_groups, facet_normals, facets
+from autocolor.scene.plane_cells import SHARPEST, coplanar_groups, facet_normals, facets, plane_cells
+from autocolor.scene.plane_fits import fitted, renumbered
+from autocolor.scene.plane_unions import unite_in_fitted_planes
 from autocolor.scene.union_find import group_numbers, unite
 
 TOLERANCE: Final = 2e-6
@@ -66,7 +68,10 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     scaled = (coordinate_rows - middle[:, None]) / extent
 
     # Find groups of polygons that seem to lie in one plane, and sort the polygons by group.
-    groups = group_numbers(coplanar_groups(scaled, node_rows, tolerance))
+    grids, widths = plane_cells(scaled, node_rows, tolerance)
+    parents = coplanar_groups(scaled, node_rows, grids, widths, tolerance)
+    unite_in_fitted_planes(scaled, node_rows, parents, grids[0], widths > 0, tolerance)
+    groups = group_numbers(parents)
     polygons = np.flatnonzero(np.bincount(groups).take(groups) > 1)
     polygons = polygons[np.argsort(groups[polygons], kind="stable")]
     groups = groups[polygons]
@@ -80,7 +85,10 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     # Drop those that are too far from the plane of the others, or lie beside all of them.
     for beside in (False, True, False):
         found = facets(scaled, node_rows[:, polygons])
-        normals, _, off = _fitted(found, groups)
+        groups = renumbered(groups)
+        fits = fitted(found, groups)
+        normals = fits.normals[:, groups]
+        off = np.abs(fits.off(found.corners, groups)).max(axis=0)
         kept = off <= np.minimum(tolerance, SHARPEST * found.widths)
         if beside:
             patches, several = _patches(places, groups, dot(found.normals, normals) < 0)
@@ -91,41 +99,21 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
             return None
 
     found = facets(scaled, node_rows[:, polygons])
-    normals, points, off = _fitted(found, groups)
-    numbers = _renumbered(groups)
-    first = np.flatnonzero(np.diff(numbers, prepend=-1))
+    groups = renumbered(groups)
+    fits = fitted(found, groups)
+    off = np.abs(fits.off(found.corners, groups)).max(axis=0)
+    first = np.flatnonzero(np.diff(groups, prepend=-1))
     plane_of_polygon = np.full(node_rows.shape[1], -1, np.intp)
-    plane_of_polygon[polygons] = numbers
+    plane_of_polygon[polygons] = groups
     turned = np.zeros(node_rows.shape[1], np.bool_)
-    turned[polygons] = dot(found.normals, normals) < 0
+    turned[polygons] = dot(found.normals, fits.normals[:, groups]) < 0
     return SharedPlanes(
-        normals[:, first],
-        points[:, first] * extent + middle[:, None],
+        fits.normals,
+        fits.points * extent + middle[:, None],
         np.maximum.reduceat(off, first) * extent,
         plane_of_polygon,
         turned,
     )
-
-
-def _renumbered(groups: Indices) -> Indices:
-    """Sorted group numbers without gaps."""
-    numbers: Indices = np.cumsum(np.diff(groups, prepend=groups[:1]) != 0)
-    return numbers
-
-
-def _fitted(found: Facets, groups: Indices) -> tuple[Floats, Floats, Floats]:
-    """For each facet the normal and a point of the plane fitted to its group, and how far it is off."""
-    numbers = _renumbered(groups)
-    if not len(numbers):
-        return found.normals, found.centers, found.areas
-    first = np.flatnonzero(np.diff(numbers, prepend=-1))
-    weights = found.areas / np.add.reduceat(found.areas, first)[numbers]
-    points = np.add.reduceat(weights * found.centers, first, axis=1)[:, numbers]
-    away = found.corners - points[:, None]
-    spread = np.add.reduceat(np.einsum("n,icn,jcn->nij", weights, away, away), first, axis=0)
-    # The normal is the direction in which the corners spread least.
-    normals: Floats = np.linalg.eigh(spread)[1][:, :, 0].T[:, numbers]
-    return normals, points, np.abs(np.einsum("in,icn->cn", normals, away)).max(axis=0)
 
 
 def _patches(places: Indices, groups: Indices, turned: Booleans) -> tuple[Indices, Booleans]:

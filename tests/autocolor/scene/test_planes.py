@@ -156,3 +156,22 @@ def test_a_third_polygon_at_an_edge_shares_the_plane_of_the_two_others() -> None
         assert shared is not None
         over = shared.plane_of_polygon[np.argsort(order)].tolist()
         assert over[1:] == [0, 0]
+
+
+@pytest.mark.parametrize("seed", [20, 201, 204, 319])
+def test_a_finely_divided_ground_with_decals_is_one_plane(seed: int) -> None:
+    # No polygon is large enough to tell the plane of all others, and corners are rounded to float32.
+    random = np.random.default_rng(seed)
+    flat = grid(120, 120, (-1, -1, 0), (2, 0, 0), (0, 2, 0), "ground")
+    moves = random.uniform(-0.35, 0.35, (len(flat.coordinates), 2)) * (2 / 120)
+    ground = moved(flat, flat.coordinates + np.c_[moves, np.zeros(len(moves))])
+    decals = [
+        grid(1, 1, (x, y, 0), (0.02, 0.002 * k, 0), (-0.002 * k, 0.02, 0), f"decal {k}")
+        for k, (x, y) in enumerate(random.uniform(-0.8, 0.8, (40, 2)))
+    ]
+    mesh = Mesh.joined([ground, *decals])
+    turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    rounded = (mesh.coordinates @ turn + random.normal(size=3)).astype(np.float32).astype(np.float64)
+    shared = moved(mesh, rounded).shared_planes
+    assert shared is not None
+    assert set(shared.plane_of_polygon.tolist()) == {0}
