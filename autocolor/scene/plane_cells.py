@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Numbers, chunks, cross, dot, lengths
+from autocolor.arrays import Booleans, Floats, Indices, Numbers, chunks, cross, dot, lengths
 from autocolor.scene.union_find import unite
 
 CELL: Final = 1 / 256
@@ -67,6 +67,17 @@ def facets(coordinate_rows: Floats, node_rows: Indices) -> Facets:
     normals *= flat / np.where(flat, areas, 1.0)
     widths = areas / np.where(flat, diameters, 1.0)
     return Facets(corners, normals, corners.mean(axis=1), areas, widths)
+
+
+def part_of(found: Facets, rows: Indices | Booleans) -> Facets:
+    """Some of the facets."""
+    return Facets(
+        found.corners[:, :, rows],
+        found.normals[:, rows],
+        found.centers[:, rows],
+        found.areas[rows],
+        found.widths[rows],
+    )
 
 
 def facet_normals(coordinate_rows: Floats, node_rows: Indices) -> Floats:

@@ -17,9 +17,11 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot
+from autocolor.scene.coordinate_rounding import Rounding, coordinate_rounding
 from autocolor.scene.fans import places_of_corners
 from autocolor.scene.plane_cells import SHARPEST, coplanar_groups, facet_normals, facets, plane_cells
 from autocolor.scene.plane_fits import fitted, renumbered
+from autocolor.scene.plane_levels import MOST_LEVELS, levels
 from autocolor.scene.plane_unions import unite_in_fitted_planes
 from autocolor.scene.union_find import group_numbers, unite
 
@@ -80,8 +82,20 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     first = np.searchsorted(groups, groups)
     turned = dot(normals, np.take(normals, first, axis=1)) < 0
     places = places_of_corners(coordinate_rows, node_rows[:, polygons])
-    _, several = _patches(places, groups, turned)
-    polygons, groups, places = polygons[several], groups[several], places[:, several]
+    patches, several = _patches(places, groups, turned)
+    polygons, groups, places = polygons[several], renumbered(groups[several]), places[:, several]
+    # Take those apart that lie in front of each other.
+    rounding = coordinate_rounding(np.take(coordinate_rows, node_rows[:, polygons], axis=1))
+    level = levels(
+        facets(scaled, node_rows[:, polygons]),
+        groups,
+        patches[several],
+        Rounding(rounding.most / extent, rounding.fraction),
+        middle / extent,
+    )
+    groups = groups * (MOST_LEVELS + 1) + level
+    order = np.argsort(groups, kind="stable")
+    polygons, groups, places = polygons[order], groups[order], places[:, order]
     # Drop those that are too far from the plane of the others, or lie beside all of them.
     for beside in (False, True, False):
         found = facets(scaled, node_rows[:, polygons])
