@@ -24,6 +24,10 @@ PASSES: Final = 3
 FACTOR: Final = 4.0
 """Assumed: the distance of a patch is real if it is so many times its scatter and the rounding of a corner."""
 
+UNKNOWN: Final = 32.0
+"""Assumed: so many times its scatter, if it isn't known how corners are rounded; measured: with 4, in some of
+the planes of a few triangles that were rounded and then moved a decal was apart."""
+
 
 def levels(found: Facets, groups: Indices, patches: Indices, rounding: Rounding, middle: Floats) -> Indices:
     """The level of each polygon in its group, 0 for that of the largest patch.
@@ -81,6 +85,6 @@ def _level(
         exact = EXACT * (1 + float(np.abs(middle).max()))
         alike = along[group] & (scattered <= exact)
         least[alike] = np.maximum(rounding.fraction * distances[group[alike]], exact)
-        near = np.abs(mean) <= FACTOR * (scattered + least * beside)
+        near = np.abs(mean) <= (FACTOR if rounding.known else UNKNOWN) * scattered + FACTOR * least * beside
         near[largest] = True
     return near[patches]

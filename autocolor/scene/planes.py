@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot
-from autocolor.scene.coordinate_rounding import Rounding, coordinate_rounding
+from autocolor.scene.coordinate_rounding import coordinate_rounding
 from autocolor.scene.fans import places_of_corners
 from autocolor.scene.plane_cells import SHARPEST, coplanar_groups, facet_normals, facets, plane_cells
 from autocolor.scene.plane_fits import fitted, renumbered
@@ -85,12 +85,12 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     patches, several = _patches(places, groups, turned)
     polygons, groups, places = polygons[several], renumbered(groups[several]), places[:, several]
     # Take those apart that lie in front of each other.
-    rounding = coordinate_rounding(np.take(coordinate_rows, node_rows[:, polygons], axis=1))
+    rounding = coordinate_rounding(np.take(coordinate_rows, node_rows[:, polygons].ravel(), axis=1))
     level = levels(
         facets(scaled, node_rows[:, polygons]),
         groups,
         patches[several],
-        Rounding(rounding.most / extent, rounding.fraction),
+        rounding._replace(most=rounding.most / extent),
         middle / extent,
     )
     groups = groups * (MOST_LEVELS + 1) + level

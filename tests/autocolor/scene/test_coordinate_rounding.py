@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from autocolor.scene.coordinate_rounding import EXACT, coordinate_rounding
 
-RANDOM = np.random.default_rng(7).uniform(-3, 3, (30, 3))
+RANDOM = np.random.default_rng(7).uniform(-3, 3, (3, 30))
 LARGEST = float(np.abs(RANDOM).max())
 
 
@@ -27,12 +27,26 @@ def test_numbers_rounded_to_single_precision_are_rounded_by_half_a_unit_in_the_l
 
 @given(st.integers(0, 9), st.integers(0, 1 << 32))
 def test_numbers_with_some_decimals_are_rounded_by_half_a_unit_in_the_last(decimals: int, seed: int) -> None:
-    exact = np.random.default_rng(seed).uniform(-100, 100, (30, 3)) + 0.123456789
+    exact = np.random.default_rng(seed).uniform(-100, 100, (3, 30)) + 0.123456789
     rounding = coordinate_rounding(exact.round(decimals))
     # Whole numbers are numbers in single precision, too.
     expected = 10.0**-decimals / 2 if decimals else 2.0**-24 * np.abs(exact.round()).max()
     assert rounding.most == pytest.approx(expected)
     assert rounding.fraction == (EXACT if decimals else 2.0**-24)
+
+
+def test_if_some_numbers_were_rounded_to_single_precision_all_may_be() -> None:
+    mixed = RANDOM.copy()
+    mixed[:, :10] = mixed[:, :10].astype(np.float32)
+    assert coordinate_rounding(mixed).most == pytest.approx(2.0**-24 * LARGEST)
+    mixed[:, :10] = (0.5, 0.25, 12345.5, 3, 100, 0, -1, -2, 7, 19)
+    assert coordinate_rounding(mixed).most == pytest.approx(EXACT * 12345.5)
+
+
+def test_numbers_that_were_moved_after_they_were_rounded_show_it() -> None:
+    moved = RANDOM.round(6) + np.array([[1 / 3], [0.1], [-5]])
+    assert coordinate_rounding(moved).most == pytest.approx(5e-7)
+    assert not coordinate_rounding(moved * (1 / 3)).known
 
 
 def test_numbers_of_any_size_have_a_rounding() -> None:
