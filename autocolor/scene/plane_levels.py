@@ -66,8 +66,7 @@ def _level(
     corners = np.bincount(patches) * 4.0
     for _ in range(PASSES):
         core = np.flatnonzero(near[patches])
-        part = part_of(found, core)
-        fits = fitted(part, groups[core])
+        fits = fitted(found if len(core) == len(patches) else part_of(found, core), groups[core])
         off = fits.off(found.corners, groups)
         mean = np.bincount(patches, off.sum(axis=0)) / corners
         scatter = np.sqrt(np.bincount(patches, ((off - mean[patches]) ** 2).sum(axis=0)) / corners)
@@ -85,6 +84,9 @@ def _level(
         exact = EXACT * (1 + float(np.abs(middle).max()))
         alike = along[group] & (scattered <= exact)
         least[alike] = np.maximum(rounding.fraction * distances[group[alike]], exact)
+        before = near
         near = np.abs(mean) <= (FACTOR if rounding.known else UNKNOWN) * scattered + FACTOR * least * beside
         near[largest] = True
+        if (near == before).all():
+            break
     return near[patches]

@@ -66,15 +66,15 @@ def unite_in_fitted_planes(
 def _sampled(coordinate_rows: Floats, node_rows: Indices, parents: Indices) -> _Sampled | None:
     """The groups; None if there is none that others may be united with."""
     united = np.flatnonzero(parents != np.arange(len(parents)))
-    order = np.argsort(roots_of(parents, united), kind="stable")
-    united = united[order]
-    roots, first, sizes = np.unique(parents[united], return_index=True, return_counts=True)
-    sizes += 1
+    roots = roots_of(parents, united)
+    counts = np.bincount(roots)
+    roots, sizes = np.flatnonzero(counts), counts[counts > 0] + 1
     uniting = np.flatnonzero(sizes >= LEAST_UNITING)
     if not len(uniting):
         return None
     # Each group begins with its root.
-    polygons = np.insert(united, first, roots)
+    united = united[np.argsort(parents[united], kind="stable")]
+    polygons = np.insert(united, np.cumsum(sizes - 1) - (sizes - 1), roots)
     numbers = np.repeat(np.arange(len(sizes)), sizes)
     # Take every so many polygons of a group, as those with neighboring numbers may lie close together.
     place = np.arange(len(polygons)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
