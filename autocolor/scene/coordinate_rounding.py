@@ -35,7 +35,7 @@ class Rounding(NamedTuple):
 
 
 def coordinate_rounding(coordinate_rows: Floats) -> Rounding:
-    """How much coordinates, (3, n), were rounded: some to 32-bit numbers, all to up to nine decimals, or none.
+    """How coordinates, (3, n), were rounded: some to 32-bit numbers, all to at most nine decimals, or none.
 
     A mesh that was moved after its coordinates were rounded to decimals still shows it.
 

@@ -139,7 +139,7 @@ def plane_cells(coordinate_rows: Floats, node_rows: Indices, tolerance: float) -
 
 
 def cells_of_planes(normals: Floats, distances: Floats, shift: Floats | float = 0.0) -> Numbers:
-    """The hash of the cell of each plane in the grid that is not shifted; its three numbers move by `shift`."""
+    """The hash of the cell of each plane in the first grid, `shift` added to its three numbers."""
     numbers = _numbers(normals, distances).T + shift
     return np.floor(numbers / CELL + SHIFTS[0]).astype(np.int64) @ MIXERS
 

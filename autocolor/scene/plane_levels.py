@@ -22,7 +22,7 @@ PASSES: Final = 3
 """How often a plane is fitted to a level: to its largest patch, and then to all that are near it."""
 
 FACTOR: Final = 4.0
-"""Assumed: the distance of a patch is real if it is so many times its scatter and the rounding of a corner."""
+"""Assumed: the distance of a patch is real if it is so many times its scatter and a corner's rounding."""
 
 UNKNOWN: Final = 32.0
 """Assumed: so many times its scatter, if it isn't known how corners are rounded; measured: with 4, in some of
@@ -52,9 +52,7 @@ def levels(found: Facets, groups: Indices, patches: Indices, rounding: Rounding,
     return result
 
 
-def _level(
-    found: Facets, groups: Indices, patches: Indices, rounding: Rounding, middle: Floats
-) -> Booleans:
+def _level(found: Facets, groups: Indices, patches: Indices, rounding: Rounding, middle: Floats) -> Booleans:
     """Which polygons lie at the level of the largest patch of their group."""
     group = np.empty(int(patches.max()) + 1, np.intp)
     group[patches] = groups

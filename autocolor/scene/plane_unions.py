@@ -1,4 +1,4 @@
-"""Unites groups of polygons whose fitted planes are the same, and polygons with the groups in whose planes they lie.
+"""Unites groups of polygons that lie in one fitted plane, and single polygons with such groups.
 
 A small polygon tells little of the plane it lies in, so that the polygons of a large and finely divided
 ground may be found as several groups. The planes that are fitted to many polygons are far more exact.
@@ -19,8 +19,8 @@ MOST_SAMPLES: Final = 256
 """To how many polygons of a group a plane is fitted at most, when groups are united."""
 
 LEAST_UNITING: Final = 8
-"""Assumed: the plane of a group of fewer polygons is no more exact than that of the widest of them, with which
-all have been compared before."""
+"""Assumed: the plane of a group of fewer polygons is no more exact than that of the widest of them, with
+which all have been compared before."""
 
 ROUNDS: Final = 2
 """Assumed: after two rounds nothing is left that could be united."""
@@ -49,7 +49,7 @@ def unite_in_fitted_planes(
 ) -> None:
     """Unite what lies in one plane; `parents`, as from `coplanar_groups`, is changed in place.
 
-    `cells` has the cell of each polygon in the grid that is not shifted, and `flat` tells which lie in a plane.
+    `cells` has the cell of each polygon in the first grid, and `flat` tells which lie in a plane.
     """
     for _ in range(ROUNDS):
         before = parents.copy()

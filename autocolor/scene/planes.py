@@ -1,9 +1,15 @@
 """Planes that several polygons share and in which they may overlap, such as those of a decal and its ground.
 
 Assumed: polygons lie in one plane if no corner is farther from it than two millionths of the mesh's size,
-which is more than float32, or six decimals, round the corners of a mesh of a unit or more. A polygon
-narrower than a five-hundredth of the mesh may be rounded to too different a plane; it is then left out. Of
-more than 16,384 polygons, one of those that share a plane must be among the 16,384 widest.
+which is more than float32, or six decimals, round the corners of a mesh of a unit or more, and if none of
+their patches is really in front of the others. It is if its corners are all on one side of the plane of the
+others, on average by more than four times their scatter and four times the rounding of a coordinate, which is
+told from the coordinates: half a unit in the last place of float32, or of the decimals they have, or a few of
+float64. Patches exactly along an axis are rounded alike, so that any difference is real.
+
+A polygon narrower than a five-hundredth of the mesh may be rounded to too different a plane; it is then left
+out. Of more than 16,384 polygons, one of those that share a
+plane must be among the 16,384 widest. Coordinates of fewer decimals than six a unit are too coarse.
 
 Polygons that can't overlap are left out, too: those that are one patch in which at most two meet at each
 edge, one on either side, as where a flat side is divided; and patches that lie side by side.
@@ -30,7 +36,6 @@ TOLERANCE: Final = 2e-6
 
 MOST_OFFSET: Final = 4.0
 """Assumed: the tolerance is in proportion to the largest coordinate, as float32 is rounded, up to so much."""
-
 
 DIRECTIONS: Final = 16
 """In how many directions patches may lie apart."""

@@ -9,12 +9,14 @@ from autocolor.scene.plane_fits import fitted, renumbered
 
 def test_a_plane_is_fitted_to_each_group() -> None:
     square = np.array([(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)], np.float64)
-    corners = np.concatenate([square, square + np.array([2, 0, 0]), square[:, [0, 2, 1]] + np.array([0, 3, 0])])
+    corners = np.concatenate(
+        [square, square + np.array([2, 0, 0]), square[:, [0, 2, 1]] + np.array([0, 3, 0])]
+    )
     found = facets(corners.T, np.arange(12).reshape(3, 4).T)
     groups = np.array([0, 0, 1])
     fits = fitted(found, groups)
     assert np.abs(fits.normals.T) == pytest.approx(np.array([(0, 0, 1), (0, 1, 0)]))
-    assert fits.points.T == pytest.approx(np.array([(2, 1, 0), (1, 3, 1)]))
+    assert fits.points == pytest.approx(np.array([(2, 1), (1, 3), (0, 1)]))
     assert fits.widths == pytest.approx([2, 2])
     assert np.abs(fits.off(found.corners, np.array([1, 0, 0]))) == pytest.approx(
         np.array([(3, 0, 0), (3, 0, 0), (1, 0, 2), (1, 0, 2)])

@@ -32,7 +32,7 @@ def found(
         facets((corners @ turn).T, numbers.T), np.zeros(len(numbers), np.intp), patches, rounding, np.zeros(3)
     )
     assert (given_levels[: len(WALL.node_numbers)] == 0).all()
-    return given_levels[len(WALL.node_numbers) :].tolist()
+    return [int(level) for level in given_levels[len(WALL.node_numbers) :]]
 
 
 def turned(seed: int) -> npt.NDArray[np.float64]:
