@@ -52,10 +52,10 @@ def unite_in_fitted_planes(
     `cells` has the cell of each polygon in the first grid, and `flat` tells which lie in a plane.
     """
     for _ in range(ROUNDS):
-        before = parents.copy()
         sampled = _sampled(coordinate_rows, node_rows, parents)
         if sampled is None:
             return
+        before = parents.copy()
         if _unite_groups(coordinate_rows, node_rows, parents, sampled, tolerance):
             sampled = _sampled(coordinate_rows, node_rows, parents) or sampled
         _unite_polygons(coordinate_rows, node_rows, parents, sampled, cells, flat, tolerance)
