@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Numbers, chunks, cross, dot, lengths
+from autocolor.arrays import Booleans, Floats, Indices, Numbers, chunks, cross, dot, lengths
 from autocolor.scene.union_find import unite
 
 CELL: Final = 1 / 256
@@ -69,6 +69,17 @@ def facets(coordinate_rows: Floats, node_rows: Indices) -> Facets:
     return Facets(corners, normals, corners.mean(axis=1), areas, widths)
 
 
+def part_of(found: Facets, rows: Indices | Booleans) -> Facets:
+    """Some of the facets."""
+    return Facets(
+        found.corners[:, :, rows],
+        found.normals[:, rows],
+        found.centers[:, rows],
+        found.areas[rows],
+        found.widths[rows],
+    )
+
+
 def facet_normals(coordinate_rows: Floats, node_rows: Indices) -> Floats:
     """The normals of facets alone, (3, n)."""
     normals = np.empty((3, node_rows.shape[1]))
@@ -77,13 +88,16 @@ def facet_normals(coordinate_rows: Floats, node_rows: Indices) -> Floats:
     return normals
 
 
-def coplanar_groups(coordinate_rows: Floats, node_rows: Indices, tolerance: float) -> Indices:
+def coplanar_groups(
+    coordinate_rows: Floats, node_rows: Indices, grids: Numbers, widths: Floats, tolerance: float
+) -> Indices:
     """Union-find parents of the polygons, those united that seem to lie in one plane.
 
-    Coordinates are around 0 and of at most about 1 in size; corners are exact to the tolerance.
+    Coordinates are around 0 and of at most about 1 in size; corners are exact to the tolerance. `grids` and
+    `widths` are as from `plane_cells`.
     """
     parents = np.arange(node_rows.shape[1])
-    grids, widths = _cells(coordinate_rows, node_rows, tolerance)
+    widths = widths.copy()
     rank = max(len(widths) - MOST_GROUNDS, 0)
     grounds = widths >= np.sort(widths)[rank:][:1]
     left = np.flatnonzero(widths)
@@ -108,7 +122,7 @@ def coplanar_groups(coordinate_rows: Floats, node_rows: Indices, tolerance: floa
     return parents
 
 
-def _cells(coordinate_rows: Floats, node_rows: Indices, tolerance: float) -> tuple[Numbers, Floats]:
+def plane_cells(coordinate_rows: Floats, node_rows: Indices, tolerance: float) -> tuple[Numbers, Floats]:
     """The hash of each polygon's cell in each grid, (grids, polygons), and its width, 0 if it is not flat."""
     keys = np.empty((len(SHIFTS), node_rows.shape[1]), np.int64)
     widths = np.empty(node_rows.shape[1])
@@ -116,14 +130,24 @@ def _cells(coordinate_rows: Floats, node_rows: Indices, tolerance: float) -> tup
         found = facets(coordinate_rows, node_rows[:, chunk])
         offsets = found.corners[:, 0] - found.centers
         warp = np.abs(dot(found.normals, offsets))
-        normals, distances = found.normals, dot(found.normals, found.centers)
-        planes = np.concatenate([normals, distances[None]])
-        numbers = np.stack([dot(normals, form @ planes) for form in FORMS])
+        numbers = _numbers(found.normals, dot(found.normals, found.centers))
         widths[chunk] = np.where(warp <= np.minimum(tolerance, SHARPEST * found.widths), found.widths, 0.0)
         for row, shift in zip(keys, SHIFTS, strict=True):
             cells = np.floor(numbers / CELL + shift).astype(np.int64)
             row[chunk] = MIXERS @ cells
     return keys, widths
+
+
+def cells_of_planes(normals: Floats, distances: Floats, shift: Floats | float = 0.0) -> Numbers:
+    """The hash of the cell of each plane in the first grid, `shift` added to its three numbers."""
+    numbers = _numbers(normals, distances).T + shift
+    return np.floor(numbers / CELL + SHIFTS[0]).astype(np.int64) @ MIXERS
+
+
+def _numbers(normals: Floats, distances: Floats) -> Floats:
+    """The three numbers of each plane, (3, planes)."""
+    planes = np.concatenate([normals, distances[None]])
+    return np.stack([dot(normals, form @ planes) for form in FORMS])
 
 
 def _compared(

@@ -1,9 +1,15 @@
 """Planes that several polygons share and in which they may overlap, such as those of a decal and its ground.
 
 Assumed: polygons lie in one plane if no corner is farther from it than two millionths of the mesh's size,
-which is more than float32, or six decimals, round the corners of a mesh of a unit or more. A polygon
-narrower than a five-hundredth of the mesh may be rounded to too different a plane; it is then left out. Of
-more than 16,384 polygons, one of those that share a plane must be among the 16,384 widest.
+which is more than float32, or six decimals, round the corners of a mesh of a unit or more, and if none of
+their patches is really in front of the others. It is if its corners are all on one side of the plane of the
+others, on average by more than four times their scatter and four times the rounding of a coordinate, which is
+told from the coordinates: half a unit in the last place of float32, or of the decimals they have, or a few of
+float64. Patches exactly along an axis are rounded alike, so that any difference is real.
+
+A polygon narrower than a five-hundredth of the mesh may be rounded to too different a plane; it is then left
+out. Of more than 16,384 polygons, one of those that share a
+plane must be among the 16,384 widest. Coordinates of fewer decimals than six a unit are too coarse.
 
 Polygons that can't overlap are left out, too: those that are one patch in which at most two meet at each
 edge, one on either side, as where a flat side is divided; and patches that lie side by side.
@@ -17,8 +23,12 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot
+from autocolor.scene.coordinate_rounding import coordinate_rounding
 from autocolor.scene.fans import places_of_corners
-from autocolor.scene.plane_cells import SHARPEST, Facets, coplanar_groups, facet_normals, facets
+from autocolor.scene.plane_cells import SHARPEST, coplanar_groups, facet_normals, facets, plane_cells
+from autocolor.scene.plane_fits import fitted, renumbered
+from autocolor.scene.plane_levels import MOST_LEVELS, levels
+from autocolor.scene.plane_unions import unite_in_fitted_planes
 from autocolor.scene.union_find import group_numbers, unite
 
 TOLERANCE: Final = 2e-6
@@ -26,7 +36,6 @@ TOLERANCE: Final = 2e-6
 
 MOST_OFFSET: Final = 4.0
 """Assumed: the tolerance is in proportion to the largest coordinate, as float32 is rounded, up to so much."""
-
 
 DIRECTIONS: Final = 16
 """In how many directions patches may lie apart."""
@@ -66,7 +75,10 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     scaled = (coordinate_rows - middle[:, None]) / extent
 
     # Find groups of polygons that seem to lie in one plane, and sort the polygons by group.
-    groups = group_numbers(coplanar_groups(scaled, node_rows, tolerance))
+    grids, widths = plane_cells(scaled, node_rows, tolerance)
+    parents = coplanar_groups(scaled, node_rows, grids, widths, tolerance)
+    unite_in_fitted_planes(scaled, node_rows, parents, grids[0], widths > 0, tolerance)
+    groups = group_numbers(parents)
     polygons = np.flatnonzero(np.bincount(groups).take(groups) > 1)
     polygons = polygons[np.argsort(groups[polygons], kind="stable")]
     groups = groups[polygons]
@@ -75,12 +87,27 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     first = np.searchsorted(groups, groups)
     turned = dot(normals, np.take(normals, first, axis=1)) < 0
     places = places_of_corners(coordinate_rows, node_rows[:, polygons])
-    _, several = _patches(places, groups, turned)
-    polygons, groups, places = polygons[several], groups[several], places[:, several]
+    patches, several = _patches(places, groups, turned)
+    polygons, groups, places = polygons[several], renumbered(groups[several]), places[:, several]
+    # Take those apart that lie in front of each other.
+    rounding = coordinate_rounding(np.take(coordinate_rows, node_rows[:, polygons].ravel(), axis=1))
+    level = levels(
+        facets(scaled, node_rows[:, polygons]),
+        groups,
+        patches[several],
+        rounding._replace(most=rounding.most / extent),
+        middle / extent,
+    )
+    groups = groups * (MOST_LEVELS + 1) + level
+    order = np.argsort(groups, kind="stable")
+    polygons, groups, places = polygons[order], groups[order], places[:, order]
     # Drop those that are too far from the plane of the others, or lie beside all of them.
     for beside in (False, True, False):
         found = facets(scaled, node_rows[:, polygons])
-        normals, _, off = _fitted(found, groups)
+        groups = renumbered(groups)
+        fits = fitted(found, groups)
+        normals = fits.normals[:, groups]
+        off = np.abs(fits.off(found.corners, groups)).max(axis=0)
         kept = off <= np.minimum(tolerance, SHARPEST * found.widths)
         if beside:
             patches, several = _patches(places, groups, dot(found.normals, normals) < 0)
@@ -91,41 +118,21 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
             return None
 
     found = facets(scaled, node_rows[:, polygons])
-    normals, points, off = _fitted(found, groups)
-    numbers = _renumbered(groups)
-    first = np.flatnonzero(np.diff(numbers, prepend=-1))
+    groups = renumbered(groups)
+    fits = fitted(found, groups)
+    off = np.abs(fits.off(found.corners, groups)).max(axis=0)
+    first = np.flatnonzero(np.diff(groups, prepend=-1))
     plane_of_polygon = np.full(node_rows.shape[1], -1, np.intp)
-    plane_of_polygon[polygons] = numbers
+    plane_of_polygon[polygons] = groups
     turned = np.zeros(node_rows.shape[1], np.bool_)
-    turned[polygons] = dot(found.normals, normals) < 0
+    turned[polygons] = dot(found.normals, fits.normals[:, groups]) < 0
     return SharedPlanes(
-        normals[:, first],
-        points[:, first] * extent + middle[:, None],
+        fits.normals,
+        fits.points * extent + middle[:, None],
         np.maximum.reduceat(off, first) * extent,
         plane_of_polygon,
         turned,
     )
-
-
-def _renumbered(groups: Indices) -> Indices:
-    """Sorted group numbers without gaps."""
-    numbers: Indices = np.cumsum(np.diff(groups, prepend=groups[:1]) != 0)
-    return numbers
-
-
-def _fitted(found: Facets, groups: Indices) -> tuple[Floats, Floats, Floats]:
-    """For each facet the normal and a point of the plane fitted to its group, and how far it is off."""
-    numbers = _renumbered(groups)
-    if not len(numbers):
-        return found.normals, found.centers, found.areas
-    first = np.flatnonzero(np.diff(numbers, prepend=-1))
-    weights = found.areas / np.add.reduceat(found.areas, first)[numbers]
-    points = np.add.reduceat(weights * found.centers, first, axis=1)[:, numbers]
-    away = found.corners - points[:, None]
-    spread = np.add.reduceat(np.einsum("n,icn,jcn->nij", weights, away, away), first, axis=0)
-    # The normal is the direction in which the corners spread least.
-    normals: Floats = np.linalg.eigh(spread)[1][:, :, 0].T[:, numbers]
-    return normals, points, np.abs(np.einsum("in,icn->cn", normals, away)).max(axis=0)
 
 
 def _patches(places: Indices, groups: Indices, turned: Booleans) -> tuple[Indices, Booleans]:

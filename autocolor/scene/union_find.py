@@ -19,7 +19,7 @@ def unite(parents: Indices, one: Indices, other: Indices) -> None:
     """Unite the groups of each pair of items; `parents` is changed in place."""
     while len(one):
         # Drop the pairs that are in one group by now.
-        one, other = _roots(parents, np.concatenate([one, other])).reshape(2, -1)
+        one, other = roots_of(parents, np.concatenate([one, other])).reshape(2, -1)
         apart = np.flatnonzero(one != other)
         one, other = np.take(one, apart), np.take(other, apart)
         # Make the lower root the parent of the higher one. Where several pairs share the higher root, the
@@ -34,11 +34,11 @@ def group_numbers(parents: Indices) -> Indices:
     groups = np.empty_like(parents)
     for chunk in chunks(len(parents), AT_ONCE):
         items = np.arange(chunk.start, chunk.stop)
-        groups[items] = numbers[_roots(parents, items)]
+        groups[items] = numbers[roots_of(parents, items)]
     return groups
 
 
-def _roots(parents: Indices, items: Indices) -> Indices:
+def roots_of(parents: Indices, items: Indices) -> Indices:
     """The root of each item, which becomes its parent (path compression)."""
     ancestors = np.take(parents, items)
     while True:

@@ -15,13 +15,15 @@ from autocolor.arrays import Booleans, Floats, Indices
 from autocolor.scene.planes import SharedPlanes
 from autocolor.visibility.camera_space import CameraPolygons, rotated
 
-MOST_OFF: Final = 1e-3
+MOST_OFF: Final = 0.05
 """Assumed: how far a plane's depth may be from that of its polygons' corners, as a fraction.
 
 A plane that is seen so nearly edge-on that they differ by more is not used; its polygons keep their own
-depths.
+depths, so that a decal may be torn or hidden there: the eye is then within 20 times the rounding of the
+corners from the plane. Where they differ by less the plane itself is no farther from its corners than they
+are rounded. Measured: from 2e-6 to 2e-3 above a ground of size 1, 27 decals of 2,061 were torn with 0.001,
+and 10 of 2,031 with 0.05; by ray casting no more polygons were seen that are behind others.
 """
-
 
 ROUNDING: Final = 1e-12
 """In units, far above the rounding of the distance of a plane from the eye."""

@@ -1,14 +1,22 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.scene import plane_cells as room
-from autocolor.scene.plane_cells import coplanar_groups, facets
+from autocolor.scene.plane_cells import coplanar_groups, facets, plane_cells
 from autocolor.scene.union_find import group_numbers
 from tests.autocolor.meshes import decal_on_ground
+
+
+def groups_of(
+    rows: npt.NDArray[np.float64], node_rows: npt.NDArray[np.intp], tolerance: float
+) -> npt.NDArray[np.intp]:
+    grids, widths = plane_cells(rows, node_rows, tolerance)
+    return group_numbers(coplanar_groups(rows, node_rows, grids, widths, tolerance))
 
 
 def test_the_width_of_a_facet_is_across_the_longer_diagonal_or_the_longer_of_two_sides() -> None:
@@ -31,20 +39,20 @@ def test_parallel_planes_in_one_cell_are_told_apart(seed: int, at_once: int) -> 
     numbers = np.concatenate([mesh.node_numbers + layer * nodes for layer in range(len(heights))])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(room, "POLYGONS_AT_ONCE", at_once)
-        groups = group_numbers(coplanar_groups(layers, numbers.T, 2e-6))
+        groups = groups_of(layers, numbers.T, 2e-6)
     assert groups.tolist() == np.repeat([0, 1, 2], count).tolist()
 
 
 def test_polygons_without_area_and_warped_ones_stay_alone() -> None:
     corners = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 1, 0.1)], np.float64)
     numbers = np.array([(0, 1, 2, 3), (0, 1, 2, 4), (0, 1, 1, 1), (0, 1, 2, 2)])
-    assert group_numbers(coplanar_groups(corners.T, numbers.T, 1e-6)).tolist() == [0, 1, 2, 0]
+    assert groups_of(corners.T, numbers.T, 1e-6).tolist() == [0, 1, 2, 0]
 
 
 def test_only_the_widest_polygons_are_grounds() -> None:
     mesh, _ = decal_on_ground(3)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(room, "MOST_GROUNDS", 1)
-        groups = group_numbers(coplanar_groups((mesh.coordinates / 8).T, mesh.node_numbers.T, 2e-6))
+        groups = groups_of((mesh.coordinates / 8).T, mesh.node_numbers.T, 2e-6)
     # All lie in the plane of the widest.
     assert groups.tolist() == [0] * len(groups)

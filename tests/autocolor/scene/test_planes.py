@@ -88,9 +88,18 @@ def test_a_polygon_folded_over_its_neighbor_shares_its_plane() -> None:
     assert folded.plane_of_polygon.tolist() == [0, 0]
 
 
-@pytest.mark.parametrize(("height", "shares"), [(0.0, True), (1e-6, True), (1e-5, False), (1e-3, False)])
+@pytest.mark.parametrize(("height", "shares"), [(0.0, True), (1e-9, False), (1e-6, False), (1e-3, False)])
 def test_a_decal_just_above_its_ground_has_a_plane_of_its_own(height: float, shares: bool) -> None:
     assert (found(GROUND, shifted(DECAL, 0, height, 0)) is not None) == shares
+
+
+@pytest.mark.parametrize(("height", "shares"), [(0.0, True), (1e-6, True), (1e-5, False)])
+def test_a_decal_no_farther_from_its_ground_than_both_are_rounded_shares_its_plane(
+    height: float, shares: bool
+) -> None:
+    mesh = Mesh.joined([GROUND, shifted(DECAL, 0, height, 0)])
+    turn, _ = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))
+    assert (moved(mesh, (mesh.coordinates @ turn).round(6)).shared_planes is not None) == shares
 
 
 @pytest.mark.parametrize("sides", [12, 100, 1000])
@@ -147,6 +156,26 @@ def test_a_mesh_without_polygons_or_without_extent_has_no_shared_planes() -> Non
     assert shared_planes(np.ones((3, 3)), np.array([[0, 1, 2, 2], [0, 1, 2, 2]])) is None
 
 
+@pytest.mark.parametrize("distance", [1e-5, 1e-4, 2e-4, 1.9e-3])
+@pytest.mark.parametrize("turn", [np.eye(3), np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]])
+def test_posters_in_front_of_a_wall_in_a_large_scene_have_a_plane_of_their_own(
+    distance: float, turn: npt.NDArray[np.float64]
+) -> None:
+    wall = grid(2, 2, (-10, 0, -10), (20, 0, 0), (0, 0, 20), "wall")
+    posters = [grid(1, 1, (x, -distance, x), (1, 0, 0), (0, 0, 1), f"poster {x}") for x in (-5, 0, 3)]
+    far = grid(1, 1, (-500, -500, -30), (1000, 0, 0), (0, 1000, 0), "ground")
+    mesh = Mesh.joined([*posters, wall, far])
+    mesh = moved(mesh, mesh.coordinates @ turn)
+    assert mesh.shared_planes is None
+    # Decals on the posters share their plane, and not that of the wall.
+    decals = [shifted(poster, 0.1, 0, 0.1) for poster in posters]
+    mesh = Mesh.joined([*posters, *decals, wall, far])
+    shared = moved(mesh, mesh.coordinates @ turn).shared_planes
+    assert shared is not None
+    assert (shared.plane_of_polygon[6:] < 0).all()
+    assert (shared.plane_of_polygon[:6] >= 0).all()
+
+
 def test_a_third_polygon_at_an_edge_shares_the_plane_of_the_two_others() -> None:
     # Two halves of a square, and a smaller triangle at their diagonal.
     corners = np.array([(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1), (0.4, 0, 0.6)], np.float64)
@@ -156,3 +185,22 @@ def test_a_third_polygon_at_an_edge_shares_the_plane_of_the_two_others() -> None
         assert shared is not None
         over = shared.plane_of_polygon[np.argsort(order)].tolist()
         assert over[1:] == [0, 0]
+
+
+@pytest.mark.parametrize("seed", [19, 31, 35, 48])
+def test_a_finely_divided_ground_with_decals_is_one_plane(seed: int) -> None:
+    # No polygon is large enough to tell the plane of all others, and corners are rounded to float32.
+    random = np.random.default_rng(seed)
+    flat = grid(170, 170, (-1, -1, 0), (2, 0, 0), (0, 2, 0), "ground")
+    moves = random.uniform(-0.4, 0.4, (len(flat.coordinates), 2)) * (2 / 170)
+    ground = moved(flat, flat.coordinates + np.c_[moves, np.zeros(len(moves))])
+    decals = [
+        grid(1, 1, (x, y, 0), (0.02, 0.002 * k, 0), (-0.002 * k, 0.02, 0), f"decal {k}")
+        for k, (x, y) in enumerate(random.uniform(-0.8, 0.8, (40, 2)))
+    ]
+    mesh = Mesh.joined([ground, *decals])
+    turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    rounded = (mesh.coordinates @ turn + random.normal(size=3)).astype(np.float32).astype(np.float64)
+    shared = moved(mesh, rounded).shared_planes
+    assert shared is not None
+    assert set(shared.plane_of_polygon.tolist()) == {0}
