@@ -20,7 +20,7 @@ from autocolor.errors import InputError
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.columns.value_kinds import Number
 from autocolor.scene.node_normals import CREASE_ANGLE, NodeNormals, node_normals
-from autocolor.scene.planes import SharedPlanes, shared_planes
+from autocolor.scene.planes.shared_planes import SharedPlanes, shared_planes
 
 CREASE_ANGLES: Final = Number(at_least=0, at_most=180)
 """The crease angles that there may be, in degrees."""

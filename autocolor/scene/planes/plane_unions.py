@@ -11,8 +11,15 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, Numbers, chunks, dot
-from autocolor.scene.plane_cells import CELL, MOST_PLANES, POLYGONS_AT_ONCE, SHARPEST, cells_of_planes, facets
-from autocolor.scene.plane_fits import Fits, fitted
+from autocolor.scene.planes.plane_cells import (
+    CELL,
+    MOST_PLANES,
+    POLYGONS_AT_ONCE,
+    SHARPEST,
+    cells_of_planes,
+    facets,
+)
+from autocolor.scene.planes.plane_fits import Fits, fitted
 from autocolor.scene.union_find import roots_of, unite
 
 MOST_SAMPLES: Final = 256

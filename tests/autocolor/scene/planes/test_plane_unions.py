@@ -4,8 +4,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from autocolor.scene.plane_cells import plane_cells
-from autocolor.scene.plane_unions import unite_in_fitted_planes
+from autocolor.scene.planes.plane_cells import plane_cells
+from autocolor.scene.planes.plane_unions import unite_in_fitted_planes
 from autocolor.scene.union_find import group_numbers
 from tests.autocolor.meshes import grid
 

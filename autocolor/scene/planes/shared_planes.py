@@ -23,12 +23,12 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot
-from autocolor.scene.coordinate_rounding import coordinate_rounding
 from autocolor.scene.fans import places_of_corners
-from autocolor.scene.plane_cells import SHARPEST, coplanar_groups, facet_normals, facets, plane_cells
-from autocolor.scene.plane_fits import fitted, renumbered
-from autocolor.scene.plane_levels import MOST_LEVELS, levels
-from autocolor.scene.plane_unions import unite_in_fitted_planes
+from autocolor.scene.planes.coordinate_rounding import coordinate_rounding
+from autocolor.scene.planes.plane_cells import SHARPEST, coplanar_groups, facet_normals, facets, plane_cells
+from autocolor.scene.planes.plane_fits import fitted, renumbered
+from autocolor.scene.planes.plane_levels import MOST_LEVELS, levels
+from autocolor.scene.planes.plane_unions import unite_in_fitted_planes
 from autocolor.scene.union_find import group_numbers, unite
 
 TOLERANCE: Final = 2e-6
