@@ -73,23 +73,26 @@ def scene_of(
     if found:
         raise RowError(found)
     material_of_part = material_of_part or {}
-    of_material = {surface.name: surface for surface in materials}
+    used = set(material_of_part.values())
+    names = {row.name for row in rows} | used
+    shared = SHARED
+    while shared in used:
+        shared += " for all others"
+    of_material = {surface.name: surface for surface in materials if surface.name != shared}
     if surfaces == PARTS:
         # A part's own surface is like that of its material.
         of_part = {name: of_material.get(material_of_part.get(name, "")) for name in mesh.part_names}
-        of_material = {name: surface.replace(name=name) for name, surface in of_part.items() if surface}
+        others = {name: surface for name, surface in of_material.items() if name not in of_part}
+        of_own = {name: surface.replace(name=name) for name, surface in of_part.items() if surface}
+        of_material = {**others, **of_own}
         material_of_part = {name: name for name in mesh.part_names}
     own = {surface.name for surface in given}
-    shared = SHARED
-    while shared in material_of_part.values():
-        shared += " for all others"
     rows = tuple(
         row.replace(surface=row.name if row.name in own else material_of_part.get(row.name, shared))
         if row.surface == UNASSIGNED
         else row
         for row in rows
     )
-    names = {row.name for row in rows} | set(material_of_part.values())
     rows, table = _with_created(rows, given, of_material, names, shared)
     coordinates = object_coordinates(mesh, rows)
     if view is None:
@@ -147,10 +150,8 @@ def _with_created(
     wanted = dict.fromkeys(row.surface for row in rows if row.surface in names or row.surface == shared)
     missing = [name for name in wanted if name not in table]
     for name in missing[: max(MOST_SURFACES - len(given), 0)]:
-        if name == shared:
-            table[name] = created_surface(name)
-        else:
-            table[name] = of_material.get(name) or created_surface(name, color_in_turn(len(table)))
+        color = None if name == shared else color_in_turn(len(table))
+        table[name] = of_material.get(name) or created_surface(name, color)
     if len(table) == MOST_SURFACES:
         # Further parts share the last surface.
         last = next(reversed(table))

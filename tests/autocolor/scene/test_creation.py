@@ -173,9 +173,10 @@ def test_every_part_has_the_first_surface_that_there_is(
     assert names_of(scene.surfaces)[: len(first)] == first
     assert created == [name for name in dict.fromkeys(surfaces_of_parts(scene)) if name not in first]
     for surface in scene.surfaces:
-        material = material_of_part.get(surface.name) if surfaces == "parts" else surface.name
+        is_own = surfaces == "parts" and surface.name in part_names
+        material = material_of_part.get(surface.name) if is_own else surface.name
         described = material in ("red", "surface")
-        if surfaces != "parts" and material == "surface":
+        if not is_own and material == "surface":
             described = "surface" in material_of_part.values()
         assert surface.levels == (99 if surface.name in first else 77 if described else None)
 
