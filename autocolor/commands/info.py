@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from autocolor.commands.scenes import Surfaces, ended, read, scene_options
+from autocolor.commands.scenes import ended, read, scene_options
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
+    from autocolor.scene.creation import SurfaceSource
 
 EXAMPLES: Final = """\b
 Examples:
@@ -26,7 +27,7 @@ Examples:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
 def info(
-    context: click.Context, scene: str, as_json: bool, up: str, surfaces: Surfaces, strict: bool
+    context: click.Context, scene: str, as_json: bool, up: str, surfaces: SurfaceSource, strict: bool
 ) -> None:
     """Print the nodes, polygons, edges, parts, surfaces, lights, view and intensities of SCENE."""
     report = read(scene, up, surfaces)

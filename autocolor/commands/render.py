@@ -5,13 +5,16 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
-from autocolor.commands.scenes import Surfaces, ended, read, scene_options
+from autocolor.commands.scenes import ended, read, scene_options
 from autocolor.commands.settings import created_again, with_settings
+
+if TYPE_CHECKING:
+    from autocolor.scene.creation import SurfaceSource
 
 EXAMPLES: Final = """\b
 Examples:
@@ -65,7 +68,7 @@ def render(
     hold_exposure: bool,
     force: bool,
     up: str,
-    surfaces: Surfaces,
+    surfaces: SurfaceSource,
     strict: bool,
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""

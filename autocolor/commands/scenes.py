@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
+    from autocolor.scene.creation import SurfaceSource
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-
-Surfaces = Literal["materials", "parts"]
-"""Where the surfaces of parts come from that none is given for."""
 
 REPAIRED: Final = 1
 """The exit code of a command that succeeds with --strict although something was skipped or repaired."""
@@ -43,7 +41,7 @@ def scene_options(command: Command) -> Command:
     return command
 
 
-def read(path: str, up: str, surfaces: Surfaces) -> SceneReport:
+def read(path: str, up: str, surfaces: SurfaceSource) -> SceneReport:
     """Read a scene, and print a line on stderr for each repair."""
     from autocolor.files.scene_sources import read_scene_with_report
 

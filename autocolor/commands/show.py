@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.scenes import Surfaces, ended, read, scene_options
+from autocolor.commands.scenes import ended, read, scene_options
+
+if TYPE_CHECKING:
+    from autocolor.scene.creation import SurfaceSource
 
 EXAMPLES: Final = """\b
 Examples:
@@ -19,7 +22,9 @@ Examples:
 @scene_options
 @click.option("--to", "address", required=True, metavar="tcp://HOST:PORT", help="Address of the display.")
 @click.pass_context
-def show(context: click.Context, scene: str, address: str, up: str, surfaces: Surfaces, strict: bool) -> None:
+def show(
+    context: click.Context, scene: str, address: str, up: str, surfaces: SurfaceSource, strict: bool
+) -> None:
     """Render SCENE and show it on the display that listens at an address, such as `ramtek serve`."""
     from autocolor.studio import Studio
     from ramtek_emu import TcpPort, instructions

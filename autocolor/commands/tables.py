@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.scenes import Surfaces, ended, read, scene_options
+from autocolor.commands.scenes import ended, read, scene_options
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
+    from autocolor.scene.creation import SurfaceSource
 
 EXAMPLES: Final = """\b
 Examples:
@@ -33,7 +34,7 @@ def tables(
     force: bool,
     as_json: bool,
     up: str,
-    surfaces: Surfaces,
+    surfaces: SurfaceSource,
     strict: bool,
 ) -> None:
     """Print the parts, surfaces, lights and view of SCENE as a scene file, including those created for it."""

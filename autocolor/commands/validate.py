@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.scenes import Surfaces, ended, read, scene_options
+from autocolor.commands.scenes import ended, read, scene_options
 from autocolor.errors import InputError
+
+if TYPE_CHECKING:
+    from autocolor.scene.creation import SurfaceSource
 
 EXAMPLES: Final = """\b
 Examples:
@@ -22,7 +25,7 @@ Examples:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
 def validate(
-    context: click.Context, scene: str, as_json: bool, up: str, surfaces: Surfaces, strict: bool
+    context: click.Context, scene: str, as_json: bool, up: str, surfaces: SurfaceSource, strict: bool
 ) -> None:
     """List every problem of SCENE and every repair. The exit code is 65 if there is a problem."""
     try:

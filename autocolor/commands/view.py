@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.scenes import Surfaces, ended, read, scene_options
+from autocolor.commands.scenes import ended, read, scene_options
 
 if TYPE_CHECKING:
+    from autocolor.scene.creation import SurfaceSource
     from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = """\b
@@ -28,7 +29,7 @@ def view(
     context: click.Context,
     scene: str,
     up: str,
-    surfaces: Surfaces,
+    surfaces: SurfaceSource,
     strict: bool,
     full_screen: bool,
     fit: bool,

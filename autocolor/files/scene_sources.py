@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
 
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
@@ -26,7 +25,7 @@ from autocolor.files.scenes.formats import (
     scene_suffixes,
 )
 from autocolor.files.scenes.scene_report import SceneReport, scene_report
-from autocolor.scene.creation import MATERIALS, PARTS
+from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.scene import Scene
 
 PathLike = str | os.PathLike[str]
@@ -38,7 +37,7 @@ def read_scene(
     strict: bool = False,
     up: str = "z",
     outside: bool = False,
-    surfaces: Literal["materials", "parts"] = MATERIALS,
+    surfaces: SurfaceSource = MATERIALS,
 ) -> Scene:
     """The scene of a folder, a scene file (.toml), a mesh file (.obj) or a picture file (.npz).
 
@@ -61,7 +60,7 @@ def read_scene_with_report(
     *,
     up: str = "z",
     outside: bool = False,
-    surfaces: Literal["materials", "parts"] = MATERIALS,
+    surfaces: SurfaceSource = MATERIALS,
 ) -> SceneReport:
     """Like `read_scene`, but also returns messages about what was repaired, skipped and created."""
     if up not in UPS:
@@ -113,9 +112,7 @@ def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
     return path, found
 
 
-def _bare_mesh(
-    files: Mapping[str, Path], name: str, up: str, surfaces: Literal["materials", "parts"]
-) -> SceneReport:
+def _bare_mesh(files: Mapping[str, Path], name: str, up: str, surfaces: SurfaceSource) -> SceneReport:
     """The scene of a mesh, with everything else created from defaults."""
     read = read_mesh(files, up=up)
     entry = {**{key: file.name for key, file in files.items()}, "up": up}

@@ -33,15 +33,17 @@ SHARED: Final = "surface"
 UNASSIGNED: Final = "\0"
 """The surface of a part until one is found for it; no name has this character."""
 
+SurfaceSource = Literal["materials", "parts"]
+"""Where the surfaces of parts come from that none is given for: from their materials, or each has its own."""
+
 MATERIALS: Final = "materials"
 PARTS: Final = "parts"
-"""Where the surfaces of parts come from that none is given for: from their materials, or each has its own."""
 
 
 def scene_of(
     mesh: Mesh,
     *,
-    surfaces: Sequence[Row] | Literal["materials", "parts"] = MATERIALS,
+    surfaces: Sequence[Row] | SurfaceSource = MATERIALS,
     parts: Mapping[str, PartChanges] | None = None,
     surface_of_part: Mapping[str, str] | None = None,
     material_of_part: Mapping[str, str] | None = None,

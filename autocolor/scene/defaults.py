@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, bounds_of, chunks
+from autocolor.arrays import Floats, Indices, bounds_of, chunks
 from autocolor.checks import Color
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
@@ -71,10 +71,20 @@ unlit side would be black. With a straight line eight of the meshes break a boun
 
 def object_coordinates(mesh: Mesh, parts: Sequence[Part]) -> Floats:
     """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage, if any."""
-    of_object = [number for number in mesh.parts_in_use if not parts[number].stage]
-    if not of_object or len(of_object) == len(mesh.parts_in_use):
-        return mesh.used_coordinates
-    return mesh.coordinates_of_parts(of_object)
+    numbers = _object_parts(mesh, parts)
+    return mesh.used_coordinates if numbers is None else mesh.coordinates_of_parts(numbers)
+
+
+def object_bounds(mesh: Mesh, parts: Sequence[Part]) -> tuple[Floats, Floats]:
+    """The least and the largest coordinates of the object, (3,) each; the mesh keeps those of all parts."""
+    numbers = _object_parts(mesh, parts)
+    return mesh.bounds if numbers is None else bounds_of(mesh.coordinates_of_parts(numbers))
+
+
+def _object_parts(mesh: Mesh, parts: Sequence[Part]) -> Sequence[int] | None:
+    """The part numbers of the object; None for all."""
+    numbers = [number for number in mesh.parts_in_use if not parts[number].stage]
+    return numbers if 0 < len(numbers) < len(mesh.parts_in_use) else None
 
 
 def default_surface(name: str, number: int) -> Surface:
@@ -114,9 +124,10 @@ def framed(view: View, coordinates: Floats, filled: float = FILLED) -> View:
     Paper: Figure 5, RESCALE.
     """
     axes = view.axes
-    center, radius = sphere_around(coordinates)
+    low, high = bounds_of(coordinates)
+    center, radius = _sphere_around(low, high)
     points = coordinates.T
-    if _is_a_point(*bounds_of(coordinates)):
+    if _is_a_point(low, high):
         points = center[:, None] + radius * np.array([[-0.5, 0.5]] * 3)
 
     # For an eye moved by `shift` and moved back by `distance`, a point is within the picture if
@@ -148,23 +159,29 @@ def _centering_shifts(
     Each step solves for the two points that are then at the borders; no more than a few are needed.
     """
     for _ in range(MOST_STEPS):
-        # The point that is farthest to either side, per axis: its screen coordinate, place and depth.
-        borders = np.full((2, 2, 3), np.nan)
+        # Find the points at the four borders of each chunk, and those that are at the borders of all.
+        places = []
         for chunk in chunks(points.shape[1], POINTS_AT_ONCE):
             camera_points = axes @ (points[:, chunk] - center[:, None])
-            depth = camera_points[2] + distance
-            for axis in (0, 1):
-                on_screen = (camera_points[axis] - shifts[axis]) / depth
-                for side, row in ((0, int(on_screen.argmin())), (1, int(on_screen.argmax()))):
-                    known = borders[axis, side, 0]
-                    if not (known <= on_screen[row] if side == 0 else known >= on_screen[row]):
-                        borders[axis, side] = on_screen[row], camera_points[axis, row], depth[row]
-        weights = 1 / borders[..., 2]
-        centered = (borders[..., 1] * weights).sum(axis=1) / weights.sum(axis=1)
+            places.append(
+                np.take(camera_points, _at_borders(camera_points, distance, shifts).ravel(), axis=1)
+            )
+        camera_points = np.concatenate(places, axis=1)
+        at_borders = _at_borders(camera_points, distance, shifts)
+        # Of both points of an axis the screen coordinates shall be opposite.
+        weights = 1 / (camera_points[2].take(at_borders) + distance)
+        across = camera_points[[[0], [1]], at_borders]
+        centered = (across * weights).sum(axis=1) / weights.sum(axis=1)
         if (np.abs(centered - shifts) <= 1e-9 * distance).all():
             break
         shifts = centered
     return shifts
+
+
+def _at_borders(camera_points: Floats, distance: float, shifts: Floats) -> Indices:
+    """The points, columns, that are farthest left and right, and farthest up and down: (2, 2)."""
+    on_screen = (camera_points[:2] - shifts[:, None]) / (camera_points[2] + distance)
+    return np.stack([on_screen.argmin(axis=1), on_screen.argmax(axis=1)], axis=1)
 
 
 def _is_a_point(low: Floats, high: Floats) -> bool:
@@ -172,9 +189,8 @@ def _is_a_point(low: Floats, high: Floats) -> bool:
     return float((high - low).max()) <= POINT * float(np.abs([low, high]).max())
 
 
-def sphere_around(coordinates: Floats) -> tuple[Floats, float]:
+def _sphere_around(low: Floats, high: Floats) -> tuple[Floats, float]:
     """The center and radius of a sphere around an object; one treated as a point gets some room."""
-    low, high = bounds_of(coordinates)
     if _is_a_point(low, high):
         return (low + high) / 2, max(1.0, 1e3 * POINT * float(np.abs([low, high]).max()))
     # Scale by the largest extent first, as the squares of very small extents underflow.
@@ -188,7 +204,7 @@ def default_lights(coordinates: Floats, view: View) -> tuple[Light, ...]:
     As seen from the eye, the key light is at the upper left, the fill light at the right, the top light above
     and the rim light behind, as around a car in a photographer's studio (Paper: "Light Controls").
     """
-    center, radius = sphere_around(coordinates)
+    center, radius = _sphere_around(*bounds_of(coordinates))
     right, down, forward = view.axes
     if abs(forward[2]) > 0.99:
         up, away = -down, forward

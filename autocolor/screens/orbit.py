@@ -7,8 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, bounds_of
+from autocolor.arrays import Floats
 from autocolor.checks import Vector
+from autocolor.scene.defaults import object_bounds
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 
@@ -54,7 +55,7 @@ def target_of(scene: Scene) -> Floats:
     view = scene.view
     if view.target is not None:
         return np.array(view.target)
-    low, high = bounds_of(scene.object_coordinates)
+    low, high = object_bounds(scene.mesh, scene.parts)
     eye = np.array(view.eye)
     forward = view.axes[2]
     depth = float(((low + high) / 2 - eye) @ forward)

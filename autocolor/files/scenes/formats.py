@@ -14,13 +14,15 @@ from typing import Final, Protocol
 from autocolor.files.modules import import_modules_of
 from autocolor.files.reading import read_head
 from autocolor.files.scenes.scene_report import SceneReport
-from autocolor.scene.creation import MATERIALS
+from autocolor.scene.creation import MATERIALS, SurfaceSource
 
 
 class SceneReader(Protocol):
     """A function that reads a scene."""
 
-    def __call__(self, path: Path, *, outside: bool = False, surfaces: str = MATERIALS) -> SceneReport:
+    def __call__(
+        self, path: Path, *, outside: bool = False, surfaces: SurfaceSource = MATERIALS
+    ) -> SceneReport:
         """The scene of a file. With `outside`, it may name files outside its folder. Raises InputError.
 
         `surfaces` tells where the surfaces of parts come from that the file names none for.

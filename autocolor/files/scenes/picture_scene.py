@@ -8,10 +8,12 @@ from typing import Final
 from autocolor.files.picture_file import read_picture
 from autocolor.files.scenes.formats import SceneFormat, register
 from autocolor.files.scenes.scene_report import SceneReport
-from autocolor.scene.creation import MATERIALS
+from autocolor.scene.creation import MATERIALS, SurfaceSource
 
 
-def read_picture_scene(path: Path, *, outside: bool = False, surfaces: str = MATERIALS) -> SceneReport:
+def read_picture_scene(
+    path: Path, *, outside: bool = False, surfaces: SurfaceSource = MATERIALS
+) -> SceneReport:
     """The scene of a picture file, which is complete: the options have no effect. Raises InputError."""
     return SceneReport(read_picture(path).scene)
 

@@ -26,7 +26,7 @@ from autocolor.scene.changes import PartChanges
 from autocolor.scene.columns.column import SomeRow, fields_of, keys_of
 from autocolor.scene.columns.problems import REFUSED, Problem, RowError, unknown
 from autocolor.scene.columns.rows import changed, made
-from autocolor.scene.creation import MATERIALS
+from autocolor.scene.creation import MATERIALS, SurfaceSource
 from autocolor.scene.defaults import MAPPING_FIELDS, default_surface
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
@@ -45,7 +45,7 @@ TABLES: Final = ("mesh", "parts", "surfaces")
 """The keys that cannot be read one by one, as they refer to each other."""
 
 
-def read_scene_file(path: Path, *, outside: bool = False, surfaces: str = MATERIALS) -> SceneReport:
+def read_scene_file(path: Path, *, outside: bool = False, surfaces: SurfaceSource = MATERIALS) -> SceneReport:
     """The scene of a scene file, and what was repaired and created.
 
     With `outside`, mesh files may be outside the scene's folder; `surfaces` is as in `read_scene`. Raises

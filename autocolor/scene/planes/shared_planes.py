@@ -8,8 +8,8 @@ told from the coordinates: half a unit in the last place of float32, or of the d
 float64. Patches exactly along an axis are rounded alike, so that any difference is real.
 
 A polygon narrower than a five-hundredth of the mesh may be rounded to too different a plane; it is then left
-out. Of more than 16,384 polygons, one of those that share a
-plane must be among the 16,384 widest. Coordinates of fewer decimals than six a unit are too coarse.
+out. Of more than 16,384 polygons, one of those that share a plane must be among the 16,384 widest.
+Coordinates of fewer decimals than six a unit are too coarse.
 
 Polygons that can't overlap are left out, too: those that are one patch in which at most two meet at each
 edge, one on either side, as where a flat side is divided; and patches that lie side by side.
@@ -25,8 +25,15 @@ import numpy as np
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot
 from autocolor.scene.fans import places_of_corners
 from autocolor.scene.planes.coordinate_rounding import coordinate_rounding
-from autocolor.scene.planes.plane_cells import SHARPEST, coplanar_groups, facet_normals, facets, plane_cells
-from autocolor.scene.planes.plane_fits import fitted, renumbered
+from autocolor.scene.planes.plane_cells import (
+    SHARPEST,
+    Facets,
+    coplanar_groups,
+    facet_normals,
+    facets,
+    plane_cells,
+)
+from autocolor.scene.planes.plane_fits import Fits, fitted, renumbered
 from autocolor.scene.planes.plane_levels import MOST_LEVELS, levels
 from autocolor.scene.planes.plane_unions import unite_in_fitted_planes
 from autocolor.scene.union_find import group_numbers, unite
@@ -104,10 +111,8 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     # Drop those that are too far from the plane of the others, or lie beside all of them.
     for beside in (False, True, False):
         found = facets(scaled, node_rows[:, polygons])
-        groups = renumbered(groups)
-        fits = fitted(found, groups)
+        groups, fits, off = _fitted_and_off(found, groups)
         normals = fits.normals[:, groups]
-        off = np.abs(fits.off(found.corners, groups)).max(axis=0)
         kept = off <= np.minimum(tolerance, SHARPEST * found.widths)
         if beside:
             patches, several = _patches(places, groups, dot(found.normals, normals) < 0)
@@ -118,9 +123,7 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
             return None
 
     found = facets(scaled, node_rows[:, polygons])
-    groups = renumbered(groups)
-    fits = fitted(found, groups)
-    off = np.abs(fits.off(found.corners, groups)).max(axis=0)
+    groups, fits, off = _fitted_and_off(found, groups)
     first = np.flatnonzero(np.diff(groups, prepend=-1))
     plane_of_polygon = np.full(node_rows.shape[1], -1, np.intp)
     plane_of_polygon[polygons] = groups
@@ -133,6 +136,13 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
         plane_of_polygon,
         turned,
     )
+
+
+def _fitted_and_off(found: Facets, groups: Indices) -> tuple[Indices, Fits, Floats]:
+    """The groups numbered without gaps, the planes fitted to them, and how far each facet is off its own."""
+    groups = renumbered(groups)
+    fits = fitted(found, groups)
+    return groups, fits, np.abs(fits.off(found.corners, groups)).max(axis=0)
 
 
 def _patches(places: Indices, groups: Indices, turned: Booleans) -> tuple[Indices, Booleans]:

@@ -9,7 +9,13 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, Part, View, render, scene_of
 from autocolor.scene import defaults
-from autocolor.scene.defaults import default_lights, default_view, framed, object_coordinates
+from autocolor.scene.defaults import (
+    default_lights,
+    default_view,
+    framed,
+    object_bounds,
+    object_coordinates,
+)
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import Vector, directions, meshes, numbers, vectors
 
@@ -182,3 +188,19 @@ def test_stage_without_polygons_changes_nothing() -> None:
     assert object_coordinates(mesh, staged(mesh, "none")) is object_coordinates(mesh, staged(mesh))
     # A part without polygons is not all of the object.
     assert len(object_coordinates(mesh, staged(mesh, "cube"))) == 8
+
+
+@given(meshes(parts=3), st.sets(st.sampled_from(["part 0", "part 1", "part 2"])))
+def test_the_bounds_of_the_object_are_those_of_its_coordinates(mesh: Mesh, stage: set[str]) -> None:
+    parts = staged(mesh, *stage)
+    low, high = object_bounds(mesh, parts)
+    coordinates = object_coordinates(mesh, parts)
+    assert (low.tolist(), high.tolist()) == (
+        coordinates.min(axis=0).tolist(),
+        coordinates.max(axis=0).tolist(),
+    )
+
+
+def test_the_bounds_of_an_object_without_stage_are_found_once() -> None:
+    mesh = cube()
+    assert object_bounds(mesh, staged(mesh)) is mesh.bounds

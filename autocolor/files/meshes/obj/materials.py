@@ -2,10 +2,9 @@
 
 These statements are used: `newmtl` begins a material; `Kd` is the object color; the largest component of `Ks`
 is S, the specular reflectance, which is 0 without such a statement or where `illum` is 0 or 1; `Ns` is N, the
-exponent, at least 1. A material
-without specular reflectance keeps its object color at every level. D stays the default, because `Kd` is a
-color and no intensity. Textures and transparency are left out, and the report says so. Everything else is
-ignored.
+exponent, at least 1. A material without specular reflectance keeps its object color at every level. D stays
+the default, because `Kd` is a color and no intensity. Textures and transparency are left out, and the report
+says so. Everything else is ignored.
 
 A library must be in the folder of the OBJ file, or below it. One that is named elsewhere, as by an absolute
 path, is looked for there by its file name. Problems in a library are reported, and do not keep the mesh from
@@ -18,7 +17,7 @@ import io
 import math
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path, PureWindowsPath
 from typing import Any, Final, NamedTuple
 
@@ -74,7 +73,7 @@ def read_materials(obj: Path, libraries: Sequence[bytes], wanted: Sequence[str])
     if not wanted:
         return Materials((), ())
     missing: list[bytes] = []
-    paths = list(_paths(obj, libraries, missing))
+    paths = _paths(obj, libraries, missing)
     sentences: list[str] = []
     found: dict[str, Surface] = {}
     left = LARGEST_LIBRARIES
@@ -105,7 +104,7 @@ def read_materials(obj: Path, libraries: Sequence[bytes], wanted: Sequence[str])
     return Materials(tuple(found[name] for name in wanted if name in found), tuple(sentences))
 
 
-def _paths(obj: Path, libraries: Sequence[bytes], missing: list[bytes]) -> Iterator[Path]:
+def _paths(obj: Path, libraries: Sequence[bytes], missing: list[bytes]) -> list[Path]:
     """The paths of the libraries, at most MOST_LIBRARIES; the arguments of those not found are collected."""
     folder = obj.parent
     found: dict[str, Path] = {}
@@ -122,7 +121,7 @@ def _paths(obj: Path, libraries: Sequence[bytes], missing: list[bytes]) -> Itera
         # What is named may have been renamed together with the OBJ file.
         if beside is not None:
             missing.clear()
-    yield from list(found.values())[:MOST_LIBRARIES]
+    return list(found.values())[:MOST_LIBRARIES]
 
 
 def _path(folder: Path, name: bytes) -> Path | None:

@@ -11,6 +11,7 @@ from autocolor.errors import InputError, MissingInputError
 from autocolor.files.meshes.formats import mesh_suffixes
 from autocolor.files.scenes.scene_file import read_scene_file
 from autocolor.files.scenes.scene_report import SceneReport
+from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.curves import CURVES
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng hood\nf 1 2 3 4\ng roof\nf 1 2 3\n"
@@ -25,7 +26,9 @@ def folder(tmp_path: Path) -> Path:
     return made
 
 
-def read(folder: Path, text: str | bytes, outside: bool = False, surfaces: str = "materials") -> SceneReport:
+def read(
+    folder: Path, text: str | bytes, outside: bool = False, surfaces: SurfaceSource = "materials"
+) -> SceneReport:
     path = folder / "scene.toml"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return read_scene_file(path, outside=outside, surfaces=surfaces)
@@ -433,7 +436,7 @@ MATERIALS = "mtllib car.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\ng hood\nusemtl red\nf 1 
     ],
 )
 def test_surfaces_come_from_the_file_and_then_from_the_materials_of_the_mesh(
-    folder: Path, tables: str, surfaces: str, names: list[str]
+    folder: Path, tables: str, surfaces: SurfaceSource, names: list[str]
 ) -> None:
     (folder / "car.obj").write_text(MATERIALS)
     (folder / "car.mtl").write_text("newmtl red\nKd 1 0 0\n")
