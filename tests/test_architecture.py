@@ -34,7 +34,7 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "arrays", "checks", "scene", "visibility", "lighting", "mapping", "files", "rendering",
-        "studio", "images", "screens", "commands", "__main__",
+        "pacing", "studio", "images", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "command_line",

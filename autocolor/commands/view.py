@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -53,7 +52,7 @@ def show(scene: Scene, full_screen: bool = False, fit: bool = False) -> None:
     from autocolor.errors import UnavailableError
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import NoScreenError, Ramtek9300
-    from ramtek_emu.monitor.window import Key, Monitor, open_screen
+    from ramtek_emu.monitor.window import Key, Monitor, Pointer, open_screen
 
     try:
         # Fail before rendering if there is no screen.
@@ -64,30 +63,19 @@ def show(scene: Scene, full_screen: bool = False, fit: bool = False) -> None:
             display, viewer.caption, full_screen=full_screen, fit=fit, screenshot_name="autocolor"
         )
 
-        def tell(message: str) -> None:
-            viewer.message = message
-            monitor.caption = viewer.caption
-
         def on_key(key: Key) -> bool:
-            taken = viewer.on_key(key.name, key.control, key.shift, key.text, key.repeated)
-            monitor.caption = viewer.caption
-            return taken
+            return viewer.on_key(key.name, key.control, key.shift, key.text, key.repeated)
 
-        def on_close() -> bool:
-            may_close = viewer.on_close()
-            monitor.caption = viewer.caption
-            return may_close
+        def on_pointer(pointer: Pointer) -> None:
+            viewer.on_pointer(pointer.element, pointer.line, pointer.action, pointer.button, pointer.steps)
 
-        def on_drop(path: Path) -> None:
-            viewer.on_drop(path)
-            monitor.caption = viewer.caption
+        def on_tick() -> None:
+            viewer.on_tick(monitor.is_at_rest, monitor.full_screen)
+            if monitor.caption != viewer.caption:
+                monitor.caption = viewer.caption
 
-        monitor.on_key, monitor.on_close, monitor.on_drop, monitor.on_message = (
-            on_key,
-            on_close,
-            on_drop,
-            tell,
-        )
+        monitor.on_key, monitor.on_pointer, monitor.on_drop = on_key, on_pointer, viewer.on_drop
+        monitor.on_close, monitor.on_message, monitor.on_tick = viewer.on_close, viewer.tell, on_tick
         monitor.run()
     except NoScreenError as error:
         raise UnavailableError(f"{error}; `autocolor render SCENE -o PNG` renders without a screen") from None

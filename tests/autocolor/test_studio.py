@@ -4,14 +4,28 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, InputError, Light, Mesh, Scene, Studio, Surface, UsageError, View, scene_of
+from autocolor import (
+    Flap,
+    Flaps,
+    InputError,
+    Light,
+    Mesh,
+    Scene,
+    Studio,
+    Surface,
+    UsageError,
+    View,
+    read_picture,
+    scene_of,
+)
 from autocolor.mapping.level_ranges import SCREENS
 from autocolor.studio import send_picture
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, Ramtek9300
@@ -260,10 +274,108 @@ def test_a_drag_that_comes_back_to_where_it_began_is_undone_to_the_scene_itself(
     scene, blend = studio.scene, studio.scene.surface("body").paint.blend
     studio.recolor("body", blend=0.5)
     studio.edit(studio.scene.with_surface("body", blend=blend), same_step=True)
-    assert studio.is_changed
+    assert not studio.is_changed
     assert studio.undo()
     assert studio.scene is scene
     assert not studio.is_changed
+
+
+class SlowClock:
+    """A clock on which every picture takes a second."""
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+
+    def __call__(self) -> float:
+        self.seconds += 1.0
+        return self.seconds
+
+
+@pytest.fixture
+def slow(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures that are as coarse as they can be while something moves."""
+    monkeypatch.setattr("autocolor.studio.perf_counter", SlowClock())
+
+
+def turn(studio: Studio, angle: float) -> None:
+    studio.edit(studio.scene.with_view(angle=angle), same_step=True, moving=True)
+
+
+@pytest.mark.usefixtures("slow")
+@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(any_edits | st.just("turn") | st.just("refine"), min_size=1, max_size=8))
+def test_after_movements_a_refined_picture_is_the_fresh_one(edits: list[Any]) -> None:
+    studio, display = opened()
+    turn(studio, 20.0)
+    assert studio.is_coarse
+    for number, edit in enumerate(edits):
+        if edit == "turn":
+            turn(studio, float(number))
+        elif edit == "refine":
+            studio.refine()
+            assert held(display) == fresh(studio.scene)
+        else:
+            apply(studio, edit)
+        assert held(display) == (studio.words.tobytes(), studio.entries.tobytes())
+    studio.refine()
+    assert not studio.is_coarse
+    assert held(display) == fresh(studio.scene)
+
+
+@pytest.mark.usefixtures("slow")
+def test_a_coarse_picture_has_blocks_and_the_ranges_of_the_one_before() -> None:
+    studio, display = opened()
+    ranges, entries = studio.level_ranges, held(display)[1]
+    turn(studio, 30.0)
+    assert (studio.picture.lines, studio.picture.elements) == (6, 8)
+    assert display.words.shape == (24, 32)
+    assert np.array_equal(display.words, display.words[::4, ::4].repeat(4, axis=0).repeat(4, axis=1))
+    assert len(np.unique(display.words)) > 5
+    assert studio.level_ranges is ranges
+    assert held(display)[1] == entries
+    # Colors change at once, and the picture stays as coarse as it is.
+    written = display.frame_buffer.written
+    studio.recolor("body", object_color="#123456")
+    assert studio.is_coarse
+    assert display.frame_buffer.written == written
+
+
+@pytest.mark.usefixtures("slow")
+def test_what_a_coarse_picture_would_falsify_is_done_with_the_fine_one(tmp_path: Path) -> None:
+    studio, _ = opened()
+    turn(studio, 30.0)
+    studio.save(tmp_path / "a.npz")
+    assert read_picture(tmp_path / "a.npz").picture.lines == 24
+    turn(studio, 31.0)
+    studio.hold_exposure()
+    other, _ = opened(studio.scene.replace(exposure="auto"))
+    other.hold_exposure()
+    assert studio.scene.exposure == other.scene.exposure
+
+
+def test_a_picture_that_is_fast_enough_is_never_coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("autocolor.studio.perf_counter", lambda: 5.0)
+    studio, _ = opened()
+    turn(studio, 30.0)
+    assert not studio.is_coarse
+
+
+@pytest.mark.usefixtures("slow")
+def test_undoing_a_movement_brings_back_the_fine_picture() -> None:
+    studio, display = opened()
+    before = held(display)
+    for angle in (10.0, 20.0, 30.0):
+        turn(studio, angle)
+    studio.undo()
+    assert held(display) == before
+    assert not studio.is_coarse
+
+
+def test_an_edit_and_its_opposite_leave_nothing_to_save() -> None:
+    studio, _ = opened()
+    for is_on in (False, True):
+        studio.light("key", on=is_on)
+        assert studio.is_changed is not is_on
 
 
 def test_several_surfaces_in_other_paints_are_recolored_at_once() -> None:
