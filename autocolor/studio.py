@@ -14,71 +14,28 @@ must be recomputed and sent.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from time import perf_counter
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
+from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
-from autocolor.mapping.level_ranges import WORDS, LevelRange
+from autocolor.mapping.level_ranges import LevelRange
 from autocolor.pacing import block_for, blocks_of
 from autocolor.rendering import rendering
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns.column import Tier, fields_of
 from autocolor.scene.scene import AUTO, Scene, cost_of_edit
 from autocolor.scene.surfaces import Paint
-from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
+from autocolor.sending import configuration_of, send_image
+from ramtek_emu import HostPort
 
 if TYPE_CHECKING:
     from os import PathLike
-
-
-EntryEncoder = Callable[[int, Bytes], Words]
-"""Makes the instruction that loads entries, (n, 3) uint8, from a first one on."""
-
-
-def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
-    """Reset a display and show a picture in the colors of a scene; nothing is rendered.
-
-    Raises InputError if the surfaces of the picture are not those of the scene.
-    """
-    check_surfaces(scene, picture)
-    _send(None, display_image(scene, picture), display, encoder_of_entries(display))
-
-
-def configuration_of(display: HostPort) -> Configuration:
-    """The configuration of a display; GMR_9300, the paper's display, if the host port does not have one.
-
-    Raises UsageError for a display with too few words or entries for the level ranges.
-    """
-    configuration: Configuration = getattr(display, "configuration", GMR_9300)
-    if configuration.largest_word < WORDS - 1 or configuration.entries < WORDS:
-        raise UsageError(
-            f"a display for a studio must have {WORDS} words and entries, not"
-            f" {configuration.largest_word + 1} and {configuration.entries} ({configuration.name}); choose"
-            " another configuration"
-        )
-    return configuration
-
-
-def encoder_of_entries(display: HostPort) -> EntryEncoder:
-    """The function that encodes a load of entries, from a first entry on, in the display's format."""
-    short = configuration_of(display).entry_format is EntryFormat.WORD_12
-    return instructions.load_short_entries if short else instructions.load_entries
-
-
-def _send(before: DisplayImage | None, now: DisplayImage, display: HostPort, encoder: EntryEncoder) -> None:
-    """Send what differs from `before`, entries and words; a reset and everything if that is None."""
-    if before is None:
-        display.send(instructions.reset())
-    for first, entries in [(0, now.entries)] if before is None else now.loads_after(before):
-        display.send(encoder(first, entries))
-    if before is None or before.words is not now.words:
-        display.send(instructions.write_image(now.words))
 
 
 class Studio:
@@ -91,7 +48,6 @@ class Studio:
     def __init__(self, scene: Scene, display: HostPort) -> None:
         configuration = configuration_of(display)
         self._display = display
-        self._encoder = encoder_of_entries(display)
         self._size = configuration.shown_lines, configuration.shown_elements
         begun = perf_counter()
         self._rendering = rendering(scene, *self._size)
@@ -213,7 +169,7 @@ class Studio:
 
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
-        _send(None, self._shown, self._display, self._encoder)
+        send_image(self._display, self._shown)
 
     def _take(self, scene: Scene, costs: Tier, same_step: bool = False, moving: bool = False) -> None:
         """Make a scene the current one by an edit of a cost, and note the step."""
@@ -244,7 +200,7 @@ class Studio:
             now = display_image(scene, rendered.picture, before, block)
         else:
             now = DisplayImage(scene, before.picture, before.ranges, before.words, block)
-        _send(before, now, self._display, self._encoder)
+        send_image(self._display, now, before)
         self._rendering, self._shown = rendered, now
         if costs == Tier.FRAME:
             self._pace = block, perf_counter() - begun
@@ -260,6 +216,12 @@ class Studio:
         from ramtek_emu.png import png_bytes
 
         return png_bytes(self._shown.colors)
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            "a studio cannot be pickled or copied, because it is connected to a display; pickle its scene,"
+            " and make a Studio of that and a display"
+        )
 
     def __repr__(self) -> str:
         return f"Studio({self.scene.name!r}, to undo {len(self._done)}, to redo {len(self._undone)})"

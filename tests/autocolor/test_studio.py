@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
+import copy
 import itertools
+import pickle
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,53 +15,21 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from autocolor import (
-    Flap,
-    Flaps,
     InputError,
-    Light,
-    Mesh,
     Scene,
     Studio,
     Surface,
     UsageError,
-    View,
     read_picture,
     scene_of,
 )
 from autocolor.mapping.level_ranges import SCREENS
-from autocolor.studio import send_picture
-from ramtek_emu import GMR_9300, Configuration, EntryFormat, Ramtek9300
-from tests.autocolor.meshes import STRETCHED, cube, grid, sphere, wall_scene
+from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import cube
+from tests.autocolor.sessions import SMALL, car, fresh, held, opened
 from tests.autocolor.strategies import colors, numbers, scenes, vectors
 
-SMALL = Configuration(name="small", elements=32, lines=24, planes=10)
 Edit = tuple[str, str, dict[str, Any]]
-
-
-def car() -> Scene:
-    """A round body, a pane and wheels, under two lights of the studio."""
-    mesh = Mesh.joined(
-        [
-            Mesh(
-                sphere(16, 10).coordinates,
-                sphere(16, 10).node_numbers,
-                sphere(16, 10).part_numbers,
-                ("hood",),
-            ),
-            grid(2, 2, (-1.3, -1.2, -0.4), (1.0, 0.2, 0), (0, 0, 1.0), "pane"),
-            cube(1.2),
-        ]
-    )
-    return scene_of(
-        mesh,
-        surface_of_part={"hood": "body", "pane": "glass", "cube": "wheels"},
-        surfaces=[Surface("body"), Surface("glass"), Surface("wheels")],
-        lights=[
-            Light("key", (2.0, -4.0, 3.0), aim=(0, 0, 0), concentration=5, cone_angle=60),
-            Light("fill", (-3.0, -2.0, 1.0), 0.4, flaps=Flaps(z=Flap(-0.5, 0.9, on=False))),
-        ],
-        view=View((1.0, -4.0, 1.0), target=(0.0, 0.0, 0.0), field_of_view=40.0),
-    ).replace(**STRETCHED)
 
 
 SURFACES = st.sampled_from(["body", "glass", "wheels"])
@@ -130,11 +100,6 @@ view_edits = st.tuples(
 any_edits = recolorings | surface_edits | light_edits | scene_edits | view_edits
 
 
-def opened(scene: Scene | None = None) -> tuple[Studio, Ramtek9300]:
-    display = Ramtek9300(SMALL)
-    return Studio(car() if scene is None else scene, display), display
-
-
 def apply(studio: Studio, edit: Edit) -> bool:
     """Whether the edit was taken; a refused one must leave everything as it was."""
     kind, name, changes = edit
@@ -150,14 +115,6 @@ def apply(studio: Studio, edit: Edit) -> bool:
         assert (studio.scene, studio.picture, studio.words, repr(studio)) == before
         return False
     return True
-
-
-def held(display: Ramtek9300) -> tuple[bytes, bytes]:
-    return display.words.tobytes(), display.entries.tobytes()
-
-
-def fresh(scene: Scene) -> tuple[bytes, bytes]:
-    return held(opened(scene)[1])
 
 
 @given(st.lists(recolorings, min_size=1, max_size=6))
@@ -533,22 +490,6 @@ def test_a_studio_knows_whether_its_scene_is_saved() -> None:
     assert not studio.is_changed
 
 
-def test_a_saved_picture_is_sent_without_rendering() -> None:
-    studio, display = opened()
-    other = Ramtek9300(SMALL)
-    send_picture(studio.scene, studio.picture, other)
-    assert held(other) == held(display)
-
-
-def test_a_picture_of_other_surfaces_is_refused_and_leaves_the_display_as_it_was() -> None:
-    studio, display = opened()
-    before = held(display)
-    other = scene_of(cube(), surfaces=[Surface("paint")], surface_of_part={"cube": "paint"})
-    with pytest.raises(InputError, match="surfaces of a picture must be those of the scene"):
-        send_picture(other, studio.picture, display)
-    assert held(display) == before
-
-
 def test_everything_can_be_sent_again() -> None:
     studio, display = opened()
     before = held(display)
@@ -590,21 +531,6 @@ def test_a_display_sees_a_studio_only_through_its_host_port() -> None:
     studio = Studio(car(), port)
     studio.light("key", on=False)
     assert held(port.display) == (studio.words.tobytes(), studio.entries.tobytes())
-
-
-def test_a_display_with_a_12_bit_table_gets_12_bit_entries() -> None:
-    display = Ramtek9300(dataclasses.replace(GMR_9300, entry_format=EntryFormat.WORD_12))
-    studio = Studio(wall_scene(), display)
-    studio.recolor("wall", object_color="#80c0f0", blend=1)
-    assert (display.entries >> 4 == studio.entries >> 4).all()
-    assert (display.words == studio.words).all()
-
-
-@pytest.mark.parametrize("changes", [{"planes": 8}, {"entries": 256}])
-def test_a_display_with_fewer_words_or_entries_than_the_papers_is_refused(changes: dict[str, int]) -> None:
-    smaller = dataclasses.replace(GMR_9300, name="small", **changes)  # type: ignore[arg-type]
-    with pytest.raises(UsageError, match=r"must have 1024 words and entries, not \d+ and \d+ \(small\)"):
-        Studio(wall_scene(), Ramtek9300(smaller))
 
 
 def test_the_first_edit_of_a_drag_after_an_undo_is_a_step_of_its_own() -> None:
@@ -674,3 +600,9 @@ def test_recoloring_a_dithered_picture_writes_no_word(division: Any) -> None:
     studio.recolor("glass", light_color="#ffeedd", light_percentage=40)
     assert display.frame_buffer.written == written
     assert (display.field() == display.entries[display.words]).all()
+
+
+@pytest.mark.parametrize("pickled", [pickle.dumps, copy.deepcopy, copy.copy])
+def test_a_studio_says_why_it_is_not_pickled(pickled: Callable[[Studio], object]) -> None:
+    with pytest.raises(TypeError, match="connected to a display; pickle its scene"):
+        pickled(opened()[0])
