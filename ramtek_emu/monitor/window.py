@@ -39,7 +39,7 @@ TICK_MILLISECONDS: Final = 15
 BLINK_SECONDS: Final = 0.5
 """How long a blinking cursor is shown, and then hidden. Assumed: as in the time model."""
 KEY_DELAY: Final = 400
-KEY_INTERVAL: Final = 40
+KEY_INTERVAL: Final = 33
 """Milliseconds until a key that is held down repeats, and between its repeats."""
 FIELD_MASKS: Final = (0xFF0000, 0x00FF00, 0x0000FF, 0)
 REDRAWN_ON: Final = frozenset(
