@@ -127,31 +127,30 @@ def write_text(
     words: tuple[int, int | None],
     mask: int,
     clip: tuple[int, int, int, int],
-) -> tuple[Place, int]:
-    """The place of the next cell, and how often the text began again at the window's first corner."""
+) -> Place:
+    """The place behind the last cell that was written."""
     (dots_along, dots_across), (space_along, space_across), (along, across) = style
     step, run = STEPS[code]
     first = corner(window, code)
     room_along, room_across = rooms(window, code)
     inner, outer = away(start, window, code)
-    rounds = 0
 
     def place(i: int, j: int) -> Place:
         return (first[0] + i * step[0] + j * run[0], first[1] + i * step[1] + j * run[1])
 
     for character in codes:
         if inner > 0 and inner + dots_along * along > room_along:
-            inner, outer = 0, outer + (dots_across + space_across) * across
-        if outer > 0 and outer + dots_across * across > room_across:
-            outer = 0
-        rounds += inner == 0 and outer == 0
+            below = outer + (dots_across + space_across) * across
+            if below > 0 and below + dots_across * across > room_across:
+                break
+            inner, outer = 0, below
         for j in range(dots_across * across):
             for i in range(dots_along * along):
                 word = words[0] if shapes[character][j // across][i // along] else words[1]
                 if word is not None:
                     write_pixel(raster, place(inner + i, outer + j), word, mask, clip)
         inner += (dots_along + space_along) * along
-    return place(inner, outer), rounds
+    return place(inner, outer)
 
 
 OPERAND_WORDS = (
