@@ -31,16 +31,18 @@ def corner(window: tuple[int, int, int, int], code: int) -> Place:
     return (right if -1 in (step[0], run[0]) else left, bottom if -1 in (step[1], run[1]) else top)
 
 
-def walk(window: tuple[int, int, int, int], code: int, start: Place, count: int) -> list[Place]:
-    """The places of `count` words from `start` on, and the one after them."""
+def walk(
+    window: tuple[int, int, int, int], code: int, start: Place, count: int, pairs: bool = False
+) -> list[Place]:
+    """The places of `count` words, or pixels that go in pairs, from `start` on, and the one after them."""
     step, run = STEPS[code]
     first = corner(window, code)
     room_along, room_across = rooms(window, code)
     inner, outer = away(start, window, code)
     places = []
-    for _ in range(count + 1):
-        # Counters compare with the far edges only.
-        if inner >= room_along:
+    for number in range(count + 1):
+        # Counters compare with the far edges only, after whole pairs.
+        if inner >= room_along and not (pairs and number % 2):
             inner, outer = 0, outer + 1
         if outer >= room_across:
             outer = 0
@@ -72,8 +74,9 @@ def write_scan(
     words: list[int],
     mask: int,
     clip: tuple[int, int, int, int],
+    pairs: bool = False,
 ) -> Place:
-    places = walk(window, code, start, len(words))
+    places = walk(window, code, start, len(words), pairs)
     for (element, line), word in zip(places, words, strict=False):
         if 0 <= line < len(raster) and 0 <= element < len(raster[0]) and inside((element, line), clip):
             raster[line][element] = (raster[line][element] & ~mask) | (word & mask)
@@ -81,9 +84,14 @@ def write_scan(
 
 
 def read_scan(
-    raster: Raster, window: tuple[int, int, int, int], code: int, start: Place, count: int
+    raster: Raster,
+    window: tuple[int, int, int, int],
+    code: int,
+    start: Place,
+    count: int,
+    pairs: bool = False,
 ) -> tuple[list[int], Place]:
-    places = walk(window, code, start, count)
+    places = walk(window, code, start, count, pairs)
     words = [
         raster[line][element] if 0 <= line < len(raster) and 0 <= element < len(raster[0]) else 0
         for element, line in places[:-1]
