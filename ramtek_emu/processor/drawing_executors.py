@@ -73,10 +73,9 @@ def write_circles(processor: Processor, instruction: Instruction) -> None:
     if not len(circles):
         return
     word, _ = processor.colors(instruction)
-    centers = processor.placed(circles[:, :2], instruction.low_byte).tolist()
-    for center, radius in zip(centers, (circles[:, 2] & 0xFFFF).tolist(), strict=True):
-        curves.write_circle(processor.frame_buffer, Point(*center), radius, word, parameters.enable)
-    parameters.start = Point(*centers[-1])
+    centers = processor.placed(circles[:, :2], instruction.low_byte)
+    curves.write_circles(processor.frame_buffer, centers, circles[:, 2] & 0xFFFF, word, parameters.enable)
+    parameters.start = Point(*centers[-1].tolist())
 
 
 @executes("WC")

@@ -118,6 +118,45 @@ def line_places(start: Place, end: Place) -> list[Place]:
     return places
 
 
+def conic_places(coefficients: tuple[int, ...], most: int, start: Place, stop: Place | None) -> list[Place]:
+    """The pixels of a conic: from each, of the three neighbors ahead, the one nearest to the curve."""
+    a, b, c, d, e = coefficients
+    target = (0, 0) if stop is None else (stop[0] - start[0], stop[1] - start[1])
+
+    def value(place: Place) -> int:
+        x, y = place
+        return a * x * x + b * y * y + c * x * y + d * x + e * y
+
+    def away(place: Place) -> int:
+        return (place[0] - target[0]) ** 2 + (place[1] - target[1]) ** 2
+
+    here = (0, 0)
+    places = [here]
+    was_away = False
+    while len(places) < most:
+        across, down = -(2 * b * here[1] + c * here[0] + e), 2 * a * here[0] + c * here[1] + d
+        if (across, down) == (0, 0):
+            break
+        steep = abs(down) > abs(across)
+        ahead = 1 if (down if steep else across) > 0 else -1
+        aside = 1 if (across if steep else down) > 0 else -1
+        neighbors = [
+            (here[0] + shift, here[1] + ahead) if steep else (here[0] + ahead, here[1] + shift)
+            for shift in (0, aside, -aside)
+        ]
+        there = min(neighbors, key=lambda place: abs(value(place)))
+        if stop is not None and was_away and away(here) <= 2 and away(there) >= away(here):
+            break
+        was_away = was_away or away(here) > 8
+        here = there
+        if stop is None and here == (0, 0):
+            break
+        places.append(here)
+        if here == target:
+            break
+    return [(start[0] + x, start[1] + y) for x, y in places]
+
+
 def write_pixel(raster: Raster, place: Place, word: int, mask: int, clip: tuple[int, int, int, int]) -> None:
     element, line = place
     if 0 <= line < len(raster) and 0 <= element < len(raster[0]) and inside(place, clip):
