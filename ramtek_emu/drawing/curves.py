@@ -50,8 +50,8 @@ def write_circles(
             which, across, down = which[flat], across[flat], down[flat]
             along, other = middle[which] + across, centers[which, 1 - axis]
             for aside in (other + down, other - down):
-                place = (aside, along) if axis else (along, aside)
-                frame_buffer.write_points(*place, word, enable)
+                elements, lines = (aside, along) if axis else (along, aside)
+                frame_buffer.write_points(elements, lines, word, enable)
 
 
 def crosses(centers: Numbers, radii: Numbers, window: Window) -> Booleans:
