@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -21,6 +22,9 @@ class EntryFormat(Enum):
     """Hardware: JPL, NCAR."""
     WORD_12 = "one word an entry: red << 8 | green << 4 | blue, four bits each"
     """Hardware: LIN, BTL."""
+
+    def __repr__(self) -> str:
+        return f"EntryFormat.{self.name}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,3 +124,32 @@ Assumed: eight planes, since its masks are FFh; four sections of 256 entries, as
 
 CONFIGURATIONS: Final = {each.name: each for each in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)}
 """The four displays above, by name."""
+
+
+def configuration_named(name: str) -> Configuration:
+    """One of the four displays by its name, in upper or lower case; ConfigurationError lists all names.
+
+    >>> configuration_named("ncar-9460").elements
+    1280
+    """
+    asked = name.upper().replace("-", "_")
+    if asked not in CONFIGURATIONS:
+        near = [each for each in CONFIGURATIONS if each.startswith(asked)]
+        near = near or difflib.get_close_matches(asked, CONFIGURATIONS, n=1)
+        advice = f"did you mean {near[0]}?" if asked and near else "choose one of them"
+        raise ConfigurationError(
+            f"a configuration must be one of {', '.join(sorted(CONFIGURATIONS))}, not {name!r}; {advice}"
+        )
+    return CONFIGURATIONS[asked]
+
+
+def checked_configuration(configuration: object) -> Configuration:
+    """A configuration, or the one of that name; ConfigurationError if it is anything else."""
+    if isinstance(configuration, str):
+        return configuration_named(configuration)
+    if not isinstance(configuration, Configuration):
+        raise ConfigurationError(
+            f"a configuration must be a Configuration or the name of one, not {configuration!r}; "
+            f"choose one of {', '.join(sorted(CONFIGURATIONS))}"
+        )
+    return configuration

@@ -66,11 +66,11 @@ def ramtek(
     """
     if context.invoked_subcommand is not None:
         return
-    from ramtek_emu.commands.displays import configuration_named
+    from ramtek_emu.commands.displays import configuration_asked_for
     from ramtek_emu.display import Ramtek9300
     from ramtek_emu.monitor.pattern import pattern
 
-    chosen = configuration_named(configuration)
+    chosen = configuration_asked_for(configuration)
     display = Ramtek9300(chosen)
     display.send(pattern(chosen))
     if output is not None:

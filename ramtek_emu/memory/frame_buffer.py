@@ -42,9 +42,23 @@ class FrameBuffer:
         """The number of words written since power-on; it never decreases."""
         self._every_plane = configuration.largest_word
         self._words: Words = np.zeros((configuration.lines, configuration.elements), np.uint16)
+        self._make_view()
+
+    def _make_view(self) -> None:
         self.words: Words = self._words.view()
         """The words, (lines, elements) uint16; a read-only view that stays current."""
         self.words.flags.writeable = False
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in vars(self).items() if name != "words"}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        vars(self).update(state)
+        self._make_view()
+
+    def __repr__(self) -> str:
+        lines, elements = self._words.shape
+        return f"FrameBuffer({elements} x {lines} words of {self.planes} bits, {self.written} written)"
 
     def write(self, words: object, left: int = 0, top: int = 0) -> None:
         """Write a (lines, elements) array from Python; WordsError if a word or the window does not fit."""

@@ -18,7 +18,7 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Numbers, Words
+from ramtek_emu.arrays import Dots, Numbers, Words
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.errors import ReplyError
 from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
@@ -64,9 +64,7 @@ class Processor:
         self.parameters = Parameters.at_reset(configuration)
         self.saved: list[Parameters] = []
         """The parameters that PUSHE saved, the newest last."""
-        self.characters = characters()
-        """The dots of the ROM, (256, 9, 7)."""
-        self.loaded_characters = loadable(self.characters)
+        self.loaded_characters = loadable(characters())
         """The dots of the characters that a host can load, (256, 12, 8); until then those of the ROM."""
         self.illegal_words = 0
         """How many words were skipped because no instruction begins with them; it never decreases."""
@@ -75,6 +73,19 @@ class Processor:
         self._illegal = False
         self._replies: deque[Words] = deque()
         self._waiting = 0
+
+    def __repr__(self) -> str:
+        state = f"{self.waiting} words of replies waiting, status {self.status.name}"
+        return f"Processor({self.configuration.name}, {state})"
+
+    @property
+    def characters(self) -> Dots:
+        """The dots of the ROM, (256, 9, 7), read-only."""
+        return characters()
+
+    def current_parameters(self) -> Parameters:
+        """The parameters; POPE and RSET replace them, so that they must be asked for each time."""
+        return self.parameters
 
     @property
     def status(self) -> Status:

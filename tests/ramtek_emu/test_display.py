@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +20,7 @@ from ramtek_emu import (
     PRINCETON_9300,
     Configuration,
     Ramtek9300,
+    Timing,
     instructions,
 )
 from tests.ramtek_emu.displays import sent
@@ -124,3 +129,99 @@ def test_a_display_shows_itself_in_a_notebook_and_in_a_file(tmp_path: Path) -> N
     with Image.open(tmp_path / "display.png") as picture:
         assert picture.size == (640, 480)
         assert picture.getpixel((5, 5)) == (10, 20, 30)
+
+
+def busy_display(configuration: Configuration) -> Ramtek9300:
+    """A display with something in all of its parts, and in the middle of an instruction."""
+    display = Ramtek9300(configuration)
+    display.send(instructions.write_image(np.arange(480 * 640).reshape(480, 640) % 200))
+    display.send(sent_words([0x0300, 0, 12, 0x1234, 0x0056, 0x789A, 0x00BC, 0x0DEF, 3]))
+    display.send(sent_words([0x0802, 0x8003, 0x00F7, 77, 40, 50, 0x1300, 0x0802, 0x0020, 3, 4]))
+    display.send(sent_words([0x1541, *[0x8142] * 6, 0x1600, 30, 0x0414, 0x1700, 0x0500 + 0xFF00]))
+    display.joystick.press_enter()
+    display.send(sent_words([0x0A03, 0x0040, 2, 3, 4, 5, 12, 1, 2, 3]))
+    return display
+
+
+COPIES: list[Callable[[Ramtek9300], Ramtek9300]] = [
+    copy.deepcopy,
+    lambda display: pickle.loads(pickle.dumps(display)),
+]
+EVERY_KIND = [
+    GMR_9300,
+    PRINCETON_9300,
+    replace(GMR_9300, timing=Timing()),
+    replace(NCAR_9460, monochrome=True),
+]
+
+
+@pytest.mark.parametrize("copied", COPIES, ids=["deepcopy", "pickle"])
+@pytest.mark.parametrize("configuration", EVERY_KIND, ids=range(4))
+def test_a_copy_of_a_display_goes_on_as_the_display_does(
+    configuration: Configuration, copied: Callable[[Ramtek9300], Ramtek9300]
+) -> None:
+    display = busy_display(configuration)
+    display.field()
+    twin = copied(display)
+    rest = sent_words([4, 5, 6, 0x1700, 0x1400, 0x0C01, 2, 0x4142])
+    for each in (display, twin):
+        each.send(rest)
+    assert (twin.words == display.words).all()
+    assert (twin.entries == display.entries).all()
+    assert (twin.field() == display.field()).all()
+    assert twin.processor.parameters == display.processor.parameters
+    assert twin.status == display.status
+    assert twin.scan_out.stamp == display.scan_out.stamp
+    assert (twin.receive(4) == display.receive(4)).all()
+    assert repr(twin) == repr(display)
+    assert (twin.joystick.position, twin.joystick.driven) == (display.joystick.position, (twin.cursors[0],))
+
+
+@pytest.mark.parametrize("copied", COPIES, ids=["deepcopy", "pickle"])
+def test_a_copy_of_a_display_is_apart_from_it_and_its_arrays_stay_read_only(
+    copied: Callable[[Ramtek9300], Ramtek9300],
+) -> None:
+    display = busy_display(GMR_9300)
+    twin = copied(display)
+    display.send(sent_words([4, 5, 6, 0x2B00]))
+    words, entries = twin.words, twin.lookup_table.packed
+    assert words[10, 10] == 10 + 640 * 10 % 200
+    for array in (words, entries, twin.entries, twin.processor.characters):
+        assert not array.flags.writeable
+    # The views that were handed out before stay current.
+    twin.reset()
+    twin.send(instructions.write_image([[7]]))
+    twin.send(instructions.load_entries(7, [[1, 2, 3]]))
+    assert words[0, 0] == 7
+    assert entries[7] == 0x010203
+    assert twin.field()[0, 0].tolist() == [1, 2, 3]
+
+
+def test_the_parts_of_a_display_tell_what_they_are() -> None:
+    display = Ramtek9300("ncar_9460")
+    display.send(instructions.erase(window=(0, 0, 9, 9)))
+    display.send(instructions.write_cursor(0, 5, 6))
+    display.send(sent_words([0x1700, 0x0802]))
+    shown = [
+        display, display.frame_buffer, display.lookup_table, display.cursors, display.joystick,
+        display.processor, display.decoder, display.scan_out,
+        Ramtek9300(replace(GMR_9300, timing=Timing())).beam,
+    ]  # fmt: skip
+    assert [repr(each) for each in shown] == [
+        "Ramtek9300(NCAR_9460, 1280 x 1024 x 8 bits, 1024 entries, 11 words received)",
+        "FrameBuffer(1280 x 1024 words of 8 bits, 100 written)",
+        "LookupTable(1024 entries, PAIR_24, 0 words written)",
+        "Cursors(4, 1 visible, TRACK off)",
+        "Joystick(device 0, drives 1 cursor, element 5, line 6)",
+        "Processor(NCAR_9460, 2 words of replies waiting, status READY)",
+        "Decoder(words held: 1)",
+        "ScanOut(1280 x 1024)",
+        "Beam(field 0, line 0 of 525)",
+    ]
+
+
+def test_pressing_reset_is_no_word_of_a_host() -> None:
+    display = Ramtek9300()
+    display.send(sent_words([0x0700, 0x0700]))
+    display.reset()
+    assert display.words_received == 2
