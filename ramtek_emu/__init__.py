@@ -98,6 +98,9 @@ _HOME: Final = {
     "write_snapshot": "snapshot.snapshot",
 }
 
+_MODULES: Final = ("instructions",)
+"""Modules that are used whole: `ramtek_emu.instructions.write_text(...)`."""
+
 __all__ = list(_HOME)
 
 
@@ -113,6 +116,8 @@ def __getattr__(name: str) -> object:
             return version("autocolor")
         except PackageNotFoundError:
             return "0+unknown"
+    if name in _MODULES:
+        return import_module(f"{__name__}.{name}")
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value: object = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 from dataclasses import dataclass
 from enum import Enum
+from operator import index
 from typing import Final
 
 from ramtek_emu.errors import ConfigurationError
@@ -25,6 +26,20 @@ class EntryFormat(Enum):
 
     def __repr__(self) -> str:
         return f"EntryFormat.{self.name}"
+
+
+SIZES: Final = (
+    "elements", "lines", "planes", "visible_elements", "visible_lines", "entries", "cursors",
+)  # fmt: skip
+"""The fields of a configuration that are whole numbers."""
+KINDS: Final[dict[str, tuple[tuple[type, ...], str]]] = {
+    "name": ((str,), "a str"),
+    "entry_format": ((EntryFormat,), "an EntryFormat"),
+    "extended": ((bool,), "True or False"),
+    "monochrome": ((bool,), "True or False"),
+    "timing": ((Timing, type(None)), "a Timing or None"),
+}
+"""The types of the other fields, and how an error names them."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +63,17 @@ class Configuration:
     """How long everything takes; None means that no time passes."""
 
     def __post_init__(self) -> None:
+        for name, (kinds, phrase) in KINDS.items():
+            if not isinstance(getattr(self, name), kinds):
+                raise ConfigurationError(
+                    f"{name} must be {phrase}, not {getattr(self, name)!r} "
+                    f"(configuration {self.name!r}); choose another value"
+                )
+        for name in SIZES:
+            # Sizes may be numbers of numpy.
+            value = getattr(self, name)
+            if not isinstance(value, bool) and hasattr(value, "__index__"):
+                object.__setattr__(self, name, index(value))
         limits = {
             "elements": (self.elements, 1, 4096),
             "lines": (self.lines, 1, 4096),
@@ -57,12 +83,12 @@ class Configuration:
             "cursors": (self.cursors, 0, 8),
         }
         for name, (value, least, most) in limits.items():
-            if not isinstance(value, int) or not least <= value <= most:
+            if type(value) is not int or not least <= value <= most:
                 raise ConfigurationError(
                     f"{name} must be a whole number from {least} to {most}, not {value!r} "
                     f"(configuration {self.name!r}); choose another size"
                 )
-        if not isinstance(self.entries, int) or self.entries not in (256, 512, 1024, 2048, 4096):
+        if type(self.entries) is not int or self.entries not in (256, 512, 1024, 2048, 4096):
             raise ConfigurationError(
                 f"entries must be 256, 512, 1024, 2048 or 4096, not {self.entries!r} "
                 f"(configuration {self.name!r}); choose one of them"

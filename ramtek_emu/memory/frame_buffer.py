@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ramtek_emu.arrays import Dots, Numbers, Words
-from ramtek_emu.checks import checked_words
+from ramtek_emu.checks import checked_number, checked_words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.errors import WordsError
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Block, Point, ScanOrder, Window, blocks
@@ -63,7 +63,11 @@ class FrameBuffer:
     def write(self, words: object, left: int = 0, top: int = 0) -> None:
         """Write a (lines, elements) array from Python; WordsError if a word or the window does not fit."""
         block = checked_words(words, self.planes)
-        place = NORMAL_ORDER.block_window(Point(left, top), block.shape[1], block.shape[0])
+        corner = (
+            checked_number(each, "the words' corner", -0x8000, 0x7FFF, "move it", WordsError)
+            for each in (left, top)
+        )
+        place = NORMAL_ORDER.block_window(Point(*corner), block.shape[1], block.shape[0])
         refuse_outside(place, self.window)
         self._store(place, NORMAL_ORDER, block, EVERYTHING)
 

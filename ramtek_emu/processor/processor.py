@@ -19,6 +19,7 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.arrays import Dots, Numbers, Words
+from ramtek_emu.checks import is_whole
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.errors import ReplyError
 from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
@@ -149,9 +150,9 @@ class Processor:
 
     def take_reply(self, count: int) -> Words:
         """The next `count` words of the replies; ReplyError if there are fewer."""
-        if not 0 <= count <= self._waiting:
+        if not is_whole(count) or not 0 <= count <= self._waiting:
             raise ReplyError(
-                f"the words received must be 0 to {self._waiting}, which wait, not {count}; "
+                f"the words received must be 0 to {self._waiting}, which wait, not {count!r}; "
                 "send an instruction that reads them first"
             )
         taken = []

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import copy
 import pickle
+from array import array
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,11 +22,15 @@ from ramtek_emu import (
     PRINCETON_9300,
     Configuration,
     Ramtek9300,
+    ReplyError,
     Timing,
     instructions,
 )
+from ramtek_emu.snapshot.snapshot import snapshot_bytes
 from tests.ramtek_emu.displays import sent
+from tests.ramtek_emu.recorded_streams import RECORDED
 from tests.ramtek_emu.strategies import SMALL, cuts, sent_words, streams, thorough
+from tests.ramtek_emu.test_hostile import sessions
 
 
 @thorough
@@ -185,9 +191,9 @@ def test_a_copy_of_a_display_is_apart_from_it_and_its_arrays_stay_read_only(
     twin = copied(display)
     display.send(sent_words([4, 5, 6, 0x2B00]))
     words, entries = twin.words, twin.lookup_table.packed
-    assert words[10, 10] == 10 + 640 * 10 % 200
-    for array in (words, entries, twin.entries, twin.processor.characters):
-        assert not array.flags.writeable
+    assert words[10, 10] == (640 * 10 + 10) % 200
+    for handed_out in (words, entries, twin.entries, twin.processor.characters):
+        assert not handed_out.flags.writeable
     # The views that were handed out before stay current.
     twin.reset()
     twin.send(instructions.write_image([[7]]))
@@ -225,3 +231,48 @@ def test_pressing_reset_is_no_word_of_a_host() -> None:
     display.send(sent_words([0x0700, 0x0700]))
     display.reset()
     assert display.words_received == 2
+
+
+@pytest.mark.parametrize("count", [0.5, 1.0, "1", None, True, -1, 3])
+def test_a_number_of_words_that_cannot_be_received_costs_no_reply(count: Any) -> None:
+    display = Ramtek9300()
+    display.send([0x1700])  # type: ignore[arg-type]
+    with pytest.raises(ReplyError) as refusal:
+        display.receive(count)
+    assert str(refusal.value) == (
+        f"the words received must be 0 to 2, which wait, not {count!r}; "
+        "send an instruction that reads them first"
+    )
+    assert display.receive(np.int64(2)).tolist() == [0, 0]  # type: ignore[arg-type]
+
+
+def test_two_displays_share_nothing() -> None:
+    first, second = Ramtek9300(), Ramtek9300()
+    first.send(instructions.write_image([[5]]))
+    first.send(instructions.write_cursor(0, 5, 6))
+    first.send(instructions.load_entries(0, [[1, 2, 3]]))
+    first.send(sent_words([0x1541, *[0xFFFF] * 6, 0x0A01, 2]))
+    pristine = Ramtek9300()
+    assert snapshot_bytes(second) == snapshot_bytes(pristine)
+    assert not second.decoder.held_words
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        lambda words: words.tolist(),
+        tuple,
+        lambda words: words.astype(np.int64),
+        lambda words: words.astype(">u2"),
+        lambda words: np.repeat(words, 2)[::2],
+        lambda words: words[::-1].copy()[::-1],
+        lambda words: array("H", words.tolist()),
+    ],
+    ids=["list", "tuple", "int64", "big-endian", "strided", "reversed", "array"],
+)
+def test_words_of_every_kind_draw_the_same(kind: Callable[[Any], Any]) -> None:
+    plain, other = Ramtek9300(), Ramtek9300()
+    for stream in (*RECORDED, sessions()[1]):
+        plain.send(stream)
+        other.send(kind(stream))
+    assert snapshot_bytes(other) == snapshot_bytes(plain)

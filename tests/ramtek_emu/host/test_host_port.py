@@ -62,7 +62,7 @@ def test_a_recording_answers_through_the_port_behind_it() -> None:
         ([1, -1], "a word of a stream must be 0 to 65535, not -1 (word 1); mask it to 16 bits"),
         ([[1]], "a stream of words must be one row, not of shape (1, 1); flatten it first"),
         ([1.5], "a stream of words must be whole numbers, not float64; convert them first, rounding half up"),
-        ("text", "a stream of words must be whole numbers, not <U4; convert them first, rounding half up"),
+        ("text", "a stream of words must be whole numbers, not text; pass a list or an array of them"),
     ],
 )
 def test_what_is_no_stream_of_words_is_refused_by_name(words: Any, sentence: str) -> None:
