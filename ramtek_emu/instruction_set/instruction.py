@@ -35,7 +35,7 @@ MOST_BYTES: Final = 0xFFFF
 """The longest data field: its length is one word."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, repr=False, slots=True)
 class Instruction:
     """An instruction: its format, its low byte, its operands as words, and its data."""
 
@@ -56,6 +56,9 @@ class Instruction:
 
     def __hash__(self) -> int:
         return hash(encode(self).tobytes())
+
+    def __repr__(self) -> str:
+        return f"Instruction({str(self)!r})"
 
     def __str__(self) -> str:
         operands = [f"{name} {', '.join(map(str, words))}" for name, words in self.operands.items()]
