@@ -97,6 +97,8 @@ def write_outputs(display: Ramtek9300, output: str | None, snapshot: str | None,
 
 def open_stream(path: str) -> BinaryIO:
     """The input file, stdin for `-`; MissingInputError if it cannot be read."""
+    if path == "":
+        raise click.UsageError("an input must be the name of a file, not ''; give it one")
     if path == "-":
         if sys.stdin is None:
             raise MissingInputError("a stream must come from stdin, which is closed; name a file instead")
