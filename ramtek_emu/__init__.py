@@ -37,6 +37,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
+    __version__: str
     from ramtek_emu.configuration import GMR_9300 as GMR_9300
     from ramtek_emu.configuration import JPL_9460 as JPL_9460
     from ramtek_emu.configuration import NCAR_9460 as NCAR_9460
@@ -97,11 +98,26 @@ _HOME: Final = {
     "write_snapshot": "snapshot.snapshot",
 }
 
+_MODULES: Final = ("instructions",)
+"""Modules that are used whole: `ramtek_emu.instructions.write_text(...)`."""
+
 __all__ = list(_HOME)
 
 
 def __getattr__(name: str) -> object:
-    """A public name from the module that defines it, which is loaded when the name is first used."""
+    """A public name from the module that defines it, which is loaded when the name is first used.
+
+    `__version__` is that of the installed package, `0+unknown` in a checkout that was never installed.
+    """
+    if name == "__version__":
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            return version("autocolor")
+        except PackageNotFoundError:
+            return "0+unknown"
+    if name in _MODULES:
+        return import_module(f"{__name__}.{name}")
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value: object = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
@@ -110,4 +126,5 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    own = [name for name in globals() if name.startswith("__") and name.endswith("__")]
+    return sorted({*own, *__all__, "__version__"})

@@ -1,18 +1,67 @@
-"""Checks of what Python callers pass in: words, streams and colors.
+"""Checks of what Python callers pass in: numbers, words, streams and colors.
 
 The hardware drops bits that do not fit. A Python program is told instead which number is wrong.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
 from ramtek_emu.arrays import Colors, WholeNumbers, Words
-from ramtek_emu.errors import ColorsError, WordsError
+from ramtek_emu.errors import ColorsError, InstructionError, RamtekError, WordsError
 
 BYTE: Final = np.dtype(np.uint8)
+
+
+def is_whole(value: object) -> bool:
+    """Whether a value is one whole number, of Python or of numpy; True and False are none."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+
+
+def checked_number(
+    value: object, thing: str, least: int, most: int, advice: str, error: type[RamtekError]
+) -> int:
+    """The value as an int; `error` if it is no whole number, or not from `least` to `most`.
+
+    >>> checked_number(np.int64(3), "a factor", 1, 16, "choose a smaller one", WordsError)
+    3
+    """
+    shown = value.item() if isinstance(value, np.generic) else value
+    if not isinstance(shown, int) or isinstance(shown, bool):
+        raise error(f"{thing} must be a whole number from {least} to {most}, not {shown!r}; {advice}")
+    if not least <= shown <= most:
+        raise error(f"{thing} must be {least} to {most}, not {shown}; {advice}")
+    return shown
+
+
+def checked_coordinate(value: object, thing: str) -> int:
+    """An element or a line, of the memory or outside of it; InstructionError if no word holds it."""
+    return checked_number(value, thing, -0x8000, 0xFFFF, "round or clip it", InstructionError)
+
+
+def checked_cursor(number: object) -> int:
+    """The number of a cursor, 0 to 255; InstructionError if it is none."""
+    return checked_number(number, "a cursor's number", 0, 255, "choose one there is", InstructionError)
+
+
+def checked_table_address(address: object) -> int:
+    """A word address of the lookup table; InstructionError if no word holds it."""
+    return checked_number(address, "a table's address", 0, 0xFFFF, "count in words", InstructionError)
+
+
+def checked_size(size: object) -> tuple[int, int]:
+    """The size factors of text across and down, from one number or from two; InstructionError otherwise."""
+    factors = tuple(size) if isinstance(size, Sequence) else (size, size)
+    if len(factors) != 2:
+        raise InstructionError(f"the size of text must be one number or two, not {size!r}; give both")
+    across, down = (
+        checked_number(each, "the size of text", 1, 16, "write it smaller", InstructionError)
+        for each in factors
+    )
+    return across, down
 
 
 def whole_numbers(values: object, thing: str, error: type[WordsError] | type[ColorsError]) -> WholeNumbers:
@@ -26,7 +75,13 @@ def whole_numbers(values: object, thing: str, error: type[WordsError] | type[Col
     if array.size == 0 and array.dtype.kind == "f":
         array = array.astype(np.uint16)
     if array.dtype.kind not in "ui":
-        raise error(f"{thing} must be whole numbers, not {array.dtype}; convert them first, rounding half up")
+        if array.dtype.kind in "fb":
+            raise error(
+                f"{thing} must be whole numbers, not {array.dtype}; convert them first, rounding half up"
+            )
+        other = "objects" if array.ndim else type(values).__name__
+        found = {"U": "text", "S": "bytes"}.get(array.dtype.kind, other)
+        raise error(f"{thing} must be whole numbers, not {found}; pass a list or an array of them")
     return array
 
 
@@ -57,7 +112,14 @@ def checked_stream(words: object) -> Words:
     """A stream of 16-bit words as a flat uint16 array; one that is that already is returned unchanged."""
     if isinstance(words, np.ndarray) and words.dtype == np.uint16 and words.ndim == 1:
         return words
+    if isinstance(words, bytes | bytearray) or (isinstance(words, memoryview) and words.itemsize == 1):
+        raise WordsError(
+            f"a stream of words must be whole numbers, not {type(words).__name__}; "
+            "pass np.frombuffer(data, '<u2') if its low bytes come first"
+        )
     array = whole_numbers(words, "a stream of words", WordsError)
+    if array.ndim == 0:
+        raise WordsError(f"a stream of words must be one row, not the number {array}; put it in a list")
     if array.ndim != 1:
         raise WordsError(f"a stream of words must be one row, not of shape {array.shape}; flatten it first")
     if array.size and (array.max() > 0xFFFF or array.min() < 0):
@@ -71,11 +133,13 @@ def checked_stream(words: object) -> Words:
 def checked_colors(first: int, colors: object, entries: int = 1024) -> Colors:
     """The (n, 3) colors as uint8; ColorsError if one does not fit, or the table ends before the last."""
     array = whole_numbers(colors, "colors", ColorsError)
+    if array.shape == (0,):
+        array = array.reshape(0, 3)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ColorsError(
             f"colors must be an (n, 3) array of red, green, blue, not of shape {array.shape}; reshape it"
         )
-    if isinstance(first, bool) or not isinstance(first, (int, np.integer)) or not 0 <= first < entries:
+    if not is_whole(first) or not 0 <= first < entries:
         raise ColorsError(
             f"the first entry must be 0 to {entries - 1}, not {first!r}; choose an entry of the table"
         )

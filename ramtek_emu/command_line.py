@@ -17,9 +17,16 @@ from typing import ClassVar, Final, NoReturn
 
 import click
 
+UNAVAILABLE: Final = 69
 FAULT: Final = 70
-INTERRUPTED: Final = 130
 WRITING_FAILED: Final = 74
+INTERRUPTED: Final = 130
+READER_LEFT: Final = 141
+"""The code of a program that the signal of a broken pipe ended, as a shell tells it."""
+WINDOW: Final = "ramtek_emu.monitor.window"
+"""The module that imports pygame."""
+PYGAME: Final = "pygame" if sys.version_info < (3, 14) else "pygame-ce"
+"""What to install for it, as pyproject.toml has it: pygame has no wheels from Python 3.14 on."""
 
 
 def _show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
@@ -89,10 +96,12 @@ def run_command(command: click.Command, name: str) -> None:
     """Run a command and end the process with its exit code.
 
     An error with an attribute `exit_code` is one that the user can act on: its message is shown, and the code
-    is that attribute. Any other error is a fault of the program. With `--debug`, anywhere before a `--`, the
-    traceback is shown.
+    is that attribute. A reader of stdout that leaves ends the command in silence. An error while the module
+    of the window is loaded is that of a pygame that is missing or broken. Any other error is a fault of the
+    program. With `--debug`, anywhere before a `--`, the traceback is shown.
     """
     debug, arguments = _without_debug(sys.argv[1:])
+    had_stdout = sys.stdout is not None
     if sys.stdout is None:
         sys.stdout = _closed_pipe()
     if isinstance(sys.stdout, TextIOWrapper):
@@ -108,6 +117,8 @@ def run_command(command: click.Command, name: str) -> None:
             refusal.show()
         _leave(refusal.exit_code)
     except BrokenPipeError:
+        if had_stdout:
+            _leave(READER_LEFT)
         _end(name, "stdout must stay open until all is written, not be closed; read it all", WRITING_FAILED)
     except Exception as error:
         if debug:
@@ -116,6 +127,14 @@ def run_command(command: click.Command, name: str) -> None:
         refused = getattr(error, "exit_code", None)
         if refused is not None:
             _end(name, str(error), refused)
+        if _is_of_the_window(error):
+            reason = str(error) or type(error).__name__
+            _end(
+                name,
+                f"a window must have pygame, and it cannot be loaded ({reason}); "
+                f"install it with `pip install {PYGAME}`, or ask for a picture file instead",
+                UNAVAILABLE,
+            )
         if isinstance(error, OSError) and error.filename is None:
             reason = (error.strerror or str(error)).lower()
             _end(name, f"stdout must take what is written, not fail ({reason}); make room", WRITING_FAILED)
@@ -138,6 +157,14 @@ def _done(command: click.Command, name: str, arguments: list[str]) -> object:
             return command.invoke(context)
     except click.exceptions.Exit as leaving:
         return leaving.exit_code
+
+
+def _is_of_the_window(error: Exception) -> bool:
+    """Whether the error was raised while the module of the window was loaded."""
+    return any(
+        frame.f_code.co_name == "<module>" and frame.f_globals.get("__name__") == WINDOW
+        for frame, _ in traceback.walk_tb(error.__traceback__)
+    )
 
 
 def _without_debug(arguments: list[str]) -> tuple[bool, list[str]]:

@@ -6,8 +6,10 @@
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass
 from enum import Enum
+from operator import index
 from typing import Final
 
 from ramtek_emu.errors import ConfigurationError
@@ -21,6 +23,23 @@ class EntryFormat(Enum):
     """Hardware: JPL, NCAR."""
     WORD_12 = "one word an entry: red << 8 | green << 4 | blue, four bits each"
     """Hardware: LIN, BTL."""
+
+    def __repr__(self) -> str:
+        return f"EntryFormat.{self.name}"
+
+
+SIZES: Final = (
+    "elements", "lines", "planes", "visible_elements", "visible_lines", "entries", "cursors",
+)  # fmt: skip
+"""The fields of a configuration that are whole numbers."""
+KINDS: Final[dict[str, tuple[tuple[type, ...], str]]] = {
+    "name": ((str,), "a str"),
+    "entry_format": ((EntryFormat,), "an EntryFormat"),
+    "extended": ((bool,), "True or False"),
+    "monochrome": ((bool,), "True or False"),
+    "timing": ((Timing, type(None)), "a Timing or None"),
+}
+"""The types of the other fields, and how an error names them."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +63,17 @@ class Configuration:
     """How long everything takes; None means that no time passes."""
 
     def __post_init__(self) -> None:
+        for name, (kinds, phrase) in KINDS.items():
+            if not isinstance(getattr(self, name), kinds):
+                raise ConfigurationError(
+                    f"{name} must be {phrase}, not {getattr(self, name)!r} "
+                    f"(configuration {self.name!r}); choose another value"
+                )
+        for name in SIZES:
+            # Sizes may be numbers of numpy.
+            value = getattr(self, name)
+            if not isinstance(value, bool) and hasattr(value, "__index__"):
+                object.__setattr__(self, name, index(value))
         limits = {
             "elements": (self.elements, 1, 4096),
             "lines": (self.lines, 1, 4096),
@@ -53,12 +83,12 @@ class Configuration:
             "cursors": (self.cursors, 0, 8),
         }
         for name, (value, least, most) in limits.items():
-            if not isinstance(value, int) or not least <= value <= most:
+            if type(value) is not int or not least <= value <= most:
                 raise ConfigurationError(
                     f"{name} must be a whole number from {least} to {most}, not {value!r} "
                     f"(configuration {self.name!r}); choose another size"
                 )
-        if not isinstance(self.entries, int) or self.entries not in (256, 512, 1024, 2048, 4096):
+        if type(self.entries) is not int or self.entries not in (256, 512, 1024, 2048, 4096):
             raise ConfigurationError(
                 f"entries must be 256, 512, 1024, 2048 or 4096, not {self.entries!r} "
                 f"(configuration {self.name!r}); choose one of them"
@@ -120,3 +150,32 @@ Assumed: eight planes, since its masks are FFh; four sections of 256 entries, as
 
 CONFIGURATIONS: Final = {each.name: each for each in (GMR_9300, PRINCETON_9300, JPL_9460, NCAR_9460)}
 """The four displays above, by name."""
+
+
+def configuration_named(name: str) -> Configuration:
+    """One of the four displays by its name, in upper or lower case; ConfigurationError lists all names.
+
+    >>> configuration_named("ncar-9460").elements
+    1280
+    """
+    asked = name.upper().replace("-", "_")
+    if asked not in CONFIGURATIONS:
+        near = [each for each in CONFIGURATIONS if each.startswith(asked)]
+        near = near or difflib.get_close_matches(asked, CONFIGURATIONS, n=1)
+        advice = f"did you mean {near[0]}?" if asked and near else "choose one of them"
+        raise ConfigurationError(
+            f"a configuration must be one of {', '.join(sorted(CONFIGURATIONS))}, not {name!r}; {advice}"
+        )
+    return CONFIGURATIONS[asked]
+
+
+def checked_configuration(configuration: object) -> Configuration:
+    """A configuration, or the one of that name; ConfigurationError if it is anything else."""
+    if isinstance(configuration, str):
+        return configuration_named(configuration)
+    if not isinstance(configuration, Configuration):
+        raise ConfigurationError(
+            f"a configuration must be a Configuration or the name of one, not {configuration!r}; "
+            f"choose one of {', '.join(sorted(CONFIGURATIONS))}"
+        )
+    return configuration

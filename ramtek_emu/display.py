@@ -11,7 +11,7 @@ import numpy as np
 
 from ramtek_emu.arrays import Colors, Words
 from ramtek_emu.checks import checked_stream
-from ramtek_emu.configuration import GMR_9300, Configuration
+from ramtek_emu.configuration import GMR_9300, Configuration, checked_configuration
 from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
@@ -25,10 +25,17 @@ from ramtek_emu.video.scan_out import ScanOut
 
 
 class Ramtek9300:
-    """A display in this process. It is a host port: a host sends words to it and receives its replies."""
+    """A display in this process. It is a host port: a host sends words to it and receives its replies.
 
-    def __init__(self, configuration: Configuration = GMR_9300) -> None:
+    The configuration may be one of the four by name, as in `Ramtek9300("NCAR_9460")`. A display can be copied
+    (`copy.deepcopy`) and pickled whole, with incomplete instructions and replies that nobody has read.
+    """
+
+    def __init__(self, configuration: Configuration | str = GMR_9300) -> None:
+        configuration = checked_configuration(configuration)
         self.configuration = configuration
+        self.words_received = 0
+        """The number of words that hosts sent since power-on; it never decreases."""
         self.frame_buffer = FrameBuffer(configuration)
         self.lookup_table = LookupTable(configuration)
         self.cursors = Cursors(configuration.cursors)
@@ -44,13 +51,17 @@ class Ramtek9300:
             self.frame_buffer,
             self.lookup_table,
             self.cursors,
-            lambda: self.processor.parameters,
+            self.processor.current_parameters,
             self.beam,
         )
 
     def send(self, words: Words) -> None:
         """Send 16-bit words; instructions may be cut anywhere. WordsError if they are not 16-bit words."""
         stream = checked_stream(words)
+        self.words_received += len(stream)
+        self._take(stream)
+
+    def _take(self, stream: Words) -> None:
         if self.beam is None:
             for instruction in self.decoder.feed(stream, in_rows=True):
                 self.processor.execute(instruction)
@@ -76,7 +87,7 @@ class Ramtek9300:
         self.decoder.clear()
         self.processor.clear_replies()
         self.cursors.hide()
-        self.send(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16))
+        self._take(np.array([FORMAT_OF_NAME["RSET"].opcode << 8], np.uint16))
 
     def receive(self, count: int) -> Words:
         """The next `count` words of the replies, uint16; ReplyError when there are fewer."""
@@ -106,6 +117,13 @@ class Ramtek9300:
         from ramtek_emu.png import save_png
 
         save_png(self.field(), path, overwrite)
+
+    def __repr__(self) -> str:
+        sizes = self.configuration
+        return (
+            f"{type(self).__name__}({sizes.name}, {sizes.elements} x {sizes.lines} x {sizes.planes} bits, "
+            f"{sizes.entries} entries, {self.words_received} words received)"
+        )
 
     def _repr_png_(self) -> bytes:
         """The field for a notebook."""

@@ -14,7 +14,18 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.arrays import Words
-from ramtek_emu.checks import checked_colors, checked_words, whole_numbers
+from ramtek_emu.checks import (
+    checked_colors,
+    checked_coordinate,
+    checked_cursor,
+    checked_number,
+    checked_size,
+    checked_stream,
+    checked_table_address,
+    checked_words,
+    is_whole,
+    whole_numbers,
+)
 from ramtek_emu.errors import InstructionError, WordsError
 from ramtek_emu.instruction_set.instruction import (
     MOST_BYTES,
@@ -63,6 +74,8 @@ def write_image(words: object, left: int = 0, top: int = 0, planes: int = 10) ->
     The first instruction sets the window. An image that is too long for one instruction goes on in further
     ones. WordsError names the first word that has more bits than there are planes.
     """
+    planes = checked_number(planes, "the number of planes", 1, 16, "choose that of the display", WordsError)
+    left, top = (checked_coordinate(each, "the words' corner") for each in (left, top))
     image = checked_words(words, planes)
     lines, elements = image.shape
     flat = np.ascontiguousarray(image).reshape(-1)
@@ -93,6 +106,11 @@ def image_head(left: int, top: int, right: int, bottom: int, length: int) -> Wor
 
 def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple[Words, int]]:
     """RI: read a window, in as many instructions as needed, each with the number of words to receive."""
+    left, top = (checked_coordinate(each, "the corner of the words to read") for each in (left, top))
+    elements, lines = (
+        checked_number(each, f"the {name} to read", 1, 0x10000, "read one at least", InstructionError)
+        for each, name in ((elements, "elements"), (lines, "lines"))
+    )
     most = MOST_BYTES // 2
     if elements <= most:
         most -= most % elements
@@ -130,12 +148,15 @@ def park_table(address: int = 0) -> Words:
 
     Hardware: LIN, JPL, NCAR send it after a load; it matters with fewer planes than address bits.
     """
-    return np.array((LOAD, address, 0), np.uint16)
+    return np.array((LOAD, checked_table_address(address), 0), np.uint16)
 
 
 def read_entries(address: int = 0, words: int = 2048) -> Words:
     """RAM: ask for words of the lookup table from a word address on; then receive that many words."""
-    return np.array((FORMAT_OF_NAME["RAM"].opcode << 8, address, 2 * words), np.uint16)
+    words = checked_number(
+        words, "the words to read", 0, MOST_BYTES // 2, "read the rest with another", InstructionError
+    )
+    return np.array((FORMAT_OF_NAME["RAM"].opcode << 8, checked_table_address(address), 2 * words), np.uint16)
 
 
 def write_text(
@@ -153,10 +174,13 @@ def write_text(
     dots unchanged. The window, the words and the size stay set. Characters that are not ASCII become question
     marks.
     """
-    data = text if isinstance(text, bytes) else text.encode("ascii", "replace")
-    across, down = (size, size) if isinstance(size, int) else size
-    if not (1 <= across <= 16 and 1 <= down <= 16):
-        raise InstructionError(f"the size of text must be 1 to 16, not {size!r}; write it smaller")
+    if not isinstance(text, str | bytes | bytearray):
+        raise InstructionError(
+            f"text must be a str or bytes, not {type(text).__name__}; write str() around it"
+        )
+    data = text.encode("ascii", "replace") if isinstance(text, str) else bytes(text)
+    across, down = checked_size(size)
+    left, top = (checked_coordinate(each, "the corner of text") for each in (left, top))
     window = (left, top, left + 7 * across * max(1, len(data)) - 1, top + 9 * down - 1)
     operands: dict[str, OperandValue | None] = {
         "foreground": word,
@@ -207,6 +231,12 @@ def write_circles(circles: Sequence[Sequence[int]], word: int | None = None) -> 
             f"circles must be an (n, 3) array of element, line and radius with 1 to {MOST_BYTES // 6} rows, "
             f"not of shape {numbers.shape}; reshape or divide it"
         )
+    least, most = numbers.min(axis=0), numbers.max(axis=0)
+    if (least < (-0x8000, -0x8000, 0)).any() or (most > 0xFFFF).any():
+        raise WordsError(
+            "a circle must have a center within -32768 to 65535 and a radius within 0 to 65535, not "
+            f"{least.tolist()} to {most.tolist()}; leave out what lies farther away"
+        )
     words = (numbers.astype(np.int64) & 0xFFFF).astype(np.uint16)
     return encode(normal("CIRC", {"foreground": word}, words.reshape(-1)))
 
@@ -220,30 +250,30 @@ def fill(element: int, line: int, word: int | None = None) -> Words:
 def zoom(across: int = 1, down: int | None = None) -> Words:
     """ZOOM: show each pixel `across` elements wide and `down` lines high, 1 to 16; `down` may be left out."""
     factors = (across, across if down is None else down)
-    if not all(isinstance(each, int) and 1 <= each <= 16 for each in factors):
+    if not all(is_whole(each) and 1 <= each <= 16 for each in factors):
         raise InstructionError(f"zoom factors must be 1 to 16, not {factors}; choose smaller ones")
-    return np.array((FORMAT_OF_NAME["ZOOM"].opcode << 8, factors[1] - 1 << 8 | factors[0] - 1), np.uint16)
+    word = int(factors[1]) - 1 << 8 | int(factors[0]) - 1
+    return np.array((FORMAT_OF_NAME["ZOOM"].opcode << 8, word), np.uint16)
 
 
 def write_cursor(
     number: int, element: int, line: int, *, visible: bool = True, blinking: bool = False
 ) -> Words:
     """WCSS: place a cursor on the screen, and show or hide it."""
-    place = number, element, line
-    for each, value, most in zip(("cursor", "element", "line"), place, (255, 0x7FF, 0x3FF), strict=True):
-        if not 0 <= value <= most:
-            raise InstructionError(f"a cursor's {each} must be 0 to {most}, not {value}; keep to the screen")
+    number = checked_cursor(number)
+    element, line = (
+        checked_number(each, f"a cursor's {name}", 0, most, "keep to the screen", InstructionError)
+        for each, name, most in ((element, "element", 0x7FF), (line, "line", 0x3FF))
+    )
     state = (0x0400 if visible else 0) | (0x0800 if blinking else 0)
     return np.array((FORMAT_OF_NAME["WCSS"].opcode << 8 | number, element, line | state), np.uint16)
 
 
 def read_cursor(number: int) -> Words:
     """RCSS: ask for a cursor; then receive two words: element, and line with the state above ten bits."""
-    if not 0 <= number <= 255:
-        raise InstructionError(f"a cursor's number must be 0 to 255, not {number}; choose one there is")
-    return np.array([FORMAT_OF_NAME["RCSS"].opcode << 8 | number], np.uint16)
+    return np.array([FORMAT_OF_NAME["RCSS"].opcode << 8 | checked_cursor(number)], np.uint16)
 
 
 def concatenate(*parts: Words) -> Words:
     """Several streams, one after the other, as one."""
-    return np.concatenate(parts) if parts else NO_WORDS
+    return np.concatenate([checked_stream(part) for part in parts]) if parts else NO_WORDS

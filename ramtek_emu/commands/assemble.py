@@ -9,8 +9,8 @@ from typing import Final
 
 import click
 
-from ramtek_emu.commands.displays import open_stream, tell
-from ramtek_emu.writing import refuse_output, write_atomically
+from ramtek_emu.commands.displays import open_stream, refuse_outputs, tell
+from ramtek_emu.writing import write_atomically
 
 EXAMPLES: Final = """\b
 Examples:
@@ -29,7 +29,7 @@ Examples:
 def assemble(listing: str, output: str, force: bool) -> None:
     """Assemble LISTING, what `ramtek list` printed or a program in the same manner; - is stdin."""
     if output != "-":
-        refuse_output(output, force)
+        refuse_outputs(force, output)
     file = io.TextIOWrapper(open_stream(listing), encoding="latin-1")
 
     from ramtek_emu.instruction_set.assembler import assemble as assembled

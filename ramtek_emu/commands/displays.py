@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import sys
 from collections.abc import Callable, Iterator
@@ -12,11 +11,11 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
-from ramtek_emu.errors import ConfigurationError, MissingInputError
+from ramtek_emu.configuration import GMR_9300, Configuration, configuration_named
+from ramtek_emu.errors import MissingInputError
 from ramtek_emu.writing import Output, refuse_output, write_atomically
 
 if TYPE_CHECKING:
-    from ramtek_emu.configuration import Configuration
     from ramtek_emu.display import Ramtek9300
 
 Function = TypeVar("Function", bound=Callable[..., object])
@@ -43,21 +42,9 @@ def display_options(function: Function) -> Function:
     return function
 
 
-def configuration_named(name: str | None) -> Configuration:
-    """The configuration of that name, in upper or lower case; ConfigurationError lists all names."""
-    from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300
-
-    if name is None:
-        return GMR_9300
-    asked = name.upper().replace("-", "_")
-    if asked not in CONFIGURATIONS:
-        near = [each for each in CONFIGURATIONS if each.startswith(asked)]
-        near = near or difflib.get_close_matches(asked, CONFIGURATIONS, n=1)
-        advice = f"did you mean {near[0]}?" if near else "choose one of them"
-        raise ConfigurationError(
-            f"a configuration must be one of {', '.join(sorted(CONFIGURATIONS))}, not {name!r}; {advice}"
-        )
-    return CONFIGURATIONS[asked]
+def configuration_asked_for(name: str | None) -> Configuration:
+    """The configuration of that name, or that of the paper; ConfigurationError lists all names."""
+    return GMR_9300 if name is None else configuration_named(name)
 
 
 def display_asked_for(configuration: str | None, start: str | None) -> Ramtek9300:
@@ -70,7 +57,7 @@ def display_asked_for(configuration: str | None, start: str | None) -> Ramtek930
         return read_snapshot(start)
     from ramtek_emu.display import Ramtek9300
 
-    return Ramtek9300(configuration_named(configuration))
+    return Ramtek9300(configuration_asked_for(configuration))
 
 
 def refuse_outputs(force: bool, *paths: str | None) -> None:
@@ -110,6 +97,8 @@ def write_outputs(display: Ramtek9300, output: str | None, snapshot: str | None,
 
 def open_stream(path: str) -> BinaryIO:
     """The input file, stdin for `-`; MissingInputError if it cannot be read."""
+    if path == "":
+        raise click.UsageError("an input must be the name of a file, not ''; give it one")
     if path == "-":
         if sys.stdin is None:
             raise MissingInputError("a stream must come from stdin, which is closed; name a file instead")

@@ -8,7 +8,7 @@ from typing import Final
 
 import click
 
-from ramtek_emu.commands.displays import configuration_named, open_stream
+from ramtek_emu.commands.displays import configuration_asked_for, open_stream
 
 EXAMPLES: Final = """\b
 Examples:
@@ -29,7 +29,7 @@ def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
 
     `ramtek assemble` makes the same stream of it again, word for word.
     """
-    chosen = configuration_named(configuration)
+    chosen = configuration_asked_for(configuration)
     file = open_stream(stream)
 
     def pieces() -> Iterator[bytes]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import ClassVar, Final
 
 import click
@@ -40,7 +39,7 @@ class RamtekGroup(CommandGroup):
 @click.option(
     "-o",
     "--output",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=click.Path(dir_okay=False),
     metavar="PNG",
     help="Write the picture, open no window.",
 )
@@ -53,7 +52,7 @@ class RamtekGroup(CommandGroup):
 @click.pass_context
 def ramtek(
     context: click.Context,
-    output: Path | None,
+    output: str | None,
     configuration: str | None,
     force: bool,
     full_screen: bool,
@@ -66,11 +65,12 @@ def ramtek(
     """
     if context.invoked_subcommand is not None:
         return
-    from ramtek_emu.commands.displays import configuration_named
+    from ramtek_emu.commands.displays import configuration_asked_for, refuse_outputs
     from ramtek_emu.display import Ramtek9300
     from ramtek_emu.monitor.pattern import pattern
 
-    chosen = configuration_named(configuration)
+    refuse_outputs(force, output)
+    chosen = configuration_asked_for(configuration)
     display = Ramtek9300(chosen)
     display.send(pattern(chosen))
     if output is not None:

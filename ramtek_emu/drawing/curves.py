@@ -6,13 +6,15 @@ square (Assumed: a radius in elements is one in lines).
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Numbers
+from ramtek_emu.arrays import Booleans, Numbers
+from ramtek_emu.drawing.steps import steps
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
-from ramtek_emu.memory.scan_orders import Point
+from ramtek_emu.memory.scan_orders import Point, Window
 
 MOST_PIXELS: Final = 1 << 14
 """The largest number of pixels of a conic.
@@ -22,28 +24,47 @@ at its edges.
 """
 
 
-def write_circle(
-    frame_buffer: FrameBuffer, center: Point, radius: int, word: int, enable: WriteEnable
+def write_circles(
+    frame_buffer: FrameBuffer, centers: Numbers, radii: Numbers, word: int, enable: WriteEnable
 ) -> None:
-    """Draw the outline of a circle.
+    """Draw the outlines of circles around (n, 2) centers.
 
     Hardware: NCAR (disabled code: center, then the radius in elements).
     Assumed: in each octant, at every step the pixel nearest to the circle; radius 0 is a point.
     """
     inside = frame_buffer.window.intersection(enable.window)
-    steps = []
-    for transposed in (False, True):
-        # Compute only the steps that lie within the memory.
-        middle = center.line if transposed else center.element
-        low, high = (inside.top, inside.bottom) if transposed else (inside.left, inside.right)
-        reach = int(radius * 0.7072) + 1
-        across = np.arange(max(low - middle, -reach), min(high - middle, reach) + 1)
-        down = nearest_root(radius * radius - across * across)
-        across, down = across[np.abs(across) <= down], down[np.abs(across) <= down]
-        across, down = np.concatenate((across, across)), np.concatenate((down, -down))
-        steps.append((down, across) if transposed else (across, down))
-    elements, lines = (np.concatenate([each[axis] for each in steps]) for axis in (0, 1))
-    frame_buffer.write_points(center.element + elements, center.line + lines, word, enable)
+    if inside.is_empty:
+        return
+    crossing = crosses(centers, radii, inside)
+    centers, radii = centers[crossing], radii[crossing]
+    reach = (radii * 0.7072).astype(np.int64) + 1
+    for axis, (low, high) in enumerate(((inside.left, inside.right), (inside.top, inside.bottom))):
+        # Along this axis, compute only the steps that lie within the memory.
+        middle = centers[:, axis]
+        first = np.maximum(low - middle, -reach)
+        counts = np.maximum(np.minimum(high - middle, reach) - first + 1, 0)
+        for which, numbers in steps(counts):
+            across = first[which] + numbers
+            down = nearest_root(radii[which] ** 2 - across * across)
+            flat = np.abs(across) <= down
+            which, across, down = which[flat], across[flat], down[flat]
+            along, other = middle[which] + across, centers[which, 1 - axis]
+            for aside in (other + down, other - down):
+                elements, lines = (aside, along) if axis else (along, aside)
+                frame_buffer.write_points(elements, lines, word, enable)
+
+
+def crosses(centers: Numbers, radii: Numbers, window: Window) -> Booleans:
+    """Whether the outline of each circle may have pixels in the window."""
+    corners = np.array(((window.left, window.top), (window.right, window.bottom)))
+    before, behind = corners[0] - centers, centers - corners[1]
+    nearest = np.maximum(np.maximum(before, behind), 0)
+    farthest = np.maximum(np.abs(before), np.abs(behind))
+    # A pixel of the outline is at most half a pixel from the circle.
+    outer, inner = radii + 1, np.maximum(radii - 1, 0)
+    near_enough = (nearest**2).sum(axis=1) <= outer**2
+    crossing: Booleans = near_enough & ((farthest**2).sum(axis=1) >= inner**2)
+    return crossing
 
 
 def nearest_root(squares: Numbers) -> Numbers:
@@ -64,39 +85,64 @@ def conic_pixels(conic: tuple[int, ...], start: Point, stop: Point | None) -> tu
     after it was farther away, comes nearest to it within a pixel. A closed curve without a stop ends where it
     began.
     """
-    a, b, c, d, e, most = conic
+    target = None if stop is None else (stop.element - start.element, stop.line - start.line)
+    offsets = traced(conic, target)
+    elements, lines = start.element + offsets[0], start.line + offsets[1]
+    # The trace ends where a coordinate leaves its register of 16 bits.
+    left = (elements < -0x8000) | (elements > 0x7FFF) | (lines < -0x8000) | (lines > 0x7FFF)
+    end = int(left.argmax()) if left.any() else len(left)
+    return elements[:end], lines[:end]
+
+
+@lru_cache(maxsize=8)
+def traced(conic: tuple[int, ...], target: tuple[int, int] | None) -> Numbers:
+    """The pixels of a conic, (2, n): their elements and lines from the start, which need not be known.
+
+    Measured: keeping the value and the slopes from pixel to pixel takes two fifths of the time of computing
+    them anew; and a host that repeats an instruction of one word makes the display trace only once.
+    """
+    a, b, c, slope_x, slope_y, most = conic
     most = min(most, MOST_PIXELS) if most > 0 else MOST_PIXELS
-    target = (0, 0) if stop is None else (stop.element - start.element, stop.line - start.line)
-    x = y = 0
-    pixels = [(0, 0)]
+    x = y = value = distance = 0
+    if target is not None:
+        distance = target[0] ** 2 + target[1] ** 2
+    elements, lines = [0], [0]
     was_away = False
-    while len(pixels) < most:
-        slope_x, slope_y = 2 * a * x + c * y + d, 2 * b * y + c * x + e
-        # Follow the curve with its inner side to the right.
-        along_x, along_y = -slope_y, slope_x
-        if along_x == 0 and along_y == 0:
+    while len(elements) < most and (slope_x or slope_y):
+        # Follow the curve with its inner side to the right, one pixel along and at most one aside.
+        steep = abs(slope_x) > abs(slope_y)
+        if steep:
+            along, across, bend_along, bend_across = slope_y, slope_x, b, a
+            sign, aside = (1 if across > 0 else -1), (1 if along < 0 else -1)
+        else:
+            along, across, bend_along, bend_across = slope_x, slope_y, a, b
+            sign, aside = (1 if across < 0 else -1), (1 if along > 0 else -1)
+        # Of three pixels take the one where the right-hand side of the equation is nearest to 0.
+        value += sign * along + bend_along
+        turned = aside * (across + sign * c)
+        shift, best = 0, value
+        if abs(value + turned + bend_across) < abs(best):
+            shift, best = aside, value + turned + bend_across
+        if abs(value - turned + bend_across) < abs(best):
+            shift, best = -aside, value - turned + bend_across
+        value = best
+        right, down = (shift, sign) if steep else (sign, shift)
+        x += right
+        y += down
+        slope_x += 2 * a * right + c * down
+        slope_y += 2 * b * down + c * right
+        if target is None:
+            if x == 0 and y == 0:
+                break
+        else:
+            before, distance = distance, (x - target[0]) ** 2 + (y - target[1]) ** 2
+            if was_away and before <= 2 and distance >= before:
+                break
+            was_away = was_away or before > 8
+        elements.append(x)
+        lines.append(y)
+        if target is not None and distance == 0:
             break
-        steep = abs(along_y) > abs(along_x)
-        sign = 1 if (along_y if steep else along_x) > 0 else -1
-        aside = 1 if (along_x if steep else along_y) > 0 else -1
-        best, next_x, next_y = -1, x, y
-        for shift in (0, aside, -aside):
-            new_x, new_y = (x + shift, y + sign) if steep else (x + sign, y + shift)
-            away = abs(a * new_x * new_x + b * new_y * new_y + c * new_x * new_y + d * new_x + e * new_y)
-            if best < 0 or away < best:
-                best, next_x, next_y = away, new_x, new_y
-        now = (x - target[0]) ** 2 + (y - target[1]) ** 2
-        then = (next_x - target[0]) ** 2 + (next_y - target[1]) ** 2
-        if was_away and now <= 2 and then >= now and stop is not None:
-            break
-        was_away = was_away or now > 8
-        x, y = next_x, next_y
-        if not -0x8000 <= start.element + x <= 0x7FFF or not -0x8000 <= start.line + y <= 0x7FFF:
-            break
-        if stop is None and then == 0:
-            break
-        pixels.append((x, y))
-        if then == 0:
-            break
-    offsets = np.array(pixels, np.int64)
-    return start.element + offsets[:, 0], start.line + offsets[:, 1]
+    offsets = np.array((elements, lines), np.int64)
+    offsets.flags.writeable = False
+    return offsets

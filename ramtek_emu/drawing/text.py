@@ -20,8 +20,6 @@ LARGEST_CELL: Final = 16
 
 Assumed: a programmed character has 12 lines of 8 dots (LIN), so that four bits hold a dimension.
 """
-MOST_ALONG: Final = 4096
-"""How many words along the scan are drawn at once: a bound on memory, whatever the host asks for."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,45 +82,58 @@ def write_text(
     Hardware: BTL, LIN, JPL (whole cells, advance 7, line 9); NCAR (the scan order turns the letters); LIN
     (the dots between are background); JPL (its window begins at 1, 1 and its text anywhere, also before it).
     Assumed: a cell that would cross the edge of the window starts the next line of text, at the edge where
-    the scan starts; after the last line, text continues at the corner where the scan starts, and of text that
-    goes around the window many times only the last times are written; a cell larger than the window is
+    the scan starts. A next line of text that would cross the far edge of the window is not begun: what is
+    left of the text is dropped, and the operating point stays behind the last cell that was written. The
+    first line is where the start point is, whatever the window is there, and a cell larger than the window is
     written whole, since only the write window clips.
     """
-    along, across = style.cell
-    step, line_step = style.step
+    if window.is_empty:
+        window = order.block_window(start, 0x10000, 0x10000)
+    (along, across), (step, line_step) = style.cell, style.step
+    corner = order.corner(window)
     width, height = order.inner_and_outer(window)
-    if width and height:
-        corner = order.corner(window)
-        inner, outer = order.steps(window, start)
-    else:
-        corner, outer, inner = start, 0, 0
-        width = height = 0x10000
+    inner, outer = order.steps(window, start)
+    # Count the cells of the first line and of each further one, and the lines.
+    first_cells = cells_from(inner, width, along, step)
+    line_cells = cells_from(0, width, along, step)
+    lines = max(1, cells_from(outer, height, across, line_step))
+    numbers = np.frombuffer(codes, np.uint8)[: first_cells + (lines - 1) * line_cells]
+    # Draw those cells of each line that reach into the memory.
+    memory = frame_buffer.window.intersection(enable.window)
+    low, low_line = order.steps(window, order.corner(memory))
+    room, room_across = order.inner_and_outer(memory)
     words = np.array((style.background, style.foreground), np.uint16)
-    numbers = np.frombuffer(codes, np.uint8)
-    while len(numbers):
-        if inner > 0 and inner + along > width:
-            inner, outer = 0, outer + line_step
-        if outer > 0 and outer + across > height:
-            outer = 0
-        if not inner and not outer:
-            around = cells(width, along, step) * cells(height, across, line_step)
-            numbers = numbers[max(0, len(numbers) // around - 1) * around :]
-        count = min(cells(width - inner, along, step), len(numbers), 1 + MOST_ALONG // step)
-        first = order.stepped(corner, inner, outer)
-        if (
-            not order.block_window(first, (count - 1) * step + along, across)
-            .intersection(frame_buffer.window)
-            .is_empty
-        ):
-            dots = style.dots(shapes[numbers[:count]])
-            whole = beside(np.ones((count, across, along), np.bool_), step) if step != along else None
+    for line in reaching(outer, across, line_step, low_line, room_across):
+        end = first_cells + line * line_cells
+        first, cells = (inner, numbers[:end]) if line == 0 else (0, numbers[end - line_cells : end])
+        seen = reaching(first, along, step, low, room)
+        cells = cells[seen.start : seen.stop]
+        if len(cells):
+            dots = style.dots(shapes[cells])
+            whole = beside(np.ones((len(cells), across, along), np.bool_), step) if step != along else None
             written = dots if style.transparent else whole
-            frame_buffer.write_block(first, order, words[dots.view(np.uint8)], enable, written)
-        inner += count * step
-        numbers = numbers[count:]
-    return order.stepped(corner, inner, outer)
+            place = order.stepped(corner, first + seen.start * step, outer + line * line_step)
+            frame_buffer.write_block(place, order, words[dots.view(np.uint8)], enable, written)
+    more = len(numbers) - first_cells
+    if more <= 0:
+        return order.stepped(corner, inner + len(numbers) * step, outer)
+    line = -(-more // line_cells)
+    return order.stepped(corner, (more - (line - 1) * line_cells) * step, outer + line * line_step)
 
 
-def cells(extent: int, size: int, step: int) -> int:
-    """How many cells of a size fit at a distance of `step`; at least one, since one is always written."""
-    return 1 + max(0, extent - size) // step
+def cells_from(first: int, extent: int, size: int, step: int) -> int:
+    """How many cells, at a distance of `step` from `first` on, end within an extent.
+
+    A cell that begins at the near edge, or before it, counts whatever its size.
+    """
+    return max(0, 1 + (max(0, extent - size) - first) // step)
+
+
+def reaching(first: int, size: int, step: int, low: int, extent: int) -> range:
+    """The numbers of the cells, at a distance of `step` from `first` on, that reach into an extent at `low`.
+
+    >>> reaching(-10, 7, 8, 0, 20)
+    range(1, 4)
+    """
+    begin = max(0, (low - first - size) // step + 1)
+    return range(begin, max(begin, -((first - low - extent) // step)))

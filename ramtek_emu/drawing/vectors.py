@@ -15,11 +15,10 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ramtek_emu.arrays import Dots, Indices, Numbers
+from ramtek_emu.drawing.steps import steps
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, Window
 
-MOST_POINTS: Final = 1 << 15
-"""How many points are computed at once, or those of one line if they are more: a bound on memory."""
 FEW: Final = 4
 """Up to this number, lines are drawn faster one by one."""
 
@@ -126,32 +125,28 @@ def points(
 ) -> Iterator[tuple[Numbers, Numbers, Numbers, Indices]]:
     """The points of lines in order: elements, lines, the number along the line, and the row of the line.
 
-    Of each line, only the points whose coordinate along its longer side is inside the window are computed.
+    Only points inside the window are computed.
     """
-    step = ends - starts
-    size = np.abs(step)
+    offset = ends - starts
+    size = np.abs(offset)
     length = size.max(axis=1)
-    major = (size[:, 1] > size[:, 0]).astype(np.intp)
-    rows = np.arange(len(starts))
-    begin, sign = starts[rows, major], np.sign(step[rows, major])
-    low = np.where(major, inside.top, inside.left)
-    high = np.where(major, inside.bottom, inside.right)
-    near, far = (low - begin) * sign, (high - begin) * sign
-    first = np.maximum(np.minimum(near, far), 0)
-    last = np.minimum(np.maximum(near, far), length)
-    still = sign == 0
-    first[still] = last[still] = 0
-    counts = np.maximum(last - first + 1, 0)
-    done = np.cumsum(counts)
-    # (2 n |step| + length) // (2 length) is n |step| / length rounded, with halves away from the start.
-    doubled, divisor, direction = 2 * size, 2 * np.maximum(length, 1), np.sign(step)
-    row = 0
-    while row < len(rows):
-        before = int(done[row - 1]) if row else 0
-        until = max(row + 1, int(np.searchsorted(done, before + MOST_POINTS, side="right")))
-        part = slice(row, until)
-        which = np.repeat(rows[part], counts[part])
-        numbers = np.arange(before, before + len(which)) - (done - counts - first)[which]
+    # (2 n |offset| + length) // (2 length) is n |offset| / length rounded, with halves away from the start.
+    doubled, divisor, direction = 2 * size, 2 * np.maximum(length, 1), np.sign(offset)
+    first, last = np.zeros_like(length), length
+    for axis, (low, high) in enumerate(((inside.left, inside.right), (inside.top, inside.bottom))):
+        begin, toward, slope = starts[:, axis], direction[:, axis], doubled[:, axis]
+        near, far = (low - begin) * toward, (high - begin) * toward
+        near, far = np.minimum(near, far), np.maximum(near, far)
+        # Find the numbers along the line at which it has gone at least `near`, and at most `far`.
+        moving = np.maximum(slope, 1)
+        enters = -((length - divisor * near) // moving)
+        leaves = -((length - divisor * (far + 1)) // moving) - 1
+        still = toward == 0
+        beside = still & ((begin < low) | (begin > high))
+        first = np.maximum(first, np.where(still, 0, enters))
+        last = np.minimum(last, np.where(still, np.where(beside, -1, length), leaves))
+    for which, numbers in steps(np.maximum(last - first + 1, 0)):
+        numbers = numbers + first[which]
         over = divisor[which]
         half = over >> 1
         elements, lines = (
@@ -159,4 +154,3 @@ def points(
             for axis in (0, 1)
         )
         yield elements, lines, numbers, which
-        row = until

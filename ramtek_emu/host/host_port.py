@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import selectors
 import socket
-from typing import BinaryIO, Final, Protocol
+from typing import BinaryIO, Final, NoReturn, Protocol
 
 import numpy as np
 
@@ -39,6 +39,10 @@ class Recorder:
     def __init__(self, file: BinaryIO, port: HostPort | None = None) -> None:
         self._file = file
         self._port = port
+
+    def __repr__(self) -> str:
+        file = getattr(self._file, "name", type(self._file).__name__)
+        return f"Recorder({file}{'' if self._port is None else f', {self._port!r}'})"
 
     def send(self, words: Words) -> None:
         """Write the words to the file, low byte first, and pass them on."""
@@ -78,6 +82,15 @@ class TcpPort:
             ) from cause
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._socket.setblocking(False)
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            f"a connection must stay in its process, not be copied or pickled ({self.address}); "
+            "open another TcpPort there"
+        )
+
+    def __repr__(self) -> str:
+        return f"TcpPort({self.address}, {'closed' if self._socket.fileno() < 0 else 'open'})"
 
     def send(self, words: Words) -> None:
         """Send 16-bit words; PortError if the connection is lost."""

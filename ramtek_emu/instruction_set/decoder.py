@@ -44,12 +44,26 @@ class Decoder:
     """Takes words as they arrive and returns whole instructions; the words of an incomplete one are held."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
-        self._extended = configuration.extended
-        self._formats = formats_of_opcodes(configuration.extended)
-        self._begins = words_that_begin(configuration.extended)
+        self._of(configuration.extended)
+
+    def _of(self, extended: bool) -> None:
+        self._extended = extended
+        self._formats = formats_of_opcodes(extended)
+        self._begins = words_that_begin(extended)
         self._held: Words = np.empty(MOST_WORDS, np.uint16)
         self._count = 0
         self._needed = 1
+
+    def __getstate__(self) -> tuple[bool, Words, int]:
+        return self._extended, self._held[: self._count].copy(), self._needed
+
+    def __setstate__(self, state: tuple[bool, Words, int]) -> None:
+        self._of(state[0])
+        self._count, self._needed = len(state[1]), state[2]
+        self._held[: self._count] = state[1]
+
+    def __repr__(self) -> str:
+        return f"Decoder(words held: {self._count})"
 
     @property
     def held_words(self) -> int:

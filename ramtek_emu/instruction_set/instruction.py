@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
@@ -13,6 +14,7 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.arrays import Words
+from ramtek_emu.checks import is_whole
 from ramtek_emu.errors import InstructionError
 from ramtek_emu.instruction_set.table import (
     ADDRESSING_NAMES,
@@ -33,7 +35,7 @@ MOST_BYTES: Final = 0xFFFF
 """The longest data field: its length is one word."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False, repr=False, slots=True)
 class Instruction:
     """An instruction: its format, its low byte, its operands as words, and its data."""
 
@@ -54,6 +56,9 @@ class Instruction:
 
     def __hash__(self) -> int:
         return hash(encode(self).tobytes())
+
+    def __repr__(self) -> str:
+        return f"Instruction({str(self)!r})"
 
     def __str__(self) -> str:
         operands = [f"{name} {', '.join(map(str, words))}" for name, words in self.operands.items()]
@@ -119,17 +124,18 @@ def normal(
 def operand_words(name: str, value: OperandValue) -> tuple[int, ...]:
     """The words of an operand; InstructionError if their number or range is wrong."""
     if name not in OPERANDS:
-        raise InstructionError(
-            f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; choose one of them"
-        )
-    numbers = tuple(value) if isinstance(value, Sequence | np.ndarray) else (value,)
+        near = difflib.get_close_matches(name, OPERANDS, n=1)
+        advice = f"did you mean {near[0]}?" if near else "choose one of them"
+        raise InstructionError(f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; {advice}")
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    numbers = tuple(value) if isinstance(value, Sequence) else (value,)
     if len(numbers) != OPERANDS[name].words:
         raise InstructionError(
             f"{name} must be {OPERANDS[name].words} numbers, not {len(numbers)}; give all of them"
         )
     for number in numbers:
-        whole = isinstance(number, int | np.integer) and not isinstance(number, bool)
-        if not whole or not -0x8000 <= number <= 0xFFFF:
+        if not is_whole(number) or not -0x8000 <= number <= 0xFFFF:
             raise InstructionError(
                 f"{name} must be whole numbers from -32768 to 65535, not {number!r}; round or clip it"
             )

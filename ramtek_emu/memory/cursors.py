@@ -83,6 +83,10 @@ class Cursors:
         self.changed = 0
         """How often a shape was changed; it never decreases."""
 
+    def __repr__(self) -> str:
+        visible = sum(cursor.is_visible for cursor in self.all)
+        return f"Cursors({len(self.all)}, {visible} visible, TRACK {'on' if self.track else 'off'})"
+
     def __len__(self) -> int:
         return len(self.all)
 
@@ -136,6 +140,12 @@ class Joystick:
         self._cursors = cursors
         self._limits = elements - 1, lines - 1
         self._device = device
+
+    def __repr__(self) -> str:
+        element, line = self.position
+        count = len(self.driven)
+        cursors = f"{count} cursor{'' if count == 1 else 's'}"
+        return f"Joystick(device {self._device}, drives {cursors}, element {element}, line {line})"
 
     @property
     def driven(self) -> tuple[Cursor, ...]:

@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from ramtek_emu.arrays import Dots, Numbers, Words
-from ramtek_emu.checks import checked_words
+from ramtek_emu.checks import checked_number, checked_words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.errors import WordsError
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Block, Point, ScanOrder, Window, blocks
@@ -42,14 +42,32 @@ class FrameBuffer:
         """The number of words written since power-on; it never decreases."""
         self._every_plane = configuration.largest_word
         self._words: Words = np.zeros((configuration.lines, configuration.elements), np.uint16)
+        self._make_view()
+
+    def _make_view(self) -> None:
         self.words: Words = self._words.view()
         """The words, (lines, elements) uint16; a read-only view that stays current."""
         self.words.flags.writeable = False
 
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in vars(self).items() if name != "words"}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        vars(self).update(state)
+        self._make_view()
+
+    def __repr__(self) -> str:
+        lines, elements = self._words.shape
+        return f"FrameBuffer({elements} x {lines} words of {self.planes} bits, {self.written} written)"
+
     def write(self, words: object, left: int = 0, top: int = 0) -> None:
         """Write a (lines, elements) array from Python; WordsError if a word or the window does not fit."""
         block = checked_words(words, self.planes)
-        place = NORMAL_ORDER.block_window(Point(left, top), block.shape[1], block.shape[0])
+        corner = (
+            checked_number(each, "the words' corner", -0x8000, 0x7FFF, "move it", WordsError)
+            for each in (left, top)
+        )
+        place = NORMAL_ORDER.block_window(Point(*corner), block.shape[1], block.shape[0])
         refuse_outside(place, self.window)
         self._store(place, NORMAL_ORDER, block, EVERYTHING)
 

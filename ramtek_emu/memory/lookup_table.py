@@ -11,11 +11,16 @@ Assumed: the entries are black at power-on; no source says what a cold table sho
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from ramtek_emu.arrays import Bytes, Colors, PackedColors, Words
 from ramtek_emu.checks import checked_colors
 from ramtek_emu.configuration import GMR_9300, Configuration, EntryFormat
+
+VIEWS: Final = ("_halves", "_unused", "packed")
+"""The attributes that are views of the packed entries."""
 
 
 class LookupTable:
@@ -33,6 +38,9 @@ class LookupTable:
         self._last_range = 0, 0, 0
         """The range of entries written last: `written` before it, its first entry, and the one after it."""
         self._packed: PackedColors = np.zeros(self.size, "<u4")
+        self._make_views()
+
+    def _make_views(self) -> None:
         # In this byte order, the two halves of a packed entry are the two words of the 24-bit format.
         self._halves: Words = self._packed.view("<u2")
         self._unused: Bytes = self._packed.view(np.uint8)[3::4]
@@ -40,6 +48,17 @@ class LookupTable:
         self.packed: PackedColors = self._packed.view()
         """The entries as 0x00RRGGBB, (entries,) uint32; a read-only view that stays current."""
         self.packed.flags.writeable = False
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in vars(self).items() if name not in VIEWS}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        vars(self).update(state)
+        self._make_views()
+
+    def __repr__(self) -> str:
+        format = self.entry_format.name
+        return f"LookupTable({self.size} entries, {format}, {self.written} words written)"
 
     @property
     def addressed_entry(self) -> int:

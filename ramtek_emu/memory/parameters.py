@@ -27,6 +27,11 @@ def signed(word: int) -> int:
     return word - 0x10000 if word & 0x8000 else word
 
 
+def register(point: Point) -> Point:
+    """A point as the two registers of 16 bits hold it."""
+    return Point(signed(point.element & 0xFFFF), signed(point.line & 0xFFFF))
+
+
 def coefficients(words: tuple[int, ...]) -> tuple[int, ...]:
     """The six numbers of a conic: from six words of 16 bits, or from twelve, high word first.
 
@@ -167,4 +172,4 @@ class Parameters:
             self.start = self.order.corner(self.window)
         if "start" in operands:
             element, line = operands["start"]
-            self.start = Point(signed(element + base.element & 0xFFFF), signed(line + base.line & 0xFFFF))
+            self.start = register(Point(element + base.element, line + base.line))

@@ -11,6 +11,13 @@ that start before the window continue into it, since counters compare with the f
 of pixels from even elements on, also where its window begins at an odd one). A start beyond the far edge of a
 run is at the next run, and one beyond the last run is at the first.
 Assumed: a window whose right is left of its left, or whose bottom is above its top, holds no word.
+
+Images of bytes go in pairs, two pixels in a word of the host.
+Hardware: JPL (with a window of odd width "an additional pixel will be written per line", which offsets what
+follows, so its driver refuses such areas and ends odd lines with a pair of their own).
+Assumed: the edge of the window is looked for after each pair, so a run holds whole pairs, the second pixel of
+its last pair may lie one step past the edge, and the next run begins with the next word; reading goes the
+same way, so what is read back is what was written. A pair begins wherever the operating point is.
 """
 
 from __future__ import annotations
@@ -167,6 +174,26 @@ class Block(NamedTuple):
     inner: int
     outer: int
     first: int
+
+
+def paired_parts(
+    window: Window, order: ScanOrder, start: Point, count: int
+) -> Iterator[tuple[Window, Point, int]]:
+    """The parts in which `count` pixels that go in pairs follow the scan of a window, at most two.
+
+    Of each part: its window, which is one step wider where a run holds an odd number of pixels, the point of
+    its first pixel, and how many pixels it has.
+    """
+    along, runs = order.inner_and_outer(window)
+    corner = order.corner(window)
+    inner, outer = order.entry(window, start)
+    begin = order.stepped(corner, inner, outer)
+    own = order.block_window(corner, along + (along - inner) % 2, runs)
+    further = order.block_window(corner, along + along % 2, runs)
+    first = count if own == further else min(count, along - inner + (along - inner) % 2)
+    yield own, begin, first
+    if first < count:
+        yield further, order.after(own, begin, first), count - first
 
 
 def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterator[Block]:

@@ -11,7 +11,7 @@ import numpy as np
 from ramtek_emu.drawing import curves, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
-from ramtek_emu.memory.parameters import STANDARD_FONT, signed
+from ramtek_emu.memory.parameters import STANDARD_FONT, register
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Processor, executes
 
@@ -73,10 +73,9 @@ def write_circles(processor: Processor, instruction: Instruction) -> None:
     if not len(circles):
         return
     word, _ = processor.colors(instruction)
-    centers = processor.placed(circles[:, :2], instruction.low_byte).tolist()
-    for center, radius in zip(centers, (circles[:, 2] & 0xFFFF).tolist(), strict=True):
-        curves.write_circle(processor.frame_buffer, Point(*center), radius, word, parameters.enable)
-    parameters.start = Point(*centers[-1])
+    centers = processor.placed(circles[:, :2], instruction.low_byte)
+    curves.write_circles(processor.frame_buffer, centers, circles[:, 2] & 0xFFFF, word, parameters.enable)
+    parameters.start = Point(*centers[-1].tolist())
 
 
 @executes("WC")
@@ -119,8 +118,7 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
         start=parameters.start,
         enable=parameters.enable,
     )
-    # The coordinates of the operating point are registers of 16 bits.
-    parameters.start = Point(signed(next_cell.element & 0xFFFF), signed(next_cell.line & 0xFFFF))
+    parameters.start = register(next_cell)
 
 
 @executes("LPF")

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ramtek_emu.drawing.areas import area
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
-from ramtek_emu.memory.scan_orders import Point
+from ramtek_emu.memory.parameters import register
+from ramtek_emu.memory.scan_orders import Point, Window, paired_parts
 from ramtek_emu.processor.processor import Processor, executes
 
 
@@ -32,16 +35,21 @@ def erase_everything(processor: Processor, instruction: Instruction) -> None:
 def write_image(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN, PIC (one word a pixel); JPL, NCAR (mode 1, two pixels a word; a run goes on).
 
-    Assumed: of an odd number of bytes in mode 0 the last is dropped; in mode 1 the upper planes become 0.
+    Assumed: of an odd number of bytes in mode 0 the last is dropped; in mode 1 it is one pixel, and the upper
+    planes become 0. How pairs of pixels meet the edge of the window is told in scan_orders.
     """
     parameters = processor.parameters
     if parameters.image_mode & 1:
         words = np.frombuffer(instruction.data_bytes(), np.uint8).astype(np.uint16)
     else:
         words = instruction.data[: (instruction.length or 0) // 2]
-    parameters.start = processor.frame_buffer.write_scan(
-        parameters.window, parameters.order, parameters.start, words, parameters.enable
-    )
+    done = 0
+    for window, start, count in image_parts(processor, len(words)):
+        end = processor.frame_buffer.write_scan(
+            window, parameters.order, start, words[done : done + count], parameters.enable
+        )
+        parameters.start = register(end)
+        done += count
 
 
 @executes("RI")
@@ -53,16 +61,25 @@ def read_image(processor: Processor, instruction: Instruction) -> None:
     """
     parameters = processor.parameters
     length = instruction.length or 0
-    count = length if parameters.image_mode & 1 else length // 2
-    words, parameters.start = processor.frame_buffer.read_scan(
-        parameters.window, parameters.order, parameters.start, count
-    )
-    words &= np.uint16(parameters.read_mask)
+    parts = []
+    for window, start, count in image_parts(processor, length if parameters.image_mode & 1 else length // 2):
+        part, end = processor.frame_buffer.read_scan(window, parameters.order, start, count)
+        parameters.start = register(end)
+        parts.append(part)
+    words = np.concatenate(parts) & np.uint16(parameters.read_mask)
     if parameters.image_mode & 1:
         data = words.astype(np.uint8).tobytes() + bytes(length % 2)
         reverse = instruction.low_byte & Flags.REVERSE_PACKING
         words = np.frombuffer(data, "<u2" if reverse else ">u2").astype(np.uint16)
     processor.reply(words)
+
+
+def image_parts(processor: Processor, count: int) -> Iterator[tuple[Window, Point, int]]:
+    """The window, the first point and the number of pixels of each part of an image, by the image mode."""
+    parameters = processor.parameters
+    if parameters.image_mode & 1 and count and not parameters.window.is_empty:
+        return paired_parts(parameters.window, parameters.order, parameters.start, count)
+    return iter([(parameters.window, parameters.start, count)])
 
 
 @executes("WR")

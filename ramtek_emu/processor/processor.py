@@ -11,17 +11,17 @@ only client, NCAR, sends the corner of the window along with coordinates that in
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from enum import IntFlag
 from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Numbers, Words
+from ramtek_emu.arrays import Dots, Numbers, Words
+from ramtek_emu.checks import is_whole
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.errors import ReplyError
-from ramtek_emu.instruction_set.instruction import NO_WORDS, Instruction
+from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.character_rom import characters, loadable
 from ramtek_emu.memory.cursors import Cursors
@@ -64,17 +64,27 @@ class Processor:
         self.parameters = Parameters.at_reset(configuration)
         self.saved: list[Parameters] = []
         """The parameters that PUSHE saved, the newest last."""
-        self.characters = characters()
-        """The dots of the ROM, (256, 9, 7)."""
-        self.loaded_characters = loadable(self.characters)
+        self.loaded_characters = loadable(characters())
         """The dots of the characters that a host can load, (256, 12, 8); until then those of the ROM."""
         self.illegal_words = 0
         """How many words were skipped because no instruction begins with them; it never decreases."""
         self.unimplemented = 0
         """How many instructions without effect, known by name only, were consumed; it never decreases."""
         self._illegal = False
-        self._replies: deque[Words] = deque()
-        self._waiting = 0
+        self._replies = bytearray()
+
+    def __repr__(self) -> str:
+        state = f"{self.waiting} words of replies waiting, status {self.status.name}"
+        return f"Processor({self.configuration.name}, {state})"
+
+    @property
+    def characters(self) -> Dots:
+        """The dots of the ROM, (256, 9, 7), read-only."""
+        return characters()
+
+    def current_parameters(self) -> Parameters:
+        """The parameters; POPE and RSET replace them, so that they must be asked for each time."""
+        return self.parameters
 
     @property
     def status(self) -> Status:
@@ -95,12 +105,11 @@ class Processor:
     def clear_replies(self) -> None:
         """Drop the replies that the host has not read."""
         self._replies.clear()
-        self._waiting = 0
 
     @property
     def waiting(self) -> int:
         """How many words the host can receive."""
-        return self._waiting
+        return len(self._replies) // 2
 
     def execute(self, instruction: Instruction) -> None:
         """Set the operands of an instruction, then execute it; no instruction raises an error."""
@@ -131,29 +140,18 @@ class Processor:
 
     def reply(self, words: Words) -> None:
         """Keep words until the host receives them."""
-        words = words[: MOST_WAITING - self._waiting]
-        if len(words):
-            self._replies.append(words)
-            self._waiting += len(words)
+        self._replies += words[: MOST_WAITING - self.waiting].astype(np.uint16).tobytes()
 
     def take_reply(self, count: int) -> Words:
         """The next `count` words of the replies; ReplyError if there are fewer."""
-        if not 0 <= count <= self._waiting:
+        if not is_whole(count) or not 0 <= count <= self.waiting:
             raise ReplyError(
-                f"the words received must be 0 to {self._waiting}, which wait, not {count}; "
+                f"the words received must be 0 to {self.waiting}, which wait, not {count!r}; "
                 "send an instruction that reads them first"
             )
-        taken = []
-        left = count
-        while left:
-            words = self._replies.popleft()
-            if len(words) > left:
-                self._replies.appendleft(words[left:])
-                words = words[:left]
-            taken.append(words)
-            left -= len(words)
-        self._waiting -= count
-        return np.concatenate(taken) if taken else NO_WORDS
+        words = np.frombuffer(bytes(self._replies[: 2 * count]), np.uint16).copy()
+        del self._replies[: 2 * count]
+        return words
 
     def colors(self, instruction: Instruction) -> tuple[int, int]:
         """The foreground and the background word, exchanged if the swap flag is set."""

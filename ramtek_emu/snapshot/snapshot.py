@@ -107,6 +107,11 @@ def display_of(data: bytes) -> Ramtek9300:
 
 def write_snapshot(display: Ramtek9300, path: str | PathLike[str], overwrite: bool = True) -> None:
     """Write a snapshot to a file, whole or not at all; OutputExistsError, OutputError or WriteError."""
+    if not isinstance(display, Ramtek9300):
+        raise SnapshotError(
+            f"a snapshot must be of a Ramtek9300, not of a {type(display).__name__}; "
+            "give the display first, then the path"
+        )
     write_atomically(path, snapshot_bytes(display), overwrite=overwrite)
 
 

@@ -19,6 +19,9 @@ class Beam:
         self.nanoseconds = 0
         """The time since power-on; it never decreases."""
 
+    def __repr__(self) -> str:
+        return f"Beam(field {self.field_number}, line {self.line} of {self.lines_per_field})"
+
     @property
     def lines_done(self) -> int:
         """How many lines were begun since power-on, blanked lines included."""

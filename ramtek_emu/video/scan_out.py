@@ -36,6 +36,9 @@ Stamp = tuple[int, tuple[object, ...]]
 Fields with equal stamps are equal.
 """
 
+FORGOTTEN: Final = ("_indices", "_indices_of", "_lines_with", "_gray")
+"""The attributes that are computed from the memories; a copy computes its own."""
+
 
 class ScanOut:
     """Makes fields from a frame buffer, a lookup table and cursors."""
@@ -61,18 +64,31 @@ class ScanOut:
         self._beam = beam
         self._words = configuration.largest_word + 1
         self._is_parted = self._words < lookup_table.size
+        # With a beam: the image on the monitor, and the number of lines painted since power-on.
+        self._monitor_image: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
+        self._painted = 0
+        self._forget_indices()
+
+    def _forget_indices(self) -> None:
         # np.take is fastest with indices of type intp; they are renewed when words were written. Measured:
         # mode "clip" takes 1.3 times as long; converting the words for each field, 32 lines at a time, 1.8
         # times; indices on huge pages take 3 % less, which is not worth the memory.
         self._indices = np.zeros((self.lines, self.elements), np.intp)
         self._indices_of: tuple[int, View] = (-1, PLAIN_VIEW)
         """What the indices were made from: the count of words written, and the view."""
-        shown_words = frame_buffer.words[: self.lines, : self.elements]
+        shown_words = self._frame_buffer.words[: self.lines, : self.elements]
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
-        self._gray: tuple[int, PackedColors] = (-1, lookup_table.packed)
-        # With a beam: the image on the monitor, and the number of lines painted since power-on.
-        self._monitor_image: PackedColors = np.zeros((self.lines, self.elements), np.uint32)
-        self._painted = 0
+        self._gray: tuple[int, PackedColors] = (-1, self._lookup_table.packed)
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: value for name, value in vars(self).items() if name not in FORGOTTEN}
+
+    def __setstate__(self, state: dict[str, object]) -> None:
+        vars(self).update(state)
+        self._forget_indices()
+
+    def __repr__(self) -> str:
+        return f"ScanOut({self.elements} x {self.lines})"
 
     @property
     def stamp(self) -> Stamp:

@@ -31,16 +31,18 @@ def corner(window: tuple[int, int, int, int], code: int) -> Place:
     return (right if -1 in (step[0], run[0]) else left, bottom if -1 in (step[1], run[1]) else top)
 
 
-def walk(window: tuple[int, int, int, int], code: int, start: Place, count: int) -> list[Place]:
-    """The places of `count` words from `start` on, and the one after them."""
+def walk(
+    window: tuple[int, int, int, int], code: int, start: Place, count: int, pairs: bool = False
+) -> list[Place]:
+    """The places of `count` words, or pixels that go in pairs, from `start` on, and the one after them."""
     step, run = STEPS[code]
     first = corner(window, code)
     room_along, room_across = rooms(window, code)
     inner, outer = away(start, window, code)
     places = []
-    for _ in range(count + 1):
-        # Counters compare with the far edges only.
-        if inner >= room_along:
+    for number in range(count + 1):
+        # Counters compare with the far edges only, after whole pairs.
+        if inner >= room_along and not (pairs and number % 2):
             inner, outer = 0, outer + 1
         if outer >= room_across:
             outer = 0
@@ -72,8 +74,9 @@ def write_scan(
     words: list[int],
     mask: int,
     clip: tuple[int, int, int, int],
+    pairs: bool = False,
 ) -> Place:
-    places = walk(window, code, start, len(words))
+    places = walk(window, code, start, len(words), pairs)
     for (element, line), word in zip(places, words, strict=False):
         if 0 <= line < len(raster) and 0 <= element < len(raster[0]) and inside((element, line), clip):
             raster[line][element] = (raster[line][element] & ~mask) | (word & mask)
@@ -81,9 +84,14 @@ def write_scan(
 
 
 def read_scan(
-    raster: Raster, window: tuple[int, int, int, int], code: int, start: Place, count: int
+    raster: Raster,
+    window: tuple[int, int, int, int],
+    code: int,
+    start: Place,
+    count: int,
+    pairs: bool = False,
 ) -> tuple[list[int], Place]:
-    places = walk(window, code, start, count)
+    places = walk(window, code, start, count, pairs)
     words = [
         raster[line][element] if 0 <= line < len(raster) and 0 <= element < len(raster[0]) else 0
         for element, line in places[:-1]
@@ -110,6 +118,45 @@ def line_places(start: Place, end: Place) -> list[Place]:
     return places
 
 
+def conic_places(coefficients: tuple[int, ...], most: int, start: Place, stop: Place | None) -> list[Place]:
+    """The pixels of a conic: from each, of the three neighbors ahead, the one nearest to the curve."""
+    a, b, c, d, e = coefficients
+    target = (0, 0) if stop is None else (stop[0] - start[0], stop[1] - start[1])
+
+    def value(place: Place) -> int:
+        x, y = place
+        return a * x * x + b * y * y + c * x * y + d * x + e * y
+
+    def away(place: Place) -> int:
+        return (place[0] - target[0]) ** 2 + (place[1] - target[1]) ** 2
+
+    here = (0, 0)
+    places = [here]
+    was_away = False
+    while len(places) < most:
+        across, down = -(2 * b * here[1] + c * here[0] + e), 2 * a * here[0] + c * here[1] + d
+        if (across, down) == (0, 0):
+            break
+        steep = abs(down) > abs(across)
+        ahead = 1 if (down if steep else across) > 0 else -1
+        aside = 1 if (across if steep else down) > 0 else -1
+        neighbors = [
+            (here[0] + shift, here[1] + ahead) if steep else (here[0] + ahead, here[1] + shift)
+            for shift in (0, aside, -aside)
+        ]
+        there = min(neighbors, key=lambda place: abs(value(place)))
+        if stop is not None and was_away and away(here) <= 2 and away(there) >= away(here):
+            break
+        was_away = was_away or away(here) > 8
+        here = there
+        if stop is None and here == (0, 0):
+            break
+        places.append(here)
+        if here == target:
+            break
+    return [(start[0] + x, start[1] + y) for x, y in places]
+
+
 def write_pixel(raster: Raster, place: Place, word: int, mask: int, clip: tuple[int, int, int, int]) -> None:
     element, line = place
     if 0 <= line < len(raster) and 0 <= element < len(raster[0]) and inside(place, clip):
@@ -127,31 +174,30 @@ def write_text(
     words: tuple[int, int | None],
     mask: int,
     clip: tuple[int, int, int, int],
-) -> tuple[Place, int]:
-    """The place of the next cell, and how often the text began again at the window's first corner."""
+) -> Place:
+    """The place behind the last cell that was written."""
     (dots_along, dots_across), (space_along, space_across), (along, across) = style
     step, run = STEPS[code]
     first = corner(window, code)
     room_along, room_across = rooms(window, code)
     inner, outer = away(start, window, code)
-    rounds = 0
 
     def place(i: int, j: int) -> Place:
         return (first[0] + i * step[0] + j * run[0], first[1] + i * step[1] + j * run[1])
 
     for character in codes:
         if inner > 0 and inner + dots_along * along > room_along:
-            inner, outer = 0, outer + (dots_across + space_across) * across
-        if outer > 0 and outer + dots_across * across > room_across:
-            outer = 0
-        rounds += inner == 0 and outer == 0
+            below = outer + (dots_across + space_across) * across
+            if below > 0 and below + dots_across * across > room_across:
+                break
+            inner, outer = 0, below
         for j in range(dots_across * across):
             for i in range(dots_along * along):
                 word = words[0] if shapes[character][j // across][i // along] else words[1]
                 if word is not None:
                     write_pixel(raster, place(inner + i, outer + j), word, mask, clip)
         inner += (dots_along + space_along) * along
-    return place(inner, outer), rounds
+    return place(inner, outer)
 
 
 OPERAND_WORDS = (

@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu.checks import checked_colors, checked_stream, checked_words, whole_numbers
+from ramtek_emu.checks import (
+    checked_colors,
+    checked_number,
+    checked_stream,
+    checked_words,
+    is_whole,
+    whole_numbers,
+)
 from ramtek_emu.errors import ColorsError, WordsError
 from tests.ramtek_emu.strategies import quick
 
@@ -77,3 +84,62 @@ def test_what_is_no_array_of_whole_numbers_is_refused_by_the_error_of_its_door()
         with pytest.raises(error, match="things must be whole numbers, not bool; convert them first"):
             whole_numbers([True], "things", error)
     assert whole_numbers([], "things", WordsError).size == 0
+
+
+def test_a_whole_number_is_one_of_python_or_numpy_and_no_truth_value() -> None:
+    for whole in (3, np.uint8(3), np.int64(3)):
+        assert is_whole(whole)
+        checked = checked_number(whole, "a factor", 1, 16, "choose another", WordsError)
+        assert (type(checked), checked) == (int, 3)
+    for other in (True, np.bool_(True), 3.0, np.float64(3), "3", None, np.array([3])):
+        assert not is_whole(other)
+
+
+@pytest.mark.parametrize(
+    ("value", "found"),
+    [
+        (0, "1 to 16, not 0"),
+        (np.int64(17), "1 to 16, not 17"),
+        (True, "a whole number from 1 to 16, not True"),
+        (np.float32(2), "a whole number from 1 to 16, not 2.0"),
+        ("2", "a whole number from 1 to 16, not '2'"),
+        (None, "a whole number from 1 to 16, not None"),
+    ],
+)
+def test_a_number_that_does_not_fit_is_refused_as_it_was_given(value: object, found: str) -> None:
+    with pytest.raises(ColorsError) as refusal:
+        checked_number(value, "a factor", 1, 16, "choose another", ColorsError)
+    assert str(refusal.value) == f"a factor must be {found}; choose another"
+
+
+@pytest.mark.parametrize("data", [b"\x00\x07", bytearray(b"\x00\x07"), memoryview(b"\x00\x07")])
+def test_bytes_are_no_stream_since_nobody_can_tell_their_order(data: object) -> None:
+    with pytest.raises(WordsError) as refusal:
+        checked_stream(data)
+    assert str(refusal.value) == (
+        f"a stream of words must be whole numbers, not {type(data).__name__}; "
+        "pass np.frombuffer(data, '<u2') if its low bytes come first"
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("0700", "whole numbers, not text; pass a list or an array of them"),
+        (None, "whole numbers, not NoneType; pass a list or an array of them"),
+        ({1792}, "whole numbers, not set; pass a list or an array of them"),
+        (iter([1792]), "whole numbers, not list_iterator; pass a list or an array of them"),
+        ([10**30], "whole numbers, not objects; pass a list or an array of them"),
+        ([1792.5], "whole numbers, not float64; convert them first, rounding half up"),
+        (1792, "one row, not the number 1792; put it in a list"),
+        ([[1792]], "one row, not of shape (1, 1); flatten it first"),
+    ],
+)
+def test_what_is_no_row_of_whole_numbers_is_no_stream(words: object, sentence: str) -> None:
+    with pytest.raises(WordsError) as refusal:
+        checked_stream(words)
+    assert str(refusal.value) == f"a stream of words must be {sentence}"
+
+
+def test_no_colors_may_be_an_empty_list() -> None:
+    assert checked_colors(5, []).shape == (0, 3)

@@ -75,7 +75,6 @@ def test_a_refusal_ends_with_its_sentence_and_its_code(end: End) -> None:
         (click.UsageError("no"), 2, "Error: no"),
         (click.Abort(), 130, "tool: interrupted"),
         (KeyboardInterrupt(), 130, "tool: interrupted"),
-        (BrokenPipeError(errno.EPIPE, "Broken pipe"), 74, "tool: stdout must stay open"),
         (OSError(errno.ENOSPC, "No space left on device"), 74, "not fail (no space left on device)"),
         (OSError(errno.EIO, "Input/output error", "a/file"), 70, "a fault of this program"),
         (MemoryError(), 70, "a fault of this program, not of yours: MemoryError: ; add --debug"),
@@ -89,6 +88,10 @@ def test_each_failure_has_its_code_and_no_traceback(
     assert left.code == code
     assert sentence in left.err
     assert "Traceback" not in left.err
+
+
+def test_a_reader_of_stdout_that_left_ends_a_command_in_silence(end: End) -> None:
+    assert end(raising(BrokenPipeError(errno.EPIPE, "Broken pipe"))) == (141, "\n", "")
 
 
 def test_debug_shows_the_traceback_and_is_no_argument(end: End) -> None:

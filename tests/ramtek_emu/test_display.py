@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+from array import array
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,10 +22,15 @@ from ramtek_emu import (
     PRINCETON_9300,
     Configuration,
     Ramtek9300,
+    ReplyError,
+    Timing,
     instructions,
 )
+from ramtek_emu.snapshot.snapshot import snapshot_bytes
 from tests.ramtek_emu.displays import sent
+from tests.ramtek_emu.recorded_streams import RECORDED
 from tests.ramtek_emu.strategies import SMALL, cuts, sent_words, streams, thorough
+from tests.ramtek_emu.test_hostile import sessions
 
 
 @thorough
@@ -124,3 +135,144 @@ def test_a_display_shows_itself_in_a_notebook_and_in_a_file(tmp_path: Path) -> N
     with Image.open(tmp_path / "display.png") as picture:
         assert picture.size == (640, 480)
         assert picture.getpixel((5, 5)) == (10, 20, 30)
+
+
+def busy_display(configuration: Configuration) -> Ramtek9300:
+    """A display with something in all of its parts, and in the middle of an instruction."""
+    display = Ramtek9300(configuration)
+    display.send(instructions.write_image(np.arange(480 * 640).reshape(480, 640) % 200))
+    display.send(sent_words([0x0300, 0, 12, 0x1234, 0x0056, 0x789A, 0x00BC, 0x0DEF, 3]))
+    display.send(sent_words([0x0802, 0x8003, 0x00F7, 77, 40, 50, 0x1300, 0x0802, 0x0020, 3, 4]))
+    display.send(sent_words([0x1541, *[0x8142] * 6, 0x1600, 30, 0x0414, 0x1700, 0x0500 + 0xFF00]))
+    display.joystick.press_enter()
+    display.send(sent_words([0x0A03, 0x0040, 2, 3, 4, 5, 12, 1, 2, 3]))
+    return display
+
+
+COPIES: list[Callable[[Ramtek9300], Ramtek9300]] = [
+    copy.deepcopy,
+    lambda display: pickle.loads(pickle.dumps(display)),
+]
+EVERY_KIND = [
+    GMR_9300,
+    PRINCETON_9300,
+    replace(GMR_9300, timing=Timing()),
+    replace(NCAR_9460, monochrome=True),
+]
+
+
+@pytest.mark.parametrize("copied", COPIES, ids=["deepcopy", "pickle"])
+@pytest.mark.parametrize("configuration", EVERY_KIND, ids=range(4))
+def test_a_copy_of_a_display_goes_on_as_the_display_does(
+    configuration: Configuration, copied: Callable[[Ramtek9300], Ramtek9300]
+) -> None:
+    display = busy_display(configuration)
+    display.field()
+    twin = copied(display)
+    rest = sent_words([4, 5, 6, 0x1700, 0x1400, 0x0C01, 2, 0x4142])
+    for each in (display, twin):
+        each.send(rest)
+    assert (twin.words == display.words).all()
+    assert (twin.entries == display.entries).all()
+    assert (twin.field() == display.field()).all()
+    assert twin.processor.parameters == display.processor.parameters
+    assert twin.status == display.status
+    assert twin.scan_out.stamp == display.scan_out.stamp
+    assert (twin.receive(4) == display.receive(4)).all()
+    assert repr(twin) == repr(display)
+    assert (twin.joystick.position, twin.joystick.driven) == (display.joystick.position, (twin.cursors[0],))
+
+
+@pytest.mark.parametrize("copied", COPIES, ids=["deepcopy", "pickle"])
+def test_a_copy_of_a_display_is_apart_from_it_and_its_arrays_stay_read_only(
+    copied: Callable[[Ramtek9300], Ramtek9300],
+) -> None:
+    display = busy_display(GMR_9300)
+    twin = copied(display)
+    display.send(sent_words([4, 5, 6, 0x2B00]))
+    words, entries = twin.words, twin.lookup_table.packed
+    assert words[10, 10] == (640 * 10 + 10) % 200
+    for handed_out in (words, entries, twin.entries, twin.processor.characters):
+        assert not handed_out.flags.writeable
+    # The views that were handed out before stay current.
+    twin.reset()
+    twin.send(instructions.write_image([[7]]))
+    twin.send(instructions.load_entries(7, [[1, 2, 3]]))
+    assert words[0, 0] == 7
+    assert entries[7] == 0x010203
+    assert twin.field()[0, 0].tolist() == [1, 2, 3]
+
+
+def test_the_parts_of_a_display_tell_what_they_are() -> None:
+    display = Ramtek9300("ncar_9460")
+    display.send(instructions.erase(window=(0, 0, 9, 9)))
+    display.send(instructions.write_cursor(0, 5, 6))
+    display.send(sent_words([0x1700, 0x0802]))
+    shown = [
+        display, display.frame_buffer, display.lookup_table, display.cursors, display.joystick,
+        display.processor, display.decoder, display.scan_out,
+        Ramtek9300(replace(GMR_9300, timing=Timing())).beam,
+    ]  # fmt: skip
+    assert [repr(each) for each in shown] == [
+        "Ramtek9300(NCAR_9460, 1280 x 1024 x 8 bits, 1024 entries, 11 words received)",
+        "FrameBuffer(1280 x 1024 words of 8 bits, 100 written)",
+        "LookupTable(1024 entries, PAIR_24, 0 words written)",
+        "Cursors(4, 1 visible, TRACK off)",
+        "Joystick(device 0, drives 1 cursor, element 5, line 6)",
+        "Processor(NCAR_9460, 2 words of replies waiting, status READY)",
+        "Decoder(words held: 1)",
+        "ScanOut(1280 x 1024)",
+        "Beam(field 0, line 0 of 525)",
+    ]
+
+
+def test_pressing_reset_is_no_word_of_a_host() -> None:
+    display = Ramtek9300()
+    display.send(sent_words([0x0700, 0x0700]))
+    display.reset()
+    assert display.words_received == 2
+
+
+@pytest.mark.parametrize("count", [0.5, 1.0, "1", None, True, -1, 3])
+def test_a_number_of_words_that_cannot_be_received_costs_no_reply(count: Any) -> None:
+    display = Ramtek9300()
+    display.send([0x1700])  # type: ignore[arg-type]
+    with pytest.raises(ReplyError) as refusal:
+        display.receive(count)
+    assert str(refusal.value) == (
+        f"the words received must be 0 to 2, which wait, not {count!r}; "
+        "send an instruction that reads them first"
+    )
+    assert display.receive(np.int64(2)).tolist() == [0, 0]  # type: ignore[arg-type]
+
+
+def test_two_displays_share_nothing() -> None:
+    first, second = Ramtek9300(), Ramtek9300()
+    first.send(instructions.write_image([[5]]))
+    first.send(instructions.write_cursor(0, 5, 6))
+    first.send(instructions.load_entries(0, [[1, 2, 3]]))
+    first.send(sent_words([0x1541, *[0xFFFF] * 6, 0x0A01, 2]))
+    pristine = Ramtek9300()
+    assert snapshot_bytes(second) == snapshot_bytes(pristine)
+    assert not second.decoder.held_words
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        lambda words: words.tolist(),
+        tuple,
+        lambda words: words.astype(np.int64),
+        lambda words: words.astype(">u2"),
+        lambda words: np.repeat(words, 2)[::2],
+        lambda words: words[::-1].copy()[::-1],
+        lambda words: array("H", words.tolist()),
+    ],
+    ids=["list", "tuple", "int64", "big-endian", "strided", "reversed", "array"],
+)
+def test_words_of_every_kind_draw_the_same(kind: Callable[[Any], Any]) -> None:
+    plain, other = Ramtek9300(), Ramtek9300()
+    for stream in (*RECORDED, sessions()[1]):
+        plain.send(stream)
+        other.send(kind(stream))
+    assert snapshot_bytes(other) == snapshot_bytes(plain)

@@ -1,5 +1,10 @@
 from __future__ import annotations
 
+import subprocess
+import sys
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -84,3 +89,89 @@ def test_zoom_cursors_and_circles_that_do_not_fit_are_refused_by_name() -> None:
         instructions.read_cursor(-1)
     with pytest.raises(WordsError, match=r"circles must be an \(n, 3\) array"):
         instructions.write_circles([[1, 2]])
+
+
+def test_encoders_take_numbers_and_rows_of_python_and_of_numpy_alike() -> None:
+    encoders: Any = instructions
+    one, two, three = np.int64(1), np.uint8(2), np.int16(3)
+    window = np.array([1, 2, 3, 9])
+    pairs = [
+        (encoders.set_parameters(foreground=np.array(3)), encoders.set_parameters(foreground=3)),
+        (encoders.erase(window, three), encoders.erase((1, 2, 3, 9), 3)),
+        (encoders.erase(window.tolist()), encoders.erase(window)),
+        (encoders.write_image([[1, 2]], one, two, three), encoders.write_image([[1, 2]], 1, 2, 3)),
+        (encoders.write_text("ab", one, two, size=three), encoders.write_text("ab", 1, 2, size=3)),
+        (
+            encoders.write_text(bytearray(b"ab"), 1, 2, size=[two, three]),
+            encoders.write_text(b"ab", 1, 2, size=(2, 3)),
+        ),
+        (encoders.write_vectors([(1, 2)], start=window[:2]), encoders.write_vectors([(1, 2)])),
+        (encoders.write_circles(((1, 2, 3),)), encoders.write_circles(np.array([[1, 2, 3]]))),
+        (encoders.zoom(three, two), encoders.zoom(3, 2)),
+        (encoders.write_cursor(one, two, three), encoders.write_cursor(1, 2, 3)),
+        (encoders.read_entries(one, two), encoders.read_entries(1, 2)),
+        (encoders.load_entries(one, [[1, 2, 3]]), encoders.load_entries(1, np.array([[1, 2, 3]]))),
+        (encoders.concatenate([0x0500], range(2)), np.array([0x0500, 0, 1], np.uint16)),
+    ]
+    for found, expected in pairs:
+        assert found.dtype == np.uint16
+        assert found.tolist() == expected.tolist()
+    for (found, count), (expected, again) in zip(
+        encoders.read_image(one, one, two, three), encoders.read_image(1, 1, 2, 3), strict=True
+    ):
+        assert (found.tolist(), count) == (expected.tolist(), again)
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda i: i.park_table(-1), "a table's address must be 0 to 65535, not -1; count in words"),
+        (lambda i: i.park_table(1.5), "a table's address must be a whole number from 0 to 65535, not 1.5; "),
+        (lambda i: i.read_entries(0, 40000), "the words to read must be 0 to 32767, not 40000; read the "),
+        (lambda i: next(i.read_image(0, 0, 0, 2)), "the elements to read must be 1 to 65536, not 0; read "),
+        (lambda i: next(i.read_image(0, 0, 2, 2.0)), "the lines to read must be a whole number from 1 to "),
+        (lambda i: i.write_image([[1]], None), "the words' corner must be a whole number from -32768 to "),
+        (lambda i: i.write_text(5, 0, 0), "text must be a str or bytes, not int; write str() around it"),
+        (
+            lambda i: i.write_text("a", 0, 0, size=(1,)),
+            "the size of text must be one number or two, not (1,)",
+        ),
+        (
+            lambda i: i.write_text("a", 0, 0, size=2.0),
+            "the size of text must be a whole number from 1 to 16,",
+        ),
+        (
+            lambda i: i.write_cursor(0, 1.5, 2),
+            "a cursor's element must be a whole number from 0 to 2047, not ",
+        ),
+        (lambda i: i.read_cursor("a"), "a cursor's number must be a whole number from 0 to 255, not 'a'; "),
+        (lambda i: i.zoom(True), "zoom factors must be 1 to 16, not (True, True); choose smaller ones"),
+        (lambda i: i.set_parameters(foregroud=3), "an operand must be one of mask, foreground, "),
+    ],
+)
+def test_numbers_that_an_encoder_cannot_send_are_refused_in_words(
+    call: Callable[[Any], object], sentence: str
+) -> None:
+    with pytest.raises(InstructionError) as refusal:
+        call(instructions)
+    assert str(refusal.value).startswith(sentence)
+
+
+def test_an_operand_that_is_misspelled_is_told_the_nearest() -> None:
+    with pytest.raises(InstructionError, match=r"not 'foregroud'; did you mean foreground\?$"):
+        instructions.set_parameters(foregroud=3)
+
+
+@pytest.mark.parametrize("circle", [[1, 2, -3], [1, 2, 70000], [1, 70000, 3], [-40000, 1, 1]])
+def test_circles_that_no_word_holds_are_refused(circle: list[int]) -> None:
+    with pytest.raises(WordsError) as refusal:
+        instructions.write_circles([circle, [0, 0, 0]])
+    assert str(refusal.value).startswith(
+        "a circle must have a center within -32768 to 65535 and a radius within 0 to 65535, not ["
+    )
+
+
+def test_the_encoders_are_there_without_an_import_of_their_own() -> None:
+    program = "import ramtek_emu; print(*ramtek_emu.instructions.reset())"
+    ran = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
+    assert ran.stdout == "1280\n"

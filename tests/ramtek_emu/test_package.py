@@ -1,7 +1,10 @@
 from __future__ import annotations
 
+import importlib.metadata
 import subprocess
 import sys
+
+import pytest
 
 import ramtek_emu
 
@@ -32,3 +35,33 @@ def test_importing_the_package_and_its_command_loads_nothing_heavy() -> None:
 def test_only_the_window_loads_pygame_and_only_pictures_load_pillow() -> None:
     loaded = modules_after("import ramtek_emu; ramtek_emu.Ramtek9300().field()")
     assert not loaded & {"pygame", "PIL"}
+
+
+def test_the_package_lists_its_public_names_and_no_other() -> None:
+    program = "import ramtek_emu, ramtek_emu.commands.ramtek; ramtek_emu.Ramtek9300; print(*dir(ramtek_emu))"
+    listed = subprocess.run(
+        [sys.executable, "-c", program], check=True, capture_output=True, text=True
+    ).stdout.split()
+    assert {name for name in listed if not name.startswith("__")} == set(ramtek_emu.__all__)
+    assert {"__version__", "__doc__", "__name__", "__file__", "__all__"} <= set(listed)
+
+
+def test_the_version_is_that_of_the_installed_package(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    def version(name: str) -> str:
+        asked.append(name)
+        return "1.2.3"
+
+    monkeypatch.setattr(importlib.metadata, "version", version)
+    assert ramtek_emu.__version__ == "1.2.3"
+    assert asked == ["autocolor"]
+
+
+def test_a_package_that_is_not_installed_has_a_version_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    def version(name: str) -> str:
+        raise importlib.metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(importlib.metadata, "version", version)
+    assert ramtek_emu.__version__ == "0+unknown"
+    assert "importlib.metadata" not in modules_after("import ramtek_emu")

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
-from ramtek_emu import Ramtek9300
-from ramtek_emu.drawing.curves import MOST_PIXELS, conic_pixels
+from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu.drawing.curves import MOST_PIXELS, conic_pixels, traced
 from ramtek_emu.memory.scan_orders import Point, Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, quick, sent_words, thorough, windows
@@ -139,3 +140,64 @@ def test_a_conic_comes_as_pairs_of_words_or_as_single_ones() -> None:
     # The coefficients stay: another quarter with a number of pixels, as extended pairs.
     pairs.send(sent_words([0x0F02, 0x9000, 0, 1, 0, 1, 0, 0, -1, -80, 0, 0, 0, 5, 300, 300]))
     assert np.count_nonzero(pairs.words[250:350, 250:350]) == 5
+
+
+whole = (
+    st.integers(-3, 3) | st.integers(-600, 600) | st.sampled_from([0x7FFF, -0x8000, 0x7FFFFFFF, -0x80000000])
+)
+
+
+@thorough
+@given(
+    st.tuples(whole, whole, whole, whole, whole),
+    st.integers(0, 60),
+    st.tuples(far, far),
+    st.none() | st.tuples(far, far),
+)
+def test_a_conic_of_any_coefficients_is_that_of_the_twin(
+    coefficients: tuple[int, ...], most: int, start: tuple[int, int], stop: tuple[int, int] | None
+) -> None:
+    elements, lines = conic_pixels(
+        (*coefficients, most), Point(*start), None if stop is None else Point(*stop)
+    )
+    expected = reference.conic_places(coefficients, most or MOST_PIXELS, start, stop)
+    assert list(zip(elements.tolist(), lines.tolist(), strict=True)) == expected
+
+
+def test_a_conic_ends_where_a_coordinate_leaves_its_register() -> None:
+    elements, lines = conic_pixels((0, 0, 0, 0, 1, 0), Point(-0x7FFE, 9), None)
+    assert (elements.tolist(), lines.tolist()) == ([-0x7FFE, -0x7FFF, -0x8000], [9, 9, 9])
+
+
+def test_a_conic_that_is_asked_for_again_is_not_traced_again() -> None:
+    display = Ramtek9300()
+    traced.cache_clear()
+    display.send(sent_words([0x0802, 0x1000, 0, 1, 0, 1, 0, 0, 0, 80, 0, 0, 0, 0]))
+    display.send(sent_words([0x0802, 0x8002, 5, 300, 200, 0x0F00, 0x0802, 0x8002, 5, 500, 300, 0x0F00]))
+    assert traced.cache_info().misses == 1
+    assert (display.words[160:241, 200:301] == display.words[260:341, 400:501]).all()
+    assert np.count_nonzero(display.words) > 400
+
+
+def test_only_circles_that_reach_into_the_memory_are_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    display = Ramtek9300()
+    points: list[int] = []
+
+    def write_points(elements: NDArray[np.int64], *rest: object) -> None:
+        points.append(len(elements))
+
+    monkeypatch.setattr(display.frame_buffer, "write_points", write_points)
+    far_away, around_everything = [2000, 100, 500], [320, 240, 30000]
+    display.send(sent_words([0x6D01, 65532, *(far_away + around_everything) * 5461]))
+    assert sum(points) == 0
+
+
+@quick
+@given(st.lists(st.tuples(far, far, st.integers(0, 90)), min_size=1, max_size=40))
+def test_circles_together_are_those_one_by_one(circles: list[tuple[int, int, int]]) -> None:
+    together, apart = Ramtek9300(SMALL), Ramtek9300(SMALL)
+    together.send(instructions.write_circles(circles, 7))
+    for circle in circles:
+        apart.send(instructions.write_circles([circle], 7))
+    assert (together.words == apart.words).all()
+    assert together.frame_buffer.written == apart.frame_buffer.written

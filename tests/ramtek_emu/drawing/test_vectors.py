@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import NCAR_9460, Ramtek9300, instructions
+from ramtek_emu.drawing.vectors import points
 from ramtek_emu.memory.scan_orders import Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, quick, sent_words, thorough, windows
@@ -150,3 +151,34 @@ def test_few_and_many_lines_are_drawn_alike(count: int) -> None:
     for start, end in itertools.pairwise(ends.tolist()):
         apart.send(instructions.write_vectors([end], 9, start=start))
     assert (together.words == apart.words).all()
+
+
+wide = st.tuples(st.integers(-900, 900), st.integers(-900, 900))
+
+
+@quick
+@given(st.lists(st.tuples(wide, wide), min_size=1, max_size=5), windows())
+def test_only_the_points_inside_are_computed(
+    lines: list[tuple[tuple[int, int], tuple[int, int]]], window: Window
+) -> None:
+    starts, ends = (np.array([line[end] for line in lines]) for end in (0, 1))
+    found = [
+        point
+        for part in points(starts, ends, window)
+        for point in zip(*(each.tolist() for each in part), strict=True)
+    ]
+    expected = [
+        (*place, number, row)
+        for row, (start, end) in enumerate(lines)
+        for number, place in enumerate(reference.line_places(start, end))
+        if reference.inside(place, window)
+    ]
+    assert found == expected
+
+
+def test_a_vector_across_the_whole_range_takes_no_more_points_than_the_memory_shows() -> None:
+    window = Window(0, 0, 639, 479)
+    far = np.array([[-0x8000, -0x8000], [-0x8000, 0x7FFF], [0x7FFF, 100], [-0x8000, -3]])
+    near = np.array([[0x7FFF, 0x7FFF], [0x7FFF, -0x8000], [-0x8000, 100], [0x7FFF, -3]])
+    (part,) = points(far, near, window)
+    assert np.bincount(part[3], minlength=4).tolist() == [480, 0, 640, 0]

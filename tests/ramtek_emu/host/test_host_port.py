@@ -1,7 +1,10 @@
 from __future__ import annotations
 
+import copy
+import pickle
 import socket
 from io import BytesIO
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -59,7 +62,7 @@ def test_a_recording_answers_through_the_port_behind_it() -> None:
         ([1, -1], "a word of a stream must be 0 to 65535, not -1 (word 1); mask it to 16 bits"),
         ([[1]], "a stream of words must be one row, not of shape (1, 1); flatten it first"),
         ([1.5], "a stream of words must be whole numbers, not float64; convert them first, rounding half up"),
-        ("text", "a stream of words must be whole numbers, not <U4; convert them first, rounding half up"),
+        ("text", "a stream of words must be whole numbers, not text; pass a list or an array of them"),
     ],
 )
 def test_what_is_no_stream_of_words_is_refused_by_name(words: Any, sentence: str) -> None:
@@ -115,3 +118,24 @@ def test_words_that_do_not_come_are_refused_after_a_while() -> None:
             port.receive(-1)
     with pytest.raises(PortError, match="must be open"):
         port.send(words("0700"))
+
+
+def test_a_connection_cannot_be_copied_or_pickled_and_says_why() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
+        with TcpPort(address) as port:
+            for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
+                with pytest.raises(TypeError) as refusal:
+                    attempt(port)
+                assert str(refusal.value) == (
+                    f"a connection must stay in its process, not be copied or pickled ({address}); "
+                    "open another TcpPort there"
+                )
+            assert repr(port) == f"TcpPort({address}, open)"
+        assert repr(port) == f"TcpPort({address}, closed)"
+
+
+def test_a_recorder_tells_its_file_and_its_display(tmp_path: Path) -> None:
+    with open(tmp_path / "words", "wb") as file:
+        assert repr(Recorder(file)) == f"Recorder({tmp_path / 'words'})"
+    assert repr(Recorder(BytesIO(), Ramtek9300())).startswith("Recorder(BytesIO, Ramtek9300(GMR_9300, ")

@@ -23,3 +23,8 @@ def test_a_listing_names_operands_and_flags() -> None:
     (text,) = Decoder().feed(np.array([0x0C13, 0x0040, 0, 0, 32, 32, 3, 0x3030, 0x3400], np.uint16))
     assert str(text) == "WT   BK; window 0, 0, 32, 32; 3 bytes"
     assert text.data_bytes() == b"004"
+
+
+def test_an_instruction_is_shown_by_its_name_and_operands() -> None:
+    shown = repr(normal("WVL", {"foreground": 1, "start": (10, 20)}, np.array([30, 40], np.uint16)))
+    assert shown == "Instruction('WVL  foreground 1; start 10, 20; 4 bytes')"

@@ -3,7 +3,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window, blocks
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, Window, blocks, paired_parts
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import points, quick, scan_codes, windows
 
@@ -33,3 +33,19 @@ def test_blocks_take_every_word_once_and_in_order(
         assert block.outer > 0
         done += block.inner * block.outer
     assert done == count
+
+
+@quick
+@given(windows(), scan_codes, points, st.integers(1, 400))
+def test_pixels_in_pairs_take_every_place_of_the_twin_in_order(
+    window: Window, code: int, start: Point, count: int
+) -> None:
+    order = SCAN_ORDERS[code]
+    parts = list(paired_parts(window, order, start, count))
+    assert 1 <= len(parts) <= 2
+    found = [
+        order.after(part, begin, number) if number else begin
+        for part, begin, size in parts
+        for number in range(size)
+    ]
+    assert found == reference.walk(window, code, start, count, pairs=True)[:-1]

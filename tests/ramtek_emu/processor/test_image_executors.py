@@ -88,7 +88,7 @@ def test_images_of_every_kind_are_those_of_the_twin(
     begin = reference.corner(moved, code) if start is None else (start.element + across, start.line + down)
     words = list(data) if bytes_for_pixels else packed(data, low_first)[: len(data) // 2]
     twin = raster.tolist()
-    after = reference.write_scan(twin, moved, code, begin, words, mask & 1023, clip)
+    after = reference.write_scan(twin, moved, code, begin, words, mask & 1023, clip, bytes_for_pixels)
     assert display.words.tolist() == twin
     assert display.processor.parameters.start == after
 
@@ -96,7 +96,7 @@ def test_images_of_every_kind_are_those_of_the_twin(
     display.send(sent_words([0x0B03 | low, 0x8000, begin[0], begin[1], len(data)]))
     if addressing:
         return
-    read, _ = reference.read_scan(twin, moved, code, begin, len(words))
+    read, _ = reference.read_scan(twin, moved, code, begin, len(words), bytes_for_pixels)
     read = [word & 0x2F5 for word in read]
     if bytes_for_pixels:
         read = packed(bytes(word & 0xFF for word in read), low_first)
@@ -347,3 +347,43 @@ def test_recorded_byte_image_line_of_the_vicar_driver() -> None:
     )
     assert display.words[1, 10:26].tolist() == list(range(16))
     assert display.processor.parameters.start == (26, 1)
+
+
+def test_byte_images_write_whole_pairs_also_at_the_edge_of_an_odd_window() -> None:
+    # Three elements, two lines: each line takes two words, and its fourth pixel lies beside the window.
+    display = sent(
+        "0802 0004 0009 0900",
+        "0A0F 0040 0020 000A 0014 000C 0015 0001 0008 0201 0403 0605 0807",
+        "0B0F 0040 0020 000A 0014 000C 0015 0001 0008",
+    )
+    assert display.words[20:22, 9:15].tolist() == [[9, 1, 2, 3, 4, 9], [9, 5, 6, 7, 8, 9]]
+    assert display.receive(4).tolist() == [0x0201, 0x0403, 0x0605, 0x0807]
+    assert display.processor.parameters.start == (10, 20)
+
+
+def test_lines_that_are_not_padded_are_offset_in_an_odd_window_as_on_the_hardware() -> None:
+    # Nine bytes without padding for three lines of three: each line begins one byte too late.
+    display = sent("0A0F 0040 0020 000A 0014 000C 0016 0001 0009 0201 0403 0605 0807 0009")
+    assert display.words[20:23, 10:14].tolist() == [[1, 2, 3, 4], [5, 6, 7, 8], [9, 0, 0, 0]]
+
+
+def test_the_write_window_keeps_the_second_pixel_of_a_pair_inside() -> None:
+    window = "000A 0014 000C 0015"
+    display = sent(f"0A0F 0040 0022 {window} {window} 0001 0008 0201 0403 0605 0807")
+    assert display.words[20:22, 10:14].tolist() == [[1, 2, 3, 0], [5, 6, 7, 0]]
+
+
+def test_a_run_of_bytes_goes_on_with_the_next_pair() -> None:
+    whole, cut = Ramtek9300(), Ramtek9300()
+    head = [0x0A07, 0x0040, 0x0020, 5, 5, 9, 99, 1]
+    data = packed(bytes(range(1, 61)), False)
+    whole.send(sent_words([*head, 60, *data]))
+    cut.send(sent_words([*head, 22, *data[:11], 0x0A01, 38, *data[11:]]))
+    assert (cut.words == whole.words).all()
+    assert whole.words[5:15, 5:11].reshape(-1).tolist() == list(range(1, 61))
+
+
+def test_pairs_that_begin_inside_a_line_end_past_the_edge_of_an_even_window() -> None:
+    display = sent("0A0F 8040 0020 000A 0014 000D 0015 000B 0014 0001 0008 0201 0403 0605 0807")
+    assert display.words[20:22, 10:15].tolist() == [[0, 1, 2, 3, 4], [5, 6, 7, 8, 0]]
+    assert display.processor.parameters.start == (10, 20)

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -65,3 +67,25 @@ def test_relative_points_are_counted_on_in_registers_of_16_bits(points: list[tup
         )
         expected.append([element, line])
     assert processor.placed(np.array(points, np.int64), Flags.RELATIVE).tolist() == expected
+
+
+def test_many_short_replies_take_little_more_memory_than_their_words() -> None:
+    display = Ramtek9300()
+    asked = np.full(10_000, 0x1700, np.uint16)
+    display.send(asked)
+    tracemalloc.start()
+    try:
+        display.send(asked)
+        grown, _ = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert display.processor.waiting == 40_000
+    assert grown < 200_000
+
+
+def test_replies_belong_to_the_host_that_received_them() -> None:
+    display = Ramtek9300()
+    display.send(np.full(4, 0x1700, np.uint16))
+    words = display.receive(3)
+    words[:] = 5
+    assert display.receive(5).tolist() == [0] * 5

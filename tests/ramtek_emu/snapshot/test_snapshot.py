@@ -149,3 +149,13 @@ def test_a_snapshot_shows_itself_to_pillow_with_its_texts() -> None:
     with Image.open(BytesIO(SNAPSHOT)) as picture:
         picture.load()
         assert sorted(picture.info) == sorted(texts_of(SNAPSHOT))
+
+
+def test_a_snapshot_of_no_display_is_refused_before_a_file_is_made(tmp_path: Path) -> None:
+    path = tmp_path / "display.png"
+    with pytest.raises(SnapshotError) as refusal:
+        write_snapshot(str(path), Ramtek9300())  # type: ignore[arg-type]
+    assert str(refusal.value) == (
+        "a snapshot must be of a Ramtek9300, not of a str; give the display first, then the path"
+    )
+    assert not path.exists()
