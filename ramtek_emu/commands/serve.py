@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -22,6 +20,7 @@ from ramtek_emu.commands.displays import (
     tell_the_end,
     write_outputs,
 )
+from ramtek_emu.commands.end_signals import end_signals
 
 if TYPE_CHECKING:
     from ramtek_emu.host.host_session import HostSession
@@ -209,44 +208,3 @@ def announce(server: TcpServer | UnixServer) -> None:
         )
     click.echo(server.address)
     sys.stdout.flush()
-
-
-class EndSignals:
-    """Remembers Ctrl+C or a termination signal, which end a server without an error."""
-
-    def __init__(self) -> None:
-        self.received = False
-        self._waiting = False
-
-    def receive(self, *_: object) -> None:
-        """Remember the signal, and interrupt a read that is waiting."""
-        self.received = True
-        if self._waiting:
-            raise InterruptedError
-
-    def until_received(self, read: Read) -> Read:
-        """A function like `read` that returns nothing after the signal, or if reading fails."""
-
-        def read_until_received(most: int) -> bytes:
-            try:
-                self._waiting = True
-                return b"" if self.received else read(most)
-            except OSError:
-                # Also raised by a terminal or a socket whose other end was closed.
-                return b""
-            finally:
-                self._waiting = False
-
-        return read_until_received
-
-
-@contextmanager
-def end_signals() -> Iterator[EndSignals]:
-    """Handle Ctrl+C and termination signals within a `with` block."""
-    signals = EndSignals()
-    before = {number: signal.signal(number, signals.receive) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield signals
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

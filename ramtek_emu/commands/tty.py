@@ -6,6 +6,7 @@ import os
 import shutil
 import signal
 import socket
+import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from typing import TYPE_CHECKING, Final, NamedTuple, NoReturn
@@ -47,6 +48,11 @@ def tty(
     the time did, and what the display replies can be read there. The exit code is the program's, or 128 and
     the number of the signal that ended it.
     """
+    if not hasattr(os, "pidfd_open"):
+        raise PortError(
+            f"a program's device must be made on Linux, not on {sys.platform}; "
+            "pipe the program into `ramtek serve --stdio`"
+        )
     if shutil.which(program) is None:
         raise MissingInputError(f"a program must be one that can be run, not {program!r}; check its name")
 
@@ -134,8 +140,15 @@ def started(command: list[str], environment: dict[str, str]) -> Iterator[Running
         failure = ours.recv(1 << 10)
     notices = WriteNotices(numbers[0]) if numbers else None
     ended = os.pidfd_open(process)
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    others = signal.signal(signal.SIGTERM, lambda *_: os.kill(process, signal.SIGTERM))
+
+    def pass_on(number: int, _: object = None) -> None:
+        with suppress(ProcessLookupError):
+            signal.pidfd_send_signal(ended, number)
+
+    before = {
+        signal.SIGINT: signal.signal(signal.SIGINT, signal.SIG_IGN),
+        signal.SIGTERM: signal.signal(signal.SIGTERM, pass_on),
+    }
     try:
         if failure:
             os.waitpid(process, 0)
@@ -144,11 +157,11 @@ def started(command: list[str], environment: dict[str, str]) -> Iterator[Running
             )
         yield Running(process, ended, notices, reason.decode())
     except PortError:
-        os.kill(process, signal.SIGHUP)
+        pass_on(signal.SIGHUP)
         raise
     finally:
-        signal.signal(signal.SIGINT, before)
-        signal.signal(signal.SIGTERM, others)
+        for number, handler in before.items():
+            signal.signal(number, handler)
         os.close(ended)
         if notices is not None:
             notices.close()

@@ -58,8 +58,8 @@ def send_stream_mark(connected: socket.socket) -> None:
 def read_packet(connected: socket.socket, most: int) -> bytes | Sign:
     """The next packet of a Unix connection, cut after `most` bytes, or a sign; OSError as `read_stream`."""
     packet = connected.recv(most)
-    if packet:
-        return packet
+    if packet or not marks_are_known():
+        return packet or Sign.END
     from termios import FIONREAD
 
     # An empty packet and the end read alike; at the end the other side has hung up and nothing waits.

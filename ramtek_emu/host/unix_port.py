@@ -68,8 +68,8 @@ def packet_socket() -> socket.socket:
     except (AttributeError, OSError) as cause:
         reason = (getattr(cause, "strerror", None) or "no SOCK_SEQPACKET").lower()
         raise PortError(
-            f"a system must have Unix sockets that keep the boundaries of writes, and this one does not "
-            f"({reason}); use --port or --stdio"
+            "a system must have Unix sockets that keep the boundaries of writes, and this one does not "
+            f"({reason}); use TCP or a pipe"
         ) from cause
 
 

@@ -16,17 +16,24 @@ import errno
 import os
 import platform
 import struct
+from contextlib import suppress
 from typing import Final, NamedTuple
 
 # linux/filter.h, linux/seccomp.h, linux/prctl.h, linux/audit.h
 INSTRUCTION: Final = struct.Struct("HBBI")
 PROGRAM: Final = struct.Struct("HP")
-LOAD, JUMP_IF_EQUAL, RETURN = 0x20, 0x15, 0x06
-NUMBER_PLACE, ARCHITECTURE_PLACE = 0, 4
-ALLOW, NOTIFY = 0x7FFF0000, 0x7FC00000
+LOAD: Final = 0x20
+JUMP_IF_EQUAL: Final = 0x15
+RETURN: Final = 0x06
+NUMBER_PLACE: Final = 0
+ARCHITECTURE_PLACE: Final = 4
+ALLOW: Final = 0x7FFF0000
+NOTIFY: Final = 0x7FC00000
 NO_NEW_PRIVILEGES: Final = 38
-SET_FILTER, NEW_LISTENER = 1, 8
-RECEIVE, ANSWER = 0xC0502100, 0xC0182101
+SET_FILTER: Final = 1
+NEW_LISTENER: Final = 8
+RECEIVE: Final = 0xC0502100
+ANSWER: Final = 0xC0182101
 NOTICE_BYTES: Final = 80
 IDENTITY: Final = struct.Struct("Q")
 RESPONSE: Final = struct.Struct("QqiI")
@@ -118,7 +125,6 @@ class WriteNotices:
 
     def allow(self, identity: int) -> None:
         """Let a write begin."""
-        from contextlib import suppress
         from fcntl import ioctl
 
         # A program that was killed is no longer waiting.

@@ -259,3 +259,29 @@ def test_a_recorded_stream_over_tcp_gives_the_same_display(number: int) -> None:
         port.receive(1)
         assert (server.display.words == twin.words).all()
         assert (server.display.entries == twin.entries).all()
+
+
+def test_urgent_bytes_among_noise_leave_a_display_that_works() -> None:
+    draw = np.random.default_rng(1978)
+    with serving() as server:
+        for _ in range(5):
+            with connected(server) as host:
+                reader = threading.Thread(target=read_all, args=(host,))
+                reader.start()
+                for _ in range(40):
+                    host.sendall(draw.bytes(int(draw.integers(0, 4000))))
+                    host.send(draw.bytes(1), socket.MSG_OOB)
+                host.shutdown(socket.SHUT_WR)
+                reader.join(20)
+        with TcpPort(server.address) as port:
+            port.reset()
+            port.send(OUTLINE)
+        twin = Ramtek9300()
+        twin.send(OUTLINE)
+        assert (server.display.words == twin.words).all()
+
+
+def read_all(host: socket.socket) -> None:
+    with suppress(ConnectionError):
+        while host.recv(1 << 16):
+            pass

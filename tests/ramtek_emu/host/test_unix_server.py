@@ -88,5 +88,5 @@ def test_a_system_without_sockets_of_packets_is_told_in_one_sentence(
     assert refusal.value.exit_code == 69
     assert str(refusal.value) == (
         "a system must have Unix sockets that keep the boundaries of writes, and this one does not "
-        "(no sock_seqpacket); use --port or --stdio"
+        "(no sock_seqpacket); use TCP or a pipe"
     )
