@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -46,7 +47,7 @@ def program(tmp_path: Path) -> Path:
     return path
 
 
-def tty(display: UnixServer, *command: object, **options: object) -> subprocess.CompletedProcess[bytes]:
+def tty(display: UnixServer, *command: object) -> subprocess.CompletedProcess[bytes]:
     return run("tty", display.address, "--", *command)
 
 
@@ -78,7 +79,8 @@ def test_quick_writes_of_all_sizes_are_rounded_down_one_by_one(display: UnixServ
     for number in range(600):
         length = draw.choice([0, 1, 9, 300, 1023, 1024, 2040, 2047, 5000, 20_000])
         pixel = stream(words(f"0902 0044 {number + 1:X} {number:X} 9 {number:X} 9"))
-        write = pixel + stream(np.full(length, 0x0700)) + b"!" * draw.randint(0, 1)
+        image = stream(words(f"0A03 0040 0 64 27F 1DF {2 * length:X}")) + stream(np.full(length, 0x0700))
+        write = pixel + image + b"!" * draw.randint(0, 1)
         written += write
         sizes.append(len(write))
         expected.append(number + 1)
@@ -161,3 +163,50 @@ def test_a_display_that_leaves_hangs_up_the_program(tmp_path: Path) -> None:
     _, said = process.communicate(timeout=10)
     assert process.returncode == 69
     assert b"while a program uses it, and it left" in said
+
+
+def test_without_notices_it_warns_and_the_program_draws_all_the_same(
+    display: UnixServer, program: Path, tmp_path: Path
+) -> None:
+    # The kernel gives notices of a process to one other only: the inner relay has none.
+    with serving_at(tmp_path / "outer") as outer:
+        inner = [sys.executable, "-m", "ramtek_emu", "tty", display.address, "--", sys.executable, "-c", SLOW]
+        done = tty(outer, *inner)
+    assert done.returncode == 0
+    assert done.stderr == (
+        b"warning: this system does not tell one write of a program from the next (device or resource busy): "
+        b"those in quick succession may be taken as one\n"
+    )
+    assert display.display.words[5, 5] == 7
+
+
+SLOW = """
+import os, time
+device = os.open(os.environ["RAMTEK_DEVICE"], os.O_RDWR)
+for data in ("0209 4400 0700 0500", "0500 0500 0500 21", "0007"):
+    os.write(device, bytes.fromhex(data))
+    time.sleep(0.1)
+"""
+
+
+def test_the_documented_socat_recipe_ends_when_the_program_closes_its_device(
+    program: Path, tmp_path: Path
+) -> None:
+    if shutil.which("socat") is None:
+        pytest.skip("socat is not installed")
+    recipe = next(line for line in GUIDE.splitlines() if line.startswith("socat PTY"))
+    device = tmp_path / "ramtek"
+    assert "/tmp/ramtek" in recipe
+    display = f"{sys.executable} -m ramtek_emu serve"
+    command = recipe.partition("&")[0].replace("/tmp/ramtek", str(device)).replace("ramtek serve", display)
+    with subprocess.Popen(command, shell=True, cwd=tmp_path, env=environment()) as relay:
+        until(device.exists)
+        number = os.open(device, os.O_RDWR)
+        os.write(number, stream(words("0902 0044 7 5 5 5 5 0B03 0040 5 5 5 5 2")))
+        assert os.read(number, 2) == b"\x07\0"
+        os.close(number)
+        assert relay.wait(20) == 0
+    assert (tmp_path / "drawing.png").exists()
+
+
+GUIDE = (ROOT / "docs" / "RAMTEK.md").read_text("utf-8")
