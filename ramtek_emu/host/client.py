@@ -1,7 +1,6 @@
 """Client: the host that a server serves now, with its words, its replies and its time limits.
 
-A host that no longer takes its replies loses them, but its words are still executed (Assumed: a host that
-draws and leaves wants its picture).
+A host that no longer takes its replies loses them, but its words are still executed, as on a pipe.
 """
 
 from __future__ import annotations

@@ -4,8 +4,9 @@ On TCP a mark is a byte of urgent data, which is no part of the words; on a Unix
 A host sends one to ask for a hard reset, and the display sends one back when it is done: replies that arrive
 before it are those of before.
 
-Assumed: a mark stands for the RESET bit of the interface's command register (Hardware: PRG DRIVER.c), since a
-wire has no register beside the words. It takes effect after the words that were sent before it.
+Hardware: PRG DRIVER.c (the RESET bit of the interface's command register, a hard reset).
+Assumed: a mark stands for that bit, since a wire has no register beside the words; it takes effect after the
+words that were sent before it.
 """
 
 from __future__ import annotations

@@ -72,9 +72,8 @@ class SocketPort(ABC):
         """Ask for a hard reset, and wait until it is done; all words sent before are executed first.
 
         An unfinished instruction and all replies that were not received are dropped; parameters, screen,
-        cursors and status are reset; table and characters stay. PortError if it is not done in time.
-
-        Hardware: PRG DRIVER.c (the RESET bit of the interface). Assumed: a mark stands for it.
+        cursors and status are reset; table and characters stay. PortError if it is not done in time. How it
+        is asked for is told in `marks`.
         """
         asked = False
         while True:

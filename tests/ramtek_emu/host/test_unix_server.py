@@ -5,6 +5,7 @@ import socket
 import stat
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from ramtek_emu import OutputError, OutputExistsError, PortError, Ramtek9300
@@ -90,3 +91,18 @@ def test_a_system_without_sockets_of_packets_is_told_in_one_sentence(
         "a system must have Unix sockets that keep the boundaries of writes, and this one does not "
         "(no sock_seqpacket); use TCP or a pipe"
     )
+
+
+def test_packets_of_random_bytes_leave_the_display_that_their_whole_words_leave(tmp_path: Path) -> None:
+    draw = np.random.default_rng(9400)
+    packets = [draw.bytes(int(draw.integers(1, 300))) for _ in range(400)]
+    twin = Ramtek9300()
+    for packet in packets:
+        twin.send(np.frombuffer(packet[: len(packet) & ~1], "<u2").astype(np.uint16))
+    with serving_at(tmp_path / "display") as server:
+        with UnixPort(tmp_path / "display") as port:
+            for packet in packets:
+                port.write(packet)
+        assert (server.display.words == twin.words).all()
+        assert (server.display.entries == twin.entries).all()
+        assert server.display.processor.waiting == 0
