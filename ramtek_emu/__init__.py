@@ -61,7 +61,8 @@ if TYPE_CHECKING:
     from ramtek_emu.errors import WriteError as WriteError
     from ramtek_emu.host.host_port import HostPort as HostPort
     from ramtek_emu.host.host_port import Recorder as Recorder
-    from ramtek_emu.host.host_port import TcpPort as TcpPort
+    from ramtek_emu.host.tcp_port import TcpPort as TcpPort
+    from ramtek_emu.host.unix_port import UnixPort as UnixPort
     from ramtek_emu.memory.cursors import Joystick as Joystick
     from ramtek_emu.snapshot.snapshot import read_snapshot as read_snapshot
     from ramtek_emu.snapshot.snapshot import write_snapshot as write_snapshot
@@ -90,8 +91,9 @@ _HOME: Final = {
     "Recorder": "host.host_port",
     "ReplyError": "errors",
     "SnapshotError": "errors",
-    "TcpPort": "host.host_port",
+    "TcpPort": "host.tcp_port",
     "Timing": "timing",
+    "UnixPort": "host.unix_port",
     "WordsError": "errors",
     "WriteError": "errors",
     "read_snapshot": "snapshot.snapshot",

@@ -26,8 +26,8 @@ PUBLIC_NAMES = {
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
         "InstructionError", "JPL_9460", "Joystick", "ListingError", "MissingInputError", "NCAR_9460",
         "NoScreenError", "OutputError", "OutputExistsError", "PRINCETON_9300", "PortError", "Ramtek9300",
-        "RamtekError", "Recorder", "ReplyError", "SnapshotError", "TcpPort", "Timing", "WordsError",
-        "WriteError", "read_snapshot", "write_snapshot",
+        "RamtekError", "Recorder", "ReplyError", "SnapshotError", "TcpPort", "Timing", "UnixPort",
+        "WordsError", "WriteError", "read_snapshot", "write_snapshot",
     ],
 }  # fmt: skip
 

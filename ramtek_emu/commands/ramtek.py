@@ -26,7 +26,8 @@ class RamtekGroup(CommandGroup):
         "play": "run a stream of instructions from a file",
         "list": "a stream as instructions with named operands",
         "assemble": "a listing back into its stream",
-        "serve": "a display for programs, over TCP or on a pipe",
+        "serve": "a display for programs, over TCP, on a Unix socket or on a pipe",
+        "tty": "a program that opens a device, on a display of serve --unix",
     }
 
 

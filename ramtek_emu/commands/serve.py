@@ -1,12 +1,11 @@
-"""`ramtek serve`: a display for programs, over TCP or on a pipe."""
+"""`ramtek serve`: a display for programs, over TCP, on a Unix socket or on a pipe."""
 
 from __future__ import annotations
 
 import os
-import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+import time
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -21,28 +20,44 @@ from ramtek_emu.commands.displays import (
     tell_the_end,
     write_outputs,
 )
+from ramtek_emu.commands.end_signals import end_signals
 
 if TYPE_CHECKING:
     from ramtek_emu.host.host_session import HostSession
+    from ramtek_emu.host.joystick_lines import JoystickLines
     from ramtek_emu.host.pipe import Read, Write
     from ramtek_emu.host.server import Server
+    from ramtek_emu.host.tcp_server import TcpServer
+    from ramtek_emu.host.unix_server import UnixServer
 
 EXAMPLES: Final = """\b
 Examples:
   ramtek serve --port 9300                          a display at tcp://127.0.0.1:9300
   ramtek serve --port 0 --window                    any free port, which is printed, and a window
+  ramtek serve --unix /tmp/display                  one for `ramtek tty` and programs of the time
+  ramtek serve --port 9300 --joystick -             type `cursor 100 200 enter` to point at something
   old_program | ramtek serve --stdio -o out.png     a program that only draws
   socat EXEC:./old_program EXEC:'ramtek serve --stdio'    one that reads back as well
 """
 
 STEP_SECONDS: Final = 0.25
+JOYSTICK_SECONDS: Final = 0.02
+"""How long a line for the joystick may wait while nothing else happens."""
+PIPE_SECONDS: Final = 0.002
+"""How long words on a pipe may wait while there are lines for the joystick, too."""
 
 
 @click.command(epilog=EXAMPLES)
 @click.option("--port", type=click.IntRange(0, 65535), help="Listen here; 0 is any free port.")
+@click.option("--unix", type=click.Path(), metavar="PATH", help="Listen at a Unix socket: whole writes.")
 @click.option("--stdio", is_flag=True, help="Words on stdin, what is read back on stdout.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="The address to listen at.")
 @click.option("--window", is_flag=True, help="Show what is drawn, as it is drawn.")
+@click.option(
+    "--joystick",
+    metavar="FILE",
+    help="Lines for the joystick from a FIFO or - for stdin: cursor X Y, enter, track on, reset.",
+)
 @click.option(
     "--idle",
     type=click.FloatRange(min=0.1),
@@ -55,9 +70,11 @@ STEP_SECONDS: Final = 0.25
 @display_options
 def serve(
     port: int | None,
+    unix: str | None,
     stdio: bool,
     host: str,
     window: bool,
+    joystick: str | None,
     idle: float,
     once: bool,
     output: str | None,
@@ -69,38 +86,76 @@ def serve(
 ) -> None:
     """Be a display that a program sends words to, low byte first, and receives words from.
 
-    Over TCP it serves one host after the other until Ctrl+C; a second one at the same time is refused. With
-    --stdio it ends at the end of its input. Nobody is asked for a password: keep to the loopback address
-    unless everyone who reaches the port may draw.
+    With --port or --unix it serves one host after the other until Ctrl+C; others wait in line meanwhile. At a
+    Unix socket each write is rounded down to whole words alone, as the drivers of the time did. With --stdio
+    it ends at the end of its input. Nobody is asked for a password: keep to the loopback address unless
+    everyone who reaches the port may draw; a Unix socket is for its owner only.
     """
-    if stdio == (port is not None):
-        raise click.UsageError("a display must be served on one of --port and --stdio; give one of them")
+    if (port is not None) + (unix is not None) + stdio != 1:
+        raise click.UsageError(
+            "a display must be served on one of --port, --unix and --stdio; give one of them"
+        )
+    if stdio and joystick == "-":
+        raise click.UsageError(
+            "stdin must be for words or for the joystick, not both; give --joystick a FIFO"
+        )
     refuse_outputs(force, output, snapshot, record)
     display = display_asked_for(configuration, start)
 
     from ramtek_emu.host.host_session import HostSession
-    from ramtek_emu.host.server import Server
+    from ramtek_emu.host.joystick_lines import JoystickLines
+    from ramtek_emu.host.tcp_server import TcpServer
+    from ramtek_emu.host.unix_server import UnixServer
+
+    def lines_for(resettable: HostSession | Server) -> JoystickLines | None:
+        return JoystickLines(joystick, display.joystick, resettable.reset, tell) if joystick else None
 
     with recording(record, force) as kept:
         if stdio:
-            serve_stdio(HostSession(display, kept), window)
+            session = HostSession(display, kept)
+            serve_stdio(session, window, lines_for(session))
         else:
-            with Server(display, port or 0, host, idle_seconds=idle, record=kept) as server:
-                serve_port(server, window, once)
+            server: TcpServer | UnixServer
+            if unix is not None:
+                server = UnixServer(display, unix, idle_seconds=idle, record=kept)
+            else:
+                server = TcpServer(display, port or 0, host, idle_seconds=idle, record=kept)
+            with server:
+                serve_hosts(server, window, once, lines_for(server))
     write_outputs(display, output, snapshot, force)
 
 
-def serve_stdio(session: HostSession, window: bool) -> None:
+def serve_stdio(session: HostSession, window: bool, lines: JoystickLines | None = None) -> None:
     """Serve the program at the other ends of stdin and stdout until it closes its end."""
     from ramtek_emu.host.pipe import PolledPipe, serve_pipe
 
     read, write = standard_streams()
     if window:
-        show(session.display, PolledPipe(session, read, write).serve_for)
+        show(session.display, obeying(lines, PolledPipe(session, read, write).serve_for))
         return
     with end_signals() as signals:
-        serve_pipe(session, signals.until_received(read), write)
+        if lines is None:
+            serve_pipe(session, signals.until_received(read), write)
+        else:
+            pipe = PolledPipe(session, read, write)
+            while not signals.received and not (pipe.ended and pipe.has_replied):
+                lines.obey()
+                if pipe.ended or not pipe.step():
+                    time.sleep(PIPE_SECONDS)
     tell_the_end(session.display, session.held_words, session.odd_byte)
+
+
+def obeying(lines: JoystickLines | None, serve_for: Callable[[float], None]) -> Callable[[float], None]:
+    """A function that serves a host for some seconds, after the lines for the joystick."""
+    if lines is None:
+        return serve_for
+    obey = lines.obey
+
+    def obey_and_serve_for(seconds: float) -> None:
+        obey()
+        serve_for(seconds)
+
+    return obey_and_serve_for
 
 
 def standard_streams() -> tuple[Read, Write | None]:
@@ -127,65 +182,29 @@ def standard_streams() -> tuple[Read, Write | None]:
     return read, write
 
 
-def serve_port(server: Server, window: bool, once: bool) -> None:
-    """Serve hosts over TCP until Ctrl+C, until the window is closed, or, with `once`, until a host leaves."""
+def serve_hosts(
+    server: TcpServer | UnixServer, window: bool, once: bool, lines: JoystickLines | None = None
+) -> None:
+    """Serve hosts until Ctrl+C, until the window is closed, or, with `once`, until a host leaves."""
     if window:
         announce(server)
-        show(server.display, server.serve_for)
+        show(server.display, obeying(lines, server.serve_for))
         return
     with end_signals() as signals:
         announce(server)
         while not signals.received and not (once and server.served):
-            server.step(STEP_SECONDS)
+            if lines is not None:
+                lines.obey()
+            server.step(STEP_SECONDS if lines is None else JOYSTICK_SECONDS)
 
 
-def announce(server: Server) -> None:
+def announce(server: TcpServer | UnixServer) -> None:
     """Print the address for hosts, with a warning if other machines can reach it."""
-    if server.host not in ("127.0.0.1", "localhost", "::1"):
+    host = getattr(server, "host", "localhost")
+    if host not in ("127.0.0.1", "localhost", "::1"):
         tell(
             f"warning: whoever reaches {server.address} can draw on this display and read it back; "
             "leave --host out to keep to this machine"
         )
     click.echo(server.address)
     sys.stdout.flush()
-
-
-class EndSignals:
-    """Remembers Ctrl+C or a termination signal, which end a server without an error."""
-
-    def __init__(self) -> None:
-        self.received = False
-        self._waiting = False
-
-    def receive(self, *_: object) -> None:
-        """Remember the signal, and interrupt a read that is waiting."""
-        self.received = True
-        if self._waiting:
-            raise InterruptedError
-
-    def until_received(self, read: Read) -> Read:
-        """A function like `read` that returns nothing after the signal, or if reading fails."""
-
-        def read_until_received(most: int) -> bytes:
-            try:
-                self._waiting = True
-                return b"" if self.received else read(most)
-            except OSError:
-                # Also raised by a terminal or a socket whose other end was closed.
-                return b""
-            finally:
-                self._waiting = False
-
-        return read_until_received
-
-
-@contextmanager
-def end_signals() -> Iterator[EndSignals]:
-    """Handle Ctrl+C and termination signals within a `with` block."""
-    signals = EndSignals()
-    before = {number: signal.signal(number, signals.receive) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield signals
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

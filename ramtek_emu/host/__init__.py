@@ -1,4 +1,4 @@
-"""The host: how its words reach a display and replies come back, in this process, on a pipe and over TCP.
+"""The host: how its words reach a display and replies come back, here, by a pipe, TCP, Unix socket or device.
 
-Uses the basic modules, instruction_set and display.
+Uses the basic modules, instruction_set, memory, instructions and display.
 """

@@ -17,6 +17,7 @@ from typing import Final
 
 import numpy as np
 
+from ramtek_emu import instructions
 from ramtek_emu.arrays import Booleans, Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.instruction_set.instruction import NO_WORDS
@@ -102,6 +103,17 @@ class HostSession:
             whole = len(words) - self.held_words
             self._record(words[:whole].astype("<u2", copy=False).tobytes())
             self._unrecorded = words[whole:]
+
+    def reset(self) -> None:
+        """Reset the display; what is recorded resets it at the same place.
+
+        The incomplete instruction and the replies that were not taken are dropped; the odd byte stays, since
+        the stream of bytes goes on.
+        """
+        self._unrecorded = NO_WORDS
+        self.display.reset()
+        if self._record is not None:
+            self._record(instructions.reset().astype("<u2", copy=False).tobytes())
 
     def leave(self) -> None:
         """Drop the incomplete instruction, the odd byte and the replies that were not taken."""

@@ -54,6 +54,11 @@ class PolledPipe:
         if write is not None:
             threading.Thread(target=self._drain, daemon=True).start()
 
+    @property
+    def has_replied(self) -> bool:
+        """Whether the host has got all replies, or no longer takes them."""
+        return self._write is None or not (self._reply or self._replies.unfinished_tasks)
+
     def step(self) -> bool:
         """Execute one piece; returns False if none has arrived, or if its reply must wait."""
         if self._reply:
@@ -100,3 +105,4 @@ class PolledPipe:
                     write(reply)
                 except (OSError, ValueError):
                     write = None
+            self._replies.task_done()

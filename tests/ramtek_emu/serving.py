@@ -1,4 +1,4 @@
-"""A display behind a TCP port of this machine."""
+"""A display behind a TCP port or a Unix socket of this machine."""
 
 from __future__ import annotations
 
@@ -6,19 +6,40 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.host.server import Server
+from ramtek_emu.host.tcp_server import TcpServer
+from ramtek_emu.host.unix_server import UnixServer
 
 READ_EVERYTHING = np.concatenate([stream for stream, _ in instructions.read_image(0, 0, 640, 480)])
 
 
+Some = TypeVar("Some", bound=Server)
+
+
 @contextmanager
-def serving(idle_seconds: float = 20.0, partial_seconds: float = 20.0) -> Iterator[Server]:
-    """A server in a thread of its own; its display is looked at when it has nothing to do."""
-    server = Server(Ramtek9300(), idle_seconds=idle_seconds, partial_seconds=partial_seconds)
+def serving(idle_seconds: float = 20.0, partial_seconds: float = 20.0) -> Iterator[TcpServer]:
+    """A server on TCP in a thread of its own; its display is looked at when it has nothing to do."""
+    server = TcpServer(Ramtek9300(), idle_seconds=idle_seconds, partial_seconds=partial_seconds)
+    with in_a_thread(server):
+        yield server
+
+
+@contextmanager
+def serving_at(path: Path) -> Iterator[UnixServer]:
+    """A server at a Unix socket in a thread of its own."""
+    with in_a_thread(UnixServer(Ramtek9300(), path, idle_seconds=20.0)) as server:
+        yield server
+
+
+@contextmanager
+def in_a_thread(server: Some) -> Iterator[Some]:
+    """A server that a thread steps until it is closed."""
     ended = threading.Event()
 
     def serve() -> None:

@@ -5,16 +5,18 @@ from __future__ import annotations
 import os
 import signal
 import socket
+import stat
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ramtek_emu import Ramtek9300, TcpPort, instructions, read_snapshot
-from ramtek_emu.host.server import Server
+from ramtek_emu import Ramtek9300, TcpPort, UnixPort, instructions, read_snapshot
+from ramtek_emu.host.tcp_server import TcpServer
 from ramtek_emu.monitor.window import Monitor
 from tests.ramtek_emu.processes import ROOT, PipedHost, environment, field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import BARS, OUTLINE, words
@@ -180,6 +182,100 @@ def test_a_server_prints_its_port_serves_one_host_after_the_other_and_ends_when_
         assert f"wrote {tmp_path / 'end.png'}" in process.stderr.read().decode()
 
 
+def mark(number: int) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
+    return words(f"0902 0044 {number + 1:X} {number:X} 9 {number:X} 9")
+
+
+def test_two_hundred_hosts_one_right_after_another_all_draw_on_a_server_process(tmp_path: Path) -> None:
+    with started("serve", "--port", 0, "--snapshot", tmp_path / "end.png") as process:
+        assert process.stdout is not None
+        address = process.stdout.readline().decode().strip()
+        for number in range(0, 400, 2):
+            with TcpPort(address) as port:
+                port.send(mark(number))
+            with socket.create_connection(("127.0.0.1", int(address.rpartition(":")[2]))) as host:
+                host.sendall(stream(mark(number + 1)))
+        TcpPort(address).close()
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(10) == 0
+    assert read_snapshot(tmp_path / "end.png").words[9, :400].tolist() == list(range(1, 401))
+
+
+def test_a_server_at_a_unix_socket_rounds_each_write_down_and_removes_its_socket(tmp_path: Path) -> None:
+    path = tmp_path / "display"
+    with started("serve", "--unix", path, "--snapshot", tmp_path / "end.png") as process:
+        assert process.stdout is not None
+        assert process.stdout.readline().decode().strip() == str(path)
+        assert stat.S_IMODE(path.stat().st_mode) == 0o600
+        for number in range(200):
+            with UnixPort(path) as port:
+                port.write(stream(mark(number)) + b"!")
+        again = run("serve", "--unix", path)
+        assert again.returncode == 73
+        assert again.stderr.decode() == (
+            "ramtek: a server's socket must be a new file or the socket of a server that is gone, "
+            f"not {path}, which belongs to a server that runs; choose another path\n"
+        )
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(10) == 0
+    assert not path.exists()
+    assert read_snapshot(tmp_path / "end.png").words[9, :200].tolist() == list(range(1, 201))
+
+
+def test_one_of_the_ways_to_serve_must_be_given() -> None:
+    for arguments in ([], ["--stdio", "--port", 0], ["--port", 0, "--unix", "x"]):
+        asked = run("serve", *arguments)
+        assert asked.returncode == 2
+        assert b"on one of --port, --unix and --stdio" in asked.stderr
+
+
+def test_lines_on_stdin_move_the_joystick_of_a_server() -> None:
+    with started("serve", "--port", 0, "--joystick", "-") as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        assert process.stderr is not None
+        with TcpPort(process.stdout.readline().decode().strip()) as port:
+            port.send(words("1600 0005 0406 0902 0044 7 0 0 0 0 1700"))
+            assert port.receive(2).tolist() == [5, 0x406]
+            process.stdin.write(b"cursor 100 200 enter\nwalk 3\n")
+            assert process.stderr.readline() == (
+                b"joystick, line 2: a joystick line must hold cursor X Y, by X Y, enter, track on, "
+                b"track off or reset, not 'walk 3'; write it so\n"
+            )
+            port.send(words("1700"))
+            assert port.receive(2).tolist() == [100, 200 | 1 << 10 | 1 << 13]
+            process.stdin.write(b"reset\n?\n")
+            assert process.stderr.readline().startswith(b"joystick, line 4:")
+            port.send(words("0B03 0040 0 0 0 0 2 1700"))
+            assert port.receive(3).tolist() == [0, 100, 200]
+        process.stdin.close()
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(10) == 0
+
+
+def test_a_fifo_moves_the_joystick_of_a_display_on_a_pipe(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "stick")
+    assert run("serve", "--stdio", "--joystick", "-").returncode == 2
+    missing = run("serve", "--stdio", "--joystick", tmp_path / "none")
+    assert missing.returncode == 66
+    assert b"make a FIFO with mkfifo" in missing.stderr
+    with started("serve", "--stdio", "--joystick", tmp_path / "stick") as process:
+        host = PipedHost(process)
+        host.send(words("1600 0005 0406 1700"))
+        assert host.receive(2).tolist() == [5, 0x406]
+        for number in (1, 2):
+            # Each writer closes the FIFO, which is then open for the next.
+            (tmp_path / "stick").write_text(f"cursor {number} 9 enter\n?\n")
+            assert process.stderr is not None
+            assert f"line {2 * number}:".encode() in process.stderr.readline()
+            host.send(words("1700"))
+            assert host.receive(2).tolist() == [number, 0x2409]
+        host.send(words("0B03 0040 0 0 9F 9F C800"))
+        host.into.close()
+        assert len(host.out.read()) == 0xC800
+        assert process.wait(10) == 0
+
+
 def test_a_host_address_other_than_loopback_is_served_with_a_warning() -> None:
     with started("serve", "--port", 0, "--host", "0.0.0.0") as process:
         assert process.stdout is not None
@@ -192,27 +288,32 @@ def test_a_host_address_other_than_loopback_is_served_with_a_warning() -> None:
 
 
 def test_the_window_shows_what_a_remote_host_draws_as_it_draws(on_screen: str) -> None:
-    with Server(Ramtek9300()) as server:
+    with TcpServer(Ramtek9300()) as server:
         monitor = Monitor(server.display, on_tick=lambda: server.serve_for(0.01))
         monitor.open()
-        with TcpPort(server.address) as host:
-            host.send(instructions.load_entries(0, [[n % 256, n // 4, 0] for n in range(1024)]))
-            counts = []
-            for part in np.split(BARS, 8):
-                host.send(part)
-                for _ in range(20):
-                    monitor.step(2)
-                counts.append(monitor.refreshed)
-                multiple = len(shown()) // 480
-                assert (shown()[::multiple, ::multiple] == server.display.field()).all()
-            assert len(set(counts)) == 8
+        host = TcpPort(server.address)
+        host.send(instructions.load_entries(0, [[n % 256, n // 4, 0] for n in range(1024)]))
+        counts = []
+        for part in np.split(BARS, 8):
+            host.send(part)
+            for _ in range(20):
+                monitor.step(2)
+            counts.append(monitor.refreshed)
+            multiple = len(shown()) // 480
+            assert (shown()[::multiple, ::multiple] == server.display.field()).all()
+        assert len(set(counts)) == 8
+        # Closing waits for the server, which this thread steps.
+        closing = threading.Thread(target=host.close)
+        closing.start()
+        while closing.is_alive():
+            monitor.step(2)
         assert server.display.words.max() == 319
         monitor.close()
 
 
 def test_a_window_closes_at_once_while_a_host_is_still_sending(on_screen: str) -> None:
     slow = np.tile(np.concatenate((instructions.write_image(np.full((480, 640), 5)), OUTLINE)), 200)
-    with Server(Ramtek9300()) as server:
+    with TcpServer(Ramtek9300()) as server:
         monitor = Monitor(server.display, on_tick=lambda: server.serve_for(0.01))
         monitor.open()
         program = (

@@ -1,8 +1,5 @@
 from __future__ import annotations
 
-import copy
-import pickle
-import socket
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -12,18 +9,12 @@ import pytest
 
 from ramtek_emu import (
     HostPort,
-    PortError,
     Ramtek9300,
     Recorder,
     ReplyError,
-    TcpPort,
     WordsError,
     instructions,
 )
-from ramtek_emu.host.host_port import host_and_port
-from ramtek_emu.host.server import Server
-from tests.ramtek_emu.recorded_streams import words
-from tests.ramtek_emu.serving import serving
 
 
 def test_a_recording_holds_every_word_low_byte_first() -> None:
@@ -79,60 +70,6 @@ def test_streams_of_either_byte_order_and_any_whole_type_are_taken() -> None:
         display.send(np.asarray(stream))
         assert display.processor.parameters.foreground == 5
     Ramtek9300().send(np.array([]))
-
-
-def test_a_port_without_a_display_is_refused_in_one_sentence() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        port = listener.getsockname()[1]
-        with pytest.raises(PortError) as taken:
-            Server(Ramtek9300(), port)
-    assert f"a server must have a port to itself, and 127.0.0.1:{port} cannot be had" in str(taken.value)
-    with pytest.raises(PortError) as refusal:
-        TcpPort(f"tcp://127.0.0.1:{port}")
-    assert str(refusal.value) == (
-        f"a display must listen at tcp://127.0.0.1:{port}, and it is not reached (connection refused); "
-        "start `ramtek serve` there"
-    )
-
-
-@pytest.mark.parametrize(
-    "address",
-    ["", "127.0.0.1:1", "tcp://", "tcp://a", "tcp://a:0", "tcp://a:70000", "tcp://a:b", "tcp://a b:1"],
-)
-def test_what_is_no_address_is_refused(address: str) -> None:
-    with pytest.raises(PortError) as refusal:
-        host_and_port(address)
-    assert str(refusal.value) == (
-        f"an address must be tcp://host:port with a port from 1 to 65535, not {address!r}; write it so"
-    )
-
-
-def test_words_that_do_not_come_are_refused_after_a_while() -> None:
-    with serving() as server, TcpPort(server.address, timeout=0.2) as port:
-        port.send(words("0B03 0040 0 0 0 0 2"))
-        with pytest.raises(ReplyError) as refusal:
-            port.receive(3)
-        assert "within 0.2 seconds, not 3 of which 1 came" in str(refusal.value)
-        assert port.receive(1).tolist() == [0]
-        with pytest.raises(ReplyError):
-            port.receive(-1)
-    with pytest.raises(PortError, match="must be open"):
-        port.send(words("0700"))
-
-
-def test_a_connection_cannot_be_copied_or_pickled_and_says_why() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
-        with TcpPort(address) as port:
-            for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
-                with pytest.raises(TypeError) as refusal:
-                    attempt(port)
-                assert str(refusal.value) == (
-                    f"a connection must stay in its process, not be copied or pickled ({address}); "
-                    "open another TcpPort there"
-                )
-            assert repr(port) == f"TcpPort({address}, open)"
-        assert repr(port) == f"TcpPort({address}, closed)"
 
 
 def test_a_recorder_tells_its_file_and_its_display(tmp_path: Path) -> None:

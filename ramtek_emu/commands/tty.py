@@ -1,0 +1,185 @@
+"""`ramtek tty`: a program that opens a device, whose writes a display gets one by one."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import socket
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from typing import TYPE_CHECKING, Final, NamedTuple, NoReturn
+
+import click
+
+from ramtek_emu.commands.displays import tell
+from ramtek_emu.errors import MissingInputError, OutputError, OutputExistsError, PortError
+
+if TYPE_CHECKING:
+    from ramtek_emu.host.write_notices import WriteNotices
+
+EXAMPLES: Final = """\b
+Examples:
+  ramtek serve --unix /tmp/display --window &
+  ramtek tty /tmp/display -- old_program {}              {} is the device's path
+  ramtek tty /tmp/display -- sh -c 'old_program > $RAMTEK_DEVICE < $RAMTEK_DEVICE'
+  ramtek tty --link /tmp/ramtek /tmp/display -- old_program
+"""
+
+DEVICE: Final = "RAMTEK_DEVICE"
+WAIT_SECONDS: Final = 600.0
+"""How long the display may serve other hosts before it gets to the end of what this program wrote."""
+
+
+@click.command(epilog=EXAMPLES)
+@click.option("--link", type=click.Path(), metavar="NAME", help="Make NAME a link to the device meanwhile.")
+@click.argument("path", type=click.Path())
+@click.argument("program")
+@click.argument("arguments", nargs=-1, type=click.UNPROCESSED)
+@click.pass_context
+def tty(
+    context: click.Context, link: str | None, path: str, program: str, arguments: tuple[str, ...]
+) -> None:
+    """Run PROGRAM with its device on the display that `ramtek serve --unix PATH` makes.
+
+    The device is a pseudoterminal: the program finds its path in the environment as RAMTEK_DEVICE, and in
+    place of {} in its arguments. Each of its writes is rounded down to whole words alone, as the drivers of
+    the time did, and what the display replies can be read there. The exit code is the program's, or 128 and
+    the number of the signal that ended it.
+    """
+    if not hasattr(os, "pidfd_open"):
+        raise PortError(
+            f"a program's device must be made on Linux, not on {sys.platform}; "
+            "pipe the program into `ramtek serve --stdio`"
+        )
+    if shutil.which(program) is None:
+        raise MissingInputError(f"a program must be one that can be run, not {program!r}; check its name")
+
+    from ramtek_emu.host.device_relay import DeviceRelay
+    from ramtek_emu.host.unix_port import UnixPort
+
+    with ExitStack() as opened, UnixPort(path, WAIT_SECONDS) as port:
+        ours, device = opened.enter_context(terminal())
+        if link is not None:
+            opened.enter_context(linked(link, device))
+        command = [each.replace("{}", device) for each in (program, *arguments)]
+        with started(command, {**os.environ, DEVICE: device}) as running:
+            if running.notices is None:
+                tell(
+                    "warning: this system does not tell one write of a program from the next "
+                    f"({running.reason}): those in quick succession may be taken as one"
+                )
+            relay = DeviceRelay(port, ours, running.notices)
+            relay.relay(running.ended)
+            code = os.waitstatus_to_exitcode(os.waitpid(running.process, 0)[1])
+        relay.finish()
+    context.exit(128 - code if code < 0 else code)
+
+
+@contextmanager
+def terminal() -> Iterator[tuple[int, str]]:
+    """A pseudoterminal in raw mode: our side, and the path of the other."""
+    import pty
+    import tty as terminal_modes
+
+    ours, theirs = pty.openpty()
+    try:
+        terminal_modes.setraw(theirs)
+        # Their side stays open here, so that the program may close and open it as often as it likes.
+        yield ours, os.ttyname(theirs)
+    finally:
+        os.close(theirs)
+        os.close(ours)
+
+
+@contextmanager
+def linked(name: str, device: str) -> Iterator[None]:
+    """Make a name a link to the device; OutputExistsError or OutputError if that cannot be done."""
+    try:
+        os.symlink(device, name)
+    except FileExistsError:
+        raise OutputExistsError(
+            f"a link must be a new name, not {name}, which exists; choose another"
+        ) from None
+    except (OSError, ValueError) as cause:
+        reason = (getattr(cause, "strerror", None) or str(cause)).lower()
+        raise OutputError(
+            f"a link must be made where it can, not at {name} ({reason}); choose another"
+        ) from None
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            if os.readlink(name) == device:
+                os.unlink(name)
+
+
+class Running(NamedTuple):
+    """A program: its process, a file that can be read when it has ended, and notices of its writes."""
+
+    process: int
+    ended: int
+    notices: WriteNotices | None
+    reason: str
+    """Why there are no notices."""
+
+
+@contextmanager
+def started(command: list[str], environment: dict[str, str]) -> Iterator[Running]:
+    """Run a program; Ctrl+C is left to it, and a termination signal passed on. It is hung up at the end."""
+    from ramtek_emu.host.write_notices import WriteNotices
+
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with ours:
+        process = os.fork()
+        if process == 0:
+            become(command, environment, theirs)
+        theirs.close()
+        reason, numbers, _, _ = socket.recv_fds(ours, 1 << 10, 1)
+        failure = ours.recv(1 << 10)
+    notices = WriteNotices(numbers[0]) if numbers else None
+    ended = os.pidfd_open(process)
+
+    def pass_on(number: int, _: object = None) -> None:
+        with suppress(ProcessLookupError):
+            signal.pidfd_send_signal(ended, number)
+
+    before = {
+        signal.SIGINT: signal.signal(signal.SIGINT, signal.SIG_IGN),
+        signal.SIGTERM: signal.signal(signal.SIGTERM, pass_on),
+    }
+    try:
+        if failure:
+            os.waitpid(process, 0)
+            raise MissingInputError(
+                f"a program must be one that can be run, not {command[0]!r} ({failure.decode()}); check it"
+            )
+        yield Running(process, ended, notices, reason.decode())
+    except PortError:
+        pass_on(signal.SIGHUP)
+        raise
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        os.close(ended)
+        if notices is not None:
+            notices.close()
+
+
+def become(command: list[str], environment: dict[str, str], parent: socket.socket) -> NoReturn:
+    """Become the program, after telling the parent the file of the notices, or why there is none."""
+    from ramtek_emu.host.write_notices import ask_for_notices
+
+    try:
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+        try:
+            socket.send_fds(parent, [b"+"], [ask_for_notices()])
+        except OSError as cause:
+            parent.send((cause.strerror or "unknown").lower().encode())
+        try:
+            os.execvpe(command[0], command, environment)
+        except (OSError, ValueError) as cause:
+            parent.send((getattr(cause, "strerror", None) or str(cause)).lower().encode())
+    finally:
+        os._exit(127)

@@ -1,0 +1,142 @@
+"""DeviceRelay: a program's device on a pseudoterminal, whose writes a display gets with their boundaries.
+
+The program opens the pseudoterminal by its path, as it opened the device, and it reads and writes whole
+words there in raw mode. Each of its writes is rounded down to whole words alone, as the driver did (Hardware:
+PRG DRIVER.c, V8K), and goes to the display at a Unix socket; the replies come back.
+
+How far a pseudoterminal carries that by itself, measured on Linux 6.18: a write of up to 4,095 bytes is read
+whole if it is read before the next one; of 4,096 bytes a read gives 4,095 and then 1; and 2,000 writes of a
+program that does not wait were read in 80 pieces. Packet mode (TIOCPKT) marks no boundaries. Therefore the
+kernel tells of each write before it begins (`write_notices`); what was read until then is whole. That is
+exact for writes of any size while one process writes at a time. Where there are no notices, a write that
+follows another before this relay has read is taken as a part of it, which shifts what follows if the first
+was of odd length; a piece shorter than 4,095 bytes is taken as the end of a write.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+from contextlib import suppress
+from typing import Final
+
+from ramtek_emu.errors import PortError
+from ramtek_emu.host.marks import Sign, read_packet
+from ramtek_emu.host.unix_port import UnixPort
+from ramtek_emu.host.write_notices import WriteNotices
+
+PIECE: Final = 1 << 16
+"""The most bytes that are read or sent at once."""
+FULL: Final = 1 << 18
+"""When this many bytes wait in one direction, no more are read for it."""
+TERMINAL_PIECE: Final = 4095
+"""The most bytes that a pseudoterminal holds for one read."""
+
+
+class DeviceRelay:
+    """Passes bytes between the terminal of a program and a display, until the program has ended."""
+
+    def __init__(self, port: UnixPort, terminal: int, notices: WriteNotices | None) -> None:
+        """Begin; `terminal` is our side of the pseudoterminal, which is set not to block."""
+        self._port, self._terminal, self._notices = port, terminal, notices
+        self._written = bytearray()
+        """What the program wrote and the display has not got; it ends with an odd byte in mid-write."""
+        self._replies = bytearray()
+        os.set_blocking(terminal, False)
+
+    def relay(self, ended: int) -> None:
+        """Relay until the program has ended, so that the file `ended` can be read; PortError if lost.
+
+        The rest of what it wrote is sent by `finish`.
+        """
+        display, notices = self._port.socket.fileno(), self._notices
+        while True:
+            takes_words, takes_replies = len(self._written) < FULL, len(self._replies) < FULL
+            has_words, has_replies = len(self._written) > 1, len(self._replies) > 0
+            polled = select.poll()
+            polled.register(ended, select.POLLIN)
+            polled.register(display, select.POLLIN * takes_replies | select.POLLOUT * has_words)
+            polled.register(self._terminal, select.POLLIN * takes_words | select.POLLOUT * has_replies)
+            if notices is not None and takes_words:
+                polled.register(notices.fileno(), select.POLLIN)
+            events = dict(polled.poll())
+            self._serve_display(events.get(display, 0))
+            if events.get(self._terminal, 0) & select.POLLOUT:
+                self._send_replies()
+            if events.get(self._terminal, 0) & select.POLLIN:
+                self._take_written()
+            if notices is not None and events.get(notices.fileno(), 0) & select.POLLIN:
+                self._allow_next_write(notices)
+            if ended in events:
+                self._take_written()
+                self._end_write()
+                return
+
+    def finish(self) -> None:
+        """Send the rest of what the program wrote; replies are dropped. PortError if the display left."""
+        while self._written:
+            self._replies.clear()
+            polled = select.poll()
+            polled.register(self._port.socket, select.POLLIN | select.POLLOUT)
+            for _, events in polled.poll():
+                self._serve_display(events)
+
+    def _serve_display(self, events: int) -> None:
+        if events & ~select.POLLOUT:
+            self._take_replies()
+        if events & select.POLLOUT:
+            self._send_written()
+
+    def _allow_next_write(self, notices: WriteNotices) -> None:
+        identity = notices.next()
+        if identity is not None:
+            # A terminal gives all that was written before, when it is read until there is nothing left.
+            self._take_written()
+            self._end_write()
+            notices.allow(identity)
+
+    def _take_written(self) -> None:
+        while len(self._written) < 2 * FULL:
+            try:
+                data = os.read(self._terminal, PIECE)
+            except OSError:
+                return
+            self._written += data
+            if self._notices is None and len(data) < TERMINAL_PIECE:
+                self._end_write()
+
+    def _end_write(self) -> None:
+        """Round what was written down to whole words."""
+        if len(self._written) & 1:
+            del self._written[-1]
+
+    def _send_written(self) -> None:
+        try:
+            sent = self._port.socket.send(self._written[: min(PIECE, len(self._written) & ~1)])
+        except BlockingIOError:
+            return
+        except OSError as cause:
+            raise self._lost() from cause
+        del self._written[:sent]
+
+    def _take_replies(self) -> None:
+        try:
+            data = read_packet(self._port.socket, PIECE)
+        except BlockingIOError:
+            return
+        except OSError as cause:
+            raise self._lost() from cause
+        if data is Sign.END:
+            raise self._lost()
+        if not isinstance(data, Sign):
+            self._replies += data
+
+    def _send_replies(self) -> None:
+        with suppress(BlockingIOError):
+            del self._replies[: os.write(self._terminal, self._replies[:PIECE])]
+
+    def _lost(self) -> PortError:
+        return PortError(
+            f"a display must stay at {self._port.address} while a program uses it, and it left; "
+            "start the program again later"
+        )

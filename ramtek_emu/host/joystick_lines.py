@@ -1,0 +1,145 @@
+"""The joystick unit and the RESET switch without a window: lines of text from a person or a script.
+
+    cursor X Y      move the cursors that the joystick drives to this element and line
+    by X Y          move them by so many elements and lines
+    enter           press ENTER
+    track on        set the TRACK switch (or: track off)
+    reset           press RESET on the control unit
+
+A line may hold several of these, which are done in order: `cursor 100 200 enter`. Empty lines and what
+follows a # are ignored. A line that holds anything else does nothing and is answered with a sentence.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import re
+import stat
+import threading
+from collections.abc import Callable, Iterator
+from typing import Final
+
+from ramtek_emu.errors import MissingInputError
+from ramtek_emu.memory.cursors import Joystick
+
+MOST_BYTES: Final = 1 << 12
+"""The longest line that is read."""
+MOST_LINES: Final = 64
+"""How many lines wait to be done before no more are read."""
+NUMBER: Final = re.compile(r"[+-]?[0-9]{1,6}")
+
+Action = Callable[[], object]
+
+
+def actions(line: str, joystick: Joystick, reset: Action) -> list[Action]:
+    """What a line asks for, in order; ValueError with a sentence if it asks for anything else."""
+    words = iter(line.partition("#")[0].split())
+    found: list[Action] = []
+    for word in words:
+        if word == "enter":
+            found.append(joystick.press_enter)
+        elif word == "reset":
+            found.append(reset)
+        elif word in ("cursor", "by"):
+            move = joystick.move_to if word == "cursor" else joystick.move_by
+            found.append(_moving(move, _number(words, line), _number(words, line)))
+        elif word == "track":
+            found.append(_switching(joystick, _one_of(words, line, ("on", "off")) == "on"))
+        else:
+            raise refused(line)
+    return found
+
+
+def refused(line: str) -> ValueError:
+    """The sentence about a line that cannot be done."""
+    short = line if len(line) <= 60 else f"{line[:60]}..."
+    return ValueError(
+        f"a joystick line must hold cursor X Y, by X Y, enter, track on, track off or reset, not {short!r}; "
+        "write it so"
+    )
+
+
+class JoystickLines:
+    """Lines from a file, a FIFO or stdin. A thread reads them; `obey` does them when the display is idle."""
+
+    def __init__(self, path: str, joystick: Joystick, reset: Action, answer: Callable[[str], object]) -> None:
+        """Begin to read; `answer` gets a sentence for each bad line. MissingInputError without a file."""
+        self._joystick, self._reset, self._answer = joystick, reset, answer
+        self._lines: queue.Queue[str] = queue.Queue(MOST_LINES)
+        self._number = 0
+        threading.Thread(target=self._read, args=(opened(path),), daemon=True).start()
+
+    def obey(self) -> None:
+        """Do the lines that wait."""
+        for _ in range(MOST_LINES):
+            try:
+                line = self._lines.get_nowait()
+            except queue.Empty:
+                return
+            self._number += 1
+            try:
+                for action in actions(line, self._joystick, self._reset):
+                    action()
+            except ValueError as refusal:
+                self._answer(f"joystick, line {self._number}: {refusal}")
+
+    def _read(self, number: int) -> None:
+        for line in lines_of(number):
+            self._lines.put(line)
+
+
+def opened(path: str) -> int:
+    """The number of the open file, stdin for `-`; MissingInputError if it cannot be read."""
+    try:
+        if path == "-":
+            return os.dup(0)
+        # A FIFO that is open for writing, too, does not end when one of its writers leaves.
+        is_fifo = stat.S_ISFIFO(os.stat(path).st_mode)
+        return os.open(path, os.O_RDWR if is_fifo else os.O_RDONLY)
+    except (OSError, ValueError) as cause:
+        reason = (getattr(cause, "strerror", None) or str(cause)).lower()
+        raise MissingInputError(
+            f"a joystick's lines must come from a file or a FIFO that can be read, not {path!r} ({reason}); "
+            "make a FIFO with mkfifo, or give - for stdin"
+        ) from None
+
+
+def lines_of(number: int) -> Iterator[str]:
+    """The lines of an open file until its end; one that is too long is cut, so that it is refused."""
+    rest = b""
+    while True:
+        try:
+            data = os.read(number, MOST_BYTES)
+        except OSError:
+            data = b""
+        *lines, rest = (rest + data).split(b"\n")
+        yield from (line.decode("utf-8", "replace") for line in lines)
+        # What is cut is no number and no word, whatever it was.
+        rest = rest if len(rest) <= MOST_BYTES else b"?" + rest[:MOST_BYTES]
+        if not data:
+            if rest:
+                yield rest.decode("utf-8", "replace")
+            return
+
+
+def _number(words: Iterator[str], line: str) -> int:
+    word = next(words, "")
+    if NUMBER.fullmatch(word) is None:
+        raise refused(line)
+    return int(word)
+
+
+def _one_of(words: Iterator[str], line: str, known: tuple[str, ...]) -> str:
+    word = next(words, "")
+    if word not in known:
+        raise refused(line)
+    return word
+
+
+def _moving(move: Callable[[int, int], None], element: int, line: int) -> Action:
+    return lambda: move(element, line)
+
+
+def _switching(joystick: Joystick, is_on: bool) -> Action:
+    return lambda: setattr(joystick, "track", is_on)

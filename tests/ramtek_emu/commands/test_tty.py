@@ -1,0 +1,212 @@
+"""`ramtek tty` as people use it: a program, its device, and a display that another process serves."""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ramtek_emu import Ramtek9300
+from ramtek_emu.host.unix_server import UnixServer
+from tests.ramtek_emu.processes import ROOT, environment, run, started, stream
+from tests.ramtek_emu.recorded_streams import words
+from tests.ramtek_emu.serving import serving_at, until
+
+OLD_PROGRAM = """
+import os, sys
+device = os.open(sys.argv[1] if len(sys.argv) > 1 else os.environ["RAMTEK_DEVICE"], os.O_RDWR)
+os.write(device, bytes.fromhex("030c 4000 0000 0000 4001 0900 0600 5645 4e45 3231 00"))
+os.write(device, bytes.fromhex("0017"))
+reply = b""
+while len(reply) < 4:
+    reply += os.read(device, 4 - len(reply))
+print(reply.hex())
+sys.exit(7)
+"""
+
+
+@pytest.fixture
+def display(tmp_path: Path) -> Iterator[UnixServer]:
+    with serving_at(tmp_path / "display") as server:
+        yield server
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Path:
+    path = tmp_path / "old.py"
+    path.write_text(OLD_PROGRAM)
+    return path
+
+
+def tty(display: UnixServer, *command: object) -> subprocess.CompletedProcess[bytes]:
+    return run("tty", display.address, "--", *command)
+
+
+def test_a_program_s_odd_write_is_rounded_down_alone_and_its_reply_comes_back(
+    display: UnixServer, program: Path
+) -> None:
+    for device in ([], ["{}"]):
+        done = tty(display, sys.executable, program, *device)
+        assert (done.returncode, done.stdout, done.stderr) == (7, b"00000000\n", b"")
+    twin = Ramtek9300()
+    twin.send(words("0C03 0040 0 0 0140 0009 0006 4556 454E 3132"))
+    assert twin.words.any()
+    assert (display.display.words == twin.words).all()
+
+
+MANY_WRITES = """
+import os, sys
+device = os.open(os.environ["RAMTEK_DEVICE"], os.O_RDWR)
+data = open(sys.argv[1], "rb").read()
+for size in map(int, open(sys.argv[2])):
+    assert os.write(device, data[:size]) == size
+    data = data[size:]
+"""
+
+
+def test_quick_writes_of_all_sizes_are_rounded_down_one_by_one(display: UnixServer, tmp_path: Path) -> None:
+    draw = random.Random(1983)
+    written, expected, sizes = b"", [], []
+    for number in range(600):
+        length = draw.choice([0, 1, 9, 300, 1023, 1024, 2040, 2047, 5000, 20_000])
+        pixel = stream(words(f"0902 0044 {number + 1:X} {number:X} 9 {number:X} 9"))
+        image = stream(words(f"0A03 0040 0 64 27F 1DF {2 * length:X}")) + stream(np.full(length, 0x0700))
+        write = pixel + image + b"!" * draw.randint(0, 1)
+        written += write
+        sizes.append(len(write))
+        expected.append(number + 1)
+    (tmp_path / "data").write_bytes(written)
+    (tmp_path / "sizes").write_text("\n".join(map(str, sizes)))
+    (tmp_path / "many.py").write_text(MANY_WRITES)
+    done = tty(display, sys.executable, tmp_path / "many.py", tmp_path / "data", tmp_path / "sizes")
+    if b"does not tell one write" in done.stderr:
+        pytest.skip(done.stderr.decode())
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert display.display.words[9, :600].tolist() == expected
+    assert display.display.processor.illegal_words == 0
+
+
+def test_the_shell_redirects_a_program_to_the_device(display: UnixServer) -> None:
+    script = r'printf "\002\011\104\000\007\000\005\000\005\000\005\000\005\000!" > "$RAMTEK_DEVICE"; exit 3'
+    assert tty(display, "sh", "-c", script).returncode == 3
+    assert display.display.words[5, 5] == 7
+
+
+def test_a_link_to_the_device_is_there_while_the_program_runs(
+    display: UnixServer, program: Path, tmp_path: Path
+) -> None:
+    link = tmp_path / "ramtek"
+    done = run("tty", "--link", link, display.address, "--", sys.executable, program, link)
+    assert done.returncode == 7
+    assert not link.exists()
+    link.write_text("mine")
+    refused = run("tty", "--link", link, display.address, "--", sys.executable, program, link)
+    assert refused.returncode == 73
+    assert refused.stderr.decode() == (
+        f"ramtek: a link must be a new name, not {link}, which exists; choose another\n"
+    )
+    assert link.read_text() == "mine"
+
+
+def test_a_program_that_a_signal_ends_gives_its_number(display: UnixServer) -> None:
+    assert tty(display, "sh", "-c", "kill -9 $$").returncode == 137
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGINT, 42)])
+def test_signals_are_the_program_s(display: UnixServer, number: signal.Signals, code: int) -> None:
+    script = "trap 'exit 42' INT; echo ready; while :; do sleep 0.05; done"
+    with started("tty", display.address, "--", "sh", "-c", script) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == b"ready\n"
+        if number == signal.SIGINT:
+            # As a terminal does: all processes of the group get it.
+            children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+            for child in children:
+                os.kill(int(child), number)
+        process.send_signal(number)
+        assert process.wait(10) == code
+
+
+def test_what_cannot_be_run_is_refused(display: UnixServer, tmp_path: Path) -> None:
+    missing = tty(display, "no such program")
+    assert missing.returncode == 66
+    assert missing.stderr == (
+        b"ramtek: a program must be one that can be run, not 'no such program'; check its name\n"
+    )
+    (tmp_path / "broken").write_bytes(b"\0\1\2")
+    (tmp_path / "broken").chmod(0o755)
+    broken = tty(display, tmp_path / "broken")
+    assert broken.returncode == 66
+    assert b"exec format error" in broken.stderr
+    assert run("tty", tmp_path / "none", "--", "true").returncode == 69
+
+
+def test_a_display_that_leaves_hangs_up_the_program(tmp_path: Path) -> None:
+    with serving_at(tmp_path / "display") as server:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "ramtek_emu", "tty", server.address, "--", "sleep", "60"],
+            env=environment(),
+            cwd=ROOT,
+            stderr=subprocess.PIPE,
+        )
+        until(lambda: server.busy)
+        time.sleep(0.2)
+    _, said = process.communicate(timeout=10)
+    assert process.returncode == 69
+    assert b"while a program uses it, and it left" in said
+
+
+def test_without_notices_it_warns_and_the_program_draws_all_the_same(
+    display: UnixServer, program: Path, tmp_path: Path
+) -> None:
+    # The kernel gives notices of a process to one other only: the inner relay has none.
+    with serving_at(tmp_path / "outer") as outer:
+        inner = [sys.executable, "-m", "ramtek_emu", "tty", display.address, "--", sys.executable, "-c", SLOW]
+        done = tty(outer, *inner)
+    assert done.returncode == 0
+    assert done.stderr == (
+        b"warning: this system does not tell one write of a program from the next (device or resource busy): "
+        b"those in quick succession may be taken as one\n"
+    )
+    assert display.display.words[5, 5] == 7
+
+
+SLOW = """
+import os, time
+device = os.open(os.environ["RAMTEK_DEVICE"], os.O_RDWR)
+for data in ("0209 4400 0700 0500", "0500 0500 0500 21", "0007"):
+    os.write(device, bytes.fromhex(data))
+    time.sleep(0.1)
+"""
+
+
+def test_the_documented_socat_recipe_ends_when_the_program_closes_its_device(
+    program: Path, tmp_path: Path
+) -> None:
+    if shutil.which("socat") is None:
+        pytest.skip("socat is not installed")
+    recipe = next(line for line in GUIDE.splitlines() if line.startswith("socat PTY"))
+    device = tmp_path / "ramtek"
+    assert "/tmp/ramtek" in recipe
+    display = f"{sys.executable} -m ramtek_emu serve"
+    command = recipe.partition("&")[0].replace("/tmp/ramtek", str(device)).replace("ramtek serve", display)
+    with subprocess.Popen(command, shell=True, cwd=tmp_path, env=environment()) as relay:
+        until(device.exists)
+        number = os.open(device, os.O_RDWR)
+        os.write(number, stream(words("0902 0044 7 5 5 5 5 0B03 0040 5 5 5 5 2")))
+        assert os.read(number, 2) == b"\x07\0"
+        os.close(number)
+        assert relay.wait(20) == 0
+    assert (tmp_path / "drawing.png").exists()
+
+
+GUIDE = (ROOT / "docs" / "RAMTEK.md").read_text("utf-8")
