@@ -23,12 +23,13 @@ from autocolor.scene.changes import (
     SurfaceChanges,
     ViewChanges,
 )
+from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Column, Row, Tier, fields_of, row_label
 from autocolor.scene.columns.problems import REFUSED, Problem, RowError
 from autocolor.scene.columns.reference_kinds import RangesByName, Referring, references_of
 from autocolor.scene.columns.row_kinds import Nested, Rows
 from autocolor.scene.columns.rows import changed, cost, with_values
-from autocolor.scene.columns.value_kinds import Choice, ColorKind, CurveKind, Instance, Number, Text
+from autocolor.scene.columns.value_kinds import Choice, CurveKind, Instance, Number, Text
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import object_coordinates
 from autocolor.scene.lights import Light
