@@ -8,21 +8,36 @@ from typing import Any, Final
 
 import click
 
+from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
+from autocolor.commands.usage import as_usage
+from autocolor.commands.verbosity import verbose_option
 
 EXAMPLES: Final = """\b
 Examples:
   autocolor render scenes/coupe --save coupe.npz
   autocolor recolor coupe.npz body --object "#1f3f8f" -o blue.png
-  autocolor recolor coupe.npz body --source "#ffe9c0" --blend 0 -o metallic.png
+  autocolor recolor coupe.npz body --object navy --source "#ffe9c0" --blend 0 -o metallic.png
 """
 
 
 @click.command(epilog=EXAMPLES)
-@click.argument("picture", type=click.Path())
-@click.argument("surface")
-@click.option("--object", "object_color", metavar="COLOR", help='Object color, "#rrggbb".')
-@click.option("--source", "light_color", metavar="COLOR", help='Light source color, "#rrggbb".')
+@click.argument("picture", type=click.Path(), shell_complete=complete_pictures)
+@click.argument("surface", shell_complete=complete_surfaces)
+@click.option(
+    "--object",
+    "object_color",
+    metavar="COLOR",
+    shell_complete=complete_colors,
+    help='Object color: "#rrggbb", or a name.',
+)
+@click.option(
+    "--source",
+    "light_color",
+    metavar="COLOR",
+    shell_complete=complete_colors,
+    help='Light source color: "#rrggbb", or a name.',
+)
 @click.option(
     "--blend",
     type=float,
@@ -46,6 +61,7 @@ Examples:
     "--save", type=click.Path(), metavar="PICTURE.npz", help="Save the picture with the new colors."
 )
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
+@verbose_option
 def recolor(
     picture: str,
     surface: str,
@@ -75,9 +91,9 @@ def recolor(
         "blend": blend,
         "light_percentage": percentage,
     }
-    scene = saved.scene.with_surface(
-        surface, **{name: value for name, value in changes.items() if value is not None}
-    )
+    given = {name: value for name, value in changes.items() if value is not None}
+    with as_usage():
+        scene = saved.scene.with_surface(surface, **given)
     if save is not None:
         write_picture(save, saved.picture, scene, overwrite=force)
     if output is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -9,9 +10,11 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from autocolor.commands.completion import complete_lights
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
+from autocolor.commands.raster_size import size_option
 from autocolor.commands.scenes import ended, read, scene_options
-from autocolor.commands.settings import created_again, with_settings
+from autocolor.commands.settings import created_again, set_option, with_settings
 
 if TYPE_CHECKING:
     from autocolor.scene.creation import SurfaceSource
@@ -23,6 +26,7 @@ Examples:
   autocolor render scenes/coupe --light key -o key.png
   autocolor render scenes/coupe --light key --hold-exposure -o key-alone.png
   autocolor render scenes/coupe --set lights.key.concentration=40 --set ambient=0.2
+  autocolor render scenes/coupe --set surfaces.body.object_color=navy --size 1280x960
 """
 
 
@@ -46,11 +50,11 @@ Examples:
     "lights",
     multiple=True,
     metavar="NAME",
+    shell_complete=complete_lights,
     help="Use only this light; repeat it for more than one.",
 )
-@click.option(
-    "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Set a field of the scene; repeatable."
-)
+@set_option
+@size_option
 @click.option(
     "--hold-exposure",
     is_flag=True,
@@ -65,6 +69,7 @@ def render(
     save: str | None,
     lights: tuple[str, ...],
     settings: tuple[str, ...],
+    size: tuple[int, int],
     hold_exposure: bool,
     force: bool,
     up: str,
@@ -72,6 +77,7 @@ def render(
     strict: bool,
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
+    elements, lines = size
     report = read(scene, up, surfaces)
     original = report.scene
     if hold_exposure:
@@ -79,7 +85,7 @@ def render(
         from autocolor.rendering import render as rendered
 
         original = original.replace(
-            exposure=held_exposure(rendered(original), original.scaling, original.exposure)
+            exposure=held_exposure(rendered(original, lines, elements), original.scaling, original.exposure)
         )
     edited = created_again(report, with_settings(original, settings))
     if lights:
@@ -93,11 +99,11 @@ def render(
     with progress(4) as step:
         from autocolor.files.picture_file import write_picture
         from autocolor.studio import Studio
-        from ramtek_emu import Ramtek9300
+        from ramtek_emu import GMR_9300, Ramtek9300
 
         _ = edited.mesh.normals
         step()
-        display = Ramtek9300()
+        display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
         studio = Studio(edited, display)
         step()
         if save is not None:

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
+from autocolor.commands.completion import complete_scenes
+from autocolor.commands.verbosity import verbose_option
+
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
     from autocolor.scene.creation import SurfaceSource
@@ -20,6 +23,7 @@ REPAIRED: Final = 1
 def scene_options(command: Command) -> Command:
     """A decorator that adds the argument and options of commands that read a scene."""
     for decorate in (
+        verbose_option,
         click.option("--strict", is_flag=True, help="Exit with code 1 if anything was repaired or skipped."),
         click.option(
             "--up",
@@ -35,7 +39,7 @@ def scene_options(command: Command) -> Command:
             show_default=True,
             help="Where surfaces come from that are not given: materials of the mesh, or one for each part.",
         ),
-        click.argument("scene", type=click.Path()),
+        click.argument("scene", type=click.Path(), shell_complete=complete_scenes),
     ):
         command = decorate(command)
     return command

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
     from autocolor.scene.creation import SurfaceSource
@@ -26,6 +27,14 @@ def show(
     context: click.Context, scene: str, address: str, up: str, surfaces: SurfaceSource, strict: bool
 ) -> None:
     """Render SCENE and show it on the display that listens at an address, such as `ramtek serve`."""
+    from ramtek_emu import PortError
+    from ramtek_emu.host.host_port import host_and_port
+
+    try:
+        host_and_port(address)
+    except PortError as error:
+        raise UsageError(f"--to: {error}") from None
+
     from autocolor.studio import Studio
     from ramtek_emu import TcpPort, instructions
 

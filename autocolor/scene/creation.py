@@ -11,6 +11,7 @@ from typing import Any, Final, Literal, Unpack
 
 from autocolor.checks import nearest, shown
 from autocolor.errors import InputError, UsageError
+from autocolor.logs import logger_of
 from autocolor.scene.changes import PartChanges, SceneFields
 from autocolor.scene.columns.column import Row, fields_of
 from autocolor.scene.columns.problems import Problem, RowError
@@ -26,6 +27,8 @@ from autocolor.scene.defaults import (
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
+
+LOG: Final = logger_of(__name__)
 
 SHARED: Final = "surface"
 """The name of the surface that is created for all parts that have no other."""
@@ -99,8 +102,13 @@ def scene_of(
     coordinates = object_coordinates(mesh, rows)
     if view is None:
         view = default_view(coordinates)
+        LOG.info("created a view from (%.4g, %.4g, %.4g)", *view.eye)
     if lights is None:
         lights = default_lights(coordinates, view)
+        LOG.info("created %d lights: %s", len(lights), ", ".join(light.name for light in lights))
+    created = [surface.name for surface in table if surface.name not in own]
+    if created:
+        LOG.info("created surfaces: %s", ", ".join(created))
     return Scene(mesh, rows, table, lights, view, **tables)
 
 

@@ -17,10 +17,13 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, bounds_of
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
+from autocolor.logs import logger_of, timed
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.columns.value_kinds import Number
 from autocolor.scene.node_normals import CREASE_ANGLE, NodeNormals, node_normals
 from autocolor.scene.planes.shared_planes import SharedPlanes, shared_planes
+
+LOG: Final = logger_of(__name__)
 
 CREASE_ANGLES: Final = Number(at_least=0, at_most=180)
 """The crease angles that there may be, in degrees."""
@@ -94,7 +97,8 @@ class Mesh:
     @cached_property
     def normals(self) -> NodeNormals:
         """Unit normals at the corners of the polygons, computed from the adjoining polygons."""
-        return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
+        with timed(LOG, "node normals"):
+            return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
 
     @cached_property
     def shared_planes(self) -> SharedPlanes | None:

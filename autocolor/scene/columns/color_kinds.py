@@ -59,6 +59,13 @@ def in_digits(color: Color) -> str:
     return "#{:02x}{:02x}{:02x}".format(*color)
 
 
+def color_names() -> tuple[str, ...]:
+    """The names of colors, in small letters."""
+    from PIL import ImageColor
+
+    return tuple(ImageColor.colormap)
+
+
 def _color_of_text(text: str) -> Color:
     """The color that a text means. Raises ValueError if it means none, or one with transparency."""
     if IN_FULL.fullmatch(text):
@@ -96,9 +103,7 @@ def _advice_on_text(text: str) -> str:
     if OF_DIGITS.fullmatch(text):
         return "; write three or six hexadecimal digits after the #"
     if A_NAME.fullmatch(text):
-        from PIL import ImageColor
-
-        return nearest(text.lower(), ImageColor.colormap) or '; write it as in "#b01020"'
+        return nearest(text.lower(), color_names()) or '; write it as in "#b01020"'
     return '; write it as in "#b01020"'
 
 
