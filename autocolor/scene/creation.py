@@ -44,7 +44,8 @@ PARTS: Final = "parts"
 
 
 def scene_of(
-    mesh: Mesh,
+    mesh: object,
+    polygons: object = None,
     *,
     surfaces: Sequence[Row] | SurfaceSource = MATERIALS,
     parts: Mapping[str, PartChanges] | None = None,
@@ -54,6 +55,9 @@ def scene_of(
     **fields: Unpack[SceneFields],
 ) -> Scene:
     """A scene of a mesh; tables and fields that are not given are created with defaults.
+
+    `mesh` is a Mesh, a mesh of trimesh, PyVista or meshio, or an array of nodes with one of `polygons`: what
+    `Mesh.of` takes.
 
     A part has the first of these surfaces that there is: the one that `parts` or `surface_of_part` names for
     it; the given one of its own name; with `surfaces="parts"`, one of its own, which is created like that of
@@ -66,6 +70,7 @@ def scene_of(
     Assumed: the mapping belongs to the lights. Where lights are created, so are ambient, scaling, mapping and
     contrast, chosen so that the mesh keeps its form; with given lights they have the defaults of Scene.
     """
+    mesh = Mesh.of(mesh, polygons)
     if isinstance(surfaces, str) and surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be rows, {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     found: list[Problem] = []
