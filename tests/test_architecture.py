@@ -33,8 +33,8 @@ PUBLIC_NAMES = {
 
 WINGS = {
     "autocolor": (
-        "errors", "logs", "arrays", "checks", "scene", "visibility", "lighting", "mapping", "files",
-        "rendering", "studio", "images", "screens", "commands", "__main__",
+        "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "lighting", "mapping",
+        "files", "rendering", "studio", "images", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "command_line",

@@ -17,6 +17,7 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, bounds_of
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
+from autocolor.immutable import Immutable, read_only
 from autocolor.logs import logger_of, timed
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.columns.value_kinds import Number
@@ -34,8 +35,8 @@ PART: Final = "mesh"
 """The name of the part of a mesh without parts."""
 
 
-@dataclass(frozen=True, eq=False)
-class Mesh:
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh(Immutable):
     """The node table and the polygon table.
 
     `coordinates` is (nodes, 3) float64. `node_numbers` is (polygons, 4) intp, rows of the node table counted
@@ -91,7 +92,7 @@ class Mesh:
         if problems:
             raise InputError(problems)
         for table in (coordinate_rows, node_rows, part_numbers):
-            table.flags.writeable = False
+            read_only(table)
         for name, value in (
             ("coordinates", coordinate_rows.T),
             ("node_numbers", node_rows.T),
@@ -131,7 +132,8 @@ class Mesh:
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """The least and the largest coordinates of the nodes that polygons use; zeros for an empty mesh."""
-        return bounds_of(self.used_coordinates)
+        low, high = bounds_of(self.used_coordinates)
+        return read_only(low), read_only(high)
 
     @cached_property
     def parts_in_use(self) -> tuple[int, ...]:

@@ -15,6 +15,7 @@ from typing import Annotated, Any, Final, TypeVar, Unpack
 from autocolor.arrays import Floats
 from autocolor.checks import Color, nearest, shown
 from autocolor.errors import UsageError
+from autocolor.immutable import read_only
 from autocolor.scene.changes import (
     LightChanges,
     PaintChanges,
@@ -231,7 +232,7 @@ class Scene(Row):
     @cached_property
     def object_coordinates(self) -> Floats:
         """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage."""
-        return object_coordinates(self.mesh, self.parts)
+        return read_only(object_coordinates(self.mesh, self.parts))
 
     def __repr__(self) -> str:
         return (

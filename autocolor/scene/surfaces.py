@@ -31,7 +31,7 @@ PHONG: Final = Phong()
 """The default reflection model."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Part(Row):
     """A group of polygons with one surface. Paper: door, hood, roof, fender."""
 
@@ -49,7 +49,7 @@ class Part(Row):
         return changed(self, changes)
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, repr=False)
 class Reflectance(Row):
     """The reflectance properties of a surface: D, S, and a reflection model with its parameters.
 
@@ -98,7 +98,7 @@ class Reflectance(Row):
         return changed(self, changes)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Paint(Row):
     """The two colors of a surface and how they blend.
 
@@ -137,7 +137,7 @@ class Paint(Row):
         return changed(self, changes)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Surface(Row):
     """A surface type, which several parts can share."""
 
