@@ -6,18 +6,15 @@ import dataclasses
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import click
 
 from autocolor.commands.completion import complete_lights
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.raster_size import size_option
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.commands.settings import created_again, set_option, with_settings
-
-if TYPE_CHECKING:
-    from autocolor.scene.creation import SurfaceSource
 
 EXAMPLES: Final = """\b
 Examples:
@@ -64,7 +61,7 @@ Examples:
 @click.pass_context
 def render(
     context: click.Context,
-    scene: str,
+    source: SceneSource,
     output: str | None,
     save: str | None,
     lights: tuple[str, ...],
@@ -72,13 +69,10 @@ def render(
     size: tuple[int, int],
     hold_exposure: bool,
     force: bool,
-    up: str,
-    surfaces: SurfaceSource,
-    strict: bool,
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
     elements, lines = size
-    report = read(scene, up, surfaces)
+    report = read(source)
     original = report.scene
     if hold_exposure:
         from autocolor.mapping.exposure import held_exposure
@@ -113,7 +107,7 @@ def render(
             write_png(output, display, force)
         step()
     tell_written(output, save)
-    context.exit(ended(report, strict))
+    context.exit(ended(report, source))
 
 
 @contextmanager

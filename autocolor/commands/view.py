@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.commands.settings import created_again, set_option, with_settings
 
 if TYPE_CHECKING:
-    from autocolor.scene.creation import SurfaceSource
     from autocolor.scene.scene import Scene
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import Ramtek9300
@@ -32,19 +31,16 @@ Examples:
 @click.pass_context
 def view(
     context: click.Context,
-    scene: str,
-    up: str,
-    surfaces: SurfaceSource,
-    strict: bool,
+    source: SceneSource,
     settings: tuple[str, ...],
     full_screen: bool,
     fit: bool,
 ) -> None:
     """Show SCENE in an interactive window; press F1 there for a list of keys."""
-    report = read(scene, up, surfaces)
+    report = read(source)
     edited = created_again(report, with_settings(report.scene, settings))
     show(edited, full_screen, fit)
-    context.exit(ended(report, strict))
+    context.exit(ended(report, source))
 
 
 def show_demo() -> None:
