@@ -81,10 +81,14 @@ def recolor(
     refuse_outputs(output, save, force)
 
     from autocolor.files.picture_file import read_picture, write_picture
+    from autocolor.logs import logger_of, timed
     from autocolor.sending import send_picture
     from ramtek_emu import GMR_9300, Ramtek9300
 
-    saved = read_picture(picture)
+    logger = logger_of(__name__)
+    with timed(logger, f"read {picture}"):
+        saved = read_picture(picture)
+    logger.info("%r", saved.picture)
     changes: dict[str, Any] = {
         "object_color": object_color,
         "light_color": light_color,
@@ -99,6 +103,7 @@ def recolor(
     if output is not None:
         lines, elements = saved.picture.lines, saved.picture.elements
         display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
-        send_picture(scene, saved.picture, display)
+        with timed(logger, "words and entries sent"):
+            send_picture(scene, saved.picture, display)
         write_png(output, display, force)
     tell_written(output, save)

@@ -34,6 +34,17 @@ def test_given_twice_more_is_told_and_nothing_twice(
     assert ran.err.count("autocolor: read two.obj") == 1
 
 
+def test_what_is_recolored_is_told(folder: Path, run: Run) -> None:
+    run("render", "scene", "--save", "saved.npz", "--size", "30x20")
+    told = run("recolor", "saved.npz", "side", "-v", "-o", "side.png").err.splitlines()
+    assert [line.partition("(")[0].split(":")[1] for line in told[:-1]] == [
+        " read saved.npz",
+        " Picture",
+        " words and entries sent",
+    ]
+    assert told[-1] == "wrote side.png"
+
+
 def test_without_it_nothing_is_told_not_even_after_it_was_given(folder: Path, run: Run) -> None:
     assert run("render", "two.obj", "-v", "-o", "a.png").code == 0
     assert run("render", "two.obj", "-o", "b.png").err == "wrote b.png\n"
