@@ -58,12 +58,36 @@ FEW: Final = 16
 """Assumed: as many names can be listed in a message."""
 
 
+OTHER_WORDS: Final = {
+    "A": "cone_angle",
+    "C": "concentration",
+    "D": "diffuse",
+    "N": "exponent",
+    "S": "specular",
+    "colour": "object_color",
+    "fov": "field_of_view",
+    "shininess": "exponent",
+}
+"""The symbols of the paper, and words of other programs, with ours."""
+
+
 def nearest(name: object, names: Iterable[str]) -> str:
-    """A clause for a message: the closest of `names`, else all of them if they are few, else nothing."""
+    """A clause for a message: the closest of `names`, else all of them if they are few, else nothing.
+
+    Closest is one that another word stands for, then one that begins with the name, then one of whose words,
+    between underscores, the name is one, and then the one that is spelled most alike.
+
+    >>> nearest("color", ["blend", "object_color"]), nearest("N", ["exponent"])
+    ("; did you mean 'object_color'?", "; did you mean 'exponent'?")
+    """
     names = list(names)
     name = (name if isinstance(name, str) else shown(name))[:LONGEST_NAME]
-    close = [known for known in names if known.startswith(name)] or difflib.get_close_matches(
-        name, names, n=1
+    other = OTHER_WORDS.get(name)
+    close = (
+        [known for known in names if known == other]
+        or [known for known in names if known.startswith(name)]
+        or [known for known in names if name in known.split("_")]
+        or difflib.get_close_matches(name, names, n=1)
     )
     if close:
         return f"; did you mean {close[0]!r}?"

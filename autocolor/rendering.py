@@ -24,11 +24,14 @@ from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
+from autocolor.logs import logger_of, timed
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import Scene, costs_at_least
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
+
+LOG: Final = logger_of(__name__)
 
 LARGEST_RASTER: Final = 16384
 """Assumed: a picture with this many lines and elements takes tens of gigabytes."""
@@ -92,11 +95,15 @@ def rendering(
         if lines * elements > LARGE:
             _keep_large_arrays()
         one_sided = frozenset(row + 1 for row, surface in enumerate(scene.surfaces) if not surface.two_sided)
-        points = ALGORITHMS[algorithm](
-            scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided
-        )
+        with timed(LOG, f"visible surfaces, {elements} x {lines}"):
+            points = ALGORITHMS[algorithm](
+                scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided
+            )
     previous = None if before is None else Previous(before.scene, before.picture)
-    return Rendering(scene, points, illuminate(scene, points, previous))
+    with timed(LOG, "illumination"):
+        picture = illuminate(scene, points, previous)
+    LOG.debug("%r", picture)
+    return Rendering(scene, points, picture)
 
 
 def _sees_the_same(old: Scene, new: Scene) -> bool:

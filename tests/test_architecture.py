@@ -33,8 +33,8 @@ PUBLIC_NAMES = {
 
 WINGS = {
     "autocolor": (
-        "errors", "arrays", "checks", "scene", "visibility", "lighting", "mapping", "files", "rendering",
-        "pacing", "sending", "studio", "images", "screens", "commands", "__main__",
+        "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "lighting", "mapping",
+        "files", "rendering", "pacing", "sending", "studio", "images", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "command_line",
@@ -133,9 +133,12 @@ def test_pygame_is_in_one_file() -> None:
     assert having == {"ramtek_emu.monitor.window"}
 
 
-def test_pillow_is_in_one_file() -> None:
-    having = {name for name in MODULES for each in imports_of(name) if outer(each.target) == "PIL"}
-    assert having == {"ramtek_emu.png"}
+def test_pillow_is_in_two_files_one_for_pictures_and_one_for_the_names_of_colors() -> None:
+    found = {
+        (name, each.at_once) for name in MODULES for each in imports_of(name) if outer(each.target) == "PIL"
+    }
+    # Colors written as "#rrggbb" need no Pillow: it is loaded for the first one that is not.
+    assert found == {("ramtek_emu.png", True), ("autocolor.scene.columns.color_kinds", False)}
 
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:

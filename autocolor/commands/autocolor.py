@@ -6,6 +6,7 @@ from typing import ClassVar, Final
 
 import click
 
+from autocolor.commands.verbosity import verbose_option
 from ramtek_emu.command_line import CommandGroup, version_option
 
 EXAMPLES: Final = """\b
@@ -39,6 +40,7 @@ class AutocolorGroup(CommandGroup):
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 @click.option("--debug", is_flag=True, help="Show a traceback when something fails.")
+@verbose_option
 @version_option
 @click.pass_context
 def autocolor(context: click.Context, debug: bool) -> None:

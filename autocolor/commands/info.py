@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
-    from autocolor.scene.creation import SurfaceSource
 
 EXAMPLES: Final = """\b
 Examples:
@@ -26,17 +25,15 @@ Examples:
 @scene_options
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
-def info(
-    context: click.Context, scene: str, as_json: bool, up: str, surfaces: SurfaceSource, strict: bool
-) -> None:
+def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
     """Print the nodes, polygons, edges, parts, surfaces, lights, view and intensities of SCENE."""
-    report = read(scene, up, surfaces)
+    report = read(source)
     facts = facts_of(report)
     if as_json:
         click.echo(json.dumps(facts, indent=2))
     else:
         click.echo("\n".join(lines_of(facts)))
-    context.exit(ended(report, strict))
+    context.exit(ended(report, source))
 
 
 def facts_of(report: SceneReport) -> dict[str, Any]:

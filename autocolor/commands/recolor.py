@@ -8,21 +8,36 @@ from typing import Any, Final
 
 import click
 
+from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
+from autocolor.commands.usage import as_usage
+from autocolor.commands.verbosity import verbose_option
 
 EXAMPLES: Final = """\b
 Examples:
   autocolor render scenes/coupe --save coupe.npz
   autocolor recolor coupe.npz body --object "#1f3f8f" -o blue.png
-  autocolor recolor coupe.npz body --source "#ffe9c0" --blend 0 -o metallic.png
+  autocolor recolor coupe.npz body --object navy --source "#ffe9c0" --blend 0 -o metallic.png
 """
 
 
 @click.command(epilog=EXAMPLES)
-@click.argument("picture", type=click.Path())
-@click.argument("surface")
-@click.option("--object", "object_color", metavar="COLOR", help='Object color, "#rrggbb".')
-@click.option("--source", "light_color", metavar="COLOR", help='Light source color, "#rrggbb".')
+@click.argument("picture", type=click.Path(), shell_complete=complete_pictures)
+@click.argument("surface", shell_complete=complete_surfaces)
+@click.option(
+    "--object",
+    "object_color",
+    metavar="COLOR",
+    shell_complete=complete_colors,
+    help='Object color: "#rrggbb", or a name.',
+)
+@click.option(
+    "--source",
+    "light_color",
+    metavar="COLOR",
+    shell_complete=complete_colors,
+    help='Light source color: "#rrggbb", or a name.',
+)
 @click.option(
     "--blend",
     type=float,
@@ -46,6 +61,7 @@ Examples:
     "--save", type=click.Path(), metavar="PICTURE.npz", help="Save the picture with the new colors."
 )
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
+@verbose_option
 def recolor(
     picture: str,
     surface: str,
@@ -65,24 +81,29 @@ def recolor(
     refuse_outputs(output, save, force)
 
     from autocolor.files.picture_file import read_picture, write_picture
+    from autocolor.logs import logger_of, timed
     from autocolor.sending import send_picture
     from ramtek_emu import GMR_9300, Ramtek9300
 
-    saved = read_picture(picture)
+    logger = logger_of(__name__)
+    with timed(logger, f"read {picture}"):
+        saved = read_picture(picture)
+    logger.info("%r", saved.picture)
     changes: dict[str, Any] = {
         "object_color": object_color,
         "light_color": light_color,
         "blend": blend,
         "light_percentage": percentage,
     }
-    scene = saved.scene.with_surface(
-        surface, **{name: value for name, value in changes.items() if value is not None}
-    )
+    given = {name: value for name, value in changes.items() if value is not None}
+    with as_usage():
+        scene = saved.scene.with_surface(surface, **given)
     if save is not None:
         write_picture(save, saved.picture, scene, overwrite=force)
     if output is not None:
         lines, elements = saved.picture.lines, saved.picture.elements
         display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
-        send_picture(scene, saved.picture, display)
+        with timed(logger, "words and entries sent"):
+            send_picture(scene, saved.picture, display)
         write_png(output, display, force)
     tell_written(output, save)

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import click
 
+from autocolor.commands.completion import complete_lights
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
-from autocolor.commands.scenes import ended, read, scene_options
-from autocolor.commands.settings import created_again, with_settings
-
-if TYPE_CHECKING:
-    from autocolor.scene.creation import SurfaceSource
+from autocolor.commands.raster_size import size_option
+from autocolor.commands.scenes import SceneSource, ended, read, scene_options
+from autocolor.commands.settings import created_again, set_option, with_settings
 
 EXAMPLES: Final = """\b
 Examples:
@@ -23,6 +23,7 @@ Examples:
   autocolor render scenes/coupe --light key -o key.png
   autocolor render scenes/coupe --light key --hold-exposure -o key-alone.png
   autocolor render scenes/coupe --set lights.key.concentration=40 --set ambient=0.2
+  autocolor render scenes/coupe --set surfaces.body.object_color=navy --size 1280x960
 """
 
 
@@ -46,11 +47,11 @@ Examples:
     "lights",
     multiple=True,
     metavar="NAME",
+    shell_complete=complete_lights,
     help="Use only this light; repeat it for more than one.",
 )
-@click.option(
-    "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Set a field of the scene; repeatable."
-)
+@set_option
+@size_option
 @click.option(
     "--hold-exposure",
     is_flag=True,
@@ -60,26 +61,25 @@ Examples:
 @click.pass_context
 def render(
     context: click.Context,
-    scene: str,
+    source: SceneSource,
     output: str | None,
     save: str | None,
     lights: tuple[str, ...],
     settings: tuple[str, ...],
+    size: tuple[int, int],
     hold_exposure: bool,
     force: bool,
-    up: str,
-    surfaces: SurfaceSource,
-    strict: bool,
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
-    report = read(scene, up, surfaces)
+    elements, lines = size
+    report = read(source)
     original = report.scene
     if hold_exposure:
         from autocolor.mapping.exposure import held_exposure
         from autocolor.rendering import render as rendered
 
         original = original.replace(
-            exposure=held_exposure(rendered(original), original.scaling, original.exposure)
+            exposure=held_exposure(rendered(original, lines, elements), original.scaling, original.exposure)
         )
     edited = created_again(report, with_settings(original, settings))
     if lights:
@@ -93,11 +93,11 @@ def render(
     with progress(4) as step:
         from autocolor.files.picture_file import write_picture
         from autocolor.studio import Studio
-        from ramtek_emu import Ramtek9300
+        from ramtek_emu import GMR_9300, Ramtek9300
 
         _ = edited.mesh.normals
         step()
-        display = Ramtek9300()
+        display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
         studio = Studio(edited, display)
         step()
         if save is not None:
@@ -107,7 +107,7 @@ def render(
             write_png(output, display, force)
         step()
     tell_written(output, save)
-    context.exit(ended(report, strict))
+    context.exit(ended(report, source))
 
 
 @contextmanager

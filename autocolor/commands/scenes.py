@@ -3,23 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import click
+
+from autocolor.commands.completion import complete_scenes
+from autocolor.commands.verbosity import verbose_option
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
     from autocolor.scene.creation import SurfaceSource
 
-Command = TypeVar("Command", bound=Callable[..., Any])
-
 REPAIRED: Final = 1
 """The exit code of a command that succeeds with --strict although something was skipped or repaired."""
 
 
-def scene_options(command: Command) -> Command:
-    """A decorator that adds the argument and options of commands that read a scene."""
+class SceneSource(NamedTuple):
+    """What a command reads a scene from, and how: what `scene_options` asks for."""
+
+    path: str
+    up: str = "z"
+    surfaces: SurfaceSource = "materials"
+    strict: bool = False
+
+
+def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """A decorator that adds the argument and options of commands that read a scene.
+
+    The command gets them as one value, `source`, a SceneSource.
+    """
+
+    @wraps(command)
+    def with_source(
+        *arguments: Any, scene: str, up: str, surfaces: SurfaceSource, strict: bool, **options: Any
+    ) -> Any:
+        return command(*arguments, source=SceneSource(scene, up, surfaces, strict), **options)
+
+    decorated: Callable[..., Any] = with_source
     for decorate in (
+        verbose_option,
         click.option("--strict", is_flag=True, help="Exit with code 1 if anything was repaired or skipped."),
         click.option(
             "--up",
@@ -35,22 +58,22 @@ def scene_options(command: Command) -> Command:
             show_default=True,
             help="Where surfaces come from that are not given: materials of the mesh, or one for each part.",
         ),
-        click.argument("scene", type=click.Path()),
+        click.argument("scene", type=click.Path(), shell_complete=complete_scenes),
     ):
-        command = decorate(command)
-    return command
+        decorated = decorate(decorated)
+    return decorated
 
 
-def read(path: str, up: str, surfaces: SurfaceSource) -> SceneReport:
+def read(source: SceneSource) -> SceneReport:
     """Read a scene, and print a line on stderr for each repair."""
     from autocolor.files.scene_sources import read_scene_with_report
 
-    report = read_scene_with_report(path, up=up, surfaces=surfaces)
+    report = read_scene_with_report(source.path, up=source.up, surfaces=source.surfaces)
     for repair in report.repairs:
         click.echo(f"autocolor: {repair}", err=True)
     return report
 
 
-def ended(report: SceneReport, strict: bool) -> int:
+def ended(report: SceneReport, source: SceneSource) -> int:
     """The exit code of a command that succeeded."""
-    return REPAIRED if strict and report.repairs else 0
+    return REPAIRED if source.strict and report.repairs else 0

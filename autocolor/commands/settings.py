@@ -6,21 +6,17 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from autocolor.commands.completion import complete_settings
+from autocolor.commands.usage import as_usage
 from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
+    from autocolor.scene.columns.column import Field
     from autocolor.scene.scene import Scene
 
-EXAMPLES: Final = {
-    "view": "view.angle=10",
-    "lights": "lights.key.intensity=2",
-    "surfaces": "surfaces.body.blend=0.3",
-    "parts": "parts.hood.surface=body",
-}
-
-MOST_PARTS: Final = 4
-"""An upper bound on the parts of a field's path within its row."""
+UNSET: Final = "none"
+"""The value that unsets a field."""
 
 Changes = dict[str, Any]
 
@@ -29,24 +25,40 @@ class Inside(dict[str, Any]):
     """Fields that are set one by one inside a field, unlike a table that is its value."""
 
 
+set_option = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    shell_complete=complete_settings,
+    help="Set a field of the scene, as in scene.toml; none unsets it; repeatable.",
+)
+
+
 def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
     """The scene with each KEY=VALUE set, such as `lights.key.intensity=2` or `ambient=0.2`.
 
-    A key is the path of a field in a scene file. A value is written as in a scene file, but needs no quotes.
-    The settings of one row are applied together, so that their order does not matter, except that the last
-    value of a field counts. Raises UsageError for an unknown key, InputError for an invalid value.
+    A key is the path of a field in a scene file. A value is written as in a scene file, but needs no quotes;
+    `none` unsets a field that may be absent, such as `view.target`. The settings of one row are applied
+    together, so that their order does not matter, except that the last value of a field counts. Raises
+    UsageError for an unknown key or an invalid value.
     """
+    from autocolor.commands.setting_keys import field_of, place_of
+
     changes: dict[tuple[str, str], Changes] = {}
     for setting in settings:
         key, equals, text = setting.partition("=")
         if not equals:
-            raise click.UsageError(
-                f"--set must be KEY=VALUE, not {setting!r}; write it as in {EXAMPLES['lights']}"
+            raise UsageError(
+                f"--set must be KEY=VALUE, not {setting!r}; write it as in lights.key.intensity=2"
             )
-        table, name, path = _place(scene, key.strip())
-        _put(changes.setdefault((table, name), {}), path, value_of(text.strip()), key.strip())
-    for (table, name), fields in changes.items():
-        scene = _changed(scene, table, name, fields)
+        key, text = key.strip(), text.strip()
+        place = place_of(scene, key)
+        value = _unset(field_of(place), key) if text == UNSET else value_of(text)
+        _put(changes.setdefault((place.table, place.name), {}), place.path, value, key)
+    with as_usage("--set: "):
+        for (table, name), fields in changes.items():
+            scene = _changed(scene, table, name, fields)
     return scene
 
 
@@ -82,6 +94,25 @@ def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
     return scene.with_view(**fields)
 
 
+def _unset(field: Field | None, key: str) -> object:
+    """What a field holds that is unset; the text itself for a field that takes it, and for none at all.
+
+    Raises UsageError for a field that must have a value.
+    """
+    from autocolor.scene.columns.problems import REFUSED
+
+    if field is None or field.column.kind.held(UNSET, (), []) is not REFUSED:
+        return UNSET
+    if field.is_optional:
+        return None
+    default = None if field.default is None else field.default()
+    # What a scene file leaves out is unset there: no limit of a flap, no flaps.
+    if default is not None and field.column.kind.written(key, default).get(key) in (None, {}):
+        return default
+    rule = field.column.kind.rule()
+    raise UsageError(f"--set {key}: it {rule}, not none; only a field that may be absent can be unset")
+
+
 def value_of(text: str) -> Any:
     """The text parsed as a TOML value, or the text itself if it is none.
 
@@ -99,45 +130,7 @@ def value_of(text: str) -> Any:
         return text
 
 
-def _place(scene: Scene, key: str) -> tuple[str, str, list[str]]:
-    """The table of a key, the name of the row, and the path in the row; "" for a name that is not needed."""
-    from autocolor.checks import nearest
-    from autocolor.scene.columns.column import fields_of
-    from autocolor.scene.columns.row_kinds import Nested, Rows
-    from autocolor.scene.columns.value_kinds import Instance
-    from autocolor.scene.scene import Scene
-
-    kinds = {name: field.column.kind for name, field in fields_of(Scene).items() if name != "name"}
-    kinds = {name: kind for name, kind in kinds.items() if not isinstance(kind, Instance)}
-    table, _, rest = key.partition(".")
-    kind = kinds.get(table)
-    if kind is None or (rest and not isinstance(kind, (Nested, Rows))):
-        raise UsageError(f"--set {key}: there is no field of this name{nearest(table, kinds)}")
-    if not isinstance(kind, (Nested, Rows)):
-        return "", "", [table]
-    names = {"": ""}
-    if isinstance(kind, Rows):
-        # A name may contain periods and may be quoted: take the longest one that matches.
-        rows = [row.name for row in vars(scene)[table]]
-        names = {written: row for row in rows for written in (row, f'"{row}"', f"'{row}'")}
-        start = max((name for name in names if f"{rest}.".startswith(f"{name}.")), key=len, default=None)
-        if start is None and "." in rest:
-            wrong = rest.partition(".")[0]
-            raise UsageError(f"--set {key}: there is no {table[:-1]} {wrong!r}{nearest(wrong, rows)}")
-        name, field = (None, "") if start is None else (names[start], rest[len(start) + 1 :])
-    else:
-        name, field = "", rest
-    if name is None or not field:
-        raise UsageError(f"--set {key}: it must name one field; write it as in {EXAMPLES[table]}")
-    if field == "name":
-        raise UsageError(f"--set {key}: a name cannot be set; change it in the scene file")
-    path = field.split(".")
-    if len(path) > MOST_PARTS:
-        raise UsageError(f"--set {key}: there is no such field; write it as in {EXAMPLES[table]}")
-    return table, name, path
-
-
-def _put(fields: Changes, path: list[str], value: Any, key: str) -> None:
+def _put(fields: Changes, path: tuple[str, ...], value: Any, key: str) -> None:
     """Put a value at a path of nested dictionaries, which are created as needed.
 
     Raises UsageError where both a table and a field of it are set, because the result would depend on their

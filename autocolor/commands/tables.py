@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
-    from autocolor.scene.creation import SurfaceSource
 
 EXAMPLES: Final = """\b
 Examples:
@@ -29,18 +28,15 @@ Examples:
 @click.pass_context
 def tables(
     context: click.Context,
-    scene: str,
+    source: SceneSource,
     write: bool,
     force: bool,
     as_json: bool,
-    up: str,
-    surfaces: SurfaceSource,
-    strict: bool,
 ) -> None:
     """Print the parts, surfaces, lights and view of SCENE as a scene file, including those created for it."""
-    report = read(scene, up, surfaces)
+    report = read(source)
     if write:
-        path = written(report, Path(scene), force)
+        path = written(report, Path(source.path), force)
         click.echo(f"wrote {path}; render it by naming its folder or itself, not the mesh", err=True)
     elif as_json:
         from autocolor.files.plain_scene import plain_scene
@@ -48,7 +44,7 @@ def tables(
         click.echo(json.dumps(plain_scene(report.scene), indent=2))
     else:
         click.echo(text_of(report), nl=False)
-    context.exit(ended(report, strict))
+    context.exit(ended(report, source))
 
 
 def text_of(report: SceneReport) -> str:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.errors import InputError
-
-if TYPE_CHECKING:
-    from autocolor.scene.creation import SurfaceSource
 
 EXAMPLES: Final = """\b
 Examples:
@@ -24,12 +21,10 @@ Examples:
 @scene_options
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
-def validate(
-    context: click.Context, scene: str, as_json: bool, up: str, surfaces: SurfaceSource, strict: bool
-) -> None:
+def validate(context: click.Context, source: SceneSource, as_json: bool) -> None:
     """List every problem of SCENE and every repair. The exit code is 65 if there is a problem."""
     try:
-        report = read(scene, up, surfaces)
+        report = read(source)
     except InputError as error:
         if as_json:
             click.echo(json.dumps({"problems": error.problems, "repairs": []}, indent=2))
@@ -37,5 +32,5 @@ def validate(
     if as_json:
         click.echo(json.dumps({"problems": [], "repairs": report.repairs}, indent=2))
     else:
-        click.echo(f"{scene}: no problem")
-    context.exit(ended(report, strict))
+        click.echo(f"{source.path}: no problem")
+    context.exit(ended(report, source))

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import SceneSource, ended, read, scene_options
+from autocolor.commands.settings import created_again, set_option, with_settings
 
 if TYPE_CHECKING:
-    from autocolor.scene.creation import SurfaceSource
     from autocolor.scene.scene import Scene
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import Ramtek9300
@@ -19,27 +19,28 @@ EXAMPLES: Final = """\b
 Examples:
   autocolor view scenes/coupe
   autocolor view car.obj --up y --full-screen
+  autocolor view scenes/coupe --set background=navy --set lights.key.cone_angle=none
 """
 
 
 @click.command(epilog=EXAMPLES)
 @scene_options
+@set_option
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @click.pass_context
 def view(
     context: click.Context,
-    scene: str,
-    up: str,
-    surfaces: SurfaceSource,
-    strict: bool,
+    source: SceneSource,
+    settings: tuple[str, ...],
     full_screen: bool,
     fit: bool,
 ) -> None:
     """Show SCENE in an interactive window; press F1 there for a list of keys."""
-    report = read(scene, up, surfaces)
-    show(report.scene, full_screen, fit)
-    context.exit(ended(report, strict))
+    report = read(source)
+    edited = created_again(report, with_settings(report.scene, settings))
+    show(edited, full_screen, fit)
+    context.exit(ended(report, source))
 
 
 def show_demo() -> None:

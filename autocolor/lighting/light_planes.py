@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Singles
+from autocolor.immutable import Immutable
 from autocolor.lighting.light_mix import SurfaceWeights
 from autocolor.visibility.visible_points import PointChunk
 
@@ -15,8 +16,8 @@ DIFFUSE: Final = 0
 SPECULAR: Final = 1
 
 
-@dataclass(frozen=True, eq=False)
-class LightPlanes:
+@dataclass(frozen=True, eq=False, repr=False)
+class LightPlanes(Immutable):
     """The contribution of one light to the visible points, in their order; read-only in a picture.
 
     `values` is (2, n) float32: the diffuse and the specular plane, without D, S and the light's intensity.

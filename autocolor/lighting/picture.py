@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from autocolor.arrays import AnyArray, Bytes, Indices, Singles
+from autocolor.immutable import Immutable
 from autocolor.lighting.light_planes import DIFFUSE, SPECULAR, LightPlanes
 from autocolor.visibility.visible_points import SurfaceSlice, surface_slices
 
@@ -37,8 +38,8 @@ class PictureRanges:
     surfaces: Mapping[str, IntensityRange]
 
 
-@dataclass(frozen=True, eq=False)
-class LightPlane:
+@dataclass(frozen=True, eq=False, repr=False)
+class LightPlane(Immutable):
     """The contribution of one light, (lines, elements) float32 each: without D, S and its intensity."""
 
     diffuse: Singles
@@ -46,7 +47,7 @@ class LightPlane:
 
 
 @dataclass(frozen=True, eq=False)
-class Picture:
+class Picture(Immutable):
     """The picture that the lighting model computes: intensities and surfaces, no colors.
 
     The visible pixels are sorted by surface, as `slices` tells: `pixels` are their flat places in the raster,

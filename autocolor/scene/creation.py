@@ -11,6 +11,7 @@ from typing import Any, Final, Literal, Unpack
 
 from autocolor.checks import nearest, shown
 from autocolor.errors import InputError, UsageError
+from autocolor.logs import logger_of
 from autocolor.scene.changes import PartChanges, SceneFields
 from autocolor.scene.columns.column import Row, fields_of
 from autocolor.scene.columns.problems import Problem, RowError
@@ -27,6 +28,8 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 
+LOG: Final = logger_of(__name__)
+
 SHARED: Final = "surface"
 """The name of the surface that is created for all parts that have no other."""
 
@@ -41,7 +44,8 @@ PARTS: Final = "parts"
 
 
 def scene_of(
-    mesh: Mesh,
+    mesh: object,
+    polygons: object = None,
     *,
     surfaces: Sequence[Row] | SurfaceSource = MATERIALS,
     parts: Mapping[str, PartChanges] | None = None,
@@ -51,6 +55,9 @@ def scene_of(
     **fields: Unpack[SceneFields],
 ) -> Scene:
     """A scene of a mesh; tables and fields that are not given are created with defaults.
+
+    `mesh` is a Mesh, a mesh of trimesh, PyVista or meshio, or an array of nodes with one of `polygons`: what
+    `Mesh.of` takes.
 
     A part has the first of these surfaces that there is: the one that `parts` or `surface_of_part` names for
     it; the given one of its own name; with `surfaces="parts"`, one of its own, which is created like that of
@@ -63,6 +70,7 @@ def scene_of(
     Assumed: the mapping belongs to the lights. Where lights are created, so are ambient, scaling, mapping and
     contrast, chosen so that the mesh keeps its form; with given lights they have the defaults of Scene.
     """
+    mesh = Mesh.of(mesh, polygons)
     if isinstance(surfaces, str) and surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be rows, {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     found: list[Problem] = []
@@ -99,8 +107,13 @@ def scene_of(
     coordinates = object_coordinates(mesh, rows)
     if view is None:
         view = default_view(coordinates)
+        LOG.info("created a view from (%.4g, %.4g, %.4g)", *view.eye)
     if lights is None:
         lights = default_lights(coordinates, view)
+        LOG.info("created %d lights: %s", len(lights), ", ".join(light.name for light in lights))
+    created = [surface.name for surface in table if surface.name not in own]
+    if created:
+        LOG.info("created surfaces: %s", ", ".join(created))
     return Scene(mesh, rows, table, lights, view, **tables)
 
 

@@ -21,7 +21,7 @@ from autocolor.scene.columns.rows import changed
 from autocolor.scene.columns.value_kinds import Number, Switch, Text, VectorKind
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Flap(Row):
     """A range of one object coordinate outside of which a light has no effect, and a switch.
 
@@ -49,7 +49,7 @@ class Flap(Row):
         return changed(self, changes)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Flaps(Row):
     """The flaps of one light in the X, Y and Z directions; None where there is no flap."""
 
@@ -64,7 +64,7 @@ class Flaps(Row):
         return changed(self, changes)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Light(Row):
     """One light.
 

@@ -17,30 +17,40 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, bounds_of
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
+from autocolor.immutable import Immutable, read_only
+from autocolor.logs import logger_of, timed
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.columns.value_kinds import Number
+from autocolor.scene.foreign_meshes import foreign_tables
 from autocolor.scene.node_normals import CREASE_ANGLE, NodeNormals, node_normals
 from autocolor.scene.planes.shared_planes import SharedPlanes, shared_planes
+
+LOG: Final = logger_of(__name__)
 
 CREASE_ANGLES: Final = Number(at_least=0, at_most=180)
 """The crease angles that there may be, in degrees."""
 
 
-@dataclass(frozen=True, eq=False)
-class Mesh:
+PART: Final = "mesh"
+"""The name of the part of a mesh without parts."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh(Immutable):
     """The node table and the polygon table.
 
     `coordinates` is (nodes, 3) float64. `node_numbers` is (polygons, 4) intp, rows of the node table counted
     from 0; a triangle repeats its last node, and (polygons, 3) is accepted where all are triangles.
-    `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0. Polygons that meet at more than
-    `crease_angle` degrees keep a sharp edge. The tables are copied and stored by columns (Fortran order), so
-    that `.T` is the contiguous array that the renderer works on.
+    `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0; without them all polygons are of
+    the first part. Polygons that meet at more than `crease_angle` degrees keep a sharp edge. The tables are
+    copied and stored by columns (Fortran order), so that `.T` is the contiguous array that the renderer works
+    on. `Mesh.of` takes meshes of other programs.
     """
 
     coordinates: Floats
     node_numbers: Indices
-    part_numbers: Indices
-    part_names: tuple[str, ...]
+    part_numbers: Indices = None  # type: ignore[assignment]
+    part_names: tuple[str, ...] = (PART,)
     crease_angle: float = CREASE_ANGLE
 
     def __post_init__(self) -> None:
@@ -49,7 +59,8 @@ class Mesh:
         node_rows = _rows(problems, "polygon table", self.node_numbers, np.intp, (3, 4))
         if len(node_rows) == 3:
             node_rows = node_rows[[0, 1, 2, 2]]
-        part_numbers = np.array(np.atleast_1d(_numbers(problems, "part numbers", self.part_numbers, np.intp)))
+        given = np.zeros(node_rows.shape[1], np.intp) if self.part_numbers is None else self.part_numbers
+        part_numbers = np.array(np.atleast_1d(_numbers(problems, "part numbers", given, np.intp)))
         names = () if isinstance(self.part_names, str) else self.part_names
         names = tuple(names) if isinstance(names, Iterable) else ()
         if isinstance(self.part_names, str) or not all(isinstance(name, str) and name for name in names):
@@ -81,7 +92,7 @@ class Mesh:
         if problems:
             raise InputError(problems)
         for table in (coordinate_rows, node_rows, part_numbers):
-            table.flags.writeable = False
+            read_only(table)
         for name, value in (
             ("coordinates", coordinate_rows.T),
             ("node_numbers", node_rows.T),
@@ -94,7 +105,8 @@ class Mesh:
     @cached_property
     def normals(self) -> NodeNormals:
         """Unit normals at the corners of the polygons, computed from the adjoining polygons."""
-        return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
+        with timed(LOG, "node normals"):
+            return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
 
     @cached_property
     def shared_planes(self) -> SharedPlanes | None:
@@ -120,7 +132,8 @@ class Mesh:
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """The least and the largest coordinates of the nodes that polygons use; zeros for an empty mesh."""
-        return bounds_of(self.used_coordinates)
+        low, high = bounds_of(self.used_coordinates)
+        return read_only(low), read_only(high)
 
     @cached_property
     def parts_in_use(self) -> tuple[int, ...]:
@@ -141,6 +154,23 @@ class Mesh:
     def triangle_count(self) -> int:
         """How many polygons have three sides."""
         return int(np.count_nonzero(self.node_numbers[:, 2] == self.node_numbers[:, 3]))
+
+    @classmethod
+    def of(
+        cls, source: object, polygons: object = None, *, part: str = PART, crease_angle: float = CREASE_ANGLE
+    ) -> Mesh:
+        """The mesh, of one part, of a mesh of trimesh, PyVista or meshio, or of nodes and polygons.
+
+        Polygons may have any number of sides from three on; those of more than four are split. A Mesh is
+        returned as it is. Raises InputError, and UsageError for a source that is none of these.
+
+        >>> Mesh.of([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 2, 3]])
+        Mesh(nodes 4, polygons 2, parts 1)
+        """
+        if isinstance(source, Mesh) and polygons is None:
+            return source
+        nodes, table = foreign_tables(source, polygons)
+        return cls(nodes, table, None, (part,), crease_angle)  # type: ignore[arg-type]
 
     @staticmethod
     def joined(meshes: Sequence[Mesh]) -> Mesh:

@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, Indices, Singles, chunks, cross, lengths
+from autocolor.immutable import Immutable, read_only
 from autocolor.scene.fans import fans_of_corners, places_of_corners
 from autocolor.scene.union_find import group_numbers, unite
 
@@ -25,8 +26,8 @@ POLYGONS_AT_ONCE: Final = 1 << 13
 """Few enough for their corners to stay in the processor's cache."""
 
 
-@dataclass(frozen=True, eq=False)
-class NodeNormals:
+@dataclass(frozen=True, eq=False, repr=False)
+class NodeNormals(Immutable):
     """Unit normals, and which of them is at each corner of a polygon.
 
     `vectors` is (normals, 3) float32, `numbers` (polygons, 4) intp: rows of `vectors`. Both are stored by
@@ -64,7 +65,7 @@ def node_normals(
         vectors[2, canceled[~vectors[:, canceled].any(axis=0)]] = 1.0
         sizes[canceled] = 1.0
     vectors /= sizes
-    return NodeNormals(vectors.astype(np.float32).T, numbers.T)
+    return NodeNormals(read_only(vectors.astype(np.float32).T), read_only(numbers.T))
 
 
 def _normals_and_angles(coordinate_rows: Floats, node_rows: Indices) -> tuple[Floats, Floats]:

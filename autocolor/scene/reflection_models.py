@@ -85,7 +85,7 @@ def registered(name: str) -> Callable[[Model], Model]:
 
 
 @registered("phong")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Phong(ReflectionModel):
     """cos^N(E). Paper: Figure 2."""
 
@@ -103,7 +103,7 @@ class Phong(ReflectionModel):
 
 
 @registered("blinn")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BlinnPhong(ReflectionModel):
     """cos^N of the angle between normal and half vector. Departs: J. Blinn, SIGGRAPH 1977, not Figure 2."""
 
@@ -118,7 +118,7 @@ class BlinnPhong(ReflectionModel):
 
 
 @registered("cook-torrance")
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class CookTorrance(ReflectionModel):
     """F D G / (N.V) over its value at normal incidence and view.
 

@@ -15,6 +15,7 @@ from typing import Annotated, Any, Final, TypeVar, Unpack
 from autocolor.arrays import Floats
 from autocolor.checks import Color, nearest, shown
 from autocolor.errors import UsageError
+from autocolor.immutable import read_only
 from autocolor.scene.changes import (
     LightChanges,
     PaintChanges,
@@ -23,12 +24,13 @@ from autocolor.scene.changes import (
     SurfaceChanges,
     ViewChanges,
 )
+from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Column, Row, Tier, fields_of, row_label
 from autocolor.scene.columns.problems import REFUSED, Problem, RowError
 from autocolor.scene.columns.reference_kinds import RangesByName, Referring, references_of
 from autocolor.scene.columns.row_kinds import Nested, Rows
 from autocolor.scene.columns.rows import changed, cost, with_values
-from autocolor.scene.columns.value_kinds import Choice, ColorKind, CurveKind, Instance, Number, Text
+from autocolor.scene.columns.value_kinds import Choice, CurveKind, Instance, Number, Text
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import object_coordinates
 from autocolor.scene.lights import Light
@@ -230,7 +232,7 @@ class Scene(Row):
     @cached_property
     def object_coordinates(self) -> Floats:
         """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage."""
-        return object_coordinates(self.mesh, self.parts)
+        return read_only(object_coordinates(self.mesh, self.parts))
 
     def __repr__(self) -> str:
         return (

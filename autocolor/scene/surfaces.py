@@ -12,12 +12,13 @@ from typing import Annotated, ClassVar, Final, Unpack
 
 from autocolor.checks import Color
 from autocolor.scene.changes import PaintChanges, PartChanges, ReflectanceChanges, SurfaceChanges
+from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Column, Row, Tier
 from autocolor.scene.columns.problems import Problem, RowError
 from autocolor.scene.columns.reference_kinds import Reference
 from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.columns.rows import changed
-from autocolor.scene.columns.value_kinds import ColorKind, Number, Switch, Text, Whole
+from autocolor.scene.columns.value_kinds import Number, Switch, Text, Whole
 from autocolor.scene.reflection_models import MODELS, Phong, ReflectionModel
 
 MOST_SURFACES: Final = 255
@@ -30,7 +31,7 @@ PHONG: Final = Phong()
 """The default reflection model."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Part(Row):
     """A group of polygons with one surface. Paper: door, hood, roof, fender."""
 
@@ -48,7 +49,7 @@ class Part(Row):
         return changed(self, changes)
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, repr=False)
 class Reflectance(Row):
     """The reflectance properties of a surface: D, S, and a reflection model with its parameters.
 
@@ -97,7 +98,7 @@ class Reflectance(Row):
         return changed(self, changes)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Paint(Row):
     """The two colors of a surface and how they blend.
 
@@ -136,7 +137,7 @@ class Paint(Row):
         return changed(self, changes)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Surface(Row):
     """A surface type, which several parts can share."""
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
+from autocolor.immutable import read_only
 from autocolor.scene.changes import ViewChanges
 from autocolor.scene.columns.column import Column, Row, Tier
 from autocolor.scene.columns.problems import Problem
@@ -22,7 +23,7 @@ from autocolor.scene.columns.rows import changed
 from autocolor.scene.columns.value_kinds import Number, VectorKind
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class View(Row):
     """An eye position, and either a view direction or a target. The world's z axis points up."""
 
@@ -94,8 +95,7 @@ class View(Row):
                 forward,
             ]
         )
-        axes.flags.writeable = False
-        return axes
+        return read_only(axes)
 
     def replace(self, /, **changes: Unpack[ViewChanges]) -> View:
         """The view with some fields changed; a new direction removes the target, and vice versa."""

@@ -44,3 +44,22 @@ def test_a_value_is_shown_as_it_is_written_and_cut_where_it_is_long(value: objec
 def test_names_are_listed_as_in_a_sentence() -> None:
     assert listed(["x"]) == "x"
     assert listed(["x", "y", "z"]) == "x, y and z"
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "meant"),
+    [
+        ("color", ["blend", "object_color", "light_color"], "object_color"),
+        ("angle", ["aim", "cone_angle"], "cone_angle"),
+        ("N", ["name", "exponent"], "exponent"),
+        ("C", ["cone_angle", "concentration"], "concentration"),
+        ("fov", ["eye", "field_of_view"], "field_of_view"),
+        ("colour", ["blend", "object_color"], "object_color"),
+        ("N", ["Nose"], "Nose"),
+        ("conc", ["cone_angle", "concentration"], "concentration"),
+    ],
+)
+def test_a_word_of_a_name_and_a_symbol_of_the_paper_mean_the_whole_name(
+    name: str, known: list[str], meant: str
+) -> None:
+    assert nearest(name, known) == f"; did you mean {meant!r}?"

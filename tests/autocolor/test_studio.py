@@ -375,7 +375,7 @@ def test_an_edit_that_is_refused_changes_nothing() -> None:
         display.lookup_table.written,
     )
     refused: list[tuple[Any, type[Exception]]] = [
-        (lambda: studio.recolor("body", object_color="red"), InputError),
+        (lambda: studio.recolor("body", object_color="rde"), InputError),
         (lambda: studio.recolor("body", diffuse=1), UsageError),  # type: ignore[call-arg]
         (lambda: studio.recolor("boddy", blend=0.5), UsageError),
         (lambda: studio.light("key", intensity=-1), InputError),

@@ -16,6 +16,9 @@ from autocolor.errors import InputError
 from autocolor.files.modules import import_modules_of
 from autocolor.files.reading import read_head
 from autocolor.files.repair.polygons import MeshReport
+from autocolor.logs import logger_of, timed
+
+LOG: Final = logger_of(__name__)
 
 MeshReader = Callable[..., MeshReport]
 """A function that reads a mesh. Its positional arguments are the paths of the files, in the order of the
@@ -96,4 +99,9 @@ def read_mesh(files: Mapping[str, Path], *, up: str = "z", crease_angle: float |
             f"{path.name}: a mesh file must end in {' or '.join(mesh_suffixes())}, not in {path.suffix!r};"
             " export it as one of these"
         )
-    return found.read(*files.values(), up=up, crease_angle=crease_angle)
+    with timed(LOG, f"read {', '.join(path.name for path in files.values())}"):
+        report = found.read(*files.values(), up=up, crease_angle=crease_angle)
+    LOG.info("%r", report.mesh)
+    for repair in report.repairs:
+        LOG.info("%s", repair)
+    return report

@@ -15,10 +15,10 @@ import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, lengths
 from autocolor.errors import InputError
-from autocolor.files.repair.polygon_split import split_polygons
 from autocolor.files.repair.polygons import MeshReport, Polygons, upright
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.node_normals import CREASE_ANGLE
+from autocolor.scene.polygon_split import split_polygons
 
 AT_A_TIME: Final = 1 << 14
 """Polygons to check at once, so that the arrays fit in the processor cache."""

@@ -19,6 +19,7 @@ from functools import partial
 from typing import Any, ClassVar, Final, NamedTuple, TypeVar, get_type_hints
 
 from autocolor.checks import shown
+from autocolor.immutable import Immutable
 from autocolor.scene.columns.problems import REFUSED, Path, Problem, RowError
 
 
@@ -85,7 +86,7 @@ class Column:
     unit: str = ""
 
 
-class Row:
+class Row(Immutable):
     """A row of a table: a frozen dataclass whose fields are columns, checked at construction.
 
     `noun` is what messages call it, before its name if it has one. At most one of the fields in
@@ -101,6 +102,16 @@ class Row:
     def rules(self) -> Iterator[Problem]:
         """The rules between columns that the row breaks; invalid values are REFUSED."""
         return iter(())
+
+    def __repr__(self) -> str:
+        # What has its default goes without saying.
+        values = vars(self)
+        told = [
+            f"{name}={values[name]!r}"
+            for name, field in fields_of(type(self)).items()
+            if field.default is None or field.default() != values[name]
+        ]
+        return f"{type(self).__name__}({', '.join(told)})"
 
 
 SomeRow = TypeVar("SomeRow", bound=Row)

@@ -1,4 +1,4 @@
-"""The kinds of columns that hold one value: numbers, switches, strings, colors, vectors, choices, curves."""
+"""The kinds of columns that hold one value: numbers, switches, strings, vectors, choices, curves."""
 
 from __future__ import annotations
 
@@ -44,7 +44,8 @@ class Leaf(Kind):
             return REFUSED
 
 
-def _require(condition: bool) -> None:
+def require(condition: bool) -> None:
+    """Raise ValueError unless the condition holds."""
     if not condition:
         raise ValueError
 
@@ -102,9 +103,9 @@ class Whole(Leaf):
         return f"must be a whole number from {self.at_least} to {self.at_most}"
 
     def accepted(self, value: Any) -> int:
-        _require(isinstance(value, (int, np.integer)) and not isinstance(value, bool))
+        require(isinstance(value, (int, np.integer)) and not isinstance(value, bool))
         number = int(value)
-        _require(self.at_least <= number <= self.at_most)
+        require(self.at_least <= number <= self.at_most)
         return number
 
 
@@ -119,7 +120,7 @@ class Switch(Leaf):
         return "bool"
 
     def accepted(self, value: Any) -> bool:
-        _require(isinstance(value, (bool, np.bool_)))
+        require(isinstance(value, (bool, np.bool_)))
         return bool(value)
 
 
@@ -136,35 +137,9 @@ class Text(Leaf):
         return "str"
 
     def accepted(self, value: Any) -> str:
-        _require(isinstance(value, str) and (value != "" or self.may_be_empty))
+        require(isinstance(value, str) and (value != "" or self.may_be_empty))
         text: str = value
         return text
-
-
-@dataclass(frozen=True)
-class ColorKind(Leaf):
-    """A color: red, green and blue from 0 to 255, written as "#rrggbb"."""
-
-    def rule(self) -> str:
-        return 'must be "#rrggbb" or three whole numbers from 0 to 255'
-
-    def accepts(self) -> str:
-        return "str | Sequence[int]"
-
-    def accepted(self, value: Any) -> tuple[int, int, int]:
-        if isinstance(value, str):
-            _require(len(value) == 7 and value[0] == "#")
-            # fromhex skips spaces, but only six digits give three bytes.
-            red, green, blue = bytes.fromhex(value[1:])
-            return red, green, blue
-        _require(not isinstance(value, UNORDERED))
-        given = list(value)
-        parts = [int(part) for part in given if not isinstance(part, NO_NUMBERS)]
-        _require(parts == given and len(parts) == 3 and min(parts) >= 0 and max(parts) <= 255)
-        return parts[0], parts[1], parts[2]
-
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
-        return {name: "#{:02x}{:02x}{:02x}".format(*value)}
 
 
 @dataclass(frozen=True)
@@ -180,11 +155,11 @@ class VectorKind(Leaf):
         return "Sequence[float]"
 
     def accepted(self, value: Any) -> tuple[float, float, float]:
-        _require(not isinstance(value, UNORDERED))
+        require(not isinstance(value, UNORDERED))
         given = list(value)
-        _require(len(given) == 3 and not any(isinstance(component, NO_NUMBERS) for component in given))
+        require(len(given) == 3 and not any(isinstance(component, NO_NUMBERS) for component in given))
         x, y, z = (float(component) for component in given)
-        _require(all(abs(component) <= LARGEST_PLACE for component in (x, y, z)))
+        require(all(abs(component) <= LARGEST_PLACE for component in (x, y, z)))
         return x, y, z
 
     def held(self, value: object, path: Path, problems: list[Problem]) -> object:
@@ -208,7 +183,7 @@ class Choice(Leaf):
         return f"Literal[{', '.join(map(json.dumps, self.names))}]"
 
     def accepted(self, value: Any) -> str:
-        _require(isinstance(value, str) and value in self.names)
+        require(isinstance(value, str) and value in self.names)
         name: str = value
         return name
 
@@ -231,16 +206,16 @@ class CurveKind(Leaf):
 
     def accepted(self, value: Any) -> str | tuple[tuple[float, float], ...]:
         if isinstance(value, str):
-            _require(value in self.names)
+            require(value in self.names)
             return value
-        _require(not isinstance(value, UNORDERED))
+        require(not isinstance(value, UNORDERED))
         pairs = list(value)
-        _require(not any(isinstance(pair, UNORDERED) for pair in pairs))
+        require(not any(isinstance(pair, UNORDERED) for pair in pairs))
         along = Number(at_least=0, at_most=1).accepted
         points = tuple((along(x), along(y)) for x, y in pairs)
         xs, ys = [x for x, _ in points], [y for _, y in points]
-        _require(len(points) >= 2 and xs[0] == 0 and xs[-1] == 1 and all(a < b for a, b in pairwise(xs)))
-        _require(all(a <= b for a, b in pairwise(ys)))
+        require(len(points) >= 2 and xs[0] == 0 and xs[-1] == 1 and all(a < b for a, b in pairwise(xs)))
+        require(all(a <= b for a, b in pairwise(ys)))
         return points
 
     def advice(self, value: object) -> str:
@@ -260,7 +235,7 @@ class Instance(Leaf):
         return "object"
 
     def accepted(self, value: Any) -> object:
-        _require(isinstance(value, self.value_class))
+        require(isinstance(value, self.value_class))
         return value
 
     def written(self, name: str, value: Any) -> Mapping[str, object]:

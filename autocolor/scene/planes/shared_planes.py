@@ -23,6 +23,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot
+from autocolor.immutable import Immutable
 from autocolor.scene.fans import places_of_corners
 from autocolor.scene.planes.coordinate_rounding import coordinate_rounding
 from autocolor.scene.planes.plane_cells import (
@@ -51,8 +52,8 @@ MOST_PATCHES: Final = 64
 """Of how many patches in a plane each is compared with each; of more it is assumed that some overlap."""
 
 
-@dataclass(frozen=True, eq=False)
-class SharedPlanes:
+@dataclass(frozen=True, eq=False, repr=False)
+class SharedPlanes(Immutable):
     """Planes, each of several polygons.
 
     `normals` and `points` are (3, planes): a unit normal and a point of each. No corner is farther from its

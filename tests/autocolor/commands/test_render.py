@@ -64,6 +64,23 @@ def test_one_light_alone_is_the_scene_with_the_others_off(folder: Path, run: Run
     assert (folder / "all.png").read_bytes() == (folder / "both.png").read_bytes()
 
 
+def test_a_picture_has_the_size_that_is_asked_for(folder: Path, run: Run) -> None:
+    assert run("render", "scene", "--size", "90x60", "-o", "a.png", "--save", "a.npz").code == 0
+    assert pixels(folder / "a.png").shape == (60, 90, 3)
+    assert read_picture("a.npz").picture.intensity.shape == (60, 90)
+    assert run("render", "scene", "--size", "90x60", "--hold-exposure", "-o", "b.png").code == 0
+    assert (folder / "a.png").read_bytes() == (folder / "b.png").read_bytes()
+
+
+def test_a_size_that_is_none_is_wrong_usage(folder: Path, run: Run) -> None:
+    ran = run("render", "scene", "--size", "4097x10")
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.err.endswith(
+        "a size must be ELEMENTSxLINES, each from 1 to 4096, not '4097x10'; write it as in 1280x960\n"
+    )
+    assert not (folder / "scene.png").exists()
+
+
 def test_an_unknown_light_is_told_the_nearest_right_name(folder: Path, run: Run) -> None:
     expected = "autocolor: there is no light 'kye'; did you mean 'key'?\n"
     assert run("render", "scene", "--light", "kye") == (2, "", expected)

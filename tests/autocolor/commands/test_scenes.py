@@ -6,7 +6,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from autocolor.commands.scenes import ended, read, scene_options
+from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.scenes.scene_report import SceneReport
 from tests.autocolor.commands.conftest import Run
@@ -15,9 +15,9 @@ from tests.autocolor.meshes import wall_scene
 
 @click.command
 @scene_options
-def echo(scene: str, up: str, surfaces: str, strict: bool) -> None:
+def echo(source: SceneSource) -> None:
     """Say what the options of a command are."""
-    click.echo(f"{scene} {up} {surfaces} {strict}")
+    click.echo(" ".join(map(str, source)))
 
 
 def said(*arguments: str) -> str:
@@ -41,13 +41,13 @@ def test_other_arguments_are_wrong_usage(arguments: tuple[str, ...]) -> None:
 def test_a_scene_is_read_without_a_word_where_nothing_is_repaired(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert read("scene", "z", "materials").scene.name == "scene"
+    assert read(SceneSource("scene")).scene.name == "scene"
     assert tuple(capsys.readouterr()) == ("", "")
 
 
 def test_each_repair_is_a_line_on_stderr(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\nl 1 2\n")
-    report = read("two.obj", "z", "materials")
+    report = read(SceneSource("two.obj"))
     out, err = capsys.readouterr()
     assert out == ""
     assert err.splitlines() == [f"autocolor: {repair}" for repair in report.repairs]
@@ -55,7 +55,7 @@ def test_each_repair_is_a_line_on_stderr(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_the_up_axis_is_that_of_the_mesh_file(folder: Path) -> None:
-    above = read("two.obj", "y", "materials").scene.mesh.coordinates
+    above = read(SceneSource("two.obj", "y")).scene.mesh.coordinates
     assert above[2].tolist() == [1, -1, 0]
 
 
@@ -64,9 +64,9 @@ def test_what_cannot_be_read_is_refused_and_not_told(
 ) -> None:
     (folder / "bad.obj").write_text("v 0\n")
     with pytest.raises(InputError):
-        read("bad.obj", "z", "materials")
+        read(SceneSource("bad.obj"))
     with pytest.raises(MissingInputError):
-        read("none.obj", "z", "materials")
+        read(SceneSource("none.obj"))
     assert tuple(capsys.readouterr()) == ("", "")
 
 
@@ -75,7 +75,7 @@ def test_what_cannot_be_read_is_refused_and_not_told(
     [((), False, 0), ((), True, 0), (("a repair",), False, 0), (("a repair",), True, 1)],
 )
 def test_only_strict_makes_a_repair_an_exit_code(repairs: tuple[str, ...], strict: bool, code: int) -> None:
-    assert ended(SceneReport(wall_scene(), repairs), strict) == code
+    assert ended(SceneReport(wall_scene(), repairs), SceneSource("wall", strict=strict)) == code
 
 
 @pytest.mark.parametrize("command", ["render", "view", "info", "validate", "show", "tables"])

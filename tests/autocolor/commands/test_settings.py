@@ -1,13 +1,13 @@
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
-import click
 import pytest
 
-from autocolor import Scene, read_scene
+from autocolor import Flaps, Scene, Surface, read_scene
 from autocolor.commands.settings import created_again, value_of, with_settings
-from autocolor.errors import InputError, UsageError
+from autocolor.errors import UsageError
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.defaults import default_lights, framed
 from tests.autocolor.commands.conftest import Run
@@ -152,23 +152,24 @@ def test_a_key_that_names_nothing_is_refused(scene: Scene, setting: str, sentenc
         ("mapping=gama", "not 'gama'; did you mean 'gamma'?"),
         ("ambient=-1", "ambient must be a finite number of at least 0, not -1"),
         ("ambient=nan", "ambient must be a finite number of at least 0, not nan"),
-        ("background=red", 'background must be "#rrggbb"'),
+        ("background=rde", "not 'rde'; did you mean 'red'?"),
         ("lights.key.on=1", "light 'key': on must be true or false, not 1"),
         ("parts.side.surface=sid", "surface 'sid' is not in the surface table; did you mean 'side'?"),
     ],
 )
 def test_a_value_that_breaks_a_rule_is_refused(scene: Scene, setting: str, sentence: str) -> None:
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(UsageError) as caught:
         with_settings(scene, (setting,))
+    assert str(caught.value).startswith("--set: ")
     assert sentence in str(caught.value)
 
 
 def test_a_setting_without_an_equals_sign_is_wrong_usage(scene: Scene) -> None:
-    with pytest.raises(click.UsageError, match="--set must be KEY=VALUE, not 'ambient'"):
+    with pytest.raises(UsageError, match="--set must be KEY=VALUE, not 'ambient'"):
         with_settings(scene, ("ambient",))
 
 
-@pytest.mark.parametrize(("setting", "code"), [("ambiet=1", 2), ("ambient", 2), ("ambient=x", 65)])
+@pytest.mark.parametrize(("setting", "code"), [("ambiet=1", 2), ("ambient", 2), ("ambient=x", 2)])
 def test_a_wrong_setting_ends_before_anything_is_written(
     folder: Path, run: Run, setting: str, code: int
 ) -> None:
@@ -176,6 +177,68 @@ def test_a_wrong_setting_ends_before_anything_is_written(
     assert ran.code == code
     assert len([line for line in ran.err.splitlines() if "set" in line or "ambient" in line]) >= 1
     assert not (folder / "two.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("settings", "field", "held"),
+    [
+        (("lights.key.cone_angle=30", "lights.key.cone_angle=none"), "cone_angle", None),
+        (("lights.key.aim=none", "lights.key.direction=[0, 1, 0]"), "aim", None),
+        (("lights.key.aim = none ",), "aim", None),
+    ],
+)
+def test_none_unsets_a_field_of_a_light_that_may_be_absent(
+    scene: Scene, settings: tuple[str, ...], field: str, held: object
+) -> None:
+    changed = with_settings(scene.with_light("key", cone_angle=20), ("lights.key.cone_angle=none", *settings))
+    assert getattr(changed.light("key"), field) is held
+
+
+def test_none_unsets_the_target_of_a_view_the_levels_of_a_surface_and_flaps(scene: Scene) -> None:
+    scene = scene.with_view(target=(0, 0, 0)).with_surface("side", levels=20)
+    settings = ("view.target=none", "view.direction=[0, 1, 0]", "surfaces.side.levels=none")
+    changed = with_settings(scene, settings)
+    assert (changed.view.target, changed.view.direction) == (None, (0, 1, 0))
+    assert changed.surface("side").levels is None
+    flaps = with_settings(scene, ("lights.key.flaps.z.maximum=none",)).light("key").flaps
+    assert flaps.z is not None
+    assert (flaps.z.minimum, flaps.z.maximum) == (0, math.inf)
+    assert with_settings(scene, ("lights.key.flaps.z=none",)).light("key").flaps.z is None
+    assert with_settings(scene, ("lights.key.flaps=none",)).light("key").flaps == Flaps()
+
+
+def test_what_is_named_none_stays_a_name(scene: Scene) -> None:
+    scene = scene.replace(surfaces=(*scene.surfaces, Surface("none")))
+    assert with_settings(scene, ("parts.side.surface=none",)).part("side").surface == "none"
+    changed = with_settings(scene, ("surfaces.none.levels=9", "surfaces.none.levels=none"))
+    assert changed.surface("none").levels is None
+
+
+@pytest.mark.parametrize(
+    ("setting", "sentence"),
+    [
+        (
+            "ambient=none",
+            "--set ambient: it must be a finite number of at least 0, not none; only a field that may be"
+            " absent can be unset",
+        ),
+        (
+            "dither=none",
+            "--set dither: it must be 'off' or 'ordered', not none; only a field that may be absent can"
+            " be unset",
+        ),
+        ("view.target=none", "--set: view: it must have either a direction or a target; give one of them"),
+        ("lights.key.concentration=none", "--set lights.key.concentration: it must be a finite number"),
+        ("surfaces.side.exponent=none", "--set surfaces.side.exponent: it must be a finite number"),
+        ("view.angel=none", "--set: view: there is no 'angel'; did you mean 'angle'?"),
+        ('lights.key.cone_angle="none"', "cone_angle must be a number above 0 and at most 180, not 'none'"),
+    ],
+)
+def test_a_field_that_must_have_a_value_cannot_be_unset(scene: Scene, setting: str, sentence: str) -> None:
+    scene = scene.with_view(target=(0, 0, 0))
+    with pytest.raises(UsageError) as caught:
+        with_settings(scene, (setting,))
+    assert sentence in str(caught.value)
 
 
 def test_a_setting_colors_the_picture(folder: Path, run: Run) -> None:

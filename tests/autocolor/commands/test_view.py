@@ -47,6 +47,17 @@ def test_options_of_the_window_reach_it(folder: Path, run: Run, monitors: list[A
     assert monitors[1].fit
 
 
+def test_what_is_set_is_shown(folder: Path, run: Run, monitors: list[Any]) -> None:
+    assert run("view", "scene", "--set", "background=#102030", "--set", "parts.side.stage=true").code == 0
+    entries = monitors[1].display.entries
+    assert entries[0].tolist() == [16, 32, 48]
+    ran = run("view", "scene", "--set", "backgruond=red")
+    assert (ran.code, ran.err) == (
+        2,
+        "autocolor: --set backgruond: there is no field of this name; did you mean 'background'?\n",
+    )
+
+
 def test_repairs_count_under_strict(folder: Path, run: Run, monitors: list[Any]) -> None:
     (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\n")
     assert run("view", "two.obj").code == 0

@@ -171,3 +171,9 @@ def test_joining_meshes_of_many_parts_takes_no_time_in_proportion_to_their_squar
     joined = Mesh.joined(parts)
     assert joined.part_numbers.tolist() == list(range(count))
     assert Name.comparisons < 20 * count
+
+
+def test_a_mesh_without_part_numbers_is_one_part() -> None:
+    mesh = Mesh(np.eye(3), [[0, 1, 2], [2, 1, 0]])  # type: ignore[arg-type]
+    assert (mesh.part_names, mesh.part_numbers.tolist()) == (("mesh",), [0, 0])
+    assert mesh_of(part_numbers=None, part_names=("hood",)).part_names == ("hood",)

@@ -77,8 +77,9 @@ def test_an_unknown_name_is_refused_with_the_nearest_right_one(ask: Any, sentenc
             " to x = 1, not 'log'; did you mean 'logarithm'?",
         ),
         (
-            {"background": "black"},
-            "background must be \"#rrggbb\" or three whole numbers from 0 to 255, not 'black'",
+            {"background": "blak"},
+            'background must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255, not'
+            " 'blak'; did you mean 'black'?",
         ),
         (
             {"lights": [Light("a", (0, 0, 0))] * 2},

@@ -57,10 +57,11 @@ def test_a_refused_field_is_told_with_the_surface() -> None:
 
 def test_every_problem_of_a_change_is_told_and_in_its_order() -> None:
     with pytest.raises(InputError) as refusal:
-        Surface("body").replace(blend=2, object_color="red")
+        Surface("body").replace(blend=2, object_color="rde")
     assert refusal.value.problems == (
         "surface 'body': blend must be a number from 0 to 1, not 2",
-        "surface 'body': object_color must be \"#rrggbb\" or three whole numbers from 0 to 255, not 'red'",
+        'surface \'body\': object_color must be "#rrggbb", a name such as "red", or three whole numbers from'
+        " 0 to 255, not 'rde'; did you mean 'red'?",
     )
 
 

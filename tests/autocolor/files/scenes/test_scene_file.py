@@ -209,7 +209,8 @@ concentration = -1
         " x = 0 to x = 1, not 'linea'; did you mean 'linear'?",
         f"{place} 4, there is no 'colour'; known are 'mesh', 'parts', 'surfaces', 'lights', 'view',"
         " 'ambient', 'scaling', 'mapping', 'contrast', 'exposure', 'dither', 'division', 'background'",
-        f"{place} 5, background must be \"#rrggbb\" or three whole numbers from 0 to 255, not '#12'",
+        f'{place} 5, background must be "#rrggbb", a name such as "red", or three whole numbers from 0 to'
+        " 255, not '#12'; write three or six hexadecimal digits after the #",
         f"{place} 7, [view]: eye must be three finite numbers of at most 1e36, not [0, 0]",
         f"{place} 8, [view]: direction must not be zero, not [0.0, 0, 0]; give it a length",
         f"{place} 9, [view]: there is no 'angl'; did you mean 'angle'?",
@@ -270,7 +271,7 @@ def test_rules_between_keys_are_checked(folder: Path) -> None:
     [
         ("ambient", '"0.1"'), ("ambient", "true"), ("ambient", "[1]"), ("ambient", "inf"), ("ambient", "nan"),
         ("ambient", "1979-05-27"), ("scaling", "1"), ("mapping", "1"), ("mapping", "[[0, 0]]"),
-        ("mapping", '"Linear"'), ("background", "1"), ("background", '"red"'), ("view", "1"), ("view", "[]"),
+        ("mapping", '"Linear"'), ("background", "1"), ("background", '"#f0"'), ("view", "1"), ("view", "[]"),
         ("lights", "{}"), ("lights", "[1]"), ("lights", '"key"'), ("parts", "[]"), ("parts", "{hood = 1}"),
         ("surfaces", "1"), ("surfaces", "{hood = {levels = 2.0}}"), ("surfaces", "{hood = {two_sided = 1}}"),
         ("contrast", "'stretched'"), ("view", "{eye = [1, 2, 3]}"), ("surfaces", "{hood = {levels = true}}"),

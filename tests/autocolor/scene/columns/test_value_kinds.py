@@ -13,7 +13,6 @@ from autocolor.scene.columns.problems import REFUSED, Problem
 from autocolor.scene.columns.reference_kinds import PointOrName, Reference, References
 from autocolor.scene.columns.value_kinds import (
     Choice,
-    ColorKind,
     CurveKind,
     Instance,
     Number,
@@ -128,26 +127,6 @@ def test_a_value_is_held_in_one_type_whatever_it_came_in(kind: Kind, value: obje
 )  # fmt: skip
 def test_what_is_no_vector_is_refused(value: object) -> None:
     assert refusal(VectorKind(), value) == f"it must be three finite numbers of at most 1e36, not {value!r}"
-
-
-@pytest.mark.parametrize(
-    "value", ["#0a10ff", "#0A10FF", (10, 16, 255), [10.0, 16.0, 255.0], np.array([10, 16, 255])]
-)
-def test_a_color_is_a_text_or_three_whole_numbers(value: object) -> None:
-    assert accepted(ColorKind(), value) == (10, 16, 255)
-
-
-@pytest.mark.parametrize(
-    "value",
-    [
-        "red", "#fff", "0a10ff", "#0a10ff\n", "#0a 10f", "#0a10 f", "#0a10fg", "#\uff10a10ff", "", b"#0a10ff",
-        (1, 2), (1, 2, 256), (-1, 2, 3), (0.5, 1, 2), (True, False, True), 7, None, {1, 2, 3},
-        {1: 0, 2: 0, 3: 0},
-    ],
-)  # fmt: skip
-def test_what_is_no_color_is_refused(value: object) -> None:
-    rule = 'it must be "#rrggbb" or three whole numbers from 0 to 255'
-    assert refusal(ColorKind(), value) == f"{rule}, not {value!r}"
 
 
 @pytest.mark.parametrize(

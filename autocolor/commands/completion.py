@@ -1,0 +1,161 @@
+"""What a shell may complete: scene and picture files, and the names and keys of the scene on the line.
+
+A shell asks at each press of the key, so this reads small scenes alone, and never says anything: what cannot
+be read completes to nothing.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Sequence
+from functools import wraps
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import click
+
+if TYPE_CHECKING:
+    from autocolor.scene.scene import Scene
+
+LARGEST_SCENE: Final = 16 << 20
+"""Assumed: bytes of the files of a scene that is read for completion; measured: less than a second."""
+
+SUFFIXES: Final = (".npz", ".obj", ".toml")
+"""The endings of files that are scenes. Measured: to ask the formats for them takes four times as long."""
+
+IN_FOLDERS: Final = (("scene.toml",), ("nodes.csv", "polygons.csv"))
+"""The files of folders that are scenes."""
+
+MOST_ENTRIES: Final = 10_000
+"""Assumed: entries of a folder that are looked at."""
+
+Complete = Callable[[click.Context, click.Parameter, str], list[str]]
+"""A function that completes the value of a parameter, as click calls it."""
+
+
+def _silent(complete: Complete) -> Complete:
+    """The function, completing nothing where it fails, and quoting what bash would take apart."""
+
+    @wraps(complete)
+    def completed(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+        try:
+            found = complete(context, parameter, incomplete)
+        except Exception:
+            # Whatever is wrong with a scene, the command itself will say it; here it would spoil the line.
+            return []
+        # Zsh and fish quote what they insert.
+        is_bash = os.environ.get("_AUTOCOLOR_COMPLETE") == "bash_complete"
+        return [re.sub(r"([^\w@%+=:,./-])", r"\\\1", each) for each in found] if is_bash else found
+
+    return completed
+
+
+@_silent
+def complete_scenes(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Folders with a scene, scene files, mesh files and picture files."""
+    return narrowed(incomplete, _folder_of(incomplete), lambda start: _entries(start, SUFFIXES))
+
+
+@_silent
+def complete_pictures(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Picture files."""
+    return narrowed(incomplete, _folder_of(incomplete), lambda start: _entries(start, (".npz",)))
+
+
+@_silent
+def complete_lights(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+    """The names of the lights of the scene on the line."""
+    return [light.name for light in _scene(context).lights if light.name.startswith(incomplete)]
+
+
+@_silent
+def complete_surfaces(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+    """The names of the surfaces of the scene or picture on the line."""
+    return [surface.name for surface in _scene(context).surfaces if surface.name.startswith(incomplete)]
+
+
+@_silent
+def complete_settings(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+    """The keys of `--set` for the scene on the line, and the values of a whole key."""
+    from autocolor.commands.setting_keys import keys_after
+
+    scene = _scene(context)
+
+    def after(start: str) -> list[str]:
+        return keys_after(scene, start)
+
+    return narrowed(incomplete, _start_of_key(incomplete, after), after)
+
+
+@_silent
+def complete_colors(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+    """The names of colors."""
+    from autocolor.scene.columns.color_kinds import color_names
+
+    return [name for name in color_names() if name.startswith(incomplete.lower())]
+
+
+def narrowed(incomplete: str, start: str, after: Callable[[str], Sequence[str]]) -> list[str]:
+    """The candidates after a start that begin with the incomplete word.
+
+    `after` has the candidates that follow a start; those that end in "/", "." or "=" are starts themselves.
+    Where only one such candidate is left, those after it take its place, because a shell puts a space after
+    the only one.
+
+    >>> narrowed("a", "", lambda start: ["a.", "b="] if start == "" else ["a.x=", "a.y="])
+    ['a.x=', 'a.y=']
+    """
+    found = [each for each in after(start) if each.startswith(incomplete)]
+    while len(found) == 1 and found[0][-1] in "/.=" and (inside := after(found[0])):
+        if found[0].endswith("="):
+            return [*found, *inside]
+        found = list(inside)
+    return found
+
+
+def _start_of_key(incomplete: str, after: Callable[[str], Sequence[str]]) -> str:
+    """The longest start of a key that an incomplete key begins with. Names in it may contain periods."""
+    start, longer = "", [""]
+    while longer:
+        start = max(longer, key=len)
+        longer = [each for each in after(start) if each[-1] in ".=" and incomplete.startswith(each)]
+    return start
+
+
+def _folder_of(incomplete: str) -> str:
+    """The folder in an incomplete path, with its slash; "" for the current one."""
+    return incomplete[: incomplete.rfind("/") + 1]
+
+
+def _entries(start: str, suffixes: tuple[str, ...]) -> list[str]:
+    """The files with one of the suffixes in a folder, and its folders: scenes, and others that end in "/"."""
+    found = []
+    with os.scandir(start or ".") as entries:
+        for entry in islice(entries, MOST_ENTRIES):
+            if entry.name.startswith("."):
+                continue
+            if entry.is_dir():
+                is_scene = ".toml" in suffixes and any(
+                    all(os.path.exists(os.path.join(entry.path, name)) for name in names)
+                    for names in IN_FOLDERS
+                )
+                found.append(f"{start}{entry.name}{'' if is_scene else '/'}")
+            elif entry.name.lower().endswith(suffixes):
+                found.append(f"{start}{entry.name}")
+    return sorted(found)
+
+
+def _scene(context: click.Context) -> Scene:
+    """The scene that the line names. Raises ValueError if it names none, or one of large files."""
+    from autocolor.files.scene_sources import read_scene_with_report
+
+    given = context.params
+    # Before the value of an option is there, click has not told the arguments apart.
+    path = Path(given.get("scene") or given.get("picture") or context.args[0])
+    files = [each for each in path.iterdir() if each.is_file()] if path.is_dir() else [path]
+    if sum(each.stat().st_size for each in files) > LARGEST_SCENE:
+        raise ValueError
+    options = {name: given[name] for name in ("up", "surfaces") if given.get(name)}
+    return read_scene_with_report(path, **options).scene

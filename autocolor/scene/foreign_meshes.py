@@ -1,0 +1,152 @@
+"""Meshes of other programs: nodes and polygons in arrays, and the meshes of trimesh, PyVista and meshio.
+
+None of these is imported: a mesh is recognized by what it has. Only its nodes and polygons are taken, no
+colors, normals or groups. A polygon of more than four sides is split, as those of files are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import chain
+from typing import Any, Final
+
+import numpy as np
+
+from autocolor.arrays import AnyArray, Indices
+from autocolor.checks import shown
+from autocolor.errors import InputError, UsageError
+from autocolor.logs import logger_of
+from autocolor.scene.polygon_split import MOST_CORNERS, split_polygons
+
+LOG: Final = logger_of(__name__)
+
+FLAT_CELLS: Final = ("triangle", "quad", "polygon")
+"""The cells of meshio that are polygons; some files number the last by its sides, as in polygon5."""
+
+
+def foreign_tables(source: object, polygons: object = None) -> tuple[object, object]:
+    """The node table and the polygon table of a mesh of another program, for the checks of `Mesh`.
+
+    `source` are nodes, (nodes, 3), if `polygons` are given: (polygons, 3), (polygons, 4), or a list of lists
+    of any lengths. Otherwise it has `vertices` and `faces`, as those of trimesh; `points` and `faces`, as
+    PyVista's PolyData; or `points` and `cells`, as those of meshio. Raises InputError, and UsageError for
+    anything else.
+    """
+    nodes = source
+    if polygons is None:
+        nodes, polygons = _nodes_and_polygons(source)
+    try:
+        table = np.asarray(polygons)
+    except ValueError:
+        # Its rows differ in length.
+        table = np.empty(0)
+    if table.ndim == 2 and len(table) and table.shape[1] in (3, 4):
+        return nodes, table
+    rows = [_row(number, row) for number, row in enumerate(_iterated(polygons))]
+    if not rows:
+        raise InputError("a mesh must have polygons, not nodes alone; add some")
+    counts = np.array([len(row) for row in rows], np.intp)
+    return nodes, _split(nodes, np.concatenate(rows).astype(np.intp), counts)
+
+
+def _nodes_and_polygons(source: Any) -> tuple[object, object]:
+    """The nodes of a mesh object, and its polygons: an array of equal rows, or rows of any lengths."""
+    points, faces = getattr(source, "points", None), getattr(source, "faces", None)
+    cells = getattr(source, "cells", None)
+    if points is not None and isinstance(cells, (list, tuple)):
+        return points, _polygons_of_cells(cells)
+    if points is not None and faces is not None:
+        return points, _polygons_of_counted(np.asarray(faces))
+    if getattr(source, "vertices", None) is not None and faces is not None:
+        return source.vertices, faces
+    raise UsageError(
+        "a mesh must be a Mesh, nodes and polygons, or a surface of trimesh, PyVista or meshio, not"
+        f" {type(source).__name__}; take its surface, or give its nodes and its polygons as two arguments"
+    )
+
+
+def _polygons_of_counted(faces: AnyArray) -> object:
+    """The polygons of PyVista's faces: each is a count, and then as many node numbers.
+
+    Raises InputError where the counts do not lead to the end.
+    """
+    if faces.ndim == 2:
+        return faces
+    if faces.ndim != 1 or (faces.size and faces.dtype.kind not in "iu"):
+        raise InputError("faces must be whole numbers in one row, each polygon after its count; give them so")
+    if not faces.size:
+        return []
+    width = int(faces[0]) + 1
+    if width > 1 and faces.size % width == 0 and (faces[::width] == width - 1).all():
+        return faces.reshape(-1, width)[:, 1:]
+    rows: list[list[int]] = []
+    numbers, at = faces.tolist(), 0
+    while at < len(numbers):
+        end = at + 1 + numbers[at]
+        if numbers[at] < 0 or end > len(numbers):
+            raise InputError(
+                f"faces must have as many numbers after each count, not {len(numbers) - at - 1} after"
+                f" {numbers[at]} (polygon {len(rows)}); correct them"
+            )
+        rows.append(numbers[at + 1 : end])
+        at = end
+    return rows
+
+
+def _polygons_of_cells(cells: Iterable[Any]) -> object:
+    """The polygons among the cells of meshio; all others are left out. Raises InputError if there is none."""
+    flat: list[Any] = []
+    others: list[Any] = []
+    for block in cells:
+        kind = str(block.type)
+        is_flat = kind in FLAT_CELLS or kind.removeprefix("polygon").isdigit()
+        (flat if is_flat else others).append(block)
+    left_out = ", ".join(f"{len(block.data):,} of type {block.type!r}" for block in others)
+    if not flat:
+        kinds = f"cells alone: {left_out}" if others else "none"
+        raise InputError(f"a mesh must have triangles or quads, not {kinds}; take its surface")
+    if others:
+        LOG.info("cells left out: %s", left_out)
+    if len(flat) == 1:
+        return flat[0].data
+    return list(chain.from_iterable(block.data for block in flat))
+
+
+def _iterated(polygons: object) -> Iterator[object]:
+    if isinstance(polygons, (str, bytes)) or not isinstance(polygons, Iterable):
+        raise InputError(
+            f"polygons must be a table of node numbers, not {shown(polygons)}; give rows of them"
+        )
+    return iter(polygons)
+
+
+def _row(number: int, row: object) -> AnyArray:
+    """The node numbers of one polygon. Raises InputError."""
+    try:
+        corners = np.asarray(row)
+    except ValueError:
+        corners = np.empty(0)
+    if corners.ndim != 1 or corners.dtype.kind not in "iu" or not 3 <= len(corners) <= MOST_CORNERS:
+        raise InputError(
+            f"a polygon must have 3 to {MOST_CORNERS:,} node numbers, not {shown(row)} (row {number});"
+            " correct it"
+        )
+    return corners
+
+
+def _split(nodes: object, corners: Indices, counts: Indices) -> Indices:
+    """The polygon table, (polygons, 4), of polygons with any number of corners. Raises InputError."""
+    coordinates = np.asarray(nodes)
+    if coordinates.ndim != 2 or coordinates.shape[1] != 3 or coordinates.dtype.kind not in "iuf":
+        raise InputError(f"nodes must be numbers of shape (nodes, 3), not {coordinates.shape}; give them so")
+    outside = np.flatnonzero((corners < 0) | (corners >= len(coordinates)))
+    if len(outside):
+        row = int(np.searchsorted(np.cumsum(counts), outside[0], side="right"))
+        raise InputError(
+            f"a node number must be a row of the nodes (0 to {len(coordinates) - 1}), not"
+            f" {corners[outside[0]]} (row {row}); correct it"
+        )
+    table, _ = split_polygons(coordinates.astype(np.float64), corners, counts)
+    if split := int((counts > 4).sum()):
+        LOG.info("polygons with more than four corners that were split: %d", split)
+    return table

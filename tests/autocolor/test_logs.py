@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+import logging
+import re
+import subprocess
+import sys
+
+import pytest
+
+from autocolor import render, scene_of
+from autocolor.logs import logger_of, timed
+from tests.autocolor.meshes import cube
+
+
+def test_a_stage_is_told_with_its_time_to_those_who_listen(caplog: pytest.LogCaptureFixture) -> None:
+    logger = logger_of("autocolor.somewhere")
+    with caplog.at_level(logging.WARNING, "autocolor"), timed(logger, "nothing"):
+        pass
+    assert caplog.messages == []
+    with caplog.at_level(logging.INFO, "autocolor"), timed(logger, "something"):
+        pass
+    (message,) = caplog.messages
+    assert re.fullmatch(r"something: \d+\.\d ms", message)
+
+
+def test_what_is_created_and_each_stage_of_a_rendering_are_told(caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level(logging.INFO, "autocolor"):
+        render(scene_of(cube()), 20, 30)
+    told = [re.sub(r"\(.*\)|[\d.]+ ms", "...", message) for message in caplog.messages]
+    assert told == [
+        "created a view from ...",
+        "created 4 lights: key, fill, top, rim",
+        "created surfaces: surface",
+        "node normals: ...",
+        "visible surfaces, 30 x 20: ...",
+        "illumination: ...",
+    ]
+    assert {record.name.split(".")[0] for record in caplog.records} == {"autocolor"}
+
+
+def test_the_library_says_nothing_unless_asked() -> None:
+    code = (
+        "import logging, autocolor; autocolor.render(autocolor.read_scene('scenes/pyramid'), 20, 30);"
+        "print(logging.getLogger('autocolor').handlers)"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    assert (ran.stdout, ran.stderr) == ("[<NullHandler (NOTSET)>]\n", "")

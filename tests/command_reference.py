@@ -1,0 +1,252 @@
+"""The reference of what commands answer: their exit codes and messages, and what a shell completes.
+
+Each command of the document is run, in a folder of its own. `python -m tests.command_reference >
+docs/COMMANDS.md` writes it.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[1]
+
+HEAD = """# The commands
+
+`autocolor --help` and `ramtek --help` list the commands; `--help` of each has examples. What is here was
+answered by the commands themselves: `python -m tests.command_reference > docs/COMMANDS.md` runs every line
+and writes the page.
+
+Results go to stdout, messages to stderr. `-v` says what `autocolor` reads, creates and computes, and how long
+that takes; `-vv` says more. `--debug` shows the traceback of an error.
+
+## Exit codes
+
+A message says what must hold, what was found, and what to do. It is the last line on stderr that is shown.
+
+| code | means | for example | says |
+|---|---|---|---|
+"""
+
+MEANINGS = {
+    0: "done",
+    1: "done, but with `--strict` something was repaired or left out",
+    2: "the command line is wrong",
+    65: "the input is wrong",
+    66: "the input is not there",
+    69: "no screen, no display at the address, or a package is missing",
+    70: "a fault of ours; the message says how to report it",
+    71: "not enough memory",
+    73: "the output exists, or cannot be made where it is",
+    74: "writing failed",
+    130: "interrupted with Ctrl+C",
+    141: "the reader of stdout left, as `head` does; nothing is said",
+}
+
+COMMANDS = (
+    (0, "autocolor validate car"),
+    (0, "ramtek play lines.ramtek -o lines.png"),
+    (1, "autocolor validate torn.obj --strict"),
+    (2, "autocolor rendr car"),
+    (2, "autocolor render car --size 1280"),
+    (2, "autocolor render car --set ambient=abc"),
+    (2, "autocolor render car --set lights.kye.on=false"),
+    (2, "autocolor render car --set ambient=none"),
+    (2, "autocolor render car --light kye"),
+    (2, "autocolor recolor car.npz body --object rde"),
+    (2, "autocolor recolor car.npz bodi --object red"),
+    (2, "autocolor show car --to 127.0.0.1:9300"),
+    (2, "ramtek play lines.ramtek --configuration gmr"),
+    (65, "autocolor render broken.obj"),
+    (65, "ramtek assemble wrong.txt -o wrong.ramtek"),
+    (66, "autocolor render nothing.obj"),
+    (66, "ramtek play nothing.ramtek"),
+    (69, "autocolor view car"),
+    (69, "autocolor show car --to tcp://127.0.0.1:1"),
+    (69, "ramtek"),
+    (73, "autocolor render car -o here.png"),
+    (73, "ramtek -o here.png"),
+    (74, "autocolor info car > /dev/full"),
+    (74, "ramtek list lines.ramtek > /dev/full"),
+    (130, "ramtek play - -o new.png --record new.ramtek"),
+)
+"""The exit code of each command, and its line. Ctrl+C is pressed in the last one."""
+
+COMPLETION = """
+## What a shell completes
+
+Completion is that of click; a line in the start file of the shell turns it on, for each command that is
+installed:
+
+| shell | file | line |
+|---|---|---|
+| bash | `~/.bashrc` | `eval "$(_AUTOCOLOR_COMPLETE=bash_source autocolor)"` |
+| zsh | `~/.zshrc` | `eval "$(_AUTOCOLOR_COMPLETE=zsh_source autocolor)"` |
+| fish | `~/.config/fish/config.fish` | `_AUTOCOLOR_COMPLETE=fish_source autocolor \\| source` |
+
+For `ramtek` it is `_RAMTEK_COMPLETE`, and `ramtek` at the end. Names and keys are those of the scene or the
+picture that stands on the line before them. A scene that is large or broken completes to nothing.
+
+| typed, and Tab | candidates |
+|---|---|
+"""
+
+LEFT = " | true"
+"""The end of a line of whose output nothing is read."""
+
+LINES = (
+    "autocolor re",
+    "autocolor render ",
+    "autocolor render car/",
+    "autocolor render car --light ",
+    "autocolor render car --set ",
+    "autocolor render car --set lights.",
+    "autocolor render car --set lights.key.",
+    "autocolor render car --set surfaces.body.two",
+    "autocolor view car --set dith",
+    "autocolor recolor ",
+    "autocolor recolor car.npz ",
+    "autocolor recolor car.npz body --object dark",
+    "autocolor render broken.obj --set ",
+    "ramtek pl",
+)
+
+FILES = {
+    "car/car.obj": "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 1 0\nv 0 1 1\ng hood\nf 1 2 3 4\n"
+    "g floor\nf 1 2 5\n",
+    "car/scene.toml": '[[mesh]]\nfile = "car.obj"\n\n[parts.hood]\nsurface = "body"\n\n[surfaces.body]\n'
+    '\n[surfaces.floor]\n\n[[lights]]\nname = "key"\nposition = [2, -3, 4]\naim = [0, 0, 0]\n'
+    '\n[[lights]]\nname = "rim"\nposition = [-2, 3, 4]\n',
+    "torn.obj": "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\nf 1 1 2\n",
+    "broken.obj": "v 0 0\n",
+    "here.png": "",
+    "lines.txt": "WVL FORE=255 STRT=10,10\n",
+    "wrong.txt": "WVL FORE=white\n",
+}
+MADE = (
+    "autocolor render car --save car.npz --size 64x48",
+    "ramtek assemble lines.txt -o lines.ramtek",
+)
+
+
+class Ran(NamedTuple):
+    """How a command ended, and what it said last."""
+
+    code: int
+    said: str
+
+
+@contextmanager
+def folder() -> Iterator[Path]:
+    """A folder with the files that the commands of the document name."""
+    with TemporaryDirectory() as name:
+        for path, text in FILES.items():
+            (Path(name) / path).parent.mkdir(exist_ok=True)
+            (Path(name) / path).write_text(text, encoding="utf-8")
+        for line in MADE:
+            assert ran(line, Path(name)).code == 0, line
+        yield Path(name)
+
+
+def process(line: str, place: Path, **given: str) -> subprocess.Popen[str]:
+    """The process of a line, in a folder and without a screen."""
+    hidden = ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER", "PYTHONWARNINGS")
+    environment = {key: value for key, value in os.environ.items() if key not in hidden}
+    environment |= {"PYTHONPATH": str(ROOT), "COLUMNS": "1000", "LC_ALL": "C.UTF-8", **given}
+    words, _, target = line.removesuffix(LEFT).partition(" > ")
+    program, *arguments = shlex.split(words)
+    module = {"autocolor": "autocolor", "ramtek": "ramtek_emu"}[program]
+    with open(target or os.devnull, "wb") as file:
+        started = subprocess.Popen(
+            [sys.executable, "-m", module, *arguments],
+            cwd=place,
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=file if target else subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            encoding="utf-8",
+        )
+    if line.endswith(LEFT):
+        # It has not begun to write: it takes longer than this to start.
+        assert started.stdout is not None
+        started.stdout.close()
+        started.stdout = None
+    return started
+
+
+def ran(line: str, place: Path) -> Ran:
+    """How a line ended. One that reads stdin is interrupted once it has begun to record."""
+    with process(line, place) as started:
+        return _ended(line, place, started)
+
+
+def _ended(line: str, place: Path, started: subprocess.Popen[str]) -> Ran:
+    if " - " in line:
+        # Its file appears when everything is loaded and it waits for stdin.
+        before = time.monotonic()
+        while not any(path.name.startswith((".new", "new")) for path in place.iterdir()):
+            assert time.monotonic() - before < 30, f"{line} records nothing"
+            time.sleep(0.01)
+        time.sleep(0.3)
+        started.send_signal(signal.SIGINT)
+        assert started.stderr is not None
+        code, out, err = started.wait(30), "", started.stderr.read()
+    else:
+        out, err = started.communicate("", timeout=60)
+        code = started.returncode
+    said = [text for text in (out if code == 0 and not err else err).splitlines() if text]
+    return Ran(code, said[-1] if said else "")
+
+
+def completed(line: str, place: Path) -> list[str]:
+    """The candidates that bash is told for a line whose last word is incomplete."""
+    words = line.split(" ")
+    name = f"_{words[0].upper()}"
+    asked = {f"{name}_COMPLETE": "bash_complete", "COMP_CWORD": str(len(words) - 1)}
+    with process(words[0], place, COMP_WORDS="\n".join(words), **asked) as started:
+        out, err = started.communicate("", timeout=60)
+    assert (started.returncode, err) == (0, ""), err
+    return [text.partition(",")[2] for text in out.splitlines() if text]
+
+
+def document() -> str:
+    """The whole reference."""
+    parts = [HEAD]
+    with folder() as place, ThreadPoolExecutor(4) as pool:
+        answers = list(pool.map(lambda row: ran(row[1], place), COMMANDS))
+        candidates = list(pool.map(lambda line: completed(line, place), LINES))
+    for code, meaning in MEANINGS.items():
+        rows = [
+            (line, answer) for (each, line), answer in zip(COMMANDS, answers, strict=True) if each == code
+        ]
+        for line, answer in rows or [("", Ran(code, ""))]:
+            assert answer.code == code, f"{line} ended with {answer.code}, not {code}: {answer.said}"
+            parts.append(f"| {code} | {meaning} | {in_code(line)} | {in_code(answer.said)} |\n")
+    parts.append(COMPLETION)
+    for line, found in zip(LINES, candidates, strict=True):
+        typed = f"`{line.rstrip()}`" + (" and a space" if line.endswith(" ") else "")
+        parts.append(f"| {typed} | {', '.join(map(in_code, found)) or 'none'} |\n")
+    return "".join(parts)
+
+
+def in_code(text: str) -> str:
+    """The text as code in a cell of a table; nothing for an empty one."""
+    if not text:
+        return ""
+    return (f"`` {text} ``" if "`" in text else f"`{text}`").replace("|", "\\|")
+
+
+if __name__ == "__main__":
+    sys.stdout.reconfigure(encoding="utf-8")  # type: ignore[union-attr]
+    sys.stdout.write(document())
