@@ -57,7 +57,7 @@ KNOWING_THE_DISPLAY = (
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
 DOORS_OF_THE_DISPLAY = {
     "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration",
-    "ramtek_emu.errors", "ramtek_emu.host.host_port", "ramtek_emu.instructions", "ramtek_emu.png",
+    "ramtek_emu.errors", "ramtek_emu.host.tcp_port", "ramtek_emu.instructions", "ramtek_emu.png",
     "ramtek_emu.monitor.window", "ramtek_emu.writing",
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "PIL", "pygame"}

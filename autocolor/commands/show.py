@@ -23,7 +23,7 @@ Examples:
 def show(context: click.Context, source: SceneSource, address: str) -> None:
     """Render SCENE and show it on the display that listens at an address, such as `ramtek serve`."""
     from ramtek_emu import PortError
-    from ramtek_emu.host.host_port import host_and_port
+    from ramtek_emu.host.tcp_port import host_and_port
 
     try:
         host_and_port(address)
