@@ -19,8 +19,9 @@ PUBLIC_NAMES = {
     "autocolor": [
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "InputError", "LevelRange", "Light",
         "Mesh", "MissingInputError", "OutputError", "Paint", "Part", "Phong", "Picture", "Reflectance",
-        "Scene", "Studio", "Surface", "UnavailableError", "UsageError", "View", "WriteError", "image",
-        "read_picture", "read_scene", "render", "save_image", "scene_of", "write_picture",
+        "Scene", "Studio", "Surface", "UnavailableError", "UsageError", "View", "WriteError", "demo", "image",
+        "read_picture", "read_scene", "render", "save_image", "scene_of", "send_picture", "write_picture",
+        "write_scene",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",

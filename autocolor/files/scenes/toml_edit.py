@@ -1,0 +1,176 @@
+"""Changing values in the text of a TOML file; everything else stays as it is written.
+
+A changed value takes the place of the old one, also inside an inline table. A new key goes below the others
+of its table, or into a new table after those of the same kind. With a removed key goes the rest of its line;
+the comments above it stay, but those above the header of a removed table go with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from autocolor.files.scenes.scene_text import toml_key, toml_value
+from autocolor.files.scenes.toml_blocks import Block, Statement, blocks_of, inline_items
+from autocolor.files.scenes.toml_text import KeyPath
+
+
+class TomlText:
+    """A valid TOML text to be edited.
+
+    `tables` are the names of the tables that get headers of their own, in the order of new ones.
+
+    A path leads from the root to a value. A row of an array of tables has the number that it had in the text
+    at first; a new row has any other number.
+    """
+
+    def __init__(self, text: str, tables: Sequence[str]) -> None:
+        # Edit lines that end with line feeds; a file whose lines end otherwise gets them back.
+        self._ends = "\r\n" if text.count("\r\n") == text.count("\n") > 0 else "\n"
+        self._tables = tables
+        self._blocks = blocks_of(text.replace(self._ends, "\n"))
+
+    @property
+    def text(self) -> str:
+        """The text as it is now."""
+        return "".join(block.text for block in self._blocks).replace("\n", self._ends)
+
+    def has(self, path: KeyPath) -> bool:
+        """Whether the text has something at a path or below it, not counting what is in inline tables."""
+        paths = [each.path for each in self._blocks] + [each.path for each in self._statements()]
+        return any(_is_below(each, path) for each in paths)
+
+    def set(self, path: KeyPath, value: Any) -> None:
+        """Give the value at a path, which may be new."""
+        for statement in self._statements():
+            if statement.path == path:
+                statement.value = toml_value(value)
+                return
+            if _is_below(path, statement.path):
+                statement.value = _inline(statement.value, path[len(statement.path) :], value)
+                return
+        self.remove(path)
+        self._add(path, value)
+
+    def remove(self, path: KeyPath) -> None:
+        """Remove what is at a path and below it, if anything."""
+        last = self._blocks[-1]
+        self._blocks = [block for block in self._blocks if not block.path or not _is_below(block.path, path)]
+        for block in self._blocks:
+            kept, above = [], ""
+            for statement in block.statements:
+                if _is_below(statement.path, path):
+                    above += statement.before
+                    continue
+                if _is_below(path, statement.path):
+                    rest = path[len(statement.path) :]
+                    statement.value = _inline_without(statement.value, rest)
+                statement.before, above = above + statement.before, ""
+                kept.append(statement)
+            block.statements, block.tail = kept, above + block.tail
+        if self._blocks[-1] is not last:
+            end = self._blocks[-1]
+            end.tail = f"{end.tail.rstrip()}\n" if end.tail.strip() else ""
+
+    def arrange(self, table: str, keys: Sequence[str | int]) -> None:
+        """Put the rows of a table, each with a header of its own, in the order of their names or numbers."""
+        rows = [block for block in self._blocks if len(block.path) > 1 and block.path[0] == table]
+        ordered = [block for key in keys for block in rows if block.path[1] == key]
+        if len(ordered) == len(rows) and any(
+            one is not other for one, other in zip(ordered, rows, strict=True)
+        ):
+            place = self._blocks.index(rows[0])
+            others = [block for block in self._blocks if not any(block is row for row in rows)]
+            self._blocks = [*others[:place], *ordered, *others[place:]]
+            self._end_with_empty_lines(place - 1, place + len(rows) - 1)
+
+    def _statements(self) -> list[Statement]:
+        return [statement for block in self._blocks for statement in block.statements]
+
+    def _add(self, path: KeyPath, value: Any) -> None:
+        """Add a key that the text does not have."""
+        table = path[:-1]
+        block = next((each for each in self._blocks if each.path == table), None)
+        if block is None:
+            # Next to others of the same table that are written with dotted keys.
+            for block in self._blocks:
+                beside = [row for row, each in enumerate(block.statements) if _is_below(each.path, table)]
+                if beside and _is_below(table, block.path):
+                    _insert(block, beside[-1] + 1, path, value)
+                    return
+            around = [each for each in self._blocks if len(table) > 1 and each.path == table[:-1]]
+            has_headers = any(_is_below(each.path, table) for each in self._blocks)
+            if path[0] not in self._tables:
+                block = self._blocks[0]
+            else:
+                block = around[0] if around and not has_headers else self._new_block(table)
+        _insert(block, len(block.statements), path, value)
+
+    def _new_block(self, path: KeyPath) -> Block:
+        """A new table, after the last one that is most like it, else where tables of its name should be."""
+        keys = [part for part in path if isinstance(part, str)]
+        name = ".".join(map(toml_key, keys))
+        block = Block(path, f"[[{name}]]\n" if isinstance(path[-1], int) else f"[{name}]\n")
+        earlier = {(), *((table,) for table in self._tables[: self._tables.index(keys[0]) + 1])}
+        place = max(row for row, each in enumerate(self._blocks) if each.path[:1] in earlier)
+        for length in range(1, len(path) + 1):
+            like = [row for row, each in enumerate(self._blocks) if each.path[:length] == path[:length]]
+            place = like[-1] if like else place
+        self._blocks.insert(place + 1, block)
+        self._end_with_empty_lines(place, place + 1)
+        return block
+
+    def _end_with_empty_lines(self, first: int, last: int) -> None:
+        """Let an empty line follow each of some blocks, but none the last block of all."""
+        for block in self._blocks[first : last + 1]:
+            text = block.text
+            if block is not self._blocks[-1] and text and not text.endswith("\n\n"):
+                block.tail += "\n" if text.endswith("\n") else "\n\n"
+
+
+def _insert(block: Block, row: int, path: KeyPath, value: Any) -> None:
+    """Write a new key as a statement of a block, at a row of its statements."""
+    before = ""
+    if row:
+        block.statements[row - 1].after = block.statements[row - 1].after.rstrip("\n") + "\n"
+    elif block.head:
+        block.head = block.head.rstrip("\n") + "\n"
+    elif not block.statements:
+        # Below the comment at the top of the file.
+        before, block.tail = block.tail, "\n"
+    key = ".".join(toml_key(part) for part in path[len(block.path) :] if isinstance(part, str))
+    block.statements.insert(row, Statement(path, before, key, " = ", toml_value(value), "\n"))
+
+
+def _is_below(path: KeyPath, above: KeyPath) -> bool:
+    """Whether a path is another one, or leads on from it."""
+    return path[: len(above)] == above
+
+
+def _inline(text: str, path: KeyPath, value: Any) -> str:
+    """An inline table with another value at a path inside it, which may be new."""
+    items = inline_items(text)
+    for item in items:
+        if _is_below(path, item.path):
+            inner, rest = text[item.start : item.stop], path[len(item.path) :]
+            written = _inline(inner, rest, value) if rest else toml_value(value)
+            return text[: item.start] + written + text[item.stop :]
+    text = _inline_without(text, path)
+    key = ".".join(toml_key(str(part)) for part in path)
+    start = f"{text[:-1].rstrip()}," if inline_items(text) else "{"
+    return f"{start} {key} = {toml_value(value)} }}"
+
+
+def _inline_without(text: str, path: KeyPath) -> str:
+    """An inline table without what is at a path inside it and below, if anything."""
+    items = inline_items(text)
+    kept = []
+    for item in items:
+        inner, rest = text[item.start : item.stop], path[len(item.path) :]
+        if rest and _is_below(path, item.path):
+            return text[: item.start] + _inline_without(inner, rest) + text[item.stop :]
+        if not _is_below(item.path, path):
+            kept.append(f"{item.key} = {inner}")
+    if len(kept) == len(items):
+        return text
+    return f"{{ {', '.join(kept)} }}" if kept else "{}"
