@@ -48,12 +48,16 @@ def edited_to(data: bytes, scene: Scene, read: ReadText) -> bytes | None:
 def with_meshes(data: bytes, entries: tuple[Mapping[str, Any], ...]) -> bytes:
     """The text of a scene file with other `[[mesh]]` tables."""
     text = TomlText(data.decode(), FILE_TABLES)
+    if not text.has(("mesh", 0)):
+        # They are written as one inline array, or not at all.
+        text.remove(("mesh",))
     for row, entry in enumerate(entries):
         for key, value in sparse_entry(entry).items():
             text.set(("mesh", NEW_ROW + row, key), value)
-    rows = parsed_toml(data, "scene.toml").get("mesh", [])
-    for row in range(len(rows)):
+    row = 0
+    while text.has(("mesh", row)):
         text.remove(("mesh", row))
+        row += 1
     return text.text.encode()
 
 

@@ -127,6 +127,8 @@ def toml_value(value: object) -> str:
     """The plain value as TOML; a number is written so that it reads back equal."""
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(map(toml_value, value))}]"
+    if isinstance(value, Mapping) and not value:
+        return "{}"
     if isinstance(value, Mapping):
         return f"{{ {', '.join(f'{toml_key(key)} = {toml_value(inner)}' for key, inner in value.items())} }}"
     if isinstance(value, (str, bool)):

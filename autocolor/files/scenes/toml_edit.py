@@ -121,11 +121,15 @@ class TomlText:
         return block
 
     def _end_with_empty_lines(self, first: int, last: int) -> None:
-        """Let an empty line follow each of some blocks, but none the last block of all."""
-        for block in self._blocks[first : last + 1]:
+        """Let an empty line follow each of some blocks, unless the next is of the same row."""
+        rows = self._blocks[first : last + 1]
+        for block, following in zip(rows, self._blocks[first + 1 : last + 2], strict=False):
+            is_same_row = len(block.path) > 1 and block.path[:2] == following.path[:2]
             text = block.text
-            if block is not self._blocks[-1] and text and not text.endswith("\n\n"):
+            if text and not is_same_row and not text.endswith("\n\n"):
                 block.tail += "\n" if text.endswith("\n") else "\n\n"
+            elif text and not text.endswith("\n"):
+                block.tail += "\n"
 
 
 def _insert(block: Block, row: int, path: KeyPath, value: Any) -> None:

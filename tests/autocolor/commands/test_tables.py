@@ -60,3 +60,19 @@ def test_tables_as_json_hold_every_table(mesh: Path) -> None:
     assert values["parts"] == [{"name": "lid", "surface": "surface", "stage": False}]
     assert len(values["lights"]) == 4
     assert {"surfaces", "view", "ambient", "mesh"} <= set(values)
+
+
+def test_the_tables_of_a_picture_file_are_written_with_its_mesh_beside(mesh: Path, tmp_path: Path) -> None:
+    scene = autocolor.read_scene(mesh).with_light("key", intensity=2.5)
+    path = tmp_path / "pictures" / "square.npz"
+    path.parent.mkdir()
+    autocolor.write_picture(path, autocolor.render(scene, 24, 32), scene)
+    result = CliRunner().invoke(tables, [str(path), "--write"])
+    assert result.exit_code == 0, result.output
+    assert f"wrote {path.parent / 'mesh.obj'}\nwrote {path.parent / 'scene.toml'}; render it" in result.stderr
+    again = autocolor.read_scene(path.parent)
+    assert again.replace(mesh=scene.mesh, name=scene.name).equals(scene)
+    assert (again.mesh.coordinates == scene.mesh.coordinates).all()
+    refused = CliRunner().invoke(tables, [str(path), "--write"])
+    assert isinstance(refused.exception, autocolor.OutputError)
+    assert len(list(path.parent.iterdir())) == 3
