@@ -13,14 +13,19 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
-from autocolor.checks import shown
 from autocolor.errors import InputError, OutputError, UsageError
 from autocolor.files.mesh_sources import source_of
 from autocolor.files.mesh_writing import Meshes, entries_of, meshes_there, reports_of, written_mesh
 from autocolor.files.meshes.formats import mesh_suffixes
 from autocolor.files.reading import read_bytes
 from autocolor.files.scenes.formats import scene_suffixes
-from autocolor.files.scenes.scene_edit import edited_to, with_crease_angle, with_meshes, without_parts
+from autocolor.files.scenes.scene_edit import (
+    completed,
+    edited_to,
+    with_crease_angle,
+    with_meshes,
+    without_parts,
+)
 from autocolor.files.scenes.scene_file import report_of_text
 from autocolor.files.scenes.scene_text import scene_text
 from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
@@ -55,17 +60,17 @@ def write_scene_with_tables(
 ) -> list[Path]:
     """Like `write_scene`; returns the files that were written, the scene file last.
 
-    If `complete`, the text is `scene_text` with all keys, and nothing of an existing file is kept.
+    If `complete`, all keys are written, also those whose values are their defaults.
     """
     target = _target(path)
     _refuse_names(scene)
     with _folder_made(target.parent), _removed_on_failure() as written:
         refuse_output(target, overwrite=overwrite)
-        old = None if complete else _existing(target)
+        old = _existing(target)
         meshes = meshes_there(target.parent, scene.mesh, old)
         if meshes is None:
             meshes = written_mesh(target.parent, scene.mesh, written)
-        data = None if old is None else _edited(old, target, scene, meshes)
+        data = None if old is None else _edited(old, target, scene, meshes, complete)
         if data is None:
             data = _fresh(target, scene, meshes, complete)
         write_atomically(target, data, overwrite=overwrite)
@@ -109,7 +114,7 @@ def _folder_made(folder: Path) -> Iterator[None]:
     except (OSError, ValueError) as error:
         reason = (getattr(error, "strerror", None) or str(error)).lower()
         raise OutputError(
-            f"a scene must have a folder to be in, and {shown(str(folder), 200)} cannot be made ({reason});"
+            f"a scene must have a folder to be in, and {str(folder)!r} cannot be made ({reason});"
             " choose another place"
         ) from None
     try:
@@ -143,7 +148,7 @@ def _existing(target: Path) -> bytes | None:
     return data
 
 
-def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes) -> bytes | None:
+def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
     """The old text, changed to give the scene; None if it is of another object, or cannot be changed to."""
     mesh, document = scene.mesh, parsed_toml(old, target.name)
     given = document.get("parts")
@@ -160,9 +165,10 @@ def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes) -> bytes | N
     data = without_parts(old, parts - set(mesh.part_names))
     if not is_kept:
         data = with_meshes(data, meshes.entries)
-    if mesh.crease_angle != (meshes.reports[0].mesh.crease_angle if is_kept else CREASE_ANGLE):
+    if complete or mesh.crease_angle != (meshes.reports[0].mesh.crease_angle if is_kept else CREASE_ANGLE):
         data = with_crease_angle(data, mesh.crease_angle)
-    return _giving(data, target, scene, meshes)
+    found = _giving(data, target, scene, meshes)
+    return _giving(completed(found, scene), target, scene, meshes) if complete and found else found
 
 
 def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, InputError, Light, Mesh, Scene, Studio, Surface, UsageError, View, scene_of
+from autocolor import (
+    Flap,
+    Flaps,
+    InputError,
+    Light,
+    Mesh,
+    OutputError,
+    Scene,
+    Studio,
+    Surface,
+    UsageError,
+    View,
+    read_scene,
+    scene_of,
+)
 from autocolor.mapping.level_ranges import SCREENS
 from autocolor.studio import send_picture
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, Ramtek9300
@@ -419,6 +434,23 @@ def test_a_studio_knows_whether_its_scene_is_saved() -> None:
     assert studio.is_changed
     studio.redo()
     assert not studio.is_changed
+
+
+def test_a_scene_that_was_written_to_a_scene_file_is_saved(tmp_path: Path) -> None:
+    studio, display = opened()
+    studio.recolor("body", blend=0.1)
+    written = display.frame_buffer.written
+    studio.save_scene(tmp_path / "car")
+    assert not studio.is_changed
+    assert display.frame_buffer.written == written
+    again = read_scene(tmp_path / "car")
+    assert again.replace(mesh=studio.scene.mesh, name=studio.scene.name).equals(studio.scene)
+    studio.recolor("body", blend=0.2)
+    with pytest.raises(OutputError, match="exists"):
+        studio.save_scene(tmp_path / "car")
+    assert studio.is_changed
+    studio.save_scene(tmp_path / "car" / "scene.toml", overwrite=True)
+    assert read_scene(tmp_path / "car").surface("body").paint.blend == 0.2
 
 
 def test_a_saved_picture_is_sent_without_rendering() -> None:

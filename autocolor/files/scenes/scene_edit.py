@@ -45,6 +45,34 @@ def edited_to(data: bytes, scene: Scene, read: ReadText) -> bytes | None:
     return None
 
 
+def completed(data: bytes, scene: Scene) -> bytes:
+    """The text of a scene file that gives the scene, with the keys and rows added that it does not tell."""
+    document = parsed_toml(data, "scene.toml")
+    text = TomlText(data.decode(), FILE_TABLES)
+    tables: dict[str, Any] = plain(scene)
+    _complete(text, (), document, {key: tables[key] for key in tables if key not in (*FILE_TABLES, "name")})
+    _complete(text, ("view",), document.get("view", {}), tables["view"])
+    for table in ("parts", "surfaces"):
+        for row in tables[table]:
+            name = row.pop("name")
+            _complete(text, (table, name), document.get(table, {}).get(name, {}), row)
+    text.arrange("surfaces", [surface.name for surface in scene.surfaces])
+    if text.has(("lights", 0)) or "lights" not in document:
+        written = document.get("lights", [{}] * len(scene.lights))
+        for number, row in enumerate(tables["lights"]):
+            _complete(text, ("lights", number), written[number], row)
+    return text.text.encode()
+
+
+def _complete(text: TomlText, path: KeyPath, given: Tables, keys: Tables) -> None:
+    """Set the keys of a table that are not given."""
+    for key, value in keys.items():
+        if key not in given:
+            _set_all(text, path, {key: value})
+        elif isinstance(value, Mapping) and isinstance(given[key], Mapping):
+            _complete(text, (*path, key), given[key], value)
+
+
 def with_meshes(data: bytes, entries: tuple[Mapping[str, Any], ...]) -> bytes:
     """The text of a scene file with other `[[mesh]]` tables."""
     text = TomlText(data.decode(), FILE_TABLES)
@@ -132,9 +160,8 @@ def _change_named(
     olds = {row["name"]: row for row in before}
     names = [row["name"] for row in after]
     is_moved = table == "surfaces" and list(olds) != names
-    for name in olds:
-        if name not in names:
-            text.remove((table, name))
+    for name in olds.keys() - set(names):
+        text.remove((table, name))
     for row, keys in zip(after, told, strict=True):
         name = row["name"]
         old = olds.get(name)

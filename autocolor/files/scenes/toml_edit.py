@@ -30,6 +30,8 @@ class TomlText:
         self._tables = tables
         self._blocks = blocks_of(text.replace(self._ends, "\n"))
 
+        self._index()
+
     @property
     def text(self) -> str:
         """The text as it is now."""
@@ -37,23 +39,27 @@ class TomlText:
 
     def has(self, path: KeyPath) -> bool:
         """Whether the text has something at a path or below it, not counting what is in inline tables."""
-        paths = [each.path for each in self._blocks] + [each.path for each in self._statements()]
-        return any(_is_below(each, path) for each in paths)
+        return path in self._paths
 
     def set(self, path: KeyPath, value: Any) -> None:
         """Give the value at a path, which may be new."""
-        for statement in self._statements():
-            if statement.path == path:
-                statement.value = toml_value(value)
-                return
-            if _is_below(path, statement.path):
-                statement.value = _inline(statement.value, path[len(statement.path) :], value)
+        for end in range(1, len(path) + 1):
+            statement = self._statement_at.get(path[:end])
+            if statement is not None:
+                rest = path[end:]
+                statement.value = _inline(statement.value, rest, value) if rest else toml_value(value)
                 return
         self.remove(path)
         self._add(path, value)
 
     def remove(self, path: KeyPath) -> None:
         """Remove what is at a path and below it, if anything."""
+        for end in range(1, len(path)):
+            statement = self._statement_at.get(path[:end])
+            if statement is not None:
+                statement.value = _inline_without(statement.value, path[end:])
+        if path not in self._paths:
+            return
         last = self._blocks[-1]
         self._blocks = [block for block in self._blocks if not block.path or not _is_below(block.path, path)]
         for block in self._blocks:
@@ -61,64 +67,101 @@ class TomlText:
             for statement in block.statements:
                 if _is_below(statement.path, path):
                     above += statement.before
-                    continue
-                if _is_below(path, statement.path):
-                    rest = path[len(statement.path) :]
-                    statement.value = _inline_without(statement.value, rest)
-                statement.before, above = above + statement.before, ""
-                kept.append(statement)
+                else:
+                    statement.before, above = above + statement.before, ""
+                    kept.append(statement)
             block.statements, block.tail = kept, above + block.tail
         if self._blocks[-1] is not last:
-            end = self._blocks[-1]
-            end.tail = f"{end.tail.rstrip()}\n" if end.tail.strip() else ""
+            end_block = self._blocks[-1]
+            end_block.tail = f"{end_block.tail.rstrip()}\n" if end_block.tail.strip() else ""
+        self._index()
 
     def arrange(self, table: str, keys: Sequence[str | int]) -> None:
         """Put the rows of a table, each with a header of its own, in the order of their names or numbers."""
         rows = [block for block in self._blocks if len(block.path) > 1 and block.path[0] == table]
         ordered = [block for key in keys for block in rows if block.path[1] == key]
-        if len(ordered) == len(rows) and any(
-            one is not other for one, other in zip(ordered, rows, strict=True)
-        ):
+        if len(ordered) == len(rows) and ordered != rows:
             place = self._blocks.index(rows[0])
-            others = [block for block in self._blocks if not any(block is row for row in rows)]
+            others = [block for block in self._blocks if block not in rows]
             self._blocks = [*others[:place], *ordered, *others[place:]]
             self._end_with_empty_lines(place - 1, place + len(rows) - 1)
 
-    def _statements(self) -> list[Statement]:
-        return [statement for block in self._blocks for statement in block.statements]
+    def _index(self) -> None:
+        """Note where everything is, so that an edit of many keys does not look at each for each."""
+        self._paths: set[KeyPath] = {()}
+        self._statement_at: dict[KeyPath, Statement] = {}
+        self._block_at: dict[KeyPath, Block] = {}
+        for block in self._blocks:
+            self._block_at.setdefault(block.path, block)
+            self._note(block.path)
+            for statement in block.statements:
+                self._statement_at[statement.path] = statement
+                self._note(statement.path)
+
+    def _note(self, path: KeyPath) -> None:
+        self._paths.update(path[:end] for end in range(1, len(path) + 1))
 
     def _add(self, path: KeyPath, value: Any) -> None:
         """Add a key that the text does not have."""
         table = path[:-1]
-        block = next((each for each in self._blocks if each.path == table), None)
-        if block is None:
+        block = self._block_at.get(table)
+        if block is None and table in self._paths:
             # Next to others of the same table that are written with dotted keys.
             for block in self._blocks:
                 beside = [row for row, each in enumerate(block.statements) if _is_below(each.path, table)]
                 if beside and _is_below(table, block.path):
-                    _insert(block, beside[-1] + 1, path, value)
+                    self._insert(block, beside[-1] + 1, path, value)
                     return
-            around = [each for each in self._blocks if len(table) > 1 and each.path == table[:-1]]
-            has_headers = any(_is_below(each.path, table) for each in self._blocks)
+            # There are only headers of tables inside it.
+            block = self._new_block(table)
+        if block is None:
             if path[0] not in self._tables:
                 block = self._blocks[0]
             else:
-                block = around[0] if around and not has_headers else self._new_block(table)
-        _insert(block, len(block.statements), path, value)
+                around = self._block_at.get(table[:-1]) if len(table) > 1 else None
+                block = around or self._new_block(table)
+        self._insert(block, len(block.statements), path, value)
+
+    def _insert(self, block: Block, row: int, path: KeyPath, value: Any) -> None:
+        """Write a new key as a statement of a block, at a row of its statements."""
+        before = ""
+        if row:
+            block.statements[row - 1].after = block.statements[row - 1].after.rstrip("\n") + "\n"
+        elif block.head:
+            block.head = block.head.rstrip("\n") + "\n"
+        elif not block.statements:
+            # Below the comment at the top of the file.
+            before, block.tail = block.tail, "\n"
+        key = ".".join(toml_key(part) for part in path[len(block.path) :] if isinstance(part, str))
+        statement = Statement(path, before, key, " = ", toml_value(value), "\n")
+        block.statements.insert(row, statement)
+        self._statement_at[path] = statement
+        self._note(path)
 
     def _new_block(self, path: KeyPath) -> Block:
-        """A new table, after the last one that is most like it, else where tables of its name should be."""
+        """A new table without keys."""
         keys = [part for part in path if isinstance(part, str)]
         name = ".".join(map(toml_key, keys))
         block = Block(path, f"[[{name}]]\n" if isinstance(path[-1], int) else f"[{name}]\n")
-        earlier = {(), *((table,) for table in self._tables[: self._tables.index(keys[0]) + 1])}
-        place = max(row for row, each in enumerate(self._blocks) if each.path[:1] in earlier)
-        for length in range(1, len(path) + 1):
-            like = [row for row, each in enumerate(self._blocks) if each.path[:length] == path[:length]]
-            place = like[-1] if like else place
+        place = self._place_before(path, keys[0])
         self._blocks.insert(place + 1, block)
+        self._block_at[path] = block
+        self._note(path)
         self._end_with_empty_lines(place, place + 1)
         return block
+
+    def _place_before(self, path: KeyPath, table: str) -> int:
+        """The row of the block after which a new one goes: the last that is most like it.
+
+        Without one like it, that is the last block of a table that is to be written before this one.
+        """
+        starts = [path[:end] for end in range(len(path), 0, -1) if path[:end] in self._paths]
+        earlier = self._tables[: self._tables.index(table)]
+        for start in (*starts, *((each,) for each in reversed(earlier))):
+            for row in range(len(self._blocks) - 1, 0, -1):
+                if _is_below(self._blocks[row].path, start):
+                    return row
+        return 0
 
     def _end_with_empty_lines(self, first: int, last: int) -> None:
         """Let an empty line follow each of some blocks, unless the next is of the same row."""
@@ -130,20 +173,6 @@ class TomlText:
                 block.tail += "\n" if text.endswith("\n") else "\n\n"
             elif text and not text.endswith("\n"):
                 block.tail += "\n"
-
-
-def _insert(block: Block, row: int, path: KeyPath, value: Any) -> None:
-    """Write a new key as a statement of a block, at a row of its statements."""
-    before = ""
-    if row:
-        block.statements[row - 1].after = block.statements[row - 1].after.rstrip("\n") + "\n"
-    elif block.head:
-        block.head = block.head.rstrip("\n") + "\n"
-    elif not block.statements:
-        # Below the comment at the top of the file.
-        before, block.tail = block.tail, "\n"
-    key = ".".join(toml_key(part) for part in path[len(block.path) :] if isinstance(part, str))
-    block.statements.insert(row, Statement(path, before, key, " = ", toml_value(value), "\n"))
 
 
 def _is_below(path: KeyPath, above: KeyPath) -> bool:

@@ -76,3 +76,17 @@ def test_the_tables_of_a_picture_file_are_written_with_its_mesh_beside(mesh: Pat
     refused = CliRunner().invoke(tables, [str(path), "--write"])
     assert isinstance(refused.exception, autocolor.OutputError)
     assert len(list(path.parent.iterdir())) == 3
+
+
+def test_tables_written_over_a_scene_file_keep_its_comments(mesh: Path) -> None:
+    text = '# By hand.\nambient = 0.50 # dim\n\n[[mesh]]\nfile = "square.obj"\n'
+    (mesh.parent / "scene.toml").write_text(text)
+    scene = autocolor.read_scene(mesh.parent)
+    result = CliRunner().invoke(tables, [str(mesh.parent), "--write", "--force"])
+    assert result.exit_code == 0, result.output
+    after = (mesh.parent / "scene.toml").read_text()
+    assert after.startswith("# By hand.\nambient = 0.50 # dim\n")
+    assert after.count("[[lights]]") == 4
+    assert "two_sided = true" in after
+    assert "crease_angle = 40.0" in after
+    assert autocolor.read_scene(mesh.parent).replace(mesh=scene.mesh).equals(scene)

@@ -9,6 +9,7 @@ from autocolor import Flap, Flaps, InputError, Light, Scene
 from autocolor.files.meshes.formats import read_mesh
 from autocolor.files.repair.polygons import MeshReport
 from autocolor.files.scenes.scene_edit import (
+    completed,
     edited_to,
     with_crease_angle,
     with_meshes,
@@ -173,3 +174,15 @@ def test_parts_are_removed() -> None:
     assert without_parts(b'[parts]\na.surface = "x"\nb.stage = true\n', {"a"}) == (
         b"[parts]\nb.stage = true\n"
     )
+
+
+@pytest.mark.parametrize("text", [INLINE, DOTTED, HEADERS, '# Mine.\n[[mesh]]\nfile = "car.obj"\n'])
+def test_a_text_is_completed_with_all_that_it_does_not_tell(text: str, meshes: list[MeshReport]) -> None:
+    scene = read(text.encode(), meshes)
+    after = completed(text.encode(), scene)
+    again = report_of_text(after, Path("car", "scene.toml"), meshes=meshes)
+    assert again.scene.replace(mesh=scene.mesh).equals(scene)
+    assert again.created == ()
+    assert after.count(b"# Mine.") == 1
+    assert after.count(b"two_sided") == len(scene.surfaces)
+    assert completed(after, scene) == after
