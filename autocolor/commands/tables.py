@@ -19,7 +19,7 @@ EXAMPLES: Final = """\b
 Examples:
   autocolor tables car.obj                  print a scene file for the mesh
   autocolor tables parts/car.obj --write    write it to parts/scene.toml
-  autocolor tables car.npz --write          write it to scene.toml, and the mesh of the picture beside it
+  autocolor tables car.npz --write          write scene.toml and the mesh of a picture file
 """
 
 

@@ -92,9 +92,16 @@ def with_meshes(data: bytes, entries: tuple[Mapping[str, Any], ...]) -> bytes:
 def with_crease_angle(data: bytes, angle: float) -> bytes:
     """The text of a scene file with a crease angle, in each `[[mesh]]` that gives one, else in the first."""
     text = TomlText(data.decode(), FILE_TABLES)
-    rows = parsed_toml(data, "scene.toml")["mesh"]
-    for row in [row for row, table in enumerate(rows) if "crease_angle" in table] or [0]:
-        text.set(("mesh", row, "crease_angle"), angle)
+    tables = parsed_toml(data, "scene.toml")["mesh"]
+    rows = [row for row, table in enumerate(tables) if "crease_angle" in table] or [0]
+    if text.has(("mesh", 0)):
+        for row in rows:
+            text.set(("mesh", row, "crease_angle"), angle)
+    else:
+        # They are written as one inline array.
+        for row in rows:
+            tables[row]["crease_angle"] = angle
+        text.set(("mesh",), tables)
     return text.text.encode()
 
 
@@ -169,8 +176,13 @@ def _change_named(
             _change(text, (table, name), old, row, keys)
         elif old != row or is_moved:
             _set_all(text, (table, name), {key: value for key, value in keys.items() if key != "name"})
-    if is_moved:
-        text.arrange(table, names)
+    if is_moved and not text.arrange(table, names):
+        # Rows without headers of their own cannot be moved, but new ones stand after them.
+        kept = [name for name in written if name in names]
+        if kept != names[: len(kept)]:
+            text.remove((table,))
+            for name, keys in zip(names, told, strict=True):
+                _set_all(text, (table, name), {key: value for key, value in keys.items() if key != "name"})
 
 
 def _change_lights(

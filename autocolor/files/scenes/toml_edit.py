@@ -76,8 +76,8 @@ class TomlText:
             end_block.tail = f"{end_block.tail.rstrip()}\n" if end_block.tail.strip() else ""
         self._index()
 
-    def arrange(self, table: str, keys: Sequence[str | int]) -> None:
-        """Put the rows of a table, each with a header of its own, in the order of their names or numbers."""
+    def arrange(self, table: str, keys: Sequence[str | int]) -> bool:
+        """Put the rows of a table in the order of their names or numbers; whether each has a header."""
         rows = [block for block in self._blocks if len(block.path) > 1 and block.path[0] == table]
         ordered = [block for key in keys for block in rows if block.path[1] == key]
         if len(ordered) == len(rows) and ordered != rows:
@@ -85,6 +85,7 @@ class TomlText:
             others = [block for block in self._blocks if block not in rows]
             self._blocks = [*others[:place], *ordered, *others[place:]]
             self._end_with_empty_lines(place - 1, place + len(rows) - 1)
+        return {block.path[1] for block in rows} == set(keys)
 
     def _index(self) -> None:
         """Note where everything is, so that an edit of many keys does not look at each for each."""
@@ -119,8 +120,12 @@ class TomlText:
                 block = self._blocks[0]
             else:
                 around = self._block_at.get(table[:-1]) if len(table) > 1 else None
-                block = around or self._new_block(table)
+                block = around if around and not self._has_headers(around) else self._new_block(table)
         self._insert(block, len(block.statements), path, value)
+
+    def _has_headers(self, block: Block) -> bool:
+        """Whether tables inside of a block's table have headers of their own."""
+        return any(_is_below(each.path, block.path) and each is not block for each in self._blocks)
 
     def _insert(self, block: Block, row: int, path: KeyPath, value: Any) -> None:
         """Write a new key as a statement of a block, at a row of its statements."""

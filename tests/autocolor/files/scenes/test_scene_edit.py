@@ -117,6 +117,23 @@ def test_without_a_change_nothing_changes(text: str, meshes: list[MeshReport]) -
     assert edited(text, read(text.encode(), meshes), meshes) == text
 
 
+@pytest.mark.parametrize(
+    "text", [INLINE, DOTTED, HEADERS, HEADERS.replace("[surfaces.g", "[surfaces]\n[surfaces.g")]
+)
+def test_surfaces_in_another_order_are_written_in_that_order(text: str, meshes: list[MeshReport]) -> None:
+    scene = read(text.encode(), meshes)
+    new = scene.surfaces[0].replace(name="new")
+    for surfaces in (
+        scene.surfaces[::-1],
+        (*scene.surfaces, new),
+        (scene.surfaces[1], new, scene.surfaces[0]),
+    ):
+        wanted = scene.replace(surfaces=surfaces)
+        after = edited(text, wanted, meshes)
+        assert read(after.encode(), meshes).surfaces == surfaces
+        assert after.startswith("# Mine.\n")
+
+
 def test_a_new_model_takes_its_parameters_along(meshes: list[MeshReport]) -> None:
     scene = read(HEADERS.encode(), meshes).with_surface("body", model="cook-torrance", roughness=0.5)
     after = edited(HEADERS, scene, meshes)
@@ -168,6 +185,12 @@ def test_a_crease_angle_is_set_where_one_is() -> None:
     text = '[[mesh]]\nfile = "a"\n[[mesh]]\nfile = "b"\ncrease_angle = 3 # deg\n'
     assert with_crease_angle(text.encode(), 7.5).decode() == text.replace("3 #", "7.5 #")
     assert with_crease_angle(b'[[mesh]]\nfile = "a"\n', 7.5) == b'[[mesh]]\nfile = "a"\ncrease_angle = 7.5\n'
+
+
+def test_a_crease_angle_is_set_also_in_an_inline_array() -> None:
+    assert with_crease_angle(b'mesh = [{file="a"}, {file="b"}] # two\n', 7.5) == (
+        b'mesh = [{ file = "a", crease_angle = 7.5 }, { file = "b" }] # two\n'
+    )
 
 
 def test_parts_are_removed() -> None:
