@@ -116,11 +116,12 @@ class TomlText:
             # There are only headers of tables inside it.
             block = self._new_block(table)
         if block is None:
+            above = (self._block_at.get(table[:end]) for end in range(len(table) - 1, 0, -1))
+            block = next((each for each in above if each is not None), None)
             if path[0] not in self._tables:
-                block = self._blocks[0]
-            else:
-                around = self._block_at.get(table[:-1]) if len(table) > 1 else None
-                block = around if around and not self._has_headers(around) else self._new_block(table)
+                block = block or self._blocks[0]
+            elif block is None or self._has_headers(block):
+                block = self._new_block(table)
         self._insert(block, len(block.statements), path, value)
 
     def _has_headers(self, block: Block) -> bool:

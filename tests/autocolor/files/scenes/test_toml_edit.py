@@ -1,13 +1,99 @@
 from __future__ import annotations
 
+import copy
 import tomllib
+from typing import Any
 
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
+from autocolor.files.scenes.scene_text import toml_key, toml_value
 from autocolor.files.scenes.toml_edit import TomlText
 from autocolor.files.scenes.toml_text import KeyPath
 
 TABLES = ("view", "mesh", "parts", "surfaces", "lights")
+
+
+keys = st.sampled_from(["a", "b", "a b", "#=]"])
+leaves = st.integers(0, 99) | st.sampled_from(["x # y", "}", [1, 2]])
+inner = st.dictionaries(keys, leaves, max_size=3)
+rows = st.dictionaries(keys, leaves | inner, max_size=3)
+documents = st.fixed_dictionaries(
+    {},
+    optional={
+        "a": leaves,
+        "other": inner,
+        "view": rows,
+        "parts": rows,
+        "lights": st.lists(rows, min_size=1, max_size=3),
+    },
+)
+
+
+@st.composite
+def texts(draw: st.DrawFn, document: dict[str, Any]) -> str:
+    """The document in a mixture of inline tables, dotted keys and headers, with comments and empty lines."""
+    headers: list[str] = []
+
+    def lines(path: tuple[str, ...], dotted: tuple[str, ...], table: dict[str, Any]) -> list[str]:
+        found = []
+        for key, value in table.items():
+            here, name = (*path, key), ".".join(map(toml_key, (*dotted, key)))
+            style = draw(st.sampled_from(["inline", "dotted", "header"]))
+            if isinstance(value, dict) and value and style == "dotted":
+                found += lines(here, (*dotted, key), value)
+            elif isinstance(value, dict) and style == "header" and not dotted:
+                below(here, value, f"[{'.'.join(map(toml_key, here))}]")
+            elif key == "lights":
+                for row in value:
+                    below(here, row, "[[lights]]")
+            else:
+                found.append(f"{name}{draw(st.sampled_from(['=', ' = ']))}{toml_value(value)}")
+                found[-1] += draw(st.sampled_from(["", " # why", "\n# about the next", "\n"]))
+        return found
+
+    def below(path: tuple[str, ...], table: dict[str, Any], header: str) -> None:
+        place = len(headers)
+        found = lines(path, (), table)
+        headers[place:place] = [draw(st.sampled_from(["", "\n", "# above\n"])) + header, *found]
+
+    first = lines((), (), document)
+    return "\n".join([*first, *headers]) + draw(st.sampled_from(["", "\n"]))
+
+
+def pruned(value: Any) -> Any:
+    """The value without empty tables, of which a removal may leave some or not."""
+    if isinstance(value, list):
+        return [pruned(each) for each in value]
+    if not isinstance(value, dict):
+        return value
+    found = {key: pruned(each) for key, each in value.items()}
+    return {key: each for key, each in found.items() if each != {}}
+
+
+@given(st.data())
+def test_what_a_text_says_after_an_edit_is_what_a_document_says(data: st.DataObject) -> None:
+    document: dict[str, Any] = data.draw(documents)
+    text = data.draw(texts(document))
+    assert pruned(tomllib.loads(text)) == pruned(document)
+    edited, expected = TomlText(text, TABLES), copy.deepcopy(document)
+    for _ in range(data.draw(st.integers(1, 4))):
+        starts: list[KeyPath] = [(), ("other",), ("view",), ("parts",)]
+        starts += [("lights", row) for row in range(len(document.get("lights", ())))]
+        path = (*data.draw(st.sampled_from(starts)), *data.draw(st.lists(keys, min_size=1, max_size=2)))
+        assume(path[0] in ("other", *TABLES) or len(path) == 1)
+        table: Any = expected
+        for part in path[:-1]:
+            table = table[part] if isinstance(part, int) else table.setdefault(part, {})
+            assume(isinstance(table, (dict, list)) and table != [1, 2])
+        if data.draw(st.booleans()):
+            table.pop(path[-1], None)
+            edited.remove(path)
+        else:
+            table[path[-1]] = data.draw(leaves)
+            edited.set(path, table[path[-1]])
+        assert pruned(tomllib.loads(edited.text)) == pruned(expected)
 
 
 def after_setting(text: str, path: KeyPath, value: object) -> str:
