@@ -46,8 +46,8 @@ if TYPE_CHECKING:
     from autocolor.scene.surfaces import Reflectance as Reflectance
     from autocolor.scene.surfaces import Surface as Surface
     from autocolor.scene.view import View as View
+    from autocolor.sending import send_picture as send_picture
     from autocolor.studio import Studio as Studio
-    from autocolor.studio import send_picture as send_picture
 
     __version__: str
 
@@ -82,7 +82,7 @@ _HOME: Final = {
     "render": "rendering",
     "save_image": "images",
     "scene_of": "scene.creation",
-    "send_picture": "studio",
+    "send_picture": "sending",
     "write_picture": "files.picture_file",
     "write_scene": "files.scene_writing",
 }

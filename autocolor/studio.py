@@ -14,69 +14,28 @@ must be recomputed and sent.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Unpack
+from collections.abc import Mapping
+from time import perf_counter
+from typing import TYPE_CHECKING, NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
+from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
-from autocolor.mapping.level_ranges import WORDS, LevelRange
+from autocolor.mapping.level_ranges import LevelRange
+from autocolor.pacing import block_for, blocks_of
 from autocolor.rendering import rendering
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns.column import Tier, fields_of
 from autocolor.scene.scene import AUTO, Scene, cost_of_edit
 from autocolor.scene.surfaces import Paint
-from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
+from autocolor.sending import configuration_of, send_image
+from ramtek_emu import HostPort
 
 if TYPE_CHECKING:
     from os import PathLike
-
-
-EntryEncoder = Callable[[int, Bytes], Words]
-"""Makes the instruction that loads entries, (n, 3) uint8, from a first one on."""
-
-
-def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
-    """Reset a display and show a picture in the colors of a scene; nothing is rendered.
-
-    Raises InputError if the surfaces of the picture are not those of the scene.
-    """
-    check_surfaces(scene, picture)
-    _send(None, display_image(scene, picture), display, encoder_of_entries(display))
-
-
-def configuration_of(display: HostPort) -> Configuration:
-    """The configuration of a display; GMR_9300, the paper's display, if the host port does not have one.
-
-    Raises UsageError for a display with too few words or entries for the level ranges.
-    """
-    configuration: Configuration = getattr(display, "configuration", GMR_9300)
-    if configuration.largest_word < WORDS - 1 or configuration.entries < WORDS:
-        raise UsageError(
-            f"a display for a studio must have {WORDS} words and entries, not"
-            f" {configuration.largest_word + 1} and {configuration.entries} ({configuration.name}); choose"
-            " another configuration"
-        )
-    return configuration
-
-
-def encoder_of_entries(display: HostPort) -> EntryEncoder:
-    """The function that encodes a load of entries, from a first entry on, in the display's format."""
-    short = configuration_of(display).entry_format is EntryFormat.WORD_12
-    return instructions.load_short_entries if short else instructions.load_entries
-
-
-def _send(before: DisplayImage | None, now: DisplayImage, display: HostPort, encoder: EntryEncoder) -> None:
-    """Send what differs from `before`, entries and words; a reset and everything if that is None."""
-    if before is None:
-        display.send(instructions.reset())
-    for first, entries in [(0, now.entries)] if before is None else now.loads_after(before):
-        display.send(encoder(first, entries))
-    if before is None or before.words is not now.words:
-        display.send(instructions.write_image(now.words))
 
 
 class Studio:
@@ -89,9 +48,12 @@ class Studio:
     def __init__(self, scene: Scene, display: HostPort) -> None:
         configuration = configuration_of(display)
         self._display = display
-        self._encoder = encoder_of_entries(display)
-        self._rendering = rendering(scene, configuration.shown_lines, configuration.shown_elements)
+        self._size = configuration.shown_lines, configuration.shown_elements
+        begun = perf_counter()
+        self._rendering = rendering(scene, *self._size)
         self._shown = display_image(scene, self._rendering.picture)
+        self._pace = 1, perf_counter() - begun
+        """The block of the last picture that was computed from scratch, and the seconds it took."""
         self._done: list[Scene] = []
         self._undone: list[Scene] = []
         self._kept = scene
@@ -104,7 +66,7 @@ class Studio:
 
     @property
     def picture(self) -> Picture:
-        """The current picture."""
+        """The current picture; of a half or a quarter of the lines and elements while `is_coarse`."""
         return self._shown.picture
 
     @property
@@ -150,6 +112,7 @@ class Studio:
 
     def hold_exposure(self) -> None:
         """Keep the intensity ranges of the current picture, so that less light looks darker from now on."""
+        self.refine()
         self.edit(
             self.scene.replace(exposure=held_exposure(self.picture, self.scene.scaling, self.scene.exposure))
         )
@@ -158,14 +121,26 @@ class Studio:
         """Let the intensity ranges follow the picture again."""
         self.edit(self.scene.replace(exposure=AUTO))
 
-    def edit(self, scene: Scene, same_step: bool = False) -> None:
+    def edit(self, scene: Scene, same_step: bool = False, moving: bool = False) -> None:
         """Make a scene the current one; nothing happens if it equals the current one.
 
         With `same_step`, this edit and the previous one are undone together, as for the many edits of a drag.
+        With `moving`, a picture that would take longer than a thirtieth of a second is computed at a half or
+        a quarter of its lines and elements; call `refine` when the movement rests.
         """
         costs = cost_of_edit(self.scene, scene)
         if costs is not None:
-            self._take(scene, costs, same_step)
+            self._take(scene, costs, same_step, moving)
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether the picture was computed coarsely during a movement, and not yet refined."""
+        return self._shown.block > 1
+
+    def refine(self) -> None:
+        """Compute a coarse picture again at all lines and elements, and send it; the scene stays."""
+        if self.is_coarse:
+            self._show(self.scene, Tier.FRAME)
 
     def undo(self) -> bool:
         """Undo the last step; returns False if there is none."""
@@ -177,8 +152,8 @@ class Studio:
 
     @property
     def is_changed(self) -> bool:
-        """Whether the scene has changed since the session began or was last saved."""
-        return self.scene is not self._kept
+        """Whether the scene differs from that with which the session began or that was saved last."""
+        return cost_of_edit(self._kept, self.scene) is not None
 
     def keep(self) -> None:
         """Mark the current scene as saved."""
@@ -188,6 +163,7 @@ class Studio:
         """Write the picture with its scene to a picture file, and mark the scene as saved."""
         from autocolor.files.picture_file import write_picture
 
+        self.refine()
         write_picture(path, self.picture, self.scene, overwrite=overwrite)
         self.keep()
 
@@ -200,12 +176,12 @@ class Studio:
 
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
-        _send(None, self._shown, self._display, self._encoder)
+        send_image(self._display, self._shown)
 
-    def _take(self, scene: Scene, costs: Tier, same_step: bool = False) -> None:
+    def _take(self, scene: Scene, costs: Tier, same_step: bool = False, moving: bool = False) -> None:
         """Make a scene the current one by an edit of a cost, and note the step."""
         before = self.scene
-        self._show(scene, costs)
+        self._show(scene, costs, moving)
         if not (same_step and self._done and not self._undone):
             self._done.append(before)
         self._undone.clear()
@@ -219,23 +195,40 @@ class Studio:
         target.append(before)
         return True
 
-    def _show(self, scene: Scene, costs: Tier) -> None:
+    def _show(self, scene: Scene, costs: Tier, moving: bool = False) -> None:
         """Recompute and send what an edit changed. If that raises an error, the session is unchanged."""
-        before, rendered = self._shown, self._rendering
+        before, rendered, block = self._shown, self._rendering, self._shown.block
+        begun = perf_counter()
         if costs >= Tier.MIX:
-            lines, elements = before.picture.lines, before.picture.elements
+            block = self._block_of(costs, moving)
+            lines, elements = (size // block for size in self._size)
             rendered = rendering(scene, lines, elements, rendered)
         if costs >= Tier.LEVELS:
-            now = display_image(scene, rendered.picture, before)
+            now = display_image(scene, rendered.picture, before, block)
         else:
-            now = DisplayImage(scene, before.picture, before.ranges, before.words)
-        _send(before, now, self._display, self._encoder)
+            now = DisplayImage(scene, before.picture, before.ranges, before.words, block)
+        send_image(self._display, now, before)
         self._rendering, self._shown = rendered, now
+        if costs == Tier.FRAME:
+            self._pace = block, perf_counter() - begun
+
+    def _block_of(self, costs: Tier, moving: bool) -> int:
+        """The block of the next picture: while a picture moves, such that it is fast enough."""
+        if not moving:
+            return 1
+        # What is visible stays: what was computed for it is used again.
+        return block_for(blocks_of(*self._size), *self._pace) if costs == Tier.FRAME else self._shown.block
 
     def _repr_png_(self) -> bytes:
         from ramtek_emu.png import png_bytes
 
         return png_bytes(self._shown.colors)
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            "a studio cannot be pickled or copied, because it is connected to a display; pickle its scene,"
+            " and make a Studio of that and a display"
+        )
 
     def __repr__(self) -> str:
         return f"Studio({self.scene.name!r}, to undo {len(self._done)}, to redo {len(self._undone)})"

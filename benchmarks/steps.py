@@ -48,7 +48,7 @@ STEPS = (
     Step("autocolor.lighting.light_planes", "mix", "illuminate"),
     Step("autocolor.studio", "display_image", FRAME),
     Step("autocolor.mapping.intensity_mapping", "words_of", "display_image"),
-    Step("autocolor.studio", "_send", FRAME),
+    Step("autocolor.studio", "send_image", FRAME),
 )
 """The steps of a frame in their order."""
 

@@ -35,7 +35,7 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "arrays", "checks", "scene", "visibility", "lighting", "mapping", "files", "rendering",
-        "studio", "images", "screens", "commands", "__main__",
+        "pacing", "sending", "studio", "images", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "command_line",
@@ -53,7 +53,7 @@ TESTED_MODULE_BY_MODULE = ("autocolor", "ramtek_emu")
 
 KNOWING_THE_DISPLAY = (
     "autocolor.__main__", "autocolor.files.writing", "autocolor.images", "autocolor.lighting.picture",
-    "autocolor.studio",
+    "autocolor.sending", "autocolor.studio",
 )  # fmt: skip
 WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
 DOORS_OF_THE_DISPLAY = {

@@ -65,7 +65,7 @@ def recolor(
     refuse_outputs(output, save, force)
 
     from autocolor.files.picture_file import read_picture, write_picture
-    from autocolor.studio import send_picture
+    from autocolor.sending import send_picture
     from ramtek_emu import GMR_9300, Ramtek9300
 
     saved = read_picture(picture)

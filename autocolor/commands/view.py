@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -12,6 +11,9 @@ from autocolor.commands.scenes import ended, read, scene_options
 if TYPE_CHECKING:
     from autocolor.scene.creation import SurfaceSource
     from autocolor.scene.scene import Scene
+    from autocolor.screens.viewer import Viewer
+    from ramtek_emu import Ramtek9300
+    from ramtek_emu.monitor.window import Monitor
 
 EXAMPLES: Final = """\b
 Examples:
@@ -53,41 +55,43 @@ def show(scene: Scene, full_screen: bool = False, fit: bool = False) -> None:
     from autocolor.errors import UnavailableError
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import NoScreenError, Ramtek9300
-    from ramtek_emu.monitor.window import Key, Monitor, open_screen
+    from ramtek_emu.monitor.window import open_screen
 
     try:
         # Fail before rendering if there is no screen.
         open_screen()
         display = Ramtek9300()
-        viewer = Viewer(scene, display)
-        monitor = Monitor(
-            display, viewer.caption, full_screen=full_screen, fit=fit, screenshot_name="autocolor"
-        )
-
-        def tell(message: str) -> None:
-            viewer.message = message
-            monitor.caption = viewer.caption
-
-        def on_key(key: Key) -> bool:
-            taken = viewer.on_key(key.name, key.control, key.shift, key.text, key.repeated)
-            monitor.caption = viewer.caption
-            return taken
-
-        def on_close() -> bool:
-            may_close = viewer.on_close()
-            monitor.caption = viewer.caption
-            return may_close
-
-        def on_drop(path: Path) -> None:
-            viewer.on_drop(path)
-            monitor.caption = viewer.caption
-
-        monitor.on_key, monitor.on_close, monitor.on_drop, monitor.on_message = (
-            on_key,
-            on_close,
-            on_drop,
-            tell,
-        )
-        monitor.run()
+        monitor_of(Viewer(scene, display), display, full_screen, fit).run()
     except NoScreenError as error:
         raise UnavailableError(f"{error}; `autocolor render SCENE -o PNG` renders without a screen") from None
+
+
+def monitor_of(viewer: Viewer, display: Ramtek9300, full_screen: bool = False, fit: bool = False) -> Monitor:
+    """A window, not yet open, that shows the display of a viewer and hands keys and the mouse to it."""
+    from ramtek_emu.monitor.window import Key, Monitor, Pointer
+
+    def on_key(key: Key) -> bool:
+        return viewer.on_key(key.name, key.control, key.shift, key.text, key.repeated)
+
+    def on_pointer(pointer: Pointer) -> None:
+        viewer.on_pointer(pointer.element, pointer.line, pointer.action, pointer.button, pointer.steps)
+
+    def on_tick() -> None:
+        viewer.on_tick(monitor.is_at_rest, monitor.full_screen)
+        if monitor.caption != viewer.caption:
+            monitor.caption = viewer.caption
+
+    monitor = Monitor(
+        display,
+        viewer.caption,
+        full_screen=full_screen,
+        fit=fit,
+        screenshot_name="autocolor",
+        on_key=on_key,
+        on_pointer=on_pointer,
+        on_drop=viewer.on_drop,
+        on_tick=on_tick,
+        on_close=viewer.on_close,
+        on_message=viewer.tell,
+    )
+    return monitor

@@ -27,12 +27,16 @@ MAPPING: Final = ("scaling", "mapping", "exposure", "dither")
 
 @dataclass(frozen=True, eq=False)
 class DisplayImage:
-    """The words and entries for a scene and its picture, and the level range of each surface by name."""
+    """The words and entries for a scene and its picture, and the level range of each surface by name.
+
+    Each pixel of the picture is shown as a block of `block` x `block` words.
+    """
 
     scene: Scene
     picture: Picture
     ranges: Mapping[str, LevelRange]
     words: Words
+    block: int = 1
 
     @cached_property
     def entries(self) -> Bytes:
@@ -98,15 +102,18 @@ class DisplayImage:
         )
 
 
-def display_image(scene: Scene, picture: Picture, before: DisplayImage | None = None) -> DisplayImage:
-    """The display image of a scene and its picture.
+def display_image(
+    scene: Scene, picture: Picture, before: DisplayImage | None = None, block: int = 1
+) -> DisplayImage:
+    """The display image of a scene and its picture, each pixel of which is shown as a block of words.
 
     Ranges and words are shared with the earlier image `before` where they did not change; the ranges depend
-    on the surfaces and on what is visible, not on the light. Raises InputError if an intensity is not finite.
+    on the surfaces and on what is visible, not on the light. Those of an earlier image are kept for larger
+    blocks, as a coarse picture is soon followed by a finer one. Raises InputError if an intensity is not
+    finite.
     """
-    if before is not None and not costs_at_least(before.scene, scene, Tier.LEVELS):
-        ranges = before.ranges
-    else:
+    ranges = None if before is None else _kept_ranges(before, scene, block)
+    if ranges is None:
         ranges = level_ranges(scene.surfaces, _covered(scene, picture), scene.division)
         if before is not None and before.ranges == ranges:
             ranges = before.ranges
@@ -119,7 +126,25 @@ def display_image(scene: Scene, picture: Picture, before: DisplayImage | None = 
         words = before.words
     else:
         words = words_of(picture, ranges, *(getattr(scene, name) for name in MAPPING))
-    return DisplayImage(scene, picture, ranges, words)
+        if block > 1:
+            words = words.repeat(block, axis=0).repeat(block, axis=1)
+            words.flags.writeable = False
+    return DisplayImage(scene, picture, ranges, words, block)
+
+
+def _kept_ranges(before: DisplayImage, scene: Scene, block: int) -> Mapping[str, LevelRange] | None:
+    """The ranges of an earlier image if they are those of the scene, too; None if they must be divided."""
+    if block > 1:
+        return before.ranges if _claims(before.scene) == _claims(scene) else None
+    # The ranges of a coarse picture are those of the picture before it, in which other pixels were visible.
+    is_divided_anew = before.block > 1 or costs_at_least(before.scene, scene, Tier.LEVELS)
+    return None if is_divided_anew else before.ranges
+
+
+def _claims(scene: Scene) -> tuple[object, ...]:
+    """What the ranges depend on, apart from what is visible."""
+    used = {scene.parts[number].surface for number in scene.mesh.parts_in_use}
+    return scene.division, *((each.name, each.levels) for each in scene.surfaces if each.name in used)
 
 
 def _covered(scene: Scene, picture: Picture) -> Mapping[str, int]:

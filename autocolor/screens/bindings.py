@@ -25,8 +25,8 @@ class Actions(Protocol):
     def tilt(self, degrees: float) -> object:
         """Rotate the picture plane by some degrees."""
 
-    def rescale(self) -> object:
-        """Fill the picture with the object."""
+    def rescale(self, is_surface: bool) -> object:
+        """Fill the picture with the object, or with the selected surface."""
 
     def switch_light(self, number: int) -> object:
         """Switch a light on or off."""
@@ -95,7 +95,11 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
         label="comma, period",
         held=True,
     ),
-    Binding((Chord("r"),), "rescale: fill the picture with the object", lambda viewer, _: viewer.rescale()),
+    Binding(
+        (Chord("r"), Chord("r", shift=True)),
+        "rescale: fill the picture with the object, the surface",
+        lambda viewer, number: viewer.rescale(number == 1),
+    ),
     Binding(
         tuple(Chord(str(digit)) for digit in range(1, 10)),
         "switch a light on or off",
@@ -133,7 +137,7 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
     Binding((Chord("s", control=True),), "save the picture with its scene", lambda viewer, _: viewer.save()),
     Binding(
         (Chord("escape"),),
-        "back to the picture; leave, if nothing is unsaved",
+        "leave full screen, a page, and if saved the window",
         lambda viewer, _: viewer.escape(),
     ),
 )
@@ -141,6 +145,7 @@ WINDOW_KEYS: Final = (
     ("F11, Alt+Enter", "full screen, and back"),
     ("F12", "save a numbered screenshot"),
     ("Ctrl+Q", "leave"),
+    ("mouse", "drag: turn around the object; wheel: closer, farther"),
     ("a file dropped", "open it: a scene, a mesh or a picture file"),
 )
-"""The keys that the window itself handles."""
+"""The keys that the window itself handles, and the mouse."""

@@ -11,6 +11,9 @@ WIDTH: Final = 640
 HEIGHT: Final = 480
 """The size that the screens are laid out for, in elements and lines."""
 
+CHARACTER: Final = 7
+"""Elements from one character of a text to the next."""
+
 BLACK: Final = SCREENS.first
 WHITE: Final = SCREENS.first + 1
 LIGHT_GRAY: Final = SCREENS.first + 2
@@ -38,3 +41,12 @@ def text(
 ) -> None:
     """Write a line of text whose upper left corner is at (left, top)."""
     display.send(instructions.write_text(line, left, top, word, background, size))
+
+
+def fitted(line: str, most: int) -> str:
+    """A line of text that has at most so many characters; a longer one is cut and ends in two periods.
+
+    >>> fitted("windscreen", 10), fitted("windscreen", 6), fitted("windscreen", 1)
+    ('windscreen', 'wind..', '.')
+    """
+    return line if len(line) <= most else f"{line[: max(0, most - 2)]}.."[:most]

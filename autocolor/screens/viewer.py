@@ -1,59 +1,68 @@
-"""The interactive viewer: a picture on the display, and the keys that change it.
+"""The interactive viewer: a picture on the display, and the keys and the mouse that change it.
 
-The viewer gets key names and paths from the window as plain values, and draws by display instructions, so
-that tests can run it without a window.
+The viewer gets keys, places of the mouse and paths from the window as plain values, and draws by display
+instructions, so that tests can run it without a window. While a key is held down or the mouse drags, the
+picture may be coarse; `on_tick` refines it when the movement rests.
 """
 
 from __future__ import annotations
 
 import os
+import time
+from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple, Unpack
+from typing import Final
 
 from autocolor.errors import AutocolorError
 from autocolor.files.file_stem import file_stem
 from autocolor.files.scene_sources import read_scene
-from autocolor.scene.changes import PaintChanges
-from autocolor.scene.defaults import OBJECT_COLORS, framed
-from autocolor.scene.scene import Exposure, Scene
-from autocolor.scene.view import View
-from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS, Actions
+from autocolor.scene.scene import Scene
+from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS
 from autocolor.screens.entries_screen import draw_entries
 from autocolor.screens.help_screen import draw_help
-from autocolor.screens.keys import Binding
-from autocolor.screens.orbit import moved, turned
+from autocolor.screens.message_line import TOP, MessageLine
+from autocolor.screens.picture_edits import PictureEdits
+from autocolor.screens.pointing import Drag, wheel_ratio
 from autocolor.studio import Studio
-from ramtek_emu import HostPort, RamtekError
+from ramtek_emu import HostPort, RamtekError, instructions
+
+REST_SECONDS: Final = 0.15
+"""Assumed: the time without a change after which a movement rests even though a key is held down."""
+
+LEFT_BUTTON: Final = 1
 
 
-class Hold(NamedTuple):
-    """The exposure before it was held, and the one that holds it."""
-
-    before: Exposure
-    held: Exposure
-
-
-class Viewer:
+class Viewer(PictureEdits):
     """The viewer of one scene on a display: its studio, the page that is shown, and the file to save to."""
 
     def __init__(self, scene: Scene, display: HostPort, folder: Path | None = None) -> None:
         self.display = display
         self.folder = Path.cwd() if folder is None else folder
-        self.page = "picture"
-        self.message = ""
+        self._line = MessageLine(display, self._restore_line)
         self._warned = False
-        self._edited_by: tuple[Binding[Actions], int] | None = None
-        self._same_step = False
+        self._drag: Drag | None = None
+        self._drags = 0
+        self._is_full_screen = False
+        self._edited_at = 0.0
         self._open(scene)
 
     def _open(self, scene: Scene) -> None:
-        self.studio = Studio(scene, self.display)
+        self.begin(Studio(scene, self.display))
         self.saved: Path | None = None
-        self.surface = 0
-        self._hold: Hold | None = None
         self.page = "picture"
         self.message = "F1 help"
-        self._edited_by = None
+        self._drag = None
+        self._edited_by: object = None
+        """The key or the movement of the mouse by which the last edit was made, if any."""
+
+    @property
+    def message(self) -> str:
+        """The last message."""
+        return self._line.text
+
+    @message.setter
+    def message(self, message: str) -> None:
+        self._line.text = message
 
     @property
     def caption(self) -> str:
@@ -62,12 +71,6 @@ class Viewer:
         name = f"{self.studio.scene.name}{changed}"
         surface = f"[{self.surface_name}]" if self.surface_name else ""
         return " - ".join(part for part in ("autocolor", name, surface, self.message) if part)
-
-    @property
-    def surface_name(self) -> str:
-        """The name of the surface that the color keys change; empty if the scene has none in use."""
-        names = list(self.studio.level_ranges)
-        return names[self.surface % len(names)] if names else ""
 
     def on_key(
         self, name: str, control: bool = False, shift: bool = False, typed: str = "", repeated: bool = False
@@ -85,24 +88,83 @@ class Viewer:
         # Match signs by the typed character, as keyboards place them differently; match letters by key name.
         by_sign = [row for row in chords if row[2].is_sign and row[2].name == typed]
         by_name = [row for row in chords if row[2].name == name and (row[2].is_sign or row[2].shift == shift)]
-        for binding, number, _ in (by_sign or by_name)[:1]:
-            return self._run(binding, number, repeated)
-        return False
+        chosen = (by_sign or by_name)[:1]
+        if not chosen:
+            return False
+        binding, number, _ = chosen[0]
+        gesture, continues = (binding, number), repeated and binding.held
+        return self._do(gesture, lambda: binding.run(self, number), continues, binding.held) is not False
 
-    def _run(self, binding: Binding[Actions], number: int, repeated: bool) -> bool:
-        warned, self.message = self._warned, ""
-        before, last = self.studio.scene, self._edited_by
-        self._same_step = repeated and binding.held and last == (binding, number)
+    def on_pointer(self, element: int, line: int, action: str, button: int = 0, steps: int = 1) -> None:
+        """Handle what the mouse does over an element and a line: a drag turns, the wheel moves closer."""
+        if self.page != "picture":
+            self._drag = None
+        elif action == "press" and button == LEFT_BUTTON:
+            self._drags += 1
+            self._drag = Drag(self._drags, element, line)
+        elif action == "release" and button == LEFT_BUTTON:
+            self._drag = None
+        elif action == "move" and self._drag is not None:
+            right, up = self._drag.turn_to(element, line)
+            self._drag = self._drag._replace(element=element, line=line)
+            self._do(("drag", self._drag.number), lambda: self.turn(right, up), continues=True, moving=True)
+        elif action.startswith("wheel"):
+            ratio = wheel_ratio(action, steps)
+            self._do("wheel", lambda: self.move(ratio), continues=True, moving=True)
+
+    def on_tick(self, is_at_rest: bool = True, is_full_screen: bool = False) -> None:
+        """Refine a coarse picture when the movement rests, and show the message where there is no title."""
+        rests = is_at_rest or time.monotonic() - self._edited_at > REST_SECONDS
+        if rests and self.studio.is_coarse:
+            self._refine()
+        self._is_full_screen = is_full_screen
+        self._update_line()
+
+    def tell(self, message: str) -> None:
+        """Show a message of the window; an empty one takes the last one away at once."""
+        self.message = message
+        self._update_line()
+
+    def _refine(self) -> None:
         try:
-            taken = binding.run(self, number)
+            self.studio.refine()
+        except (AutocolorError, RamtekError) as error:
+            # The picture was refused only at its full size: take the movement back, as any refused edit.
+            self.studio.undo()
+            self.message = str(error).replace("\n", "; ")
+
+    def _update_line(self) -> None:
+        below = self.studio.words if self.page == "picture" else self.page
+        self._line.update(self._is_full_screen, below)
+
+    def _restore_line(self) -> None:
+        """Draw again what the message covered."""
+        if self.page == "picture":
+            self.display.send(instructions.write_image(self.studio.words[TOP:], top=TOP))
+        else:
+            self._draw_page()
+
+    def _do(self, gesture: object, run: Callable[[], object], continues: bool, moving: bool) -> object:
+        """Do what a key or the mouse asks for, and turn an error into a message; returns what `run` does.
+
+        If it continues the gesture by which the last edit was made, both are one step to undo.
+        """
+        warned, self.message = self._warned, ""
+        before = self.studio.scene
+        self.same_step = continues and self._edited_by == gesture
+        self.moving = moving
+        taken: object = True
+        try:
+            taken = run()
         except (AutocolorError, RamtekError) as error:
             self.message = str(error).replace("\n", "; ")
-            taken = True
-        if self.studio.scene is not before or not repeated:
-            self._edited_by = (binding, number) if self.studio.scene is not before else None
+        if self.studio.scene is not before:
+            self._edited_by, self._edited_at = gesture, time.monotonic()
+        elif not continues:
+            self._edited_by = None
         # A warning applies to the next key only.
         self._warned = self._warned and not warned
-        return taken is not False
+        return taken
 
     def on_drop(self, path: Path) -> None:
         """Open a file that was dropped on the window."""
@@ -125,23 +187,6 @@ class Viewer:
         self.message = f"not saved: Ctrl+S saves, {otherwise}"
         return True
 
-    def _edit(self, scene: Scene) -> None:
-        """Make a scene the current one; the edits of a key that is held down are one step to undo."""
-        self.studio.edit(scene, same_step=self._same_step)
-
-    def _look(self, view: View) -> None:
-        """Change the view and return to the picture; an equal view is not an edit."""
-        self.back()
-        if view != self.studio.scene.view:
-            self._edit(self.studio.scene.replace(view=view))
-
-    def _paint(self, **changes: Unpack[PaintChanges]) -> None:
-        """Change the paint of the selected surface; an equal paint is not an edit."""
-        scene = self.studio.scene
-        changed = scene.with_surface(self.surface_name, **changes)
-        if changed.surfaces != scene.surfaces:
-            self._edit(changed)
-
     def back(self) -> bool:
         """Return to the picture from another page; returns False if it is already shown."""
         if self.page == "picture":
@@ -152,24 +197,37 @@ class Viewer:
 
     def show_help(self) -> None:
         """Show the help page, or return to the picture if it is already shown."""
-        if self.page == "help":
-            self.back()
-            return
-        self.page = "help"
-        rows = [(str(binding), binding.does) for binding in BINDINGS] + list(WINDOW_KEYS)
-        draw_help(self.display, "AUTOCOLOR", rows)
+        self._turn_to("help")
 
     def show_entries(self) -> None:
         """Show the lookup table, or return to the picture if it is already shown."""
-        if self.page == "entries":
+        self._turn_to("entries")
+
+    def _turn_to(self, page: str) -> None:
+        if self.page == page:
             self.back()
             return
-        self.back()
-        self.page = "entries"
-        draw_entries(self.display, self.studio.level_ranges)
+        # A coarse picture is refined first: its page would come and go with other ranges.
+        self._refine()
+        self.page = page
+        self._draw_page()
+
+    def _draw_page(self) -> None:
+        if self.page == "help":
+            rows = [(str(binding), binding.does) for binding in BINDINGS] + list(WINDOW_KEYS)
+            draw_help(self.display, "AUTOCOLOR", rows)
+        else:
+            self.display.send(instructions.reset())
+            draw_entries(self.display, self.studio.level_ranges)
 
     def escape(self) -> bool:
-        """Return to the picture. If it is already shown and nothing is unsaved, returns False, to leave."""
+        """Take a drag back, or return to the picture; if neither, and nothing is unsaved, returns False."""
+        if self._drag is not None:
+            dragged, self._drag = ("drag", self._drag.number), None
+            if self._edited_by == dragged:
+                self.studio.undo()
+                self.message = "taken back"
+            return True
         if self.back():
             return True
         if self.studio.is_changed:
@@ -200,68 +258,3 @@ class Viewer:
         else:
             self.studio.save(self.saved, overwrite=True)
         self.message = f"saved {self.saved.resolve()}"
-
-    def turn(self, right: float, up: float) -> None:
-        """Move the eye around the object, in degrees."""
-        self._look(turned(self.studio.scene, right, up))
-
-    def move(self, ratio: float) -> None:
-        """Multiply the distance of the eye by a ratio."""
-        self._look(moved(self.studio.scene, ratio))
-
-    def rescale(self) -> None:
-        """Move the eye so that the object fills the picture (Paper: Figure 5, RESCALE)."""
-        scene = self.studio.scene
-        self._look(framed(scene.view, scene.object_coordinates))
-
-    def tilt(self, degrees: float) -> None:
-        """Rotate the horizontal axis of the picture plane (Paper: Figure 5, ANGLE)."""
-        view = self.studio.scene.view
-        self._look(view.replace(angle=view.angle + degrees))
-
-    def switch_light(self, number: int) -> None:
-        """Switch a light, counted from 0, on or off."""
-        lights = self.studio.scene.lights
-        if number >= len(lights):
-            self.message = f"the scene has no light {number + 1}"
-            return
-        light = lights[number]
-        self.back()
-        self._edit(self.studio.scene.with_light(light.name, on=not light.on))
-        self.message = f"light {light.name} {'off' if light.on else 'on'}"
-
-    def switch_exposure(self) -> None:
-        """Hold the intensity ranges of the picture; if they were held by this, hold what was held before."""
-        self.back()
-        present = self.studio.scene.exposure
-        if self._hold is not None and present == self._hold.held:
-            self._edit(self.studio.scene.replace(exposure=self._hold.before))
-            self.message = "exposure released"
-            return
-        self.studio.hold_exposure()
-        held = self.studio.scene.exposure
-        if held != present:
-            self._hold = Hold(present, held)
-        self.message = "exposure held" if held != present else "there is nothing more to hold"
-
-    def choose_surface(self, step: int) -> None:
-        """Select another surface in use for the color keys, `step` positions further."""
-        self.surface = (self.surface + step) % max(1, len(self.studio.level_ranges))
-
-    def blend(self, step: float) -> None:
-        """Change the blend of the selected surface."""
-        if self.surface_name:
-            blend = self.studio.scene.surface(self.surface_name).paint.blend
-            blend = min(1.0, max(0.0, round(blend + step, 6)))
-            self._paint(blend=blend)
-            self.message = f"blend {blend:.2f}"
-
-    def repaint(self, step: int) -> None:
-        """Give the selected surface another of OBJECT_COLORS, `step` positions further."""
-        if self.surface_name:
-            red, green, blue = self.studio.scene.surface(self.surface_name).paint.object_color
-            present = f"#{red:02x}{green:02x}{blue:02x}"
-            place = OBJECT_COLORS.index(present) + step if present in OBJECT_COLORS else 0
-            color = OBJECT_COLORS[place % len(OBJECT_COLORS)]
-            self._paint(object_color=color)
-            self.message = f"object color {color}"

@@ -3,6 +3,9 @@
 What is modeled: the joystick unit. The mouse moves the cursors that its device drives; the left button is
 ENTER, the right one is TRACK while it is down. What is **not**: how a joystick feels.
 
+A program that draws its own pages takes F1 and F4 itself. For the others, whose picture is a host's, the
+monitor shows them over the field; see `overlay`.
+
 This module does not depend on the library that makes the window.
 """
 
@@ -16,6 +19,8 @@ from typing import Final, NamedTuple
 
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import OutputExistsError, RamtekError
+from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Mouse
+from ramtek_emu.monitor.overlay import PAGES, Overlay
 
 LEFT: Final = 1
 RIGHT: Final = 3
@@ -25,18 +30,6 @@ MODIFIERS: Final = frozenset(
 )
 
 
-class Key(NamedTuple):
-    """A key that was pressed: its name ("a", "f1", "return", "escape", ...), its text, the modifiers held."""
-
-    name: str
-    text: str = ""
-    control: bool = False
-    shift: bool = False
-    alt: bool = False
-    repeated: bool = False
-    """Whether the key was down already and the event is a repeat."""
-
-
 class Pointer(NamedTuple):
     """The mouse over the field, in elements and lines of the display; `enter`: the left button is down."""
 
@@ -44,9 +37,9 @@ class Pointer(NamedTuple):
     line: int
     enter: bool
     action: str
-    """"move", "press", "release", "wheel up" or "wheel down"."""
+    """As in `Mouse`."""
     button: int = 0
-    """0: none, 1: left, 2: middle, 3: right."""
+    steps: int = 1
 
 
 class Console(ABC):
@@ -60,18 +53,28 @@ class Console(ABC):
         screenshot_name: str = "ramtek",
         on_key: Callable[[Key], object] | None = None,
         on_pointer: Callable[[Pointer], object] | None = None,
+        on_drop: Callable[[Path], object] | None = None,
         on_close: Callable[[], bool] | None = None,
         on_message: Callable[[str], object] | None = None,
     ) -> None:
         self.display = display
         self.full_screen = False
+        self.overlay = Overlay()
+        """What is shown over the field."""
         self.screenshots = Path(screenshots)
         self.screenshot_name = screenshot_name
         self.on_key = on_key
         self.on_pointer = on_pointer
+        self.on_drop = on_drop
         self.on_close = on_close
         self.on_message = on_message
         self._enter = False
+        self.input = InputQueue()
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether no input waits, and no key and no button of the mouse is down."""
+        return not self.input and not self.input.down - MODIFIERS
 
     @abstractmethod
     def close(self) -> None:
@@ -102,7 +105,7 @@ class Console(ABC):
             return path.resolve()
 
     def tell(self, message: str) -> None:
-        """Show a message to the user."""
+        """Show a message to the user; an empty one takes the last one away."""
         if self.on_message is not None:
             self.on_message(message)
         else:
@@ -113,36 +116,64 @@ class Console(ABC):
         if self.on_close is None or self.on_close():
             self.close()
 
+    def handle(self, user_input: Input) -> None:
+        """Handle one input."""
+        if isinstance(user_input, Key):
+            self.handle_key(user_input)
+        elif isinstance(user_input, Mouse):
+            self.handle_mouse(user_input)
+        elif isinstance(user_input, Close):
+            self.ask_to_close()
+        elif self.on_drop is not None:
+            self.on_drop(user_input)
+
     def handle_key(self, key: Key) -> None:
-        """Handle a key: first the shortcuts of the window, then `on_key`, then Esc."""
+        """Handle a key: first the shortcuts of the window, then `on_key`, then the pages and Esc.
+
+        Esc leaves full screen before anything else. Shortcuts do not repeat while their key is held down.
+        """
         if key.name in MODIFIERS:
             return
         if key.name == "f11" or (key.name == "return" and key.alt):
+            if not key.repeated:
+                self.toggle_full_screen()
+        elif key.name == "escape" and self.full_screen:
             self.toggle_full_screen()
         elif key.name == "f12":
-            try:
-                self.tell(f"saved {self.screenshot()}")
-            except RamtekError as refusal:
-                self.tell(str(refusal))
+            if not key.repeated:
+                self._tell_of_screenshot()
         elif key.name == "q" and key.control:
             self.ask_to_close()
         elif self.on_key is not None and self.on_key(key):
             return
-        elif key.name == "escape":
-            if self.full_screen:
-                self.toggle_full_screen()
+        elif key.name in PAGES:
+            if not key.repeated:
+                self.overlay.turn_to(PAGES[key.name])
+        elif key.name == "escape" and not key.repeated:
+            if self.overlay.page:
+                self.overlay.page = ""
             else:
                 self.ask_to_close()
 
-    def handle_pointer(self, element: int, line: int, action: str, button: int = 0) -> None:
+    def _tell_of_screenshot(self) -> None:
+        """Take a screenshot, without a message on it, and tell the path."""
+        self.tell("")
+        try:
+            self.tell(f"saved {self.screenshot()}")
+        except RamtekError as refusal:
+            self.tell(str(refusal))
+
+    def handle_mouse(self, mouse: Mouse) -> None:
         """Move the joystick, set its switches, and call `on_pointer`."""
         joystick = self.display.joystick
-        joystick.move_to(element, line)
-        if button == LEFT:
-            self._enter = action == "press"
+        joystick.move_to(mouse.element, mouse.line)
+        if mouse.button == LEFT:
+            self._enter = mouse.action == "press"
             if self._enter:
                 joystick.press_enter()
-        elif button == RIGHT:
-            joystick.track = action == "press"
+        elif mouse.button == RIGHT:
+            joystick.track = mouse.action == "press"
         if self.on_pointer is not None:
-            self.on_pointer(Pointer(element, line, self._enter, action, button))
+            self.on_pointer(
+                Pointer(mouse.element, mouse.line, self._enter, mouse.action, mouse.button, mouse.steps)
+            )

@@ -3,9 +3,9 @@
 What is modeled: the field at the largest whole multiple that fits, centered, each pixel a k x k block; the
 mouse as the joystick of the display. What is **not**: the phosphor, the beam.
 
-The window shows fields and draws nothing itself: everything visible is words in the frame buffer, and
-cursors. Keys, the mouse, dropped files and ticks are passed as plain values to the program that uses the
-display.
+The window shows fields: what programs draw is words in the frame buffer, and cursors. Keys, the mouse,
+dropped files and ticks are passed as plain values to the program that uses the display. A field is shown
+after every input that changed it, before the next input is handled, so that input never outruns the picture.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ import pygame
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import NoScreenError
 from ramtek_emu.monitor.console import Console
-from ramtek_emu.monitor.console import Key as Key
 from ramtek_emu.monitor.console import Pointer as Pointer
+from ramtek_emu.monitor.input_queue import Close, Mouse
+from ramtek_emu.monitor.input_queue import Key as Key
 from ramtek_emu.monitor.placement import pixel_under
 from ramtek_emu.monitor.placement import placement as placement
 from ramtek_emu.video.scan_out import Stamp
@@ -38,7 +39,7 @@ TICK_MILLISECONDS: Final = 15
 BLINK_SECONDS: Final = 0.5
 """How long a blinking cursor is shown, and then hidden. Assumed: as in the time model."""
 KEY_DELAY: Final = 400
-KEY_INTERVAL: Final = 40
+KEY_INTERVAL: Final = 33
 """Milliseconds until a key that is held down repeats, and between its repeats."""
 FIELD_MASKS: Final = (0xFF0000, 0x00FF00, 0x0000FF, 0)
 REDRAWN_ON: Final = frozenset(
@@ -90,9 +91,10 @@ class Monitor(Console):
     ) -> None:
         """Prepare a window; `open` opens it.
 
-        `on_key` returns whether it handled the key; Esc, if not handled, leaves full screen or else closes
-        the window. `on_close` returns whether the window may close. `on_message` takes messages for the user,
-        such as the path of a screenshot; without it they are shown in the caption.
+        `on_key` returns whether it handled the key; if it did not, F1 and F4 show a page over the field, and
+        Esc leaves that page or else closes the window. In full screen, Esc leaves that first. `on_close`
+        returns whether the window may close. `on_message` takes messages for the user, such as the path of a
+        screenshot; without it they are shown in the caption, and in full screen over the field.
         """
         super().__init__(
             display,
@@ -100,12 +102,12 @@ class Monitor(Console):
             screenshot_name=screenshot_name,
             on_key=on_key,
             on_pointer=on_pointer,
+            on_drop=on_drop,
             on_close=on_close,
             on_message=on_message,
         )
         self.fit = fit
         self.full_screen = full_screen
-        self.on_drop = on_drop
         self.on_tick = on_tick
         self.refreshed = 0
         """How often the field was shown; it never decreases."""
@@ -114,7 +116,6 @@ class Monitor(Console):
         self._window_size = self._size
         self._open = False
         self._shown: tuple[object, ...] | None = None
-        self._down: set[int] = set()
 
     @property
     def is_open(self) -> bool:
@@ -153,12 +154,14 @@ class Monitor(Console):
             pygame.display.quit()
 
     def _to_be_shown(self) -> tuple[object, ...]:
-        return self.display.scan_out.stamp, pygame.display.get_window_size(), self.fit
+        place = pygame.display.get_window_size(), self.fit
+        return self.display.scan_out.stamp, place, self.overlay.stamp
 
     def show_message(self, message: str) -> None:
-        """Show a message in the title bar of the window."""
+        """Show a message in the title bar of the window, or over the field where there is none."""
+        self.overlay.message = message if self.full_screen else ""
         if self._open:
-            pygame.display.set_caption(f"{self._caption} - {message}")
+            pygame.display.set_caption(" - ".join(part for part in (self._caption, message) if part))
 
     def run(self) -> None:
         """Open the window and keep it open until it is closed."""
@@ -170,14 +173,18 @@ class Monitor(Console):
             self.close()
 
     def step(self, wait: int = 0) -> bool:
-        """Handle events, waiting up to `wait` milliseconds for one, and show the field if it changed.
+        """Handle input, waiting up to `wait` milliseconds for some, and show the field if it changed.
 
-        Returns whether the window is still open.
+        At most one input that changes the field is handled; the others wait until it was shown. Returns
+        whether the window is still open.
         """
-        event = pygame.event.wait(wait) if wait else pygame.event.poll()
-        while event.type != pygame.NOEVENT and self._open:
-            self._handle(event)
-            event = pygame.event.poll() if self._open else event
+        if wait and not self.input:
+            self._note(pygame.event.wait(wait))
+        for event in pygame.event.get():
+            self._note(event)
+        before = self._to_be_shown() if self._open else ()
+        while self._open and self.input and self._to_be_shown() == before:
+            self.handle(self.input.take())
         if self._open and self.on_tick is not None:
             self.on_tick()
         self.display.scan_out.blink_is_on = int(time.monotonic() / BLINK_SECONDS) % 2 == 0
@@ -228,40 +235,38 @@ class Monitor(Console):
 
     def _scan_out(self, surface: pygame.Surface) -> None:
         held = self._held[1] if self._held is not None and self._held[0] is surface else None
-        # The surface is locked while the array exists, that is until the end of this statement.
-        stamp = self.display.scan_out.scan_out_changes_into(np.asarray(surface.get_view("2")).T, held)
-        self._held = surface, stamp
+        # The surface is locked while the array exists, that is until the end of this method.
+        pixels = np.asarray(surface.get_view("2")).T
+        stamp = self.display.scan_out.scan_out_changes_into(pixels, held)
+        has_overlay = any(self.overlay.stamp)
+        if has_overlay:
+            self.overlay.draw(pixels, self.display.scan_out.table(), self._caption)
+        self._held = None if has_overlay else (surface, stamp)
 
-    def _handle(self, event: pygame.event.Event) -> None:
+    def _note(self, event: pygame.event.Event) -> None:
+        """Let the input of an event wait, or note what it tells of the window."""
         if event.type in REDRAWN_ON:
             self._shown = self._held = None
         elif event.type == pygame.QUIT:
-            self.ask_to_close()
+            self.input.add(Close())
         elif event.type == pygame.KEYDOWN:
-            self.handle_key(
-                Key(
-                    pygame.key.name(event.key),
-                    event.unicode,
-                    bool(event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META)),
-                    bool(event.mod & pygame.KMOD_SHIFT),
-                    bool(event.mod & pygame.KMOD_ALT),
-                    event.key in self._down,
-                )
-            )
-            self._down.add(event.key)
+            control, alt = event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META), event.mod & pygame.KMOD_ALT
+            name, shift = pygame.key.name(event.key), event.mod & pygame.KMOD_SHIFT
+            self.input.add(Key(name, event.unicode, bool(control), bool(shift), bool(alt)))
         elif event.type == pygame.KEYUP:
-            self._down.discard(event.key)
+            self.input.release(pygame.key.name(event.key))
+        elif event.type == pygame.WINDOWFOCUSLOST:
+            self.input.release_everything()
         elif event.type == pygame.DROPFILE:
-            if self.on_drop is not None:
-                self.on_drop(Path(event.file))
+            self.input.add(Path(event.file))
         elif event.type == pygame.MOUSEMOTION:
-            self._handle_pointer(event.pos, "move")
+            self.input.add(Mouse(*self._pixel_under(event.pos), "move"))
         elif event.type in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) and event.button <= 3:
-            pressed = event.type == pygame.MOUSEBUTTONDOWN
-            self._handle_pointer(event.pos, "press" if pressed else "release", event.button)
+            action = "press" if event.type == pygame.MOUSEBUTTONDOWN else "release"
+            self.input.add(Mouse(*self._pixel_under(event.pos), action, event.button))
         elif event.type == pygame.MOUSEWHEEL and event.y:
-            self._handle_pointer(pygame.mouse.get_pos(), "wheel up" if event.y > 0 else "wheel down")
+            action = "wheel up" if event.y > 0 else "wheel down"
+            self.input.add(Mouse(*self._pixel_under(pygame.mouse.get_pos()), action, steps=abs(event.y)))
 
-    def _handle_pointer(self, place: tuple[int, int], action: str, button: int = 0) -> None:
-        pixel = pixel_under(place, self._size, pygame.display.get_window_size(), self.fit)
-        self.handle_pointer(*pixel, action, button)
+    def _pixel_under(self, place: tuple[int, int]) -> tuple[int, int]:
+        return pixel_under(place, self._size, pygame.display.get_window_size(), self.fit)

@@ -103,7 +103,7 @@ class ScanOut:
             self._finish_field(self._beam, pixels)
         else:
             self._renew_indices()
-            self._table().take(self._indices, out=pixels, mode="wrap")
+            self.table().take(self._indices, out=pixels, mode="wrap")
         self._mark_cursors(pixels)
 
     def scan_out_changes_into(self, pixels: PackedColors, held: Stamp | None) -> Stamp:
@@ -119,7 +119,7 @@ class ScanOut:
             return stamp
         self._renew_indices()
         first, end = self._lines_showing(self._lookup_table.entries_written_since(held_entries))
-        self._table().take(self._indices[first:end], out=pixels[first:end], mode="wrap")
+        self.table().take(self._indices[first:end], out=pixels[first:end], mode="wrap")
         self._mark_cursors(pixels[first:end], first)
         return stamp
 
@@ -156,7 +156,7 @@ class ScanOut:
             self._parameters(), self._configuration, np.arange(self.elements), np.arange(first, last)
         )
         words = self._frame_buffer.words[np.ix_(lines, elements)]
-        self._table().take(words, out=pixels[first:last], mode="wrap")
+        self.table().take(words, out=pixels[first:last], mode="wrap")
 
     def _mark_cursors(self, pixels: PackedColors, first_line: int = 0) -> None:
         for cursor in self._cursors.all:
@@ -182,7 +182,8 @@ class ScanOut:
     def _blink(self) -> bool:
         return self.blink_is_on if self._beam is None else self._beam.blink_is_on
 
-    def _table(self) -> PackedColors:
+    def table(self) -> PackedColors:
+        """The colors that words select now, 0x00RRGGBB: of the part in use, gray on a monochrome monitor."""
         table = self._lookup_table.packed
         if self._configuration.monochrome:
             if self._gray[0] != self._lookup_table.written:

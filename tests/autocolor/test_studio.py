@@ -2,65 +2,36 @@
 
 from __future__ import annotations
 
-import dataclasses
+import copy
 import itertools
+import pickle
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from autocolor import (
-    Flap,
-    Flaps,
     InputError,
-    Light,
-    Mesh,
     OutputError,
     Scene,
     Studio,
     Surface,
     UsageError,
-    View,
+    read_picture,
     read_scene,
     scene_of,
 )
 from autocolor.mapping.level_ranges import SCREENS
-from autocolor.studio import send_picture
-from ramtek_emu import GMR_9300, Configuration, EntryFormat, Ramtek9300
-from tests.autocolor.meshes import STRETCHED, cube, grid, sphere, wall_scene
+from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import cube
+from tests.autocolor.sessions import SMALL, car, fresh, held, opened
 from tests.autocolor.strategies import colors, numbers, scenes, vectors
 
-SMALL = Configuration(name="small", elements=32, lines=24, planes=10)
 Edit = tuple[str, str, dict[str, Any]]
-
-
-def car() -> Scene:
-    """A round body, a pane and wheels, under two lights of the studio."""
-    mesh = Mesh.joined(
-        [
-            Mesh(
-                sphere(16, 10).coordinates,
-                sphere(16, 10).node_numbers,
-                sphere(16, 10).part_numbers,
-                ("hood",),
-            ),
-            grid(2, 2, (-1.3, -1.2, -0.4), (1.0, 0.2, 0), (0, 0, 1.0), "pane"),
-            cube(1.2),
-        ]
-    )
-    return scene_of(
-        mesh,
-        surface_of_part={"hood": "body", "pane": "glass", "cube": "wheels"},
-        surfaces=[Surface("body"), Surface("glass"), Surface("wheels")],
-        lights=[
-            Light("key", (2.0, -4.0, 3.0), aim=(0, 0, 0), concentration=5, cone_angle=60),
-            Light("fill", (-3.0, -2.0, 1.0), 0.4, flaps=Flaps(z=Flap(-0.5, 0.9, on=False))),
-        ],
-        view=View((1.0, -4.0, 1.0), target=(0.0, 0.0, 0.0), field_of_view=40.0),
-    ).replace(**STRETCHED)
 
 
 SURFACES = st.sampled_from(["body", "glass", "wheels"])
@@ -131,11 +102,6 @@ view_edits = st.tuples(
 any_edits = recolorings | surface_edits | light_edits | scene_edits | view_edits
 
 
-def opened(scene: Scene | None = None) -> tuple[Studio, Ramtek9300]:
-    display = Ramtek9300(SMALL)
-    return Studio(car() if scene is None else scene, display), display
-
-
 def apply(studio: Studio, edit: Edit) -> bool:
     """Whether the edit was taken; a refused one must leave everything as it was."""
     kind, name, changes = edit
@@ -151,14 +117,6 @@ def apply(studio: Studio, edit: Edit) -> bool:
         assert (studio.scene, studio.picture, studio.words, repr(studio)) == before
         return False
     return True
-
-
-def held(display: Ramtek9300) -> tuple[bytes, bytes]:
-    return display.words.tobytes(), display.entries.tobytes()
-
-
-def fresh(scene: Scene) -> tuple[bytes, bytes]:
-    return held(opened(scene)[1])
 
 
 @given(st.lists(recolorings, min_size=1, max_size=6))
@@ -275,10 +233,108 @@ def test_a_drag_that_comes_back_to_where_it_began_is_undone_to_the_scene_itself(
     scene, blend = studio.scene, studio.scene.surface("body").paint.blend
     studio.recolor("body", blend=0.5)
     studio.edit(studio.scene.with_surface("body", blend=blend), same_step=True)
-    assert studio.is_changed
+    assert not studio.is_changed
     assert studio.undo()
     assert studio.scene is scene
     assert not studio.is_changed
+
+
+class SlowClock:
+    """A clock on which every picture takes a second."""
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+
+    def __call__(self) -> float:
+        self.seconds += 1.0
+        return self.seconds
+
+
+@pytest.fixture
+def slow(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures that are as coarse as they can be while something moves."""
+    monkeypatch.setattr("autocolor.studio.perf_counter", SlowClock())
+
+
+def turn(studio: Studio, angle: float) -> None:
+    studio.edit(studio.scene.with_view(angle=angle), same_step=True, moving=True)
+
+
+@pytest.mark.usefixtures("slow")
+@settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(any_edits | st.just("turn") | st.just("refine"), min_size=1, max_size=8))
+def test_after_movements_a_refined_picture_is_the_fresh_one(edits: list[Any]) -> None:
+    studio, display = opened()
+    turn(studio, 20.0)
+    assert studio.is_coarse
+    for number, edit in enumerate(edits):
+        if edit == "turn":
+            turn(studio, float(number))
+        elif edit == "refine":
+            studio.refine()
+            assert held(display) == fresh(studio.scene)
+        else:
+            apply(studio, edit)
+        assert held(display) == (studio.words.tobytes(), studio.entries.tobytes())
+    studio.refine()
+    assert not studio.is_coarse
+    assert held(display) == fresh(studio.scene)
+
+
+@pytest.mark.usefixtures("slow")
+def test_a_coarse_picture_has_blocks_and_the_ranges_of_the_one_before() -> None:
+    studio, display = opened()
+    ranges, entries = studio.level_ranges, held(display)[1]
+    turn(studio, 30.0)
+    assert (studio.picture.lines, studio.picture.elements) == (6, 8)
+    assert display.words.shape == (24, 32)
+    assert np.array_equal(display.words, display.words[::4, ::4].repeat(4, axis=0).repeat(4, axis=1))
+    assert len(np.unique(display.words)) > 5
+    assert studio.level_ranges is ranges
+    assert held(display)[1] == entries
+    # Colors change at once, and the picture stays as coarse as it is.
+    written = display.frame_buffer.written
+    studio.recolor("body", object_color="#123456")
+    assert studio.is_coarse
+    assert display.frame_buffer.written == written
+
+
+@pytest.mark.usefixtures("slow")
+def test_what_a_coarse_picture_would_falsify_is_done_with_the_fine_one(tmp_path: Path) -> None:
+    studio, _ = opened()
+    turn(studio, 30.0)
+    studio.save(tmp_path / "a.npz")
+    assert read_picture(tmp_path / "a.npz").picture.lines == 24
+    turn(studio, 31.0)
+    studio.hold_exposure()
+    other, _ = opened(studio.scene.replace(exposure="auto"))
+    other.hold_exposure()
+    assert studio.scene.exposure == other.scene.exposure
+
+
+def test_a_picture_that_is_fast_enough_is_never_coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("autocolor.studio.perf_counter", lambda: 5.0)
+    studio, _ = opened()
+    turn(studio, 30.0)
+    assert not studio.is_coarse
+
+
+@pytest.mark.usefixtures("slow")
+def test_undoing_a_movement_brings_back_the_fine_picture() -> None:
+    studio, display = opened()
+    before = held(display)
+    for angle in (10.0, 20.0, 30.0):
+        turn(studio, angle)
+    studio.undo()
+    assert held(display) == before
+    assert not studio.is_coarse
+
+
+def test_an_edit_and_its_opposite_leave_nothing_to_save() -> None:
+    studio, _ = opened()
+    for is_on in (False, True):
+        studio.light("key", on=is_on)
+        assert studio.is_changed is not is_on
 
 
 def test_several_surfaces_in_other_paints_are_recolored_at_once() -> None:
@@ -453,22 +509,6 @@ def test_a_scene_that_was_written_to_a_scene_file_is_saved(tmp_path: Path) -> No
     assert read_scene(tmp_path / "car").surface("body").paint.blend == 0.2
 
 
-def test_a_saved_picture_is_sent_without_rendering() -> None:
-    studio, display = opened()
-    other = Ramtek9300(SMALL)
-    send_picture(studio.scene, studio.picture, other)
-    assert held(other) == held(display)
-
-
-def test_a_picture_of_other_surfaces_is_refused_and_leaves_the_display_as_it_was() -> None:
-    studio, display = opened()
-    before = held(display)
-    other = scene_of(cube(), surfaces=[Surface("paint")], surface_of_part={"cube": "paint"})
-    with pytest.raises(InputError, match="surfaces of a picture must be those of the scene"):
-        send_picture(other, studio.picture, display)
-    assert held(display) == before
-
-
 def test_everything_can_be_sent_again() -> None:
     studio, display = opened()
     before = held(display)
@@ -510,21 +550,6 @@ def test_a_display_sees_a_studio_only_through_its_host_port() -> None:
     studio = Studio(car(), port)
     studio.light("key", on=False)
     assert held(port.display) == (studio.words.tobytes(), studio.entries.tobytes())
-
-
-def test_a_display_with_a_12_bit_table_gets_12_bit_entries() -> None:
-    display = Ramtek9300(dataclasses.replace(GMR_9300, entry_format=EntryFormat.WORD_12))
-    studio = Studio(wall_scene(), display)
-    studio.recolor("wall", object_color="#80c0f0", blend=1)
-    assert (display.entries >> 4 == studio.entries >> 4).all()
-    assert (display.words == studio.words).all()
-
-
-@pytest.mark.parametrize("changes", [{"planes": 8}, {"entries": 256}])
-def test_a_display_with_fewer_words_or_entries_than_the_papers_is_refused(changes: dict[str, int]) -> None:
-    smaller = dataclasses.replace(GMR_9300, name="small", **changes)  # type: ignore[arg-type]
-    with pytest.raises(UsageError, match=r"must have 1024 words and entries, not \d+ and \d+ \(small\)"):
-        Studio(wall_scene(), Ramtek9300(smaller))
 
 
 def test_the_first_edit_of_a_drag_after_an_undo_is_a_step_of_its_own() -> None:
@@ -594,3 +619,9 @@ def test_recoloring_a_dithered_picture_writes_no_word(division: Any) -> None:
     studio.recolor("glass", light_color="#ffeedd", light_percentage=40)
     assert display.frame_buffer.written == written
     assert (display.field() == display.entries[display.words]).all()
+
+
+@pytest.mark.parametrize("pickled", [pickle.dumps, copy.deepcopy, copy.copy])
+def test_a_studio_says_why_it_is_not_pickled(pickled: Callable[[Studio], object]) -> None:
+    with pytest.raises(TypeError, match="connected to a display; pickle its scene"):
+        pickled(opened()[0])

@@ -71,6 +71,7 @@ class Session:
         self.tool("key", key)
         if name:
             self.viewer.on_key(name, control, typed=name if len(name) == 1 else "")
+            self.viewer.on_tick()
 
     def window(self) -> str:
         return self.tool("search", "--class", ".").split("\n")[0]

@@ -58,17 +58,21 @@ def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitor
 
     captions = []
 
+    def note(monitor: Any) -> None:
+        monitor.on_tick()
+        captions.append(monitor.caption)
+
     def script(monitor: Any) -> None:
         assert monitor.on_key(Key("c", "c"))
         assert not monitor.on_key(Key("tab", "\t"))
-        captions.append(monitor.caption)
+        note(monitor)
         captions.append(str(monitor.on_close()))
-        captions.append(monitor.caption)
+        note(monitor)
         monitor.on_drop(folder / "none.obj")
         monitor.on_drop(folder / "none.obj")
-        captions.append(monitor.caption)
+        note(monitor)
         monitor.tell("saved somewhere")
-        captions.append(monitor.caption)
+        note(monitor)
 
     monitors[0].script = staticmethod(script)
     assert run("view", "scene").code == 0
@@ -77,6 +81,28 @@ def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitor
     assert captions[2].endswith("not saved: Ctrl+S saves, close again to discard the changes")
     assert captions[3].endswith("none.obj: there is no such file or folder; check the name")
     assert captions[4].endswith("saved somewhere")
+
+
+def test_the_mouse_reaches_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
+    from ramtek_emu.monitor.window import Pointer
+
+    fields = []
+
+    def script(monitor: Any) -> None:
+        for pointer in (
+            Pointer(300, 200, True, "press", 1),
+            Pointer(340, 200, True, "move"),
+            Pointer(340, 200, False, "release", 1),
+            Pointer(340, 200, False, "wheel up", steps=2),
+        ):
+            monitor.on_pointer(pointer)
+            monitor.on_tick()
+            fields.append(monitor.display.field().tobytes())
+
+    monitors[0].script = staticmethod(script)
+    assert run("view", "scene").code == 0
+    assert len(set(fields)) == 3
+    assert fields[1] == fields[2]
 
 
 def test_a_bare_command_shows_the_demo(folder: Path, run: Run, monitors: list[Any]) -> None:

@@ -22,10 +22,8 @@ def test_no_two_keys_are_the_same() -> None:
 def test_every_key_reaches_what_it_does(
     binding: Binding[Viewer], number: int, chord: Chord, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ran: list[tuple[Binding[Viewer], int]] = []
-    monkeypatch.setattr(
-        Viewer, "_run", lambda viewer, binding, number, repeated: ran.append((binding, number))
-    )
+    ran: list[object] = []
+    monkeypatch.setattr(Viewer, "_do", lambda viewer, gesture, *rest: ran.append(gesture))
     viewer = Viewer(wall_scene(lights=[]), Ramtek9300())
     viewer.on_key(chord.name, chord.control, chord.shift)
     assert ran == [(binding, number)]

@@ -2,11 +2,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from autocolor.mapping.level_ranges import BACKGROUND, SCREENS, LevelRange
-from autocolor.screens.drawing import YELLOW
-from autocolor.screens.entries_screen import CELL_HEIGHT, CELL_WIDTH, SIDE, cell_words, draw_entries
-from ramtek_emu import Ramtek9300
+from autocolor.screens.drawing import BLACK, CHARACTER, WHITE, YELLOW, text
+from autocolor.screens.entries_screen import (
+    CELL_HEIGHT,
+    CELL_WIDTH,
+    SIDE,
+    cell_words,
+    draw_entries,
+    named_cells,
+)
+from ramtek_emu import Ramtek9300, instructions
 
 RANGES = {"body": LevelRange(1, 500), "glass": LevelRange(501, 40)}
 
@@ -51,7 +60,31 @@ def test_a_line_runs_between_cells_of_different_owners(word: int) -> None:
         assert (edge == (YELLOW if apart else word)).all()
 
 
-def test_the_page_is_drawn_by_instructions() -> None:
+def test_the_page_is_drawn_by_instructions_with_the_name_of_each_range() -> None:
     display = Ramtek9300()
     draw_entries(display, RANGES)
-    assert np.array_equal(display.words, cell_words(RANGES))
+    expected = Ramtek9300()
+    expected.send(instructions.write_image(cell_words(RANGES)))
+    # The body begins at the second cell, the glass at the 22nd of its row, the screens in the middle.
+    for name, line, element in (("body", 0, 1), ("glass", 15, 21), ("screens", 31, 16)):
+        text(expected, name, element * CELL_WIDTH + 3, line * CELL_HEIGHT + 3, WHITE, BLACK)
+    assert np.array_equal(display.words, expected.words)
+
+
+@given(st.lists(st.tuples(st.text("abc", min_size=1, max_size=30), st.integers(2, 300)), max_size=6))
+def test_a_name_stands_within_the_cells_of_its_range(rows: list[tuple[str, int]]) -> None:
+    ranges, first = {}, 1
+    for name, levels in rows:
+        if first + levels <= SCREENS.first and name not in ranges:
+            ranges[name] = LevelRange(first, levels)
+            first += levels
+    named = list(named_cells(ranges))
+    assert len(named) == len(ranges) + 1
+    for (name, line, element), (whole, (start, levels)) in zip(
+        named, [*ranges.items(), ("screens", SCREENS)], strict=True
+    ):
+        width = len(name) * CHARACTER + 3
+        cells = range(line * SIDE + element, line * SIDE + element - (-width // CELL_WIDTH))
+        assert set(cells) <= set(range(start, start + levels))
+        assert element * CELL_WIDTH + width <= 640
+        assert whole == name or name.rstrip(".") == whole[: len(name.rstrip("."))]

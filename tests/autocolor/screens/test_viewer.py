@@ -1,16 +1,18 @@
 from __future__ import annotations
 
+import itertools
 import os
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from autocolor import Light, Mesh, Scene, Surface, View, read_picture, scene_of
+from autocolor import InputError, Light, Mesh, Scene, Surface, View, read_picture, scene_of
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.defaults import framed
-from autocolor.screens.entries_screen import cell_words
+from autocolor.screens.entries_screen import draw_entries
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
 from ramtek_emu import Ramtek9300
@@ -235,7 +237,9 @@ def test_one_page_leads_to_the_other_and_back_to_the_picture(viewer: Viewer) -> 
     words = display.words.copy()
     viewer.on_key("f1")
     viewer.on_key("f4")
-    assert np.array_equal(display.words, cell_words(viewer.studio.level_ranges))
+    cells = Ramtek9300()
+    draw_entries(cells, viewer.studio.level_ranges)
+    assert np.array_equal(display.words, cells.words)
     viewer.on_key("f1")
     viewer.on_key("f1")
     assert np.array_equal(display.words, words)
@@ -459,3 +463,193 @@ def test_rescale_frames_the_object_and_leaves_the_stage_out(tmp_path: Path) -> N
     shown.studio.edit(scene.with_part("floor", stage=False))
     shown.on_key("r", typed="r")
     assert shown.studio.scene.view == framed(view, Mesh.joined([cube(), floor]).coordinates)
+
+
+# Movements, the mouse, full screen.
+
+
+@pytest.fixture
+def slow(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A clock on which every picture takes a second."""
+    ticks = itertools.count()
+    monkeypatch.setattr("autocolor.studio.perf_counter", lambda: float(next(ticks)))
+
+
+@pytest.mark.usefixtures("slow")
+def test_a_picture_is_coarse_while_a_key_is_held_and_refined_when_it_rests(viewer: Viewer) -> None:
+    viewer.on_key("left")
+    viewer.on_key("left", repeated=True)
+    viewer.on_tick(is_at_rest=False)
+    assert viewer.studio.is_coarse
+    assert not is_true_to(viewer, viewer.studio.scene)
+    viewer.on_tick(is_at_rest=True)
+    assert is_true_to(viewer, viewer.studio.scene)
+
+
+@pytest.mark.usefixtures("slow")
+def test_a_picture_is_refined_while_a_key_is_held_that_changes_nothing_more(
+    viewer: Viewer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    viewer.on_key("left")
+    now = time.monotonic()
+    monkeypatch.setattr("time.monotonic", lambda: now + 1)
+    viewer.on_tick(is_at_rest=False)
+    assert is_true_to(viewer, viewer.studio.scene)
+
+
+@pytest.mark.usefixtures("slow")
+@pytest.mark.parametrize("name", ["r", "1", "e"])
+def test_what_is_no_movement_is_fine_at_once(viewer: Viewer, name: str) -> None:
+    viewer.on_key("left")
+    viewer.on_key(name, typed=name)
+    assert is_true_to(viewer, viewer.studio.scene)
+
+
+@pytest.mark.usefixtures("slow")
+@pytest.mark.parametrize("page", ["f1", "f4"])
+def test_a_page_is_left_to_a_fine_picture(viewer: Viewer, page: str) -> None:
+    viewer.on_key("left")
+    viewer.on_key(page)
+    viewer.on_key(page)
+    assert is_true_to(viewer, viewer.studio.scene)
+
+
+@pytest.mark.usefixtures("slow")
+def test_a_movement_whose_fine_picture_is_refused_is_taken_back(
+    viewer: Viewer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = viewer.studio.scene
+    viewer.on_key("left")
+
+    def refuse() -> None:
+        raise InputError("an intensity must be finite, not inf")
+
+    monkeypatch.setattr(viewer.studio, "refine", refuse)
+    viewer.on_tick()
+    assert viewer.message == "an intensity must be finite, not inf"
+    assert is_true_to(viewer, before)
+
+
+def drag(viewer: Viewer, *places: tuple[int, int], released: bool = True) -> None:
+    viewer.on_pointer(*places[0], "press", 1)
+    for place in places[1:]:
+        viewer.on_pointer(*place, "move")
+    if released:
+        viewer.on_pointer(*places[-1], "release", 1)
+
+
+def test_a_drag_turns_around_the_object_and_is_one_step(viewer: Viewer) -> None:
+    before = viewer.studio.scene
+    drag(viewer, (300, 200), (320, 200), (340, 190))
+    eye, target = viewer.studio.scene.view.eye, np.array([0.5, 0.5, 0.5])
+    assert eye != before.view.eye
+    assert np.linalg.norm(eye - target) == pytest.approx(np.linalg.norm(before.view.eye - target))
+    drag(viewer, (340, 190), (360, 190))
+    control(viewer, "z")
+    assert viewer.studio.scene.view.eye == eye
+    control(viewer, "z")
+    assert viewer.studio.scene is before
+    assert not viewer.studio.undo()
+
+
+def test_a_movement_without_a_button_and_a_click_change_nothing(viewer: Viewer) -> None:
+    before = viewer.studio.scene
+    viewer.on_pointer(10, 10, "move")
+    drag(viewer, (300, 200))
+    viewer.on_pointer(400, 10, "move")
+    viewer.on_pointer(10, 10, "press", 3)
+    viewer.on_pointer(50, 50, "move")
+    assert viewer.studio.scene is before
+
+
+def test_escape_takes_a_drag_back(viewer: Viewer) -> None:
+    viewer.on_key("left")
+    before = viewer.studio.scene
+    drag(viewer, (300, 200), (320, 220), released=False)
+    assert viewer.studio.scene is not before
+    assert viewer.on_key("escape")
+    assert viewer.studio.scene is before
+    viewer.on_pointer(400, 300, "move")
+    assert viewer.studio.scene is before
+    # A drag that changed nothing takes nothing back.
+    drag(viewer, (300, 200), released=False)
+    assert viewer.on_key("escape")
+    assert viewer.studio.scene is before
+
+
+def test_the_wheel_moves_closer_and_its_steps_are_one_step_to_undo(viewer: Viewer) -> None:
+    before = viewer.studio.scene
+    for _ in range(3):
+        viewer.on_pointer(300, 200, "wheel up", steps=2)
+    target = np.array([0.5, 0.5, 0.5])
+    assert np.linalg.norm(viewer.studio.scene.view.eye - target) < np.linalg.norm(before.view.eye - target)
+    viewer.on_pointer(300, 200, "wheel down", steps=6)
+    assert viewer.studio.scene.view.eye == pytest.approx(before.view.eye)
+    control(viewer, "z")
+    assert viewer.studio.scene is before
+
+
+@pytest.mark.parametrize("page", ["f1", "f4"])
+def test_on_a_page_the_mouse_changes_nothing(viewer: Viewer, page: str) -> None:
+    before = viewer.studio.scene
+    viewer.on_key(page)
+    words = display_of(viewer).words.copy()
+    drag(viewer, (300, 200), (320, 220))
+    viewer.on_pointer(300, 200, "wheel up")
+    assert viewer.studio.scene is before
+    assert np.array_equal(display_of(viewer).words, words)
+
+
+def test_in_full_screen_messages_stand_on_the_display(viewer: Viewer) -> None:
+    viewer.on_tick(True, True)
+    picture = viewer.studio.words
+    assert np.array_equal(display_of(viewer).words[:464], picture[:464])
+    assert not np.array_equal(display_of(viewer).words, picture)
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).words, picture)
+    control(viewer, "s")
+    viewer.on_tick(True, True)
+    assert not np.array_equal(display_of(viewer).words, picture)
+    viewer.on_tick(True, False)
+    assert np.array_equal(display_of(viewer).words, picture)
+
+
+@pytest.mark.parametrize("page", ["f1", "f4"])
+def test_a_message_on_a_page_leaves_it_as_it_was(viewer: Viewer, page: str) -> None:
+    viewer.tell("")
+    viewer.on_tick(True, True)
+    viewer.on_key(page)
+    words = display_of(viewer).words.copy()
+    viewer.tell("saved somewhere")
+    assert not np.array_equal(display_of(viewer).words, words)
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).words, words)
+
+
+def test_a_light_switched_off_and_on_leaves_nothing_to_save(viewer: Viewer) -> None:
+    for is_changed in (True, False):
+        viewer.on_key("1", typed="1")
+        assert viewer.studio.is_changed is is_changed
+        assert ("*" in viewer.caption) is is_changed
+    assert not viewer.on_key("escape")
+
+
+def test_the_next_color_and_the_one_before_is_the_surfaces_own(viewer: Viewer) -> None:
+    viewer.studio.recolor("low", object_color="#123456")
+    for there, back in ((False, True), (True, False)):
+        for shift in (there, back):
+            viewer.on_key("c", shift=shift, typed="C" if shift else "c")
+        assert viewer.studio.scene.surface("low").paint.object_color == (0x12, 0x34, 0x56)
+
+
+def test_rescale_fills_the_picture_with_the_chosen_surface(tmp_path: Path) -> None:
+    window = grid(1, 1, (0.4, 0, 0.6), (0.1, 0, 0), (0, 0, 0.1), "window")
+    view = View((-2, -3, 2), target=(0.5, 0.5, 0.5))
+    scene = scene_of(Mesh.joined([cube(), window]), view=view, surfaces="parts", lights=[KEY])
+    shown = Viewer(scene, Ramtek9300(), folder=tmp_path)
+    shown.on_key("s", typed="s")
+    assert shown.surface_name == "window"
+    shown.on_key("r", shift=True, typed="R")
+    assert shown.studio.scene.view == framed(view, window.coordinates)
+    shown.on_key("r", typed="r")
+    assert shown.studio.scene.view == framed(view, Mesh.joined([cube(), window]).coordinates)

@@ -8,7 +8,8 @@ import pytest
 from PIL import Image
 
 from ramtek_emu import Ramtek9300, instructions
-from ramtek_emu.monitor.console import Console, Key, Pointer
+from ramtek_emu.monitor.console import Console, Pointer
+from ramtek_emu.monitor.input_queue import Close, Key, Mouse
 
 
 class PlainConsole(Console):
@@ -80,7 +81,7 @@ def test_a_screenshot_takes_the_next_free_number(console: PlainConsole, tmp_path
     console.display.send(instructions.load_entries(0, [[9, 8, 7]]))
     console.handle_key(Key("f12"))
     path = (tmp_path / "ramtek-0002.png").resolve()
-    assert console.asked == [f"saved {path}"]
+    assert console.asked == ["", f"saved {path}"]
     assert (tmp_path / "ramtek-0001.png").read_bytes() == b"kept"
     with Image.open(path) as picture:
         assert picture.getpixel((0, 0)) == (9, 8, 7)
@@ -92,22 +93,22 @@ def test_a_screenshot_that_cannot_be_saved_is_a_message_to_the_owner(console: Pl
     console.screenshots = Path("/none/at/all")
     console.handle_key(Key("f12"))
     assert console.asked == []
-    assert len(told) == 1
-    assert told[0].startswith("an output must have a folder to be in")
+    assert told[0] == ""
+    assert told[1].startswith("an output must have a folder to be in")
 
 
 def test_the_mouse_moves_the_joystick_and_its_buttons_are_the_switches(console: PlainConsole) -> None:
     told: list[Pointer] = []
     console.on_pointer = told.append
-    console.handle_pointer(30, 40, "move")
-    console.handle_pointer(31, 41, "press", 1)
-    console.handle_pointer(32, 42, "press", 3)
+    console.handle_mouse(Mouse(30, 40, "move"))
+    console.handle_mouse(Mouse(31, 41, "press", 1))
+    console.handle_mouse(Mouse(32, 42, "press", 3))
     joystick = console.display.joystick
     assert joystick.position == (32, 42)
     assert joystick.track
     assert console.display.cursors.enter_is_pressed
-    console.handle_pointer(32, 42, "release", 3)
-    console.handle_pointer(33, 43, "release", 1)
+    console.handle_mouse(Mouse(32, 42, "release", 3))
+    console.handle_mouse(Mouse(33, 43, "release", 1))
     assert not joystick.track
     assert [(pointer.enter, pointer.action, pointer.button) for pointer in told] == [
         (False, "move", 0),
@@ -116,3 +117,57 @@ def test_the_mouse_moves_the_joystick_and_its_buttons_are_the_switches(console: 
         (True, "release", 3),
         (False, "release", 1),
     ]
+
+
+def test_the_mouse_and_dropped_files_and_closing_are_told(console: PlainConsole) -> None:
+    told: list[object] = []
+    console.on_drop = told.append
+    console.handle(Path("scene.toml"))
+    console.handle(Close())
+    assert told == [Path("scene.toml")]
+    assert console.asked == ["close"]
+
+
+def test_escape_leaves_full_screen_before_it_goes_to_the_program(console: PlainConsole) -> None:
+    taken: list[Key] = []
+
+    def take(key: Key) -> bool:
+        taken.append(key)
+        return True
+
+    console.on_key = take
+    console.handle_key(Key("f11"))
+    console.handle_key(Key("escape"))
+    assert (console.full_screen, taken) == (False, [])
+    console.handle_key(Key("escape"))
+    assert taken == [Key("escape")]
+
+
+def test_shortcuts_do_not_repeat(console: PlainConsole) -> None:
+    for name in ("f11", "f12", "f1"):
+        console.handle_key(Key(name, repeated=True))
+    assert console.asked == []
+    assert console.overlay.page == ""
+
+
+def test_a_page_is_shown_over_the_field_unless_the_program_has_its_own(console: PlainConsole) -> None:
+    for key, page in (("f1", "help"), ("f4", "entries"), ("f4", ""), ("f1", "help"), ("escape", "")):
+        console.handle_key(Key(key))
+        assert console.overlay.page == page
+    assert console.asked == []
+    console.on_key = lambda key: key.name in ("f1", "f4")
+    console.handle_key(Key("f1"))
+    assert console.overlay.page == ""
+
+
+def test_a_console_is_at_rest_when_nothing_is_held_and_nothing_waits(console: PlainConsole) -> None:
+    assert console.is_at_rest
+    for held in (Key("left"), Mouse(1, 2, "press", 1)):
+        console.input.add(held)
+        console.handle(console.input.take())
+        assert not console.is_at_rest
+        console.input.release_everything()
+        assert console.is_at_rest
+    console.input.add(Key("left shift"))
+    console.input.take()
+    assert console.is_at_rest

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -46,6 +47,7 @@ def settle(monitor: Monitor) -> None:
 
 def press(monitor: Monitor, key: int, text: str = "", mod: int = 0) -> None:
     pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key, unicode=text, mod=mod))
+    pygame.event.post(pygame.event.Event(pygame.KEYUP, key=key, mod=mod))
     monitor.step()
 
 
@@ -153,7 +155,8 @@ def test_screenshots_are_numbered_and_never_overwritten(monitor: Monitor, tmp_pa
     press(monitor, pygame.K_F12)
     assert (tmp_path / "ramtek-0001.png").read_bytes() == b"mine"
     assert (tmp_path / "ramtek-0002.png").read_bytes() == monitor.display._repr_png_()
-    assert messages == [f"saved {tmp_path / f'ramtek-000{number}.png'}" for number in (2, 3)]
+    paths = [tmp_path / f"ramtek-000{number}.png" for number in (2, 3)]
+    assert messages == ["", f"saved {paths[0]}", "", f"saved {paths[1]}"]
 
 
 def test_a_screenshot_that_cannot_be_saved_is_a_message(monitor: Monitor, tmp_path: Path) -> None:
@@ -162,7 +165,7 @@ def test_a_screenshot_that_cannot_be_saved_is_a_message(monitor: Monitor, tmp_pa
     monitor.screenshots = tmp_path / "none"
     press(monitor, pygame.K_F12)
     assert monitor.is_open
-    assert "there is no folder" in messages[0]
+    assert "there is no folder" in messages[1]
 
 
 def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
@@ -192,7 +195,7 @@ def test_the_mouse_is_the_joystick_of_the_cursors(monitor: Monitor) -> None:
     settle(monitor)
     for kind, button in ((pygame.MOUSEBUTTONDOWN, 1), (pygame.MOUSEBUTTONUP, 1), (pygame.MOUSEBUTTONDOWN, 3)):
         pygame.event.post(pygame.event.Event(kind, pos=(300, 200), button=button))
-    monitor.step()
+    settle(monitor)
     display.send(np.array([0x1700, 0x1700], np.uint16))
     assert display.receive(4).tolist() == [300, 0x3400 | 200, 300, 0x1400 | 200]
     assert (shown() == display.field()).all()
@@ -220,6 +223,85 @@ def test_dropped_files_are_handed_over_as_paths(monitor: Monitor) -> None:
     pygame.event.post(pygame.event.Event(pygame.DROPFILE, file="/some/scene.toml"))
     monitor.step()
     assert dropped == [Path("/some/scene.toml")]
+
+
+def test_a_field_is_shown_between_any_two_keys(monitor: Monitor) -> None:
+    seen = []
+
+    def load(key: Key) -> bool:
+        monitor.display.send(instructions.load_entries(9, [[ord(key.text), 0, 0]]))
+        return True
+
+    monitor.on_key = load
+    for key, text in ((pygame.K_a, "a"), (pygame.K_b, "b"), (pygame.K_c, "c")):
+        pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key, unicode=text, mod=0))
+    before = monitor.refreshed
+    for _ in range(3):
+        monitor.step()
+        seen.append(shown().copy())
+    assert monitor.refreshed == before + 3
+    assert not np.array_equal(seen[0], seen[1])
+    assert not np.array_equal(seen[1], seen[2])
+
+
+def test_of_repeats_and_motions_that_wait_only_the_last_is_handled(monitor: Monitor) -> None:
+    keys: list[Key] = []
+    places: list[tuple[int, int]] = []
+    monitor.on_key = keys.append
+    monitor.on_pointer = lambda pointer: places.append((pointer.element, pointer.line))
+    pygame.display.set_mode((640, 480), pygame.RESIZABLE)
+    settle(monitor)
+    places.clear()
+    for step in range(20):
+        pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_LEFT, unicode="", mod=0))
+        pygame.event.post(pygame.event.Event(pygame.MOUSEMOTION, pos=(step, step), rel=(1, 1), buttons=(0,)))
+    assert monitor.is_at_rest
+    monitor.step()
+    assert keys == [Key("left"), Key("left", repeated=True)]
+    assert places[-1] == (19, 19)
+    assert not monitor.is_at_rest
+    # Released keys leave nothing to do.
+    for kind in (pygame.KEYDOWN, pygame.KEYDOWN, pygame.KEYUP):
+        pygame.event.post(pygame.event.Event(kind, key=pygame.K_LEFT, unicode="", mod=0))
+    monitor.step()
+    assert len(keys) == 2
+    assert monitor.is_at_rest
+
+
+def test_help_and_entries_stand_over_the_field_and_touch_no_word(monitor: Monitor) -> None:
+    display = monitor.display
+    pygame.display.set_mode((640, 480), pygame.RESIZABLE)
+    settle(monitor)
+    written, field = display.frame_buffer.written, display.field()
+    press(monitor, pygame.K_F1)
+    help_shown = shown().copy()
+    press(monitor, pygame.K_F4)
+    cells = shown()[::15, ::20][:32, :32].reshape(-1, 3)
+    assert np.array_equal(cells, display.entries)
+    # The page follows the table.
+    display.send(instructions.load_entries(9, [[200, 100, 50]]))
+    settle(monitor)
+    assert shown()[5, 9 * 20 + 5].tolist() == [200, 100, 50]
+    press(monitor, pygame.K_ESCAPE)
+    settle(monitor)
+    assert np.array_equal(shown(), display.field())
+    assert not np.array_equal(help_shown, field)
+    assert display.frame_buffer.written == written
+
+
+def test_in_full_screen_a_message_stands_over_the_field_for_a_while(
+    monitor: Monitor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    press(monitor, pygame.K_F11)
+    settle(monitor)
+    before, now = shown().copy(), time.monotonic()
+    press(monitor, pygame.K_F12)
+    settle(monitor)
+    assert not np.array_equal(shown()[-200:], before[-200:])
+    assert np.array_equal(shown()[: 70 + 464 * 2], before[: 70 + 464 * 2])
+    monkeypatch.setattr("time.monotonic", lambda: now + 60)
+    monitor.step()
+    assert np.array_equal(shown(), before)
 
 
 def test_a_running_window_ticks_until_it_is_closed(display: Ramtek9300) -> None:

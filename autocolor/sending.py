@@ -1,0 +1,57 @@
+"""Sending: the instructions that show a display image, or what differs from the one before, on a display."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from autocolor.arrays import Bytes, Words
+from autocolor.errors import UsageError
+from autocolor.lighting.picture import Picture
+from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
+from autocolor.mapping.level_ranges import WORDS
+from autocolor.scene.scene import Scene
+from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
+
+EntryEncoder = Callable[[int, Bytes], Words]
+"""Makes the instruction that loads entries, (n, 3) uint8, from a first one on."""
+
+
+def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
+    """Reset a display and show a picture in the colors of a scene; nothing is rendered.
+
+    Raises InputError if the surfaces of the picture are not those of the scene.
+    """
+    check_surfaces(scene, picture)
+    send_image(display, display_image(scene, picture))
+
+
+def configuration_of(display: HostPort) -> Configuration:
+    """The configuration of a display; GMR_9300, the paper's display, if the host port does not have one.
+
+    Raises UsageError for a display with too few words or entries for the level ranges.
+    """
+    configuration: Configuration = getattr(display, "configuration", GMR_9300)
+    if configuration.largest_word < WORDS - 1 or configuration.entries < WORDS:
+        raise UsageError(
+            f"a display for a studio must have {WORDS} words and entries, not"
+            f" {configuration.largest_word + 1} and {configuration.entries} ({configuration.name}); choose"
+            " another configuration"
+        )
+    return configuration
+
+
+def encoder_of_entries(display: HostPort) -> EntryEncoder:
+    """The function that encodes a load of entries, from a first entry on, in the display's format."""
+    short = configuration_of(display).entry_format is EntryFormat.WORD_12
+    return instructions.load_short_entries if short else instructions.load_entries
+
+
+def send_image(display: HostPort, image: DisplayImage, before: DisplayImage | None = None) -> None:
+    """Send the entries and words that differ from `before`; without that, a reset and everything."""
+    encode = encoder_of_entries(display)
+    if before is None:
+        display.send(instructions.reset())
+    for first, entries in [(0, image.entries)] if before is None else image.loads_after(before):
+        display.send(encode(first, entries))
+    if before is None or before.words is not image.words:
+        display.send(instructions.write_image(image.words))

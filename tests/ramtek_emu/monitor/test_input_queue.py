@@ -1,0 +1,117 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Mouse
+
+
+def taken(queue: InputQueue) -> list[Input]:
+    return [queue.take() for _ in range(len(queue))]
+
+
+def test_inputs_are_taken_in_their_order() -> None:
+    queue = InputQueue()
+    inputs: list[Input] = [Key("a", "a"), Mouse(1, 2, "press", 1), Path("scene.toml"), Close()]
+    for each in inputs:
+        queue.add(each)
+    assert taken(queue) == inputs
+    with pytest.raises(IndexError):
+        queue.take()
+
+
+def test_of_the_repeats_of_a_key_only_the_last_waits() -> None:
+    queue = InputQueue()
+    for name in ("left", "left", "up", "left", "left", "up"):
+        queue.add(Key(name))
+    assert taken(queue) == [Key("left"), Key("up"), Key("left", repeated=True), Key("up", repeated=True)]
+
+
+def test_a_released_key_leaves_its_first_press_and_no_repeat() -> None:
+    queue = InputQueue()
+    queue.add(Key("left"))
+    queue.add(Key("left"))
+    queue.add(Key("up"))
+    queue.release("left")
+    assert taken(queue) == [Key("left"), Key("up")]
+    assert queue.down == {"up"}
+    # Pressed again, it is no repeat.
+    queue.add(Key("left"))
+    assert taken(queue) == [Key("left")]
+
+
+def test_of_successive_places_of_the_mouse_only_the_last_waits() -> None:
+    queue = InputQueue()
+    for each in (
+        Mouse(1, 1, "move"),
+        Mouse(2, 1, "move"),
+        Mouse(2, 1, "press", 1),
+        Mouse(3, 1, "move"),
+        Mouse(4, 1, "move"),
+        Mouse(4, 1, "release", 1),
+        Mouse(5, 1, "move"),
+    ):
+        queue.add(each)
+    assert [(each.element, each.action) for each in taken(queue) if isinstance(each, Mouse)] == [
+        (2, "move"),
+        (2, "press"),
+        (4, "move"),
+        (4, "release"),
+        (5, "move"),
+    ]
+
+
+def test_steps_of_the_wheel_are_added_up() -> None:
+    queue = InputQueue()
+    for action, steps in (("wheel up", 1), ("wheel up", 2), ("wheel down", 1)):
+        queue.add(Mouse(0, 0, action, steps=steps))
+    assert taken(queue) == [Mouse(0, 0, "wheel up", steps=3), Mouse(0, 0, "wheel down")]
+
+
+def test_when_the_keyboard_goes_elsewhere_nothing_is_down() -> None:
+    queue = InputQueue()
+    for each in (Key("left"), Key("left"), Mouse(0, 0, "press", 3)):
+        queue.add(each)
+    assert queue.down == {"left", 3}
+    queue.release_everything()
+    assert queue.down == frozenset()
+    assert taken(queue) == [Key("left"), Mouse(0, 0, "press", 3)]
+
+
+def test_a_sign_typed_with_altgr_is_that_sign_where_altgr_is_ctrl_and_alt() -> None:
+    queue = InputQueue()
+    for key in (
+        Key("8", "[", control=True, alt=True),
+        Key("z", "\x1a", control=True, alt=True),
+        Key("f4", "", control=True, alt=True),
+    ):
+        queue.add(key)
+    assert taken(queue) == [
+        Key("8", "["),
+        Key("z", "\x1a", control=True, alt=True),
+        Key("f4", "", control=True, alt=True),
+    ]
+
+
+@given(st.lists(st.tuples(st.sampled_from(["down", "up", "move", "wheel"]), st.sampled_from("abc"))))
+def test_what_waits_is_bounded_by_what_was_pressed(events: list[tuple[str, str]]) -> None:
+    queue = InputQueue()
+    presses = 0
+    for kind, name in events:
+        if kind == "down":
+            presses += name not in queue.down
+            queue.add(Key(name))
+        elif kind == "up":
+            queue.release(name)
+        else:
+            queue.add(Mouse(0, 0, "move" if kind == "move" else "wheel up"))
+    # Each press is kept; at most one repeat of each key.
+    waiting = taken(queue)
+    keys = [each for each in waiting if isinstance(each, Key)]
+    assert sum(not key.repeated for key in keys) == presses
+    repeats = [key.name for key in keys if key.repeated]
+    assert len(repeats) == len(set(repeats))
+    assert set(repeats) <= queue.down
