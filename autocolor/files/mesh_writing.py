@@ -74,10 +74,7 @@ def _relative(entries: Entries, source: Path, folder: Path) -> Entries:
 def reports_of(folder: Path, entries: Entries) -> list[MeshReport]:
     """What is read of the files that tables name; empty if anything is wrong with them."""
     problems = SceneProblems("scene.toml", b"", {})
-    try:
-        reports = meshes_of(problems, list(entries), folder, outside=False)
-    except (InputError, OSError):
-        return []
+    reports = meshes_of(problems, list(entries), folder, outside=False)
     return [] if problems.found else reports
 
 

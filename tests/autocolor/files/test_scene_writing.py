@@ -255,6 +255,15 @@ def test_a_changed_mesh_is_written_beside_and_the_comments_stay(car: Path) -> No
     assert same(read_scene(car), scene.replace(mesh=mesh))
 
 
+def test_a_file_of_the_same_object_is_told_by_the_parts_of_its_mesh(tmp_path: Path) -> None:
+    (tmp_path / "car.obj").write_text(CAR)
+    (tmp_path / "scene.toml").write_text('# Mine.\n[[mesh]]\nfile = "car.obj"\n')
+    mesh = dataclasses.replace(read_scene(tmp_path).mesh, part_names=("hood", "door"))
+    write_scene(tmp_path, scene_of(mesh), overwrite=True)
+    assert (tmp_path / "scene.toml").read_text().startswith("# Mine.\n")
+    assert same(read_scene(tmp_path), scene_of(mesh))
+
+
 def test_parts_that_are_gone_go_from_the_file(car: Path) -> None:
     scene = read_scene(car)
     hood = Mesh(scene.mesh.coordinates, np.array([[0, 1, 2, 3]]), np.array([0]), ("hood",))
