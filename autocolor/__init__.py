@@ -15,6 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
+    from autocolor.commands.demo import demo as demo
     from autocolor.errors import AutocolorError as AutocolorError
     from autocolor.errors import InputError as InputError
     from autocolor.errors import MissingInputError as MissingInputError
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from autocolor.files.picture_file import read_picture as read_picture
     from autocolor.files.picture_file import write_picture as write_picture
     from autocolor.files.scene_sources import read_scene as read_scene
+    from autocolor.files.scene_writing import write_scene as write_scene
     from autocolor.images import image as image
     from autocolor.images import save_image as save_image
     from autocolor.lighting.picture import Picture as Picture
@@ -44,7 +46,10 @@ if TYPE_CHECKING:
     from autocolor.scene.surfaces import Reflectance as Reflectance
     from autocolor.scene.surfaces import Surface as Surface
     from autocolor.scene.view import View as View
+    from autocolor.sending import send_picture as send_picture
     from autocolor.studio import Studio as Studio
+
+    __version__: str
 
 _HOME: Final = {
     "AutocolorError": "errors",
@@ -70,26 +75,43 @@ _HOME: Final = {
     "UsageError": "errors",
     "View": "scene.view",
     "WriteError": "errors",
+    "demo": "commands.demo",
     "image": "images",
     "read_picture": "files.picture_file",
     "read_scene": "files.scene_sources",
     "render": "rendering",
     "save_image": "images",
     "scene_of": "scene.creation",
+    "send_picture": "sending",
     "write_picture": "files.picture_file",
+    "write_scene": "files.scene_writing",
 }
 
 __all__ = list(_HOME)
 
 
+_NOT_INSTALLED: Final = "0+unknown"
+"""The version of a checkout that was never installed."""
+
+
 def __getattr__(name: str) -> object:
-    """A public name, from the module that defines it, loaded when it is first asked for."""
-    if name not in _HOME:
+    """A public name, from the module that defines it, or the version; found when it is first asked for."""
+    if name not in _HOME and name != "__version__":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value: object = getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    value = _version() if name == "__version__" else getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted({*__all__, "__version__", *(name for name in globals() if name.startswith("__"))})
+
+
+def _version() -> str:
+    """The version of the installed distribution."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("autocolor")
+    except PackageNotFoundError:
+        return _NOT_INSTALLED

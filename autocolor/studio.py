@@ -167,6 +167,13 @@ class Studio:
         write_picture(path, self.picture, self.scene, overwrite=overwrite)
         self.keep()
 
+    def save_scene(self, path: str | PathLike[str], overwrite: bool = False) -> None:
+        """Write the scene to a scene file (see `write_scene`), and mark it as saved."""
+        from autocolor.files.scene_writing import write_scene
+
+        write_scene(path, self.scene, overwrite=overwrite)
+        self.keep()
+
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
         send_image(self._display, self._shown)

@@ -19,8 +19,9 @@ PUBLIC_NAMES = {
     "autocolor": [
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "InputError", "LevelRange", "Light",
         "Mesh", "MissingInputError", "OutputError", "Paint", "Part", "Phong", "Picture", "Reflectance",
-        "Scene", "Studio", "Surface", "UnavailableError", "UsageError", "View", "WriteError", "image",
-        "read_picture", "read_scene", "render", "save_image", "scene_of", "write_picture",
+        "Scene", "Studio", "Surface", "UnavailableError", "UsageError", "View", "WriteError", "demo", "image",
+        "read_picture", "read_scene", "render", "save_image", "scene_of", "send_picture", "write_picture",
+        "write_scene",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
@@ -264,6 +265,31 @@ def test_the_public_names_are_these_and_can_be_imported(package: str) -> None:
         assert name in dir(module)
     with pytest.raises(AttributeError, match=f"module '{package}' has no attribute 'nothing'"):
         _ = module.nothing
+
+
+def test_the_renderer_names_what_is_public_and_nothing_else_whatever_was_imported() -> None:
+    code = """
+import autocolor, autocolor.files.scene_sources, autocolor.commands.demo
+from autocolor import *
+print([name for name in dir(autocolor) if not name.startswith("__")])
+print([name for name in autocolor.__all__ if name not in globals()])
+"""
+    named, missing = run(code).splitlines()
+    assert named == str(sorted(PUBLIC_NAMES["autocolor"]))
+    assert missing == "[]"
+
+
+def test_the_renderer_tells_its_version_also_where_it_is_not_installed() -> None:
+    code = """
+import importlib.metadata, autocolor
+print(isinstance(autocolor.__version__, str))
+del autocolor.__version__
+def missing(name):
+    raise importlib.metadata.PackageNotFoundError(name)
+importlib.metadata.version = missing
+print(autocolor.__version__, "__version__" in dir(autocolor))
+"""
+    assert run(code).splitlines() == ["True", "0+unknown True"]
 
 
 @pytest.mark.parametrize("package", PUBLIC_NAMES)

@@ -160,6 +160,13 @@ def test_the_installed_demo_is_a_scene(installed: Installed, tmp_path: Path) -> 
     assert told["lights"] == expected["lights"]
 
 
+def test_the_installed_package_gives_its_demo_and_its_version(installed: Installed, tmp_path: Path) -> None:
+    code = "import autocolor; print(autocolor.__version__, autocolor.demo())"
+    version = importlib.metadata.version("autocolor")
+    told = installed.run("python", "-c", code, cwd=tmp_path).stdout
+    assert re.fullmatch(rf"{re.escape(version)} Scene\('coupe': Mesh\(.*\), surfaces 8, lights 4\)\n", told)
+
+
 def test_the_installed_display_writes_its_pattern_without_a_screen(
     installed: Installed, tmp_path: Path
 ) -> None:

@@ -1,11 +1,14 @@
-"""The location of the built-in demo: inside the installed package, or in `scenes` of a checkout."""
+"""The built-in demo, the coupe: inside the installed package, or in `scenes` of a checkout."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from autocolor.errors import MissingInputError
+
+if TYPE_CHECKING:
+    from autocolor.scene.scene import Scene
 
 PACKAGE: Final = Path(__file__).resolve().parents[1]
 PLACES: Final = (PACKAGE / "demo_scene", PACKAGE.parent / "scenes" / "coupe")
@@ -19,3 +22,10 @@ def demo_folder() -> Path:
     raise MissingInputError(
         f"the built-in demo must be at {PLACES[0]}, but nothing is there; install autocolor again"
     )
+
+
+def demo() -> Scene:
+    """The scene of the built-in demo, the coupe. Raises MissingInputError if it is not installed."""
+    from autocolor.files.scene_sources import read_scene
+
+    return read_scene(demo_folder()).replace(name="coupe")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 
 if TYPE_CHECKING:
@@ -17,12 +18,13 @@ EXAMPLES: Final = """\b
 Examples:
   autocolor tables car.obj                  print a scene file for the mesh
   autocolor tables parts/car.obj --write    write it to parts/scene.toml
+  autocolor tables car.npz --write          write scene.toml and the mesh of a picture file
 """
 
 
 @click.command(epilog=EXAMPLES)
 @scene_options
-@click.option("--write", is_flag=True, help="Write a scene.toml beside the mesh instead of printing it.")
+@click.option("--write", is_flag=True, help="Write a scene.toml beside SCENE instead of printing it.")
 @click.option("--force", is_flag=True, help="Overwrite an existing scene.toml.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
@@ -36,7 +38,8 @@ def tables(
     """Print the parts, surfaces, lights and view of SCENE as a scene file, including those created for it."""
     report = read(source)
     if write:
-        path = written(report, Path(source.path), force)
+        *meshes, path = written(report, Path(source.path), force)
+        tell_written(*map(str, meshes))
         click.echo(f"wrote {path}; render it by naming its folder or itself, not the mesh", err=True)
     elif as_json:
         from autocolor.files.plain_scene import plain_scene
@@ -54,18 +57,9 @@ def text_of(report: SceneReport) -> str:
     return scene_text(report.scene, report.mesh_files)
 
 
-def written(report: SceneReport, source: Path, force: bool) -> Path:
-    """Write the scene.toml beside the mesh and return its path.
+def written(report: SceneReport, source: Path, force: bool) -> list[Path]:
+    """Write the scene.toml beside the mesh, and the mesh if it has no file there; returns the files."""
+    from autocolor.files.scene_writing import write_scene_with_tables
 
-    Raises UsageError for a picture file, which has no mesh file beside it.
-    """
-    from autocolor.errors import UsageError
-    from autocolor.files.writing import write_atomically
-
-    if not report.mesh_files:
-        raise UsageError(
-            f"--write needs a scene with mesh files, not a picture file such as {source}; name a mesh file"
-        )
     folder = source if source.is_dir() else source.parent
-    write_atomically(folder / "scene.toml", text_of(report).encode("utf-8"), overwrite=force)
-    return folder / "scene.toml"
+    return write_scene_with_tables(folder, report.scene, overwrite=force)

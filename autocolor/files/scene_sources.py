@@ -8,6 +8,7 @@ from pathlib import Path
 
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
+from autocolor.files.mesh_sources import MeshSource, keep_source
 from autocolor.files.meshes.formats import (
     MeshFormat,
     format_of,
@@ -79,13 +80,21 @@ def read_scene_with_report(
     if isinstance(found, SceneFormat):
         if up != "z":
             raise UsageError(f"up is for mesh files, not for {path}, which gives its own; leave it out")
-        return found.read(path, outside=outside, surfaces=surfaces)
+        report = found.read(path, outside=outside, surfaces=surfaces)
+        return _with_source_kept(report, path.parent, path)
     if path.is_dir():
         names = dict(zip(found.keys, found.in_folder, strict=True))
-        return _bare_mesh(
-            {key: path / name for key, name in names.items()}, path.resolve().name, up, surfaces
-        )
-    return _bare_mesh({"file": path}, path.stem, up, surfaces)
+        files = {key: path / name for key, name in names.items()}
+        return _with_source_kept(_bare_mesh(files, path.resolve().name, up, surfaces), path)
+    return _with_source_kept(_bare_mesh({"file": path}, path.stem, up, surfaces), path.parent)
+
+
+def _with_source_kept(report: SceneReport, folder: Path, scene_file: Path | None = None) -> SceneReport:
+    """The report, after noting where its mesh was read from."""
+    if report.mesh_files:
+        path = None if scene_file is None else scene_file.resolve()
+        keep_source(report.scene.mesh, MeshSource(folder.resolve(), report.mesh_files, path))
+    return report
 
 
 def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:

@@ -16,11 +16,13 @@ from hypothesis import strategies as st
 
 from autocolor import (
     InputError,
+    OutputError,
     Scene,
     Studio,
     Surface,
     UsageError,
     read_picture,
+    read_scene,
     scene_of,
 )
 from autocolor.mapping.level_ranges import SCREENS
@@ -488,6 +490,23 @@ def test_a_studio_knows_whether_its_scene_is_saved() -> None:
     assert studio.is_changed
     studio.redo()
     assert not studio.is_changed
+
+
+def test_a_scene_that_was_written_to_a_scene_file_is_saved(tmp_path: Path) -> None:
+    studio, display = opened()
+    studio.recolor("body", blend=0.1)
+    written = display.frame_buffer.written
+    studio.save_scene(tmp_path / "car")
+    assert not studio.is_changed
+    assert display.frame_buffer.written == written
+    again = read_scene(tmp_path / "car")
+    assert again.replace(mesh=studio.scene.mesh, name=studio.scene.name).equals(studio.scene)
+    studio.recolor("body", blend=0.2)
+    with pytest.raises(OutputError, match="exists"):
+        studio.save_scene(tmp_path / "car")
+    assert studio.is_changed
+    studio.save_scene(tmp_path / "car" / "scene.toml", overwrite=True)
+    assert read_scene(tmp_path / "car").surface("body").paint.blend == 0.2
 
 
 def test_everything_can_be_sent_again() -> None:

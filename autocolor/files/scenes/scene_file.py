@@ -52,7 +52,21 @@ def read_scene_file(path: Path, *, outside: bool = False, surfaces: SurfaceSourc
     InputError with every problem of the file and its meshes, MissingInputError if missing files are the only
     problem.
     """
-    data = read_bytes(path, LARGEST_TEXT)
+    return report_of_text(read_bytes(path, LARGEST_TEXT), path, outside=outside, surfaces=surfaces)
+
+
+def report_of_text(
+    data: bytes,
+    path: Path,
+    *,
+    outside: bool = False,
+    surfaces: SurfaceSource = MATERIALS,
+    meshes: list[MeshReport] | None = None,
+) -> SceneReport:
+    """The scene that a file with this text would give at a path; see `read_scene_file`.
+
+    With `meshes`, those that it names, these are not read again.
+    """
     document = parsed_toml(data, path.name)
     problems = SceneProblems(path.name, data, document)
 
@@ -64,7 +78,9 @@ def read_scene_file(path: Path, *, outside: bool = False, surfaces: SurfaceSourc
         entries = []
     elif not entries:
         problems.note((), 'there must be a [[mesh]] with file = "NAME.obj", not none; add one')
-    reports = meshes_of(problems, entries, path.parent, outside=outside)
+    reports = meshes
+    if reports is None:
+        reports = meshes_of(problems, entries, path.parent, outside=outside)
     parts = _parts(problems, document, reports if len(reports) == len(entries) else None, tuple(given))
     problems.raise_any()
 

@@ -111,7 +111,7 @@ def key_lines(data: bytes) -> dict[KeyPath, int]:
         array = statement.startswith("[[")
         header = statement.startswith("[")
         # Let the parser itself read the header or the key.
-        path = _only_path(statement if header else statement.split("=", 1)[0] + "= 0", statement)
+        path = only_path(statement if header else statement.split("=", 1)[0] + "= 0", statement)
         resolved: KeyPath = () if header else table
         for depth, part in enumerate(path):
             resolved = (*resolved, part)
@@ -126,7 +126,7 @@ def key_lines(data: bytes) -> dict[KeyPath, int]:
     return lines
 
 
-def _only_path(text: str, statement: str) -> tuple[str, ...]:
+def only_path(text: str, statement: str) -> tuple[str, ...]:
     """The path of keys in a header, or in a statement whose value was removed."""
     try:
         value: Any = tomllib.loads(text)

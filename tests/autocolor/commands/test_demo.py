@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+import autocolor
 from autocolor import MissingInputError
 from autocolor.commands import demo
 
@@ -16,3 +17,18 @@ def test_a_demo_that_is_not_there_is_missing(tmp_path: Path, monkeypatch: pytest
     monkeypatch.setattr(demo, "PLACES", (tmp_path,))
     with pytest.raises(MissingInputError, match="install autocolor again"):
         demo.demo_folder()
+
+
+def test_the_demo_is_a_scene_to_go_on_with() -> None:
+    scene = autocolor.demo()
+    assert scene.name == "coupe"
+    assert [light.name for light in scene.lights] == ["key", "side", "back", "rim"]
+    assert scene.with_surface("body", object_color="#1f3f8f").surface("body").paint.object_color[2] == 0x8F
+
+
+def test_the_demo_is_saved_elsewhere_with_its_mesh(tmp_path: Path) -> None:
+    scene = autocolor.demo()
+    autocolor.write_scene(tmp_path / "coupe", scene)
+    again = autocolor.read_scene(tmp_path / "coupe")
+    assert again.replace(mesh=scene.mesh).equals(scene)
+    assert sorted(path.name for path in (tmp_path / "coupe").iterdir()) == ["mesh.obj", "scene.toml"]

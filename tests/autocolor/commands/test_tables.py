@@ -60,3 +60,33 @@ def test_tables_as_json_hold_every_table(mesh: Path) -> None:
     assert values["parts"] == [{"name": "lid", "surface": "surface", "stage": False}]
     assert len(values["lights"]) == 4
     assert {"surfaces", "view", "ambient", "mesh"} <= set(values)
+
+
+def test_the_tables_of_a_picture_file_are_written_with_its_mesh_beside(mesh: Path, tmp_path: Path) -> None:
+    scene = autocolor.read_scene(mesh).with_light("key", intensity=2.5)
+    path = tmp_path / "pictures" / "square.npz"
+    path.parent.mkdir()
+    autocolor.write_picture(path, autocolor.render(scene, 24, 32), scene)
+    result = CliRunner().invoke(tables, [str(path), "--write"])
+    assert result.exit_code == 0, result.output
+    assert f"wrote {path.parent / 'mesh.obj'}\nwrote {path.parent / 'scene.toml'}; render it" in result.stderr
+    again = autocolor.read_scene(path.parent)
+    assert again.replace(mesh=scene.mesh, name=scene.name).equals(scene)
+    assert (again.mesh.coordinates == scene.mesh.coordinates).all()
+    refused = CliRunner().invoke(tables, [str(path), "--write"])
+    assert isinstance(refused.exception, autocolor.OutputError)
+    assert len(list(path.parent.iterdir())) == 3
+
+
+def test_tables_written_over_a_scene_file_keep_its_comments(mesh: Path) -> None:
+    text = '# By hand.\nambient = 0.50 # dim\n\n[[mesh]]\nfile = "square.obj"\n'
+    (mesh.parent / "scene.toml").write_text(text)
+    scene = autocolor.read_scene(mesh.parent)
+    result = CliRunner().invoke(tables, [str(mesh.parent), "--write", "--force"])
+    assert result.exit_code == 0, result.output
+    after = (mesh.parent / "scene.toml").read_text()
+    assert after.startswith("# By hand.\nambient = 0.50 # dim\n")
+    assert after.count("[[lights]]") == 4
+    assert "two_sided = true" in after
+    assert "crease_angle = 40.0" in after
+    assert autocolor.read_scene(mesh.parent).replace(mesh=scene.mesh).equals(scene)

@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Scene, read_picture, read_scene, render, write_picture
 from autocolor.errors import InputError, MissingInputError, OutputError, WriteError
-from autocolor.files.picture_file import MEMBERS, SavedPicture
+from autocolor.files.picture_file import PICTURE_FILE, SavedPicture
 from autocolor.mapping.display_image import display_image
 from tests.autocolor.meshes import cube, wall_scene
 from tests.autocolor.strategies import scenes
@@ -139,7 +139,7 @@ def test_numpy_can_open_a_picture_file(tmp_path: Path) -> None:
     scene = lit_wall()
     picture = saved(tmp_path / "wall.npz", scene).picture
     with np.load(tmp_path / "wall.npz") as arrays:
-        assert set(arrays) == set(MEMBERS)
+        assert set(arrays) == {"header", *PICTURE_FILE.arrays}
         scale = json.loads(arrays["header"].tobytes())["scale"]
         assert (arrays["relative_intensity"] * np.float32(scale) == picture.intensity).all()
         assert (arrays["surface_number"] == picture.surface_number).all()

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 from pathlib import Path
@@ -72,7 +73,8 @@ def test_a_picture_file_of_the_first_format_is_still_read(
 ) -> None:
     scene = wall_scene(ambient=0.5)
     picture = render(scene, 6, 8)
-    monkeypatch.setattr(picture_file, "FORMAT", "autocolor picture 1")
+    older = dataclasses.replace(picture_file.PICTURE_FILE, formats=("autocolor picture 1",))
+    monkeypatch.setattr(picture_file, "PICTURE_FILE", older)
     monkeypatch.setattr(picture_file, "plain_scene", lambda given: nested(plain_scene(given)))
     write_picture(tmp_path / "old.npz", picture, scene)
     monkeypatch.undo()

@@ -1,0 +1,60 @@
+"""A mesh as arrays, an .npz archive that numpy can open, for meshes that no text format holds as they are.
+
+The members are `header` (the part names, as JSON in UTF-8), `coordinates` (nodes, 3) float64, `node_numbers`
+(polygons, 4) and `part_numbers` (polygons,) int32. What the other formats repair, drop or rename is kept:
+polygons without area, parts without polygons, and names of any characters.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from autocolor.errors import InputError
+from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
+from autocolor.files.meshes.formats import MeshFormat, register
+from autocolor.files.reading import LARGEST_MESH_FILE
+from autocolor.files.repair.polygons import MeshReport, upright
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.node_normals import CREASE_ANGLE
+
+SUFFIX: Final = ".tables"
+
+TABLE_FILE: Final = ArrayFileKind(
+    noun="table file",
+    advice="write the scene again",
+    largest=LARGEST_MESH_FILE,
+    formats=("autocolor tables 1",),
+    keys=frozenset(("part_names",)),
+    arrays={"coordinates": ("<f8", 2), "node_numbers": ("<i4", 2), "part_numbers": ("<i4", 1)},
+)
+
+
+def table_file_bytes(mesh: Mesh) -> bytes:
+    """The content of the table file of a mesh, without its crease angle."""
+    arrays = {name: vars(mesh)[name] for name in TABLE_FILE.arrays}
+    return array_file_bytes(TABLE_FILE, {"part_names": mesh.part_names}, arrays)
+
+
+def read_table_file(path: Path, *, up: str = "z", crease_angle: float | None = None) -> MeshReport:
+    """The mesh of a table file, in which nothing is ever repaired. Raises InputError."""
+    header, arrays = read_array_file(TABLE_FILE, path)
+    names = header["part_names"]
+    try:
+        mesh = Mesh(
+            upright(arrays["coordinates"], up)
+            if arrays["coordinates"].shape[1] == 3
+            else arrays["coordinates"],
+            arrays["node_numbers"],
+            arrays["part_numbers"],
+            tuple(names) if isinstance(names, list) else (),
+            CREASE_ANGLE if crease_angle is None else crease_angle,
+        )
+    except InputError as error:
+        raise InputError(
+            f"{path.name}: {problem[:400]}; {TABLE_FILE.advice}" for problem in error.problems
+        ) from None
+    return MeshReport(mesh)
+
+
+TABLES: Final = register(MeshFormat("tables", read_table_file, (SUFFIX,)))

@@ -1,0 +1,215 @@
+"""Changing values in the text of a TOML file; everything else stays as it is written.
+
+A changed value takes the place of the old one, also inside an inline table. A new key goes below the others
+of its table, or into a new table after those of the same kind. With a removed key goes the rest of its line;
+the comments above it stay, but those above the header of a removed table go with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from autocolor.files.scenes.scene_text import toml_key, toml_value
+from autocolor.files.scenes.toml_blocks import Block, Statement, blocks_of, inline_items
+from autocolor.files.scenes.toml_text import KeyPath
+
+
+class TomlText:
+    """A valid TOML text to be edited.
+
+    `tables` are the names of the tables that get headers of their own, in the order of new ones.
+
+    A path leads from the root to a value. A row of an array of tables has the number that it had in the text
+    at first; a new row has any other number.
+    """
+
+    def __init__(self, text: str, tables: Sequence[str]) -> None:
+        # Edit lines that end with line feeds; a file whose lines end otherwise gets them back.
+        self._ends = "\r\n" if text.count("\r\n") == text.count("\n") > 0 else "\n"
+        self._tables = tables
+        self._blocks = blocks_of(text.replace(self._ends, "\n"))
+
+        self._index()
+
+    @property
+    def text(self) -> str:
+        """The text as it is now."""
+        return "".join(block.text for block in self._blocks).replace("\n", self._ends)
+
+    def has(self, path: KeyPath) -> bool:
+        """Whether the text has something at a path or below it, not counting what is in inline tables."""
+        return path in self._paths
+
+    def set(self, path: KeyPath, value: Any) -> None:
+        """Give the value at a path, which may be new."""
+        for end in range(1, len(path) + 1):
+            statement = self._statement_at.get(path[:end])
+            if statement is not None:
+                rest = path[end:]
+                statement.value = _inline(statement.value, rest, value) if rest else toml_value(value)
+                return
+        self.remove(path)
+        self._add(path, value)
+
+    def remove(self, path: KeyPath) -> None:
+        """Remove what is at a path and below it, if anything."""
+        for end in range(1, len(path)):
+            statement = self._statement_at.get(path[:end])
+            if statement is not None:
+                statement.value = _inline_without(statement.value, path[end:])
+        if path not in self._paths:
+            return
+        last = self._blocks[-1]
+        self._blocks = [block for block in self._blocks if not block.path or not _is_below(block.path, path)]
+        for block in self._blocks:
+            kept, above = [], ""
+            for statement in block.statements:
+                if _is_below(statement.path, path):
+                    above += statement.before
+                else:
+                    statement.before, above = above + statement.before, ""
+                    kept.append(statement)
+            block.statements, block.tail = kept, above + block.tail
+        if self._blocks[-1] is not last:
+            end_block = self._blocks[-1]
+            end_block.tail = f"{end_block.tail.rstrip()}\n" if end_block.tail.strip() else ""
+        self._index()
+
+    def arrange(self, table: str, keys: Sequence[str | int]) -> bool:
+        """Put the rows of a table in the order of their names or numbers; whether each has a header."""
+        rows = [block for block in self._blocks if len(block.path) > 1 and block.path[0] == table]
+        ordered = [block for key in keys for block in rows if block.path[1] == key]
+        if len(ordered) == len(rows) and ordered != rows:
+            place = self._blocks.index(rows[0])
+            others = [block for block in self._blocks if block not in rows]
+            self._blocks = [*others[:place], *ordered, *others[place:]]
+            self._end_with_empty_lines(place - 1, place + len(rows) - 1)
+        return {block.path[1] for block in rows} == set(keys)
+
+    def _index(self) -> None:
+        """Note where everything is, so that an edit of many keys does not look at each for each."""
+        self._paths: set[KeyPath] = {()}
+        self._statement_at: dict[KeyPath, Statement] = {}
+        self._block_at: dict[KeyPath, Block] = {}
+        for block in self._blocks:
+            self._block_at.setdefault(block.path, block)
+            self._note(block.path)
+            for statement in block.statements:
+                self._statement_at[statement.path] = statement
+                self._note(statement.path)
+
+    def _note(self, path: KeyPath) -> None:
+        self._paths.update(path[:end] for end in range(1, len(path) + 1))
+
+    def _add(self, path: KeyPath, value: Any) -> None:
+        """Add a key that the text does not have."""
+        table = path[:-1]
+        block = self._block_at.get(table)
+        if block is None and table in self._paths:
+            # Next to others of the same table that are written with dotted keys.
+            for block in self._blocks:
+                beside = [row for row, each in enumerate(block.statements) if _is_below(each.path, table)]
+                if beside and _is_below(table, block.path):
+                    self._insert(block, beside[-1] + 1, path, value)
+                    return
+            # There are only headers of tables inside it.
+            block = self._new_block(table)
+        if block is None:
+            above = (self._block_at.get(table[:end]) for end in range(len(table) - 1, 0, -1))
+            block = next((each for each in above if each is not None), None)
+            if path[0] not in self._tables:
+                block = block or self._blocks[0]
+            elif block is None or self._has_headers(block):
+                block = self._new_block(table)
+        self._insert(block, len(block.statements), path, value)
+
+    def _has_headers(self, block: Block) -> bool:
+        """Whether tables inside of a block's table have headers of their own."""
+        return any(_is_below(each.path, block.path) and each is not block for each in self._blocks)
+
+    def _insert(self, block: Block, row: int, path: KeyPath, value: Any) -> None:
+        """Write a new key as a statement of a block, at a row of its statements."""
+        before = ""
+        if row:
+            block.statements[row - 1].after = block.statements[row - 1].after.rstrip("\n") + "\n"
+        elif block.head:
+            block.head = block.head.rstrip("\n") + "\n"
+        elif not block.statements:
+            # Below the comment at the top of the file.
+            before, block.tail = block.tail, "\n"
+        key = ".".join(toml_key(part) for part in path[len(block.path) :] if isinstance(part, str))
+        statement = Statement(path, before, key, " = ", toml_value(value), "\n")
+        block.statements.insert(row, statement)
+        self._statement_at[path] = statement
+        self._note(path)
+
+    def _new_block(self, path: KeyPath) -> Block:
+        """A new table without keys."""
+        keys = [part for part in path if isinstance(part, str)]
+        name = ".".join(map(toml_key, keys))
+        block = Block(path, f"[[{name}]]\n" if isinstance(path[-1], int) else f"[{name}]\n")
+        place = self._place_before(path, keys[0])
+        self._blocks.insert(place + 1, block)
+        self._block_at[path] = block
+        self._note(path)
+        self._end_with_empty_lines(place, place + 1)
+        return block
+
+    def _place_before(self, path: KeyPath, table: str) -> int:
+        """The row of the block after which a new one goes: the last that is most like it.
+
+        Without one like it, that is the last block of a table that is to be written before this one.
+        """
+        starts = [path[:end] for end in range(len(path), 0, -1) if path[:end] in self._paths]
+        earlier = self._tables[: self._tables.index(table)]
+        for start in (*starts, *((each,) for each in reversed(earlier))):
+            for row in range(len(self._blocks) - 1, 0, -1):
+                if _is_below(self._blocks[row].path, start):
+                    return row
+        return 0
+
+    def _end_with_empty_lines(self, first: int, last: int) -> None:
+        """Let an empty line follow each of some blocks, unless the next is of the same row."""
+        rows = self._blocks[first : last + 1]
+        for block, following in zip(rows, self._blocks[first + 1 : last + 2], strict=False):
+            is_same_row = len(block.path) > 1 and block.path[:2] == following.path[:2]
+            text = block.text
+            if text and not is_same_row and not text.endswith("\n\n"):
+                block.tail += "\n" if text.endswith("\n") else "\n\n"
+            elif text and not text.endswith("\n"):
+                block.tail += "\n"
+
+
+def _is_below(path: KeyPath, above: KeyPath) -> bool:
+    """Whether a path is another one, or leads on from it."""
+    return path[: len(above)] == above
+
+
+def _inline(text: str, path: KeyPath, value: Any) -> str:
+    """An inline table with another value at a path inside it, which may be new."""
+    items = inline_items(text)
+    for item in items:
+        if _is_below(path, item.path):
+            inner, rest = text[item.start : item.stop], path[len(item.path) :]
+            written = _inline(inner, rest, value) if rest else toml_value(value)
+            return text[: item.start] + written + text[item.stop :]
+    text = _inline_without(text, path)
+    key = ".".join(toml_key(str(part)) for part in path)
+    start = f"{text[:-1].rstrip()}," if inline_items(text) else "{"
+    return f"{start} {key} = {toml_value(value)} }}"
+
+
+def _inline_without(text: str, path: KeyPath) -> str:
+    """An inline table without what is at a path inside it and below, if anything."""
+    items = inline_items(text)
+    kept = []
+    for item in items:
+        inner, rest = text[item.start : item.stop], path[len(item.path) :]
+        if rest and _is_below(path, item.path):
+            return text[: item.start] + _inline_without(inner, rest) + text[item.stop :]
+        if not _is_below(item.path, path):
+            kept.append(f"{item.key} = {inner}")
+    if len(kept) == len(items):
+        return text
+    return f"{{ {', '.join(kept)} }}" if kept else "{}"

@@ -1,0 +1,211 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+
+from autocolor import Flap, Flaps, InputError, Light, Scene
+from autocolor.files.meshes.formats import read_mesh
+from autocolor.files.repair.polygons import MeshReport
+from autocolor.files.scenes.scene_edit import (
+    completed,
+    edited_to,
+    with_crease_angle,
+    with_meshes,
+    without_parts,
+)
+from autocolor.files.scenes.scene_file import report_of_text
+from autocolor.scene.columns.rows import with_values
+from tests.autocolor.strategies import scenes
+
+MESH = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\no part 0\nf 1 2 3 4\no part 1\nf 1 2 3\n"
+
+INLINE = """\
+# Mine.
+lights = [ {name="key", position=[1,2,3]}, {name="b", position=[1,2,3], flaps={x={minimum=0}}} ]
+mesh = [ {file="car.obj"} ]
+view = { eye = [1,2,3], target=[0,0,0] }
+parts = { "part 0" = {surface="body"}, "part 1".surface = "glass" }
+surfaces = { body = { diffuse = 0.5, model="blinn", exponent = 3 }, glass = {} }
+exposure = { body = [0.0, 1.0] }
+"""
+
+DOTTED = """\
+# Mine.
+view.eye = [1,2,3]
+view.target = [0,0,0]
+parts."part 0".surface = "body"
+parts."part 1".surface = "glass"
+surfaces.body.diffuse = 0.5
+surfaces.glass.model = "cook-torrance"
+exposure.body = [0.0, 1.0]
+exposure.object = [0.0, 1.0]
+[[mesh]]
+file = "car.obj"
+[[lights]]
+name = "fill"
+position = [1,2,3]
+direction = [1,2,3]
+flaps.x.minimum = 0.5
+flaps.z.on = false
+"""
+
+HEADERS = """\
+# Mine.
+[view]
+eye = [1,2,3]
+target = [0,0,0]
+[parts]
+[parts."part 0"]
+surface = "body"
+[parts."part 1"]
+surface = "glass"
+[surfaces.glass]
+[surfaces.body]
+diffuse = 0.5
+[exposure]
+body = [0.0, 1.0]
+[[lights]]
+name = "rim"
+position = [1,2,3]
+[lights.flaps]
+[lights.flaps.x]
+minimum = 0.5
+[lights.flaps.z]
+on = false
+[[lights]]
+name = "key"
+position = [1,2,3]
+[[mesh]]
+file = "car.obj"
+"""
+
+
+@pytest.fixture(scope="module")
+def meshes(tmp_path_factory: pytest.TempPathFactory) -> list[MeshReport]:
+    path = tmp_path_factory.mktemp("mesh") / "car.obj"
+    path.write_text(MESH)
+    return [read_mesh({"file": path})]
+
+
+def read(text: bytes, meshes: list[MeshReport]) -> Scene:
+    return report_of_text(text, Path("car", "scene.toml"), meshes=meshes).scene
+
+
+def edited(text: str, scene: Scene, meshes: list[MeshReport]) -> str:
+    data = edited_to(text.encode(), scene, lambda data: read(data, meshes))
+    assert data is not None
+    return data.decode()
+
+
+@pytest.mark.parametrize("text", [INLINE, DOTTED, HEADERS])
+@given(drawn=scenes())
+def test_a_file_in_any_style_is_changed_to_any_scene(
+    text: str, drawn: Scene, meshes: list[MeshReport]
+) -> None:
+    scene = drawn.replace(mesh=meshes[0].mesh)
+    after = edited(text, scene, meshes)
+    assert with_values(read(after.encode(), meshes), {"mesh": scene.mesh, "name": scene.name}).equals(scene)
+    assert after.count("# Mine.") == 1
+    # Once there, it stays.
+    assert edited(after, scene, meshes) == after
+
+
+@pytest.mark.parametrize("text", [INLINE, DOTTED, HEADERS])
+def test_without_a_change_nothing_changes(text: str, meshes: list[MeshReport]) -> None:
+    assert edited(text, read(text.encode(), meshes), meshes) == text
+
+
+@pytest.mark.parametrize(
+    "text", [INLINE, DOTTED, HEADERS, HEADERS.replace("[surfaces.g", "[surfaces]\n[surfaces.g")]
+)
+def test_surfaces_in_another_order_are_written_in_that_order(text: str, meshes: list[MeshReport]) -> None:
+    scene = read(text.encode(), meshes)
+    new = scene.surfaces[0].replace(name="new")
+    for surfaces in (
+        scene.surfaces[::-1],
+        (*scene.surfaces, new),
+        (scene.surfaces[1], new, scene.surfaces[0]),
+    ):
+        wanted = scene.replace(surfaces=surfaces)
+        after = edited(text, wanted, meshes)
+        assert read(after.encode(), meshes).surfaces == surfaces
+        assert after.startswith("# Mine.\n")
+
+
+def test_a_new_model_takes_its_parameters_along(meshes: list[MeshReport]) -> None:
+    scene = read(HEADERS.encode(), meshes).with_surface("body", model="cook-torrance", roughness=0.5)
+    after = edited(HEADERS, scene, meshes)
+    # What has its default need not be told.
+    assert '[surfaces.body]\ndiffuse = 0.5\nmodel = "cook-torrance"\nroughness = 0.5\n' in after
+    back = scene.with_surface("body", model="blinn", exponent=7)
+    assert 'diffuse = 0.5\nmodel = "blinn"\nexponent = 7.0\n' in edited(after, back, meshes)
+
+
+def test_an_aim_takes_the_place_of_a_direction(meshes: list[MeshReport]) -> None:
+    scene = read(DOTTED.encode(), meshes).with_light("fill", aim=(0, 0, 9))
+    after = edited(DOTTED, scene, meshes)
+    assert "direction = [1,2,3]\n" not in after
+    assert "aim = [0.0, 0.0, 9.0]\n" in after
+
+
+def test_a_new_light_has_its_flaps(meshes: list[MeshReport]) -> None:
+    scene = read(DOTTED.encode(), meshes)
+    new = Light("new", (1.0, 1.0, 1.0), flaps=Flaps(y=Flap(), z=Flap(0.5, on=False)))
+    after = edited(DOTTED, scene.replace(lights=(*scene.lights, new)), meshes)
+    assert after == DOTTED + (
+        '\n[[lights]]\nname = "new"\nposition = [1.0, 1.0, 1.0]\n'
+        "flaps.y = {}\nflaps.z = { minimum = 0.5, on = false }\n"
+    )
+
+
+def test_a_text_that_cannot_be_read_is_not_changed(meshes: list[MeshReport]) -> None:
+    scene = read(DOTTED.encode(), meshes)
+
+    def refuse(_: bytes) -> Scene:
+        raise InputError("no")
+
+    assert edited_to(DOTTED.encode(), scene, refuse) is None
+
+
+def test_a_text_that_never_gives_the_scene_is_given_up(meshes: list[MeshReport]) -> None:
+    scene = read(DOTTED.encode(), meshes)
+    assert edited_to(DOTTED.encode(), scene.replace(ambient=0.7), lambda _: scene) is None
+
+
+def test_mesh_tables_are_replaced_where_they_are() -> None:
+    text = '# A.\n[[mesh]]\nfile = "a.obj" # old\n[[mesh]]\nfile = "b.obj"\n[view]\n'
+    after = with_meshes(text.encode(), ({"file": "c.obj", "up": "y"}, {"file": "d.obj", "up": "z"}))
+    assert after == b'# A.\n[[mesh]]\nfile = "c.obj"\nup = "y"\n\n[[mesh]]\nfile = "d.obj"\n\n[view]\n'
+    assert with_meshes(b'mesh = [{file="a"}]\n', ({"file": "c"},)) == b'[[mesh]]\nfile = "c"\n'
+
+
+def test_a_crease_angle_is_set_where_one_is() -> None:
+    text = '[[mesh]]\nfile = "a"\n[[mesh]]\nfile = "b"\ncrease_angle = 3 # deg\n'
+    assert with_crease_angle(text.encode(), 7.5).decode() == text.replace("3 #", "7.5 #")
+    assert with_crease_angle(b'[[mesh]]\nfile = "a"\n', 7.5) == b'[[mesh]]\nfile = "a"\ncrease_angle = 7.5\n'
+
+
+def test_a_crease_angle_is_set_also_in_an_inline_array() -> None:
+    assert with_crease_angle(b'mesh = [{file="a"}, {file="b"}] # two\n', 7.5) == (
+        b'mesh = [{ file = "a", crease_angle = 7.5 }, { file = "b" }] # two\n'
+    )
+
+
+def test_parts_are_removed() -> None:
+    assert without_parts(b'[parts]\na.surface = "x"\nb.stage = true\n', {"a"}) == (
+        b"[parts]\nb.stage = true\n"
+    )
+
+
+@pytest.mark.parametrize("text", [INLINE, DOTTED, HEADERS, '# Mine.\n[[mesh]]\nfile = "car.obj"\n'])
+def test_a_text_is_completed_with_all_that_it_does_not_tell(text: str, meshes: list[MeshReport]) -> None:
+    scene = read(text.encode(), meshes)
+    after = completed(text.encode(), scene)
+    again = report_of_text(after, Path("car", "scene.toml"), meshes=meshes)
+    assert again.scene.replace(mesh=scene.mesh).equals(scene)
+    assert again.created == ()
+    assert after.count(b"# Mine.") == 1
+    assert after.count(b"two_sided") == len(scene.surfaces)
+    assert completed(after, scene) == after

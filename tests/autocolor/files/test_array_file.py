@@ -1,0 +1,69 @@
+"""What picture files and table files have in common; their own tests damage whole files of theirs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from autocolor import InputError
+from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
+
+KIND = ArrayFileKind(
+    noun="test file",
+    advice="make it again",
+    largest=1 << 16,
+    formats=("test 2", "test 1"),
+    keys=frozenset(("name",)),
+    arrays={"numbers": ("<i4", 2)},
+)
+NUMBERS = {"numbers": np.arange(6).reshape(2, 3)}
+
+
+def test_the_header_and_the_arrays_are_read_back(tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(array_file_bytes(KIND, {"name": "ö"}, NUMBERS))
+    header, arrays = read_array_file(KIND, tmp_path / "file")
+    assert header == {"format": "test 2", "name": "ö"}
+    assert arrays.keys() == {"numbers"}
+    assert arrays["numbers"].tolist() == [[0, 1, 2], [3, 4, 5]]
+    assert arrays["numbers"].dtype == np.int32
+
+
+def test_numpy_opens_it(tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(array_file_bytes(KIND, {"name": ""}, NUMBERS))
+    with np.load(tmp_path / "file") as archive:
+        assert archive["numbers"].tolist() == NUMBERS["numbers"].tolist()
+
+
+def test_the_same_values_give_the_same_bytes() -> None:
+    assert array_file_bytes(KIND, {"name": "a"}, NUMBERS) == array_file_bytes(KIND, {"name": "a"}, NUMBERS)
+
+
+def test_an_older_format_is_read_and_any_other_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(array_file_bytes(KIND, {"name": "", "format": "test 1"}, NUMBERS))
+    assert read_array_file(KIND, tmp_path / "file").header["format"] == "test 1"
+    (tmp_path / "file").write_bytes(array_file_bytes(KIND, {"name": "", "format": "test 3"}, NUMBERS))
+    with pytest.raises(InputError, match=r"file, header: its format must be 'test 2', not another; make it"):
+        read_array_file(KIND, tmp_path / "file")
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"PK\x03\x04",
+        array_file_bytes(KIND, {"name": ""}, NUMBERS)[:-30],
+        array_file_bytes(KIND, {"name": ""}, NUMBERS).replace(b"(2, 3)", b"(9, 9)"),
+    ],
+)
+def test_a_damaged_file_is_refused_and_told_by_its_kind(tmp_path: Path, data: bytes) -> None:
+    (tmp_path / "file").write_bytes(data)
+    with pytest.raises(InputError, match=r"a test file must be whole .*; make it again"):
+        read_array_file(KIND, tmp_path / "file")
+
+
+def test_a_file_that_is_too_large_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(bytes(KIND.largest + 1))
+    with pytest.raises(InputError, match="a file must have at most 65,536 bytes, not more"):
+        read_array_file(KIND, tmp_path / "file")
