@@ -44,6 +44,7 @@ class Session:
 
     def __init__(self, screen: VirtualScreen, folder: Path) -> None:
         self.screen = screen
+        self.folder = folder
         (folder / "box.obj").write_text(MESH)
         self.environment = {**os.environ, "DISPLAY": screen.name, "PYTHONPATH": str(ROOT)}
         self.environment["XDG_RUNTIME_DIR"] = str(folder)
@@ -84,10 +85,14 @@ class Session:
 
         There are none when the window that was found is gone: while one opens, others come and go below it.
         """
+        left, top, width, height = self.place()
+        return self.screen.pixels()[top : top + height, left : left + width]
+
+    def place(self) -> tuple[int, ...]:
+        """The window's left, top, width and height; zeros if it is gone."""
         geometry = self.tool("getwindowgeometry", "--shell", self.window())
         values = dict(line.split("=") for line in geometry.split() if "=" in line)
-        left, top, width, height = (int(values.get(key, 0)) for key in ("X", "Y", "WIDTH", "HEIGHT"))
-        return self.screen.pixels()[top : top + height, left : left + width]
+        return tuple(int(values.get(key, 0)) for key in ("X", "Y", "WIDTH", "HEIGHT"))
 
     def shows_the_field(self) -> bool:
         if not self.window():
@@ -161,6 +166,66 @@ def test_a_key_held_down_is_undone_at_once(session: Session) -> None:
     assert session.caption() == "autocolor - box - [front] - undone"
     session.press("Escape")
     assert session.end() == (0, "", "")
+
+
+def test_after_a_key_is_released_nothing_goes_on(session: Session) -> None:
+    session.tool("keydown", "Right")
+    session.wait_for(lambda: not session.shows_the_field())
+    time.sleep(0.8)
+    session.tool("keyup", "Right")
+    time.sleep(0.3)
+    released = session.shown().copy()
+    time.sleep(0.5)
+    assert np.array_equal(session.shown(), released)
+    # The picture is fine: it is that of the same view in another window.
+    session.press("ctrl+s")
+    session.wait_for(lambda: "box.npz" in session.caption())
+    view = read_picture(session.folder / "box.npz").scene.view
+    session.viewer.studio.edit(session.viewer.studio.scene.replace(view=view))
+    session.wait_for_the_field()
+
+
+def test_a_drag_turns_the_object_and_is_undone_at_once(session: Session) -> None:
+    session.tool(
+        "mousemove", "700", "500", "mousedown", "1", "mousemove", "760", "520", "mousemove", "790", "480"
+    )
+    session.wait_for(lambda: not session.shows_the_field())
+    session.tool("mouseup", "1")
+    session.wait_for(lambda: session.caption().startswith("autocolor - box*"))
+    session.press("ctrl+z")
+    session.wait_for_the_field()
+    assert session.caption() == "autocolor - box - [front] - undone"
+
+
+def test_in_full_screen_a_message_stands_on_the_display_and_escape_leaves(session: Session) -> None:
+    def has_the_field() -> bool:
+        blocks = session.display.field().repeat(2, axis=0).repeat(2, axis=1)
+        return np.array_equal(session.shown()[70:1030, 60:1340], blocks)
+
+    session.press("F11")
+    # Without a window manager the window keeps its place, and reaches beyond the screen.
+    session.wait_for(lambda: session.place()[2:] == (1400, 1100))
+
+    def has_told() -> bool:
+        # Until the new window has the keyboard, keys are lost.
+        session.press("9", "9")
+        return session.caption().endswith(session.viewer.message)
+
+    session.wait_for(has_told)
+    session.viewer.on_tick(True, True)
+    assert session.viewer.message == "the scene has no light 9"
+    session.wait_for(has_the_field)
+    session.press("F12")
+    screenshot = session.folder / "autocolor-0001.png"
+    session.viewer.tell(f"saved {screenshot}")
+    session.viewer.on_tick(True, True)
+    session.wait_for(has_the_field)
+    # The screenshot itself is without a message.
+    session.viewer.tell("")
+    assert screenshot.read_bytes() == session.display._repr_png_()
+    session.press("Escape")
+    session.viewer.on_tick(True, False)
+    session.wait_for_the_field()
 
 
 def test_unsaved_work_is_left_only_by_asking_twice(session: Session) -> None:
