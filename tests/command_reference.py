@@ -79,8 +79,10 @@ COMMANDS = (
     (74, "autocolor info car > /dev/full"),
     (74, "ramtek list lines.ramtek > /dev/full"),
     (130, "ramtek play - -o new.png --record new.ramtek"),
+    (141, "autocolor info car | true"),
+    (141, "ramtek list lines.ramtek | true"),
 )
-"""The exit code of each command, and its line. Ctrl+C is pressed in the last one."""
+"""The exit code of each command, and its line. Ctrl+C is pressed in the one that reads stdin."""
 
 COMPLETION = """
 ## What a shell completes

@@ -33,7 +33,7 @@ def test_every_exit_code_of_an_error_has_a_meaning_and_nearly_all_a_command() ->
 @LINUX
 def test_a_command_whose_reader_left_or_whose_disk_is_full_is_run_as_such() -> None:
     with folder() as place:
-        assert ran(f"autocolor info car{LEFT}", place).code in (74, 141)
+        assert ran(f"autocolor info car{LEFT}", place) == (141, "")
         assert ran("autocolor info car > /dev/full", place).code == 74
         assert ran("autocolor info car", place).code == 0
         assert Path(place, "car.npz").exists()
