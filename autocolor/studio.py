@@ -87,7 +87,7 @@ class Studio:
     def recolor(self, surface: str, /, **changes: Unpack[PaintChanges]) -> None:
         """Change the colors of a surface; this sends entries, but no words.
 
-        `changes` are fields of its Paint: object_color, light_color ("#rrggbb" or three numbers), blend,
+        `changes` are fields of its Paint: object_color, light_color ("#rrggbb", a name or three numbers), blend,
         light_percentage.
         """
         known = fields_of(Paint)
