@@ -87,8 +87,8 @@ class Studio:
     def recolor(self, surface: str, /, **changes: Unpack[PaintChanges]) -> None:
         """Change the colors of a surface; this sends entries, but no words.
 
-        `changes` are fields of its Paint: object_color, light_color ("#rrggbb", a name or three numbers), blend,
-        light_percentage.
+        `changes` are fields of its Paint: object_color and light_color ("#rrggbb", a name, or three whole
+        numbers), blend, light_percentage.
         """
         known = fields_of(Paint)
         for name in changes:

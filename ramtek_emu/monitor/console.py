@@ -15,11 +15,11 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Final
 
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import OutputExistsError, RamtekError
-from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Mouse
+from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Pointer
 from ramtek_emu.monitor.overlay import PAGES, Overlay
 
 LEFT: Final = 1
@@ -28,18 +28,6 @@ RIGHT: Final = 3
 MODIFIERS: Final = frozenset(
     f"{side} {key}" for side in ("left", "right") for key in ("shift", "ctrl", "alt", "meta")
 )
-
-
-class Pointer(NamedTuple):
-    """The mouse over the field, in elements and lines of the display; `enter`: the left button is down."""
-
-    element: int
-    line: int
-    enter: bool
-    action: str
-    """As in `Mouse`."""
-    button: int = 0
-    steps: int = 1
 
 
 class Console(ABC):
@@ -120,8 +108,8 @@ class Console(ABC):
         """Handle one input."""
         if isinstance(user_input, Key):
             self.handle_key(user_input)
-        elif isinstance(user_input, Mouse):
-            self.handle_mouse(user_input)
+        elif isinstance(user_input, Pointer):
+            self.handle_pointer(user_input)
         elif isinstance(user_input, Close):
             self.ask_to_close()
         elif self.on_drop is not None:
@@ -163,17 +151,15 @@ class Console(ABC):
         except RamtekError as refusal:
             self.tell(str(refusal))
 
-    def handle_mouse(self, mouse: Mouse) -> None:
+    def handle_pointer(self, pointer: Pointer) -> None:
         """Move the joystick, set its switches, and call `on_pointer`."""
         joystick = self.display.joystick
-        joystick.move_to(mouse.element, mouse.line)
-        if mouse.button == LEFT:
-            self._enter = mouse.action == "press"
+        joystick.move_to(pointer.element, pointer.line)
+        if pointer.button == LEFT:
+            self._enter = pointer.action == "press"
             if self._enter:
                 joystick.press_enter()
-        elif mouse.button == RIGHT:
-            joystick.track = mouse.action == "press"
+        elif pointer.button == RIGHT:
+            joystick.track = pointer.action == "press"
         if self.on_pointer is not None:
-            self.on_pointer(
-                Pointer(mouse.element, mouse.line, self._enter, mouse.action, mouse.button, mouse.steps)
-            )
+            self.on_pointer(pointer._replace(enter=self._enter))

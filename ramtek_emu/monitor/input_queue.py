@@ -30,11 +30,13 @@ class Key(NamedTuple):
         return self._replace(control=False, alt=False) if types_a_sign else self
 
 
-class Mouse(NamedTuple):
+class Pointer(NamedTuple):
     """Something the mouse did over an element and a line of the display."""
 
     element: int
     line: int
+    enter: bool
+    """Whether the left button is down, told when the input is handled."""
     action: str
     """"move", "press", "release", "wheel up" or "wheel down"."""
     button: int = 0
@@ -47,7 +49,7 @@ class Close(NamedTuple):
     """The window was asked to close."""
 
 
-Input: TypeAlias = Key | Mouse | Path | Close
+Input: TypeAlias = Key | Pointer | Path | Close
 """One input; a path is that of a file that was dropped on the window."""
 
 MOVEMENTS: Final = frozenset(("move", "wheel up", "wheel down"))
@@ -76,7 +78,7 @@ class InputQueue:
             self._down.add(added.name)
             if added.repeated:
                 self._drop_repeats(added.name)
-        elif isinstance(added, Mouse):
+        elif isinstance(added, Pointer):
             added = self._merged(added)
         self._waiting.append(added)
 
@@ -103,14 +105,14 @@ class InputQueue:
             if not (isinstance(each, Key) and each.repeated and each.name == name)
         )
 
-    def _merged(self, added: Mouse) -> Mouse:
+    def _merged(self, added: Pointer) -> Pointer:
         """The input of the mouse, in place of the one that waits last if both are the same movement."""
         if added.action == "press":
             self._down.add(added.button)
         elif added.action == "release":
             self._down.discard(added.button)
         last = self._waiting[-1] if self._waiting else None
-        if not isinstance(last, Mouse) or last.action != added.action or added.action not in MOVEMENTS:
+        if not isinstance(last, Pointer) or last.action != added.action or added.action not in MOVEMENTS:
             return added
         self._waiting.pop()
         return added if added.action == "move" else added._replace(steps=last.steps + added.steps)

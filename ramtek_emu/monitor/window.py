@@ -28,9 +28,9 @@ import pygame
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import NoScreenError
 from ramtek_emu.monitor.console import Console
-from ramtek_emu.monitor.console import Pointer as Pointer
-from ramtek_emu.monitor.input_queue import Close, Mouse
+from ramtek_emu.monitor.input_queue import Close
 from ramtek_emu.monitor.input_queue import Key as Key
+from ramtek_emu.monitor.input_queue import Pointer as Pointer
 from ramtek_emu.monitor.placement import pixel_under
 from ramtek_emu.monitor.placement import placement as placement
 from ramtek_emu.video.scan_out import Stamp
@@ -260,13 +260,14 @@ class Monitor(Console):
         elif event.type == pygame.DROPFILE:
             self.input.add(Path(event.file))
         elif event.type == pygame.MOUSEMOTION:
-            self.input.add(Mouse(*self._pixel_under(event.pos), "move"))
+            self.input.add(Pointer(*self._pixel_under(event.pos), False, "move"))
         elif event.type in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) and event.button <= 3:
             action = "press" if event.type == pygame.MOUSEBUTTONDOWN else "release"
-            self.input.add(Mouse(*self._pixel_under(event.pos), action, event.button))
+            self.input.add(Pointer(*self._pixel_under(event.pos), False, action, event.button))
         elif event.type == pygame.MOUSEWHEEL and event.y:
             action = "wheel up" if event.y > 0 else "wheel down"
-            self.input.add(Mouse(*self._pixel_under(pygame.mouse.get_pos()), action, steps=abs(event.y)))
+            place = self._pixel_under(pygame.mouse.get_pos())
+            self.input.add(Pointer(*place, False, action, steps=abs(event.y)))
 
     def _pixel_under(self, place: tuple[int, int]) -> tuple[int, int]:
         return pixel_under(place, self._size, pygame.display.get_window_size(), self.fit)

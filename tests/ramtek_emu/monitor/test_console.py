@@ -8,8 +8,8 @@ import pytest
 from PIL import Image
 
 from ramtek_emu import Ramtek9300, instructions
-from ramtek_emu.monitor.console import Console, Pointer
-from ramtek_emu.monitor.input_queue import Close, Key, Mouse
+from ramtek_emu.monitor.console import Console
+from ramtek_emu.monitor.input_queue import Close, Key, Pointer
 
 
 class PlainConsole(Console):
@@ -100,15 +100,15 @@ def test_a_screenshot_that_cannot_be_saved_is_a_message_to_the_owner(console: Pl
 def test_the_mouse_moves_the_joystick_and_its_buttons_are_the_switches(console: PlainConsole) -> None:
     told: list[Pointer] = []
     console.on_pointer = told.append
-    console.handle_mouse(Mouse(30, 40, "move"))
-    console.handle_mouse(Mouse(31, 41, "press", 1))
-    console.handle_mouse(Mouse(32, 42, "press", 3))
+    console.handle_pointer(Pointer(30, 40, False, "move"))
+    console.handle_pointer(Pointer(31, 41, False, "press", 1))
+    console.handle_pointer(Pointer(32, 42, False, "press", 3))
     joystick = console.display.joystick
     assert joystick.position == (32, 42)
     assert joystick.track
     assert console.display.cursors.enter_is_pressed
-    console.handle_mouse(Mouse(32, 42, "release", 3))
-    console.handle_mouse(Mouse(33, 43, "release", 1))
+    console.handle_pointer(Pointer(32, 42, False, "release", 3))
+    console.handle_pointer(Pointer(33, 43, False, "release", 1))
     assert not joystick.track
     assert [(pointer.enter, pointer.action, pointer.button) for pointer in told] == [
         (False, "move", 0),
@@ -162,7 +162,7 @@ def test_a_page_is_shown_over_the_field_unless_the_program_has_its_own(console: 
 
 def test_a_console_is_at_rest_when_nothing_is_held_and_nothing_waits(console: PlainConsole) -> None:
     assert console.is_at_rest
-    for held in (Key("left"), Mouse(1, 2, "press", 1)):
+    for held in (Key("left"), Pointer(1, 2, False, "press", 1)):
         console.input.add(held)
         console.handle(console.input.take())
         assert not console.is_at_rest

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Mouse
+from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Pointer
 
 
 def taken(queue: InputQueue) -> list[Input]:
@@ -15,7 +15,7 @@ def taken(queue: InputQueue) -> list[Input]:
 
 def test_inputs_are_taken_in_their_order() -> None:
     queue = InputQueue()
-    inputs: list[Input] = [Key("a", "a"), Mouse(1, 2, "press", 1), Path("scene.toml"), Close()]
+    inputs: list[Input] = [Key("a", "a"), Pointer(1, 2, False, "press", 1), Path("scene.toml"), Close()]
     for each in inputs:
         queue.add(each)
     assert taken(queue) == inputs
@@ -46,16 +46,16 @@ def test_a_released_key_leaves_its_first_press_and_no_repeat() -> None:
 def test_of_successive_places_of_the_mouse_only_the_last_waits() -> None:
     queue = InputQueue()
     for each in (
-        Mouse(1, 1, "move"),
-        Mouse(2, 1, "move"),
-        Mouse(2, 1, "press", 1),
-        Mouse(3, 1, "move"),
-        Mouse(4, 1, "move"),
-        Mouse(4, 1, "release", 1),
-        Mouse(5, 1, "move"),
+        Pointer(1, 1, False, "move"),
+        Pointer(2, 1, False, "move"),
+        Pointer(2, 1, False, "press", 1),
+        Pointer(3, 1, False, "move"),
+        Pointer(4, 1, False, "move"),
+        Pointer(4, 1, False, "release", 1),
+        Pointer(5, 1, False, "move"),
     ):
         queue.add(each)
-    assert [(each.element, each.action) for each in taken(queue) if isinstance(each, Mouse)] == [
+    assert [(each.element, each.action) for each in taken(queue) if isinstance(each, Pointer)] == [
         (2, "move"),
         (2, "press"),
         (4, "move"),
@@ -67,18 +67,18 @@ def test_of_successive_places_of_the_mouse_only_the_last_waits() -> None:
 def test_steps_of_the_wheel_are_added_up() -> None:
     queue = InputQueue()
     for action, steps in (("wheel up", 1), ("wheel up", 2), ("wheel down", 1)):
-        queue.add(Mouse(0, 0, action, steps=steps))
-    assert taken(queue) == [Mouse(0, 0, "wheel up", steps=3), Mouse(0, 0, "wheel down")]
+        queue.add(Pointer(0, 0, False, action, steps=steps))
+    assert taken(queue) == [Pointer(0, 0, False, "wheel up", steps=3), Pointer(0, 0, False, "wheel down")]
 
 
 def test_when_the_keyboard_goes_elsewhere_nothing_is_down() -> None:
     queue = InputQueue()
-    for each in (Key("left"), Key("left"), Mouse(0, 0, "press", 3)):
+    for each in (Key("left"), Key("left"), Pointer(0, 0, False, "press", 3)):
         queue.add(each)
     assert queue.down == {"left", 3}
     queue.release_everything()
     assert queue.down == frozenset()
-    assert taken(queue) == [Key("left"), Mouse(0, 0, "press", 3)]
+    assert taken(queue) == [Key("left"), Pointer(0, 0, False, "press", 3)]
 
 
 def test_a_sign_typed_with_altgr_is_that_sign_where_altgr_is_ctrl_and_alt() -> None:
@@ -107,7 +107,7 @@ def test_what_waits_is_bounded_by_what_was_pressed(events: list[tuple[str, str]]
         elif kind == "up":
             queue.release(name)
         else:
-            queue.add(Mouse(0, 0, "move" if kind == "move" else "wheel up"))
+            queue.add(Pointer(0, 0, False, "move" if kind == "move" else "wheel up"))
     # Each press is kept; at most one repeat of each key.
     waiting = taken(queue)
     keys = [each for each in waiting if isinstance(each, Key)]
