@@ -26,10 +26,13 @@ from autocolor.screens.pointing import Drag, wheel_ratio
 from autocolor.studio import Studio
 from ramtek_emu import HostPort, RamtekError, instructions
 
-REST_SECONDS: Final = 0.15
-"""Assumed: the time without a change after which a movement rests even though a key is held down."""
+REST_SECONDS: Final = 0.1
+"""Assumed: the time without a change after which a movement rests that has not ended by a release: while a
+key is held down, and after a step of the wheel."""
 
 LEFT_BUTTON: Final = 1
+WHEEL: Final = "wheel"
+"""The gesture of the wheel, which has steps but no beginning and no end."""
 
 
 class Viewer(PictureEdits):
@@ -110,11 +113,12 @@ class Viewer(PictureEdits):
             self._do(("drag", self._drag.number), lambda: self.turn(right, up), continues=True, moving=True)
         elif action.startswith("wheel"):
             ratio = wheel_ratio(action, steps)
-            self._do("wheel", lambda: self.move(ratio), continues=True, moving=True)
+            self._do(WHEEL, lambda: self.move(ratio), continues=True, moving=True)
 
     def on_tick(self, is_at_rest: bool = True, is_full_screen: bool = False) -> None:
         """Refine a coarse picture when the movement rests, and show the message where there is no title."""
-        rests = is_at_rest or time.monotonic() - self._edited_at > REST_SECONDS
+        has_ended = is_at_rest and self._edited_by != WHEEL
+        rests = has_ended or time.monotonic() - self._edited_at > REST_SECONDS
         if rests and self.studio.is_coarse:
             self._refine()
         self._is_full_screen = is_full_screen

@@ -498,6 +498,19 @@ def test_a_picture_is_refined_while_a_key_is_held_that_changes_nothing_more(
 
 
 @pytest.mark.usefixtures("slow")
+def test_between_steps_of_the_wheel_a_picture_stays_coarse(
+    viewer: Viewer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    viewer.on_pointer(300, 200, "wheel up")
+    viewer.on_tick(is_at_rest=True)
+    assert viewer.studio.is_coarse
+    now = time.monotonic()
+    monkeypatch.setattr("time.monotonic", lambda: now + 1)
+    viewer.on_tick(is_at_rest=True)
+    assert is_true_to(viewer, viewer.studio.scene)
+
+
+@pytest.mark.usefixtures("slow")
 @pytest.mark.parametrize("name", ["r", "1", "e"])
 def test_what_is_no_movement_is_fine_at_once(viewer: Viewer, name: str) -> None:
     viewer.on_key("left")
