@@ -14,7 +14,7 @@ from autocolor.commands.completion import complete_lights
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.raster_size import size_option
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
-from autocolor.commands.settings import created_again, set_option, with_settings
+from autocolor.commands.settings import created_again, reframed, set_option, with_settings
 
 EXAMPLES: Final = """\b
 Examples:
@@ -72,7 +72,7 @@ def render(
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
     elements, lines = size
-    report = read(source)
+    report = reframed(read(source), elements / lines)
     original = report.scene
     if hold_exposure:
         from autocolor.mapping.exposure import held_exposure
@@ -81,7 +81,7 @@ def render(
         original = original.replace(
             exposure=held_exposure(rendered(original, lines, elements), original.scaling, original.exposure)
         )
-    edited = created_again(report, with_settings(original, settings))
+    edited = created_again(report, with_settings(original, settings), elements / lines)
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None:

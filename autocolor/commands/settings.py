@@ -62,20 +62,34 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
     return scene
 
 
-def created_again(report: SceneReport, edited: Scene) -> Scene:
+def reframed(report: SceneReport, aspect: float) -> SceneReport:
+    """The report, its view framed for pictures of an aspect, width over height, if it was created."""
+    import dataclasses
+
+    from autocolor.scene.defaults import ASPECT, framed
+
+    scene = report.scene
+    if not report.is_view_created or aspect == ASPECT:
+        return report
+    view = framed(scene.view, scene.object_coordinates, aspect)
+    return dataclasses.replace(report, scene=scene.replace(view=view))
+
+
+def created_again(report: SceneReport, edited: Scene, aspect: float | None = None) -> Scene:
     """The edited scene of a report, with its view and lights as they would be created for what was set.
 
     A view that was created frames the object again if other fields of it were set than where it is and looks
-    to, or which parts are stage; lights that were created are created again if the latter were set.
+    to, or which parts are stage; lights that were created are created again if the latter were set. `aspect`
+    is that of the picture, by default the display's.
     """
-    from autocolor.scene.defaults import default_lights, framed
+    from autocolor.scene.defaults import ASPECT, default_lights, framed
 
     original = report.scene
     is_same_object = [part.stage for part in original.parts] == [part.stage for part in edited.parts]
     before, view = original.view, edited.view
     is_placed = (before.eye, before.direction, before.target) != (view.eye, view.direction, view.target)
     if report.is_view_created and not is_placed and not (is_same_object and before == view):
-        edited = edited.replace(view=framed(view, edited.object_coordinates))
+        edited = edited.replace(view=framed(view, edited.object_coordinates, aspect or ASPECT))
     if report.are_lights_created and not is_same_object and edited.lights == original.lights:
         edited = edited.replace(lights=default_lights(edited.object_coordinates, edited.view))
     return edited

@@ -23,7 +23,7 @@ FILLED: Final = 0.86
 """Assumed: the fraction of the width or height of the picture that a framed object fills."""
 
 ASPECT: Final = 640 / 480
-"""Assumed: that of the paper's display; a picture of another shape shows more or less at its sides."""
+"""Assumed: that of the paper's display; in a picture of another shape the object is framed by its own."""
 
 POINT: Final = 1e-12
 """Assumed: an object smaller than this fraction of its distance from the origin is treated as a point."""
@@ -118,10 +118,10 @@ def default_view(coordinates: Floats) -> View:
     return framed(View(eye=toward_eye, target=(0.0, 0.0, 0.0)), coordinates)
 
 
-def framed(view: View, coordinates: Floats, filled: float = FILLED) -> View:
+def framed(view: View, coordinates: Floats, aspect: float = ASPECT) -> View:
     """The view with the eye moved, but not turned, so that the object fills the picture, with a margin.
 
-    Paper: Figure 5, RESCALE.
+    `aspect` is the width of the picture over its height. Paper: Figure 5, RESCALE.
     """
     axes = view.axes
     low, high = bounds_of(coordinates)
@@ -133,8 +133,8 @@ def framed(view: View, coordinates: Floats, filled: float = FILLED) -> View:
     # For an eye moved by `shift` and moved back by `distance`, a point is within the picture if
     # |x - shift| <= slope * (depth + distance), and likewise for y. The two extreme points of an axis give
     # its shift and its least distance; the larger of the two distances is taken.
-    slope_y = filled * math.tan(math.radians(view.field_of_view) / 2)
-    slopes = np.array([slope_y * ASPECT, slope_y])
+    slope_y = FILLED * math.tan(math.radians(view.field_of_view) / 2)
+    slopes = np.array([slope_y * aspect, slope_y])
     least, most, nearest, size = np.full(2, np.inf), np.full(2, -np.inf), np.inf, 0.0
     for chunk in chunks(points.shape[1], POINTS_AT_ONCE):
         camera_points = axes @ (points[:, chunk] - center[:, None])

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import Flaps, Scene, Surface, read_scene
-from autocolor.commands.settings import created_again, value_of, with_settings
+from autocolor.commands.settings import created_again, reframed, value_of, with_settings
 from autocolor.errors import UsageError
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.defaults import default_lights, framed
@@ -272,6 +272,18 @@ def test_a_created_view_with_another_field_of_view_still_frames_the_object(folde
     edited = created_again(report, with_settings(report.scene, ("view.field_of_view=10",)))
     assert edited.view == framed(edited.view, edited.object_coordinates)
     assert edited.lights == report.scene.lights
+
+
+def test_a_created_view_frames_the_object_in_a_picture_of_any_shape(folder: Path) -> None:
+    report = read_scene_with_report("two.obj")
+    assert reframed(report, 640 / 480) is report
+    narrow = reframed(report, 0.5)
+    coordinates = report.scene.object_coordinates
+    assert narrow.scene.view == framed(report.scene.view, coordinates, 0.5) != report.scene.view
+    edited = created_again(narrow, with_settings(narrow.scene, ("view.field_of_view=10",)), 0.5)
+    assert edited.view == framed(edited.view, coordinates, 0.5)
+    given = read_scene_with_report("scene")
+    assert given.is_view_created or reframed(given, 0.5) is given
 
 
 @pytest.mark.parametrize(

@@ -85,6 +85,15 @@ def test_a_framed_object_fills_the_picture(mesh: Mesh) -> None:
     assert max(np.ptp(lines) / 120, np.ptp(elements) / 160) == pytest.approx(0.86, abs=0.03)
 
 
+@pytest.mark.parametrize(("lines", "elements"), [(160, 80), (160, 160), (90, 160), (60, 240)])
+@pytest.mark.parametrize("mesh", [sphere(), grid(2, 2, (0, 0, 0), (3, 0, 0), (0, 0, 1))], ids=repr)
+def test_an_object_is_framed_by_the_shape_of_the_picture(mesh: Mesh, lines: int, elements: int) -> None:
+    scene = scene_of(mesh)
+    view = framed(scene.view, scene.object_coordinates, elements / lines)
+    seen = np.nonzero(render(scene.replace(view=view), lines, elements).surface_number)
+    assert max(np.ptp(seen[0]) / lines, np.ptp(seen[1]) / elements) == pytest.approx(0.86, abs=0.03)
+
+
 @given(meshes(), SIZES, vectors())
 def test_a_scene_is_created_for_any_mesh_and_rendered(mesh: Mesh, size: float, middle: Vector) -> None:
     scene = scene_of(resized(mesh, size, middle))
