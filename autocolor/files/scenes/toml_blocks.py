@@ -1,7 +1,12 @@
 """The text of a TOML file as blocks of statements; joined again they are the same text.
 
 A block is a header and the statements below it; the first one has no header. Comments directly above a
-header, with no empty line between, belong to it, but at the top of the file to the file.
+header, with no empty line between, belong to it; a comment at the top of a file that is the only one above
+the first header belongs to the file.
+
+Measured and rejected: tomlkit leaves the comment above a header with the table before, gathers arrays of
+tables that stand apart, writes an inline table anew for each change, and takes 21 s to save a file of a
+megabyte; with what mends the first, there is as much code as here.
 """
 
 from __future__ import annotations
@@ -62,7 +67,7 @@ def blocks_of(text: str) -> list[Block]:
             array = statement.startswith("[[")
             # What is above the last empty line is of the block before.
             above = max((found.end() for found in EMPTY_LINE.finditer(lead)), default=0)
-            if len(blocks) == 1 and not blocks[0].statements:
+            if len(blocks) == 1 and not blocks[0].statements and not above:
                 above = len(lead)
             blocks[-1].tail, comment = lead[:above], lead[above:]
             path = _resolved((), only_path(statement, statement), rows, array)

@@ -164,7 +164,8 @@ def test_a_value_takes_the_place_of_a_table() -> None:
     ("text", "path", "expected"),
     [
         ("# why\na = 1 # one\nb = 2\n", ("a",), "# why\nb = 2\n"),
-        ("# of a\n\n# of view\n[view]\neye = 1\n", ("view",), "# of a\n\n# of view\n"),
+        ("# of a\n\n# of view\n[view]\neye = 1\n", ("view",), "# of a\n"),
+        ("# title\n[view]\neye = 1\n", ("view",), "# title\n"),
         ("a = 1\n\n# of view\n[view]\neye = 1\n", ("view",), "a = 1\n"),
         ("f = { a = 1, b = 2 }\n", ("f", "a"), "f = { b = 2 }\n"),
         ("f = { a = 1 }\n", ("f", "a"), "f = {}\n"),
@@ -207,3 +208,58 @@ def test_line_ends_stay_those_of_the_file() -> None:
     text = TomlText("a = 1\r\nb = 2\r\n", TABLES)
     text.set(("c",), 3)
     assert text.text == "a = 1\r\nb = 2\r\nc = 3\r\n"
+
+
+UNITS = {
+    ("view",): "[view]",
+    ("parts", "a"): "[parts.a]",
+    ("parts", "b"): "[parts.b]",
+    ("surfaces", "a"): "[surfaces.a]",
+    ("surfaces", "b"): "[surfaces.b] # here",
+    ("lights", 0): "[[lights]]",
+    ("lights", 1): "[[lights]] # here",
+}
+
+
+def unit(path: KeyPath, value: object) -> str:
+    return f"# of {path}\n{UNITS[path]}\nkey = {value} # in {path}\n"
+
+
+@given(
+    st.permutations(list(UNITS)).filter(
+        lambda found: found.index(("lights", 0)) < found.index(("lights", 1))
+    ),
+    st.lists(st.sampled_from(list(UNITS)), max_size=3),
+    st.lists(st.sampled_from(list(UNITS)), max_size=3),
+    st.sampled_from(["", "\n"]),
+)
+def test_comments_stay_with_what_they_are_about_wherever_it_goes(
+    order: list[KeyPath], changed: list[KeyPath], removed: list[KeyPath], between: str
+) -> None:
+    edited = TomlText("# Top.\n\n" + between.join(unit(path, 1) for path in order), TABLES)
+    edited.set(("parts", "new", "key"), 3)
+    edited.set(("ambient",), 4)
+    for path in changed:
+        edited.set((*path, "key"), 2)
+    for path in removed:
+        edited.remove(path)
+    if not {("surfaces", "a"), ("surfaces", "b")} & set(removed):
+        assert edited.arrange("surfaces", ["b", "a"])
+    if not {("lights", 0), ("lights", 1)} & set(removed):
+        assert edited.arrange("lights", [1, 0])
+    assert edited.text.startswith("# Top.\n\nambient = 4\n")
+    tomllib.loads(edited.text)
+    for path in UNITS:
+        assert (unit(path, 2 if path in changed else 1) in edited.text) == (path not in removed)
+        assert edited.text.count(f"# of {path}") == (path not in removed)
+
+
+def test_letters_that_mark_comments_inside_may_be_in_a_text() -> None:
+    text = "a = 1\n# \ufdd0\n# two\n[view] # \ufdd0\ufdd1\ufdd1 #\n"
+    assert after_setting(text, ("a",), 2) == text.replace("1", "2")
+
+
+def test_a_line_of_a_string_is_no_comment_of_the_header_below() -> None:
+    text = 'a = """\n# x\n# y"""\n# of view\n[view] # ]\nb = [\n# z\n1]\n[parts]\n'
+    assert after_setting(text, ("view", "b"), 2) == text.replace("[\n# z\n1]", "2")
+    assert after_removing(text, ("view",)) == 'a = """\n# x\n# y"""\n[parts]\n'
