@@ -149,8 +149,11 @@ def _done(command: click.Command, name: str, arguments: list[str]) -> object:
     """The exit code of a command, or None. Click's own `main` would end silently with 1 at a broken pipe."""
     completion = f"_{name.upper()}_COMPLETE"
     if completion in os.environ:
-        from click.shell_completion import shell_complete
+        from click.shell_completion import add_completion_class, shell_complete
 
+        from ramtek_emu.bash_completion import WholeWords
+
+        add_completion_class(WholeWords)
         return shell_complete(command, {}, name, completion, os.environ[completion])
     try:
         with command.make_context(name, arguments) as context:
