@@ -276,6 +276,12 @@ def test_undo_on_a_page_leads_back_to_the_picture(viewer: Viewer) -> None:
     assert is_true_to(viewer, before)
 
 
+def test_the_message_names_the_surface_that_was_chosen(viewer: Viewer) -> None:
+    # In full screen, the message is all that tells which one it is.
+    viewer.on_key("s")
+    assert viewer.message == f"surface {viewer.surface_name}"
+
+
 def test_the_chosen_surface_is_the_one_that_is_recolored(viewer: Viewer) -> None:
     names = ["low", "high"]
     seen = []
