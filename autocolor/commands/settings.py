@@ -48,7 +48,7 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
     changes: dict[tuple[str, str], Changes] = {}
     for setting in settings:
         key, equals, text = setting.partition("=")
-        if not equals:
+        if not equals or not key.strip():
             raise UsageError(
                 f"--set must be KEY=VALUE, not {setting!r}; write it as in lights.key.intensity=2"
             )

@@ -164,7 +164,9 @@ def test_a_value_that_breaks_a_rule_is_refused(scene: Scene, setting: str, sente
     assert sentence in str(caught.value)
 
 
-def test_a_setting_without_an_equals_sign_is_wrong_usage(scene: Scene) -> None:
+def test_a_setting_without_a_key_or_an_equals_sign_is_wrong_usage(scene: Scene) -> None:
+    with pytest.raises(UsageError, match=r"must be KEY=VALUE, not '=0\.2'"):
+        with_settings(scene, ("=0.2",))
     with pytest.raises(UsageError, match="--set must be KEY=VALUE, not 'ambient'"):
         with_settings(scene, ("ambient",))
 
