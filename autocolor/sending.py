@@ -19,9 +19,19 @@ EntryEncoder = Callable[[int, Bytes], Words]
 def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
     """Reset a display and show a picture in the colors of a scene; nothing is rendered.
 
-    Raises InputError if the surfaces of the picture are not those of the scene.
+    A picture that is smaller than the display is shown at its upper left. Raises InputError if the surfaces
+    of the picture are not those of the scene, UsageError if it is larger than the display.
     """
     check_surfaces(scene, picture)
+    sizes = configuration_of(display)
+    if hasattr(display, "configuration") and (
+        picture.lines > sizes.shown_lines or picture.elements > sizes.shown_elements
+    ):
+        raise UsageError(
+            f"a picture must be at most {sizes.shown_elements} x {sizes.shown_lines}, as large as the"
+            f" display, not {picture.elements} x {picture.lines}; render it smaller, or take a larger"
+            " configuration"
+        )
     send_image(display, display_image(scene, picture))
 
 
