@@ -187,6 +187,7 @@ def test_a_wrong_setting_ends_before_anything_is_written(
         (("lights.key.cone_angle=30", "lights.key.cone_angle=none"), "cone_angle", None),
         (("lights.key.aim=none", "lights.key.direction=[0, 1, 0]"), "aim", None),
         (("lights.key.aim = none ",), "aim", None),
+        (("lights.key.aim=None",), "aim", None),
     ],
 )
 def test_none_unsets_a_field_of_a_light_that_may_be_absent(
@@ -212,6 +213,8 @@ def test_none_unsets_the_target_of_a_view_the_levels_of_a_surface_and_flaps(scen
 def test_what_is_named_none_stays_a_name(scene: Scene) -> None:
     scene = scene.replace(surfaces=(*scene.surfaces, Surface("none")))
     assert with_settings(scene, ("parts.side.surface=none",)).part("side").surface == "none"
+    with pytest.raises(UsageError, match="surface 'None' is not in the surface table"):
+        with_settings(scene, ("parts.side.surface=None",))
     changed = with_settings(scene, ("surfaces.none.levels=9", "surfaces.none.levels=none"))
     assert changed.surface("none").levels is None
 
