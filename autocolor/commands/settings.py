@@ -95,7 +95,7 @@ def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
 
 
 def _unset(field: Field | None, key: str, text: str) -> object:
-    """What a field holds that is unset by a text; the text itself for a field that takes it, and for no field.
+    """What a field holds that is unset by a text; the text itself where that is a value, and for no field.
 
     Raises UsageError for a field that must have a value.
     """
