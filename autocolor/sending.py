@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from autocolor.arrays import Bytes, Words
+from autocolor.checks import shown
 from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
@@ -38,8 +39,14 @@ def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
 def configuration_of(display: HostPort) -> Configuration:
     """The configuration of a display; GMR_9300, the paper's display, if the host port does not have one.
 
-    Raises UsageError for a display with too few words or entries for the level ranges.
+    Raises UsageError for what is no host port, and for a display with too few words or entries for the level
+    ranges.
     """
+    if isinstance(display, type) or not callable(getattr(display, "send", None)):
+        raise UsageError(
+            "a display must be a host port, such as Ramtek9300(), or TcpPort(address) for one elsewhere, not"
+            f" {shown(display)}"
+        )
     configuration: Configuration = getattr(display, "configuration", GMR_9300)
     if configuration.largest_word < WORDS - 1 or configuration.entries < WORDS:
         raise UsageError(

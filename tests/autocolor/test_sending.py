@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import pytest
 
@@ -43,6 +44,15 @@ def test_a_picture_larger_than_the_display_is_refused_and_a_smaller_one_is_shown
     shown = display.words != 0
     assert (shown[: lines // 2, : elements // 2] == (small.surface_number != 0)).all()
     assert shown.sum() == (small.surface_number != 0).sum()
+
+
+@pytest.mark.parametrize("display", ["tcp://127.0.0.1:9300", None, Ramtek9300])
+def test_what_is_no_display_is_refused_in_words(display: Any) -> None:
+    for send in (Studio, lambda scene, to: send_picture(scene, render(scene, 24, 32), to)):
+        with pytest.raises(
+            UsageError, match=r"a display must be a host port, such as Ramtek9300\(\), or TcpPort"
+        ):
+            send(wall_scene(), display)
 
 
 def test_a_display_with_a_12_bit_table_gets_12_bit_entries() -> None:
