@@ -144,11 +144,12 @@ def test_escape_leaves_full_screen_before_it_goes_to_the_program(console: PlainC
 
 
 def test_a_window_is_asked_to_close_once_for_each_press(console: PlainConsole) -> None:
-    asked: list[str] = []
-    console.on_close = lambda: bool(asked.append("asked"))
+    answers = [False, True]
+    console.on_close = lambda: answers.pop(0)
     console.handle_key(Key("q", control=True))
     console.handle_key(Key("q", control=True, repeated=True))
-    assert asked == ["asked"]
+    assert answers == [True]
+    assert console.asked == []
 
 
 def test_shortcuts_do_not_repeat(console: PlainConsole) -> None:
