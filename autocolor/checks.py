@@ -74,8 +74,9 @@ OTHER_WORDS: Final = {
 def nearest(name: object, names: Iterable[str]) -> str:
     """A clause for a message: the closest of `names`, else all of them if they are few, else nothing.
 
-    Closest is one that another word stands for, then one that begins with the name, then one of whose words,
-    between underscores, the name is one, and then the one that is spelled most alike.
+    Closest is one that another word stands for, then one that differs in capitals alone, then one that begins
+    with the name, then one of whose words, between underscores, the name is one, and then the one that is
+    spelled most alike.
 
     >>> nearest("color", ["blend", "object_color"]), nearest("N", ["exponent"])
     ("; did you mean 'object_color'?", "; did you mean 'exponent'?")
@@ -85,6 +86,7 @@ def nearest(name: object, names: Iterable[str]) -> str:
     other = OTHER_WORDS.get(name)
     close = (
         [known for known in names if known == other]
+        or [known for known in names if known.casefold() == name.casefold()]
         or [known for known in names if known.startswith(name)]
         or [known for known in names if name in known.split("_")]
         or difflib.get_close_matches(name, names, n=1)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from os import PathLike
 
 from autocolor.arrays import Bytes
-from autocolor.files.writing import write_atomically
+from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import check_surfaces, display_image
 from autocolor.scene.scene import Scene
@@ -27,9 +27,10 @@ def image(scene: Scene, picture: Picture) -> Bytes:
 def save_image(path: str | PathLike[str], scene: Scene, picture: Picture, *, overwrite: bool = False) -> None:
     """Write the picture in the colors of a scene to a PNG file, atomically.
 
-    Raises OutputError if the file exists and `overwrite` is false, or if it cannot be created; WriteError if
-    writing fails.
+    Raises UsageError for a name that ends as another kind of file does; OutputError if the file exists and
+    `overwrite` is false, or if it cannot be created; WriteError if writing fails.
     """
     from ramtek_emu.png import png_bytes
 
+    check_suffix(path, ".png", "an image")
     write_atomically(path, png_bytes(image(scene, picture)), overwrite=overwrite)

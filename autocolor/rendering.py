@@ -26,7 +26,7 @@ from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.logs import logger_of, timed
 from autocolor.scene.columns.column import Tier
-from autocolor.scene.scene import Scene, costs_at_least
+from autocolor.scene.scene import Scene, check_scene, costs_at_least
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
@@ -82,7 +82,11 @@ def rendering(
     before: Rendering | None = None,
     algorithm: str = "batch",
 ) -> Rendering:
-    """The rendering of a scene; whatever did not change is reused from the earlier rendering `before`."""
+    """The rendering of a scene; whatever did not change is reused from the earlier rendering `before`.
+
+    Raises UsageError for anything else than a scene.
+    """
+    check_scene(scene)
     if before is not None and (before.picture.lines, before.picture.elements) != (lines, elements):
         before = None
     if before is not None and _sees_the_same(before.scene, scene):

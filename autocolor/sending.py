@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from autocolor.arrays import Bytes, Words
+from autocolor.checks import shown
 from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
@@ -19,17 +20,33 @@ EntryEncoder = Callable[[int, Bytes], Words]
 def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
     """Reset a display and show a picture in the colors of a scene; nothing is rendered.
 
-    Raises InputError if the surfaces of the picture are not those of the scene.
+    A picture that is smaller than the display is shown at its upper left. Raises InputError if the surfaces
+    of the picture are not those of the scene, UsageError if it is larger than the display.
     """
     check_surfaces(scene, picture)
+    sizes = configuration_of(display)
+    if hasattr(display, "configuration") and (
+        picture.lines > sizes.shown_lines or picture.elements > sizes.shown_elements
+    ):
+        raise UsageError(
+            f"a picture must be at most {sizes.shown_elements} x {sizes.shown_lines}, as large as the"
+            f" display, not {picture.elements} x {picture.lines}; render it smaller, or take a larger"
+            " configuration"
+        )
     send_image(display, display_image(scene, picture))
 
 
 def configuration_of(display: HostPort) -> Configuration:
     """The configuration of a display; GMR_9300, the paper's display, if the host port does not have one.
 
-    Raises UsageError for a display with too few words or entries for the level ranges.
+    Raises UsageError for what is no host port, and for a display with too few words or entries for the level
+    ranges.
     """
+    if isinstance(display, type) or not callable(getattr(display, "send", None)):
+        raise UsageError(
+            "a display must be a host port, such as Ramtek9300(), or TcpPort(address) for one elsewhere, not"
+            f" {shown(display)}"
+        )
     configuration: Configuration = getattr(display, "configuration", GMR_9300)
     if configuration.largest_word < WORDS - 1 or configuration.entries < WORDS:
         raise UsageError(

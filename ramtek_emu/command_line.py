@@ -79,9 +79,17 @@ class CommandGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The command that the arguments name; for an unknown name the error suggests the nearest one."""
+        """The command that the arguments name; for an unknown name the error suggests the nearest one.
+
+        For a file it shows where the name of a command belongs.
+        """
         if args and args[0] not in self.table and not args[0].startswith("-"):
             near = difflib.get_close_matches(args[0], self.table, n=1)
+            if not near and os.path.lexists(args[0]):
+                ctx.fail(
+                    f"a command must stand before a file, as in `{ctx.info_name} {next(iter(self.table))}"
+                    f" {args[0]}`; known are {', '.join(self.table)}"
+                )
             advice = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(self.table)}"
             ctx.fail(f"there is no command {args[0]!r}; {advice}")
         return super().resolve_command(ctx, args)
@@ -149,8 +157,11 @@ def _done(command: click.Command, name: str, arguments: list[str]) -> object:
     """The exit code of a command, or None. Click's own `main` would end silently with 1 at a broken pipe."""
     completion = f"_{name.upper()}_COMPLETE"
     if completion in os.environ:
-        from click.shell_completion import shell_complete
+        from click.shell_completion import add_completion_class, shell_complete
 
+        from ramtek_emu.bash_completion import WholeWords
+
+        add_completion_class(WholeWords)
         return shell_complete(command, {}, name, completion, os.environ[completion])
     try:
         with command.make_context(name, arguments) as context:

@@ -133,7 +133,8 @@ def _name(beside: Path, target: Path, overwrite: bool) -> None:
 
 def _exists(path: Path) -> OutputExistsError:
     return OutputExistsError(
-        f"an output must be a new file, not {path}, which exists; choose another name or add --force"
+        f"an output must be a new file, not {path}, which exists; choose another name, or overwrite it"
+        " with --force (overwrite=True in Python)"
     )
 
 

@@ -23,16 +23,16 @@ ROOT = Path(__file__).resolve().parents[1]
 
 HEAD = """# The commands
 
-`autocolor --help` and `ramtek --help` list the commands; `--help` of each has examples. What is here was
-answered by the commands themselves: `python -m tests.command_reference > docs/COMMANDS.md` runs every line
-and writes the page.
+`autocolor --help` and `ramtek --help` list the commands; `--help` of each has examples. This page is what the
+commands themselves answered: `python -m tests.command_reference > docs/COMMANDS.md` runs every line and
+writes it.
 
 Results go to stdout, messages to stderr. `-v` says what `autocolor` reads, creates and computes, and how long
 that takes; `-vv` says more. `--debug` shows the traceback of an error.
 
 ## Exit codes
 
-A message says what must hold, what was found, and what to do. It is the last line on stderr that is shown.
+A message says what must hold, what was found, and what to do. Of several lines, the table has the last one.
 
 | code | means | for example | says |
 |---|---|---|---|
@@ -98,6 +98,7 @@ installed:
 
 For `ramtek` it is `_RAMTEK_COMPLETE`, and `ramtek` at the end. Names and keys are those of the scene or the
 picture that stands on the line before them. A scene that is large or broken completes to nothing.
+After a whole key, bash lists the values alone: `off` and `ordered` after `dither=`.
 
 | typed, and Tab | candidates |
 |---|---|
@@ -116,6 +117,7 @@ LINES = (
     "autocolor render car --set lights.key.",
     "autocolor render car --set surfaces.body.two",
     "autocolor view car --set dith",
+    "autocolor view car --set background=na",
     "autocolor recolor ",
     "autocolor recolor car.npz ",
     "autocolor recolor car.npz body --object dark",

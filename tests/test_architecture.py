@@ -38,7 +38,8 @@ WINGS = {
         "files", "rendering", "pacing", "sending", "studio", "images", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
-        "errors", "arrays", "checks", "timing", "configuration", "writing", "png", "command_line",
+        "errors", "arrays", "checks", "timing", "configuration", "writing", "png",
+        "bash_completion", "command_line",
         "instruction_set", "memory", "drawing", "video", "processor", "instructions", "display",
         "host", "monitor", "snapshot", "commands", "__main__",
     ),

@@ -7,7 +7,6 @@ be read completes to nothing.
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Sequence
 from functools import wraps
 from itertools import islice
@@ -36,18 +35,15 @@ Complete = Callable[[click.Context, click.Parameter, str], list[str]]
 
 
 def _silent(complete: Complete) -> Complete:
-    """The function, completing nothing where it fails, and quoting what bash would take apart."""
+    """The function, completing nothing where it fails."""
 
     @wraps(complete)
     def completed(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
         try:
-            found = complete(context, parameter, incomplete)
+            return complete(context, parameter, incomplete)
         except Exception:
             # Whatever is wrong with a scene, the command itself will say it; here it would spoil the line.
             return []
-        # Zsh and fish quote what they insert.
-        is_bash = os.environ.get("_AUTOCOLOR_COMPLETE") == "bash_complete"
-        return [re.sub(r"([^\w@%+=:,./-])", r"\\\1", each) for each in found] if is_bash else found
 
     return completed
 

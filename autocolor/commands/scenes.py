@@ -56,7 +56,7 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
             type=click.Choice(["materials", "parts"]),
             default="materials",
             show_default=True,
-            help="Where surfaces come from that are not given: materials of the mesh, or one for each part.",
+            help="Where surfaces that are not given come from: materials of the mesh, or one for each part.",
         ),
         click.argument("scene", type=click.Path(), shell_complete=complete_scenes),
     ):

@@ -7,6 +7,7 @@ from typing import Any, Final, NamedTuple
 
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
+from autocolor.scene.columns.color_kinds import ColorKind, color_names
 from autocolor.scene.columns.column import Field, Kind, Row, fields_of, keys_of
 from autocolor.scene.columns.row_kinds import Nested, Rows, Variant
 from autocolor.scene.columns.rows import plain
@@ -131,7 +132,7 @@ def _fields_after(start: str, cls: type[Row], path: Sequence[str]) -> list[str]:
 
 
 def _values(scene: Scene, key: str) -> list[str]:
-    """The values to offer for a field: its choices, or the value that it has."""
+    """The values to offer for a field: its choices, or the value that it has, and the names of colors."""
     place = place_of(scene, key)
     field = field_of(place)
     if field is None:
@@ -150,4 +151,5 @@ def _values(scene: Scene, key: str) -> list[str]:
         value = value.get(part) if isinstance(value, dict) else None
     if isinstance(value, bool):
         return ["true", "false"]
-    return [] if value is None or isinstance(value, (dict, list)) else [str(value)]
+    present = [] if value is None or isinstance(value, (dict, list)) else [str(value)]
+    return [*present, *color_names()] if isinstance(kind, ColorKind) else present

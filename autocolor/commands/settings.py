@@ -48,13 +48,13 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
     changes: dict[tuple[str, str], Changes] = {}
     for setting in settings:
         key, equals, text = setting.partition("=")
-        if not equals:
+        if not equals or not key.strip():
             raise UsageError(
                 f"--set must be KEY=VALUE, not {setting!r}; write it as in lights.key.intensity=2"
             )
         key, text = key.strip(), text.strip()
         place = place_of(scene, key)
-        value = _unset(field_of(place), key) if text == UNSET else value_of(text)
+        value = _unset(field_of(place), key, text) if text.lower() == UNSET else value_of(text)
         _put(changes.setdefault((place.table, place.name), {}), place.path, value, key)
     with as_usage("--set: "):
         for (table, name), fields in changes.items():
@@ -108,15 +108,15 @@ def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
     return scene.with_view(**fields)
 
 
-def _unset(field: Field | None, key: str) -> object:
-    """What a field holds that is unset; the text itself for a field that takes it, and for none at all.
+def _unset(field: Field | None, key: str, text: str) -> object:
+    """What a field holds that is unset by a text; the text itself where that is a value, and for no field.
 
     Raises UsageError for a field that must have a value.
     """
     from autocolor.scene.columns.problems import REFUSED
 
-    if field is None or field.column.kind.held(UNSET, (), []) is not REFUSED:
-        return UNSET
+    if field is None or field.column.kind.held(text, (), []) is not REFUSED:
+        return text
     if field.is_optional:
         return None
     default = None if field.default is None else field.default()

@@ -19,7 +19,7 @@ from autocolor.arrays import LARGEST_SINGLE, AnyArray
 from autocolor.errors import InputError
 from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
 from autocolor.files.plain_scene import plain_scene, scene_of_plain
-from autocolor.files.writing import write_atomically
+from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.scene.scene import Scene
 
@@ -55,7 +55,11 @@ class SavedPicture(NamedTuple):
 def write_picture(
     path: str | PathLike[str], picture: Picture, scene: Scene, *, overwrite: bool = False
 ) -> None:
-    """Write a picture file atomically. Raises OutputError or WriteError if that is not possible."""
+    """Write a picture file atomically.
+
+    Raises UsageError for a name that does not end in .npz, OutputError or WriteError if it cannot be written.
+    """
+    check_suffix(path, ".npz", "a picture with its scene")
     header = {
         "scale": picture.scale,
         "surfaces": list(picture.surfaces),

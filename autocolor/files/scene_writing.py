@@ -32,7 +32,7 @@ from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.scene.columns.column import Row, row_label
 from autocolor.scene.node_normals import CREASE_ANGLE
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import Scene, check_scene
 
 SCENE_FILE: Final = "scene.toml"
 
@@ -63,6 +63,7 @@ def write_scene_with_tables(
     If `complete`, all keys are written, also those whose values are their defaults.
     """
     target = _target(path)
+    check_scene(scene)
     _refuse_names(scene)
     with _folder_made(target.parent), _removed_on_failure() as written:
         refuse_output(target, overwrite=overwrite)
@@ -78,7 +79,9 @@ def write_scene_with_tables(
 
 
 def _target(path: str | os.PathLike[str]) -> Path:
-    """The scene file to write for a path."""
+    """The scene file to write for a path. Raises UsageError for a path that none is written to."""
+    if not os.fspath(path):
+        raise UsageError("a scene must have a place, not an empty name; for the current folder write '.'")
     target = Path(path)
     suffix = target.suffix.lower()
     try:

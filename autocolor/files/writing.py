@@ -8,9 +8,10 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import ramtek_emu
-from autocolor.errors import OutputError, WriteError
+from autocolor.errors import OutputError, UsageError, WriteError
 from ramtek_emu import writing
 
 
@@ -28,6 +29,12 @@ def refuse_output(path: str | os.PathLike[str], *, overwrite: bool) -> None:
     """Raise OutputError if no file can be written to the path; for use before an expensive computation."""
     with _refusals_of_this_package():
         writing.refuse_output(path, overwrite)
+
+
+def check_suffix(path: str | os.PathLike[str], suffix: str, what: str) -> None:
+    """Raise UsageError if the name of a file does not end in the suffix of what is written to it."""
+    if Path(path).suffix.lower() != suffix:
+        raise UsageError(f"{what} must be written to a file that ends in {suffix}, not to {path}; rename it")
 
 
 @contextmanager

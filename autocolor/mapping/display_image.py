@@ -11,14 +11,14 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import shown
-from autocolor.errors import InputError
+from autocolor.errors import InputError, UsageError
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.color_blending import entries_of
 from autocolor.mapping.exposure import mapped_ranges
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.scene.columns.column import Tier
-from autocolor.scene.scene import Scene, costs_at_least
+from autocolor.scene.scene import Scene, check_scene, costs_at_least
 from autocolor.scene.surfaces import Surface
 
 MAPPING: Final = ("scaling", "mapping", "exposure", "dither")
@@ -156,7 +156,13 @@ def _covered(scene: Scene, picture: Picture) -> Mapping[str, int]:
 
 
 def check_surfaces(scene: Scene, picture: Picture) -> None:
-    """Raise InputError if the surfaces of a picture are not those of a scene, in the same order."""
+    """Raise InputError if the surfaces of a picture are not those of a scene, in the same order.
+
+    Raises UsageError for anything else than a scene and a picture, such as the two in the wrong order.
+    """
+    check_scene(scene)
+    if not isinstance(picture, Picture):
+        raise UsageError(f"a picture must be a Picture, not {shown(picture)}; `render` makes one of a scene")
     names = [surface.name for surface in scene.surfaces]
     if list(picture.surfaces) != names:
         raise InputError(

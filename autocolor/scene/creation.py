@@ -14,7 +14,7 @@ from autocolor.errors import InputError, UsageError
 from autocolor.logs import logger_of
 from autocolor.scene.changes import PartChanges, SceneFields
 from autocolor.scene.columns.column import Row, fields_of
-from autocolor.scene.columns.problems import Problem, RowError
+from autocolor.scene.columns.problems import Problem, RowError, unknown
 from autocolor.scene.columns.rows import made
 from autocolor.scene.defaults import (
     MAPPING_FIELDS,
@@ -73,7 +73,7 @@ def scene_of(
     mesh = Mesh.of(mesh, polygons)
     if isinstance(surfaces, str) and surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be rows, {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
-    found: list[Problem] = []
+    found = [unknown(name, fields_of(Scene)) for name in fields if name not in fields_of(Scene)]
     given = () if isinstance(surfaces, str) else _held("surfaces", surfaces, found)
     rows = _part_rows(mesh, parts or {}, surface_of_part or {}, found)
     tables: dict[str, Any] = {**(MAPPING_FIELDS if fields.get("lights") is None else {}), **fields}

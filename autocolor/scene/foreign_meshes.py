@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import chain
+from os import PathLike
 from typing import Any, Final
 
 import numpy as np
@@ -59,6 +60,8 @@ def _nodes_and_polygons(source: Any) -> tuple[object, object]:
         return points, _polygons_of_counted(np.asarray(faces))
     if getattr(source, "vertices", None) is not None and faces is not None:
         return source.vertices, faces
+    if isinstance(source, (str, PathLike)):
+        raise UsageError(f"a mesh must be in memory, not a file, {shown(source)}; read that with read_scene")
     raise UsageError(
         "a mesh must be a Mesh, nodes and polygons, or a surface of trimesh, PyVista or meshio, not"
         f" {type(source).__name__}; take its surface, or give its nodes and its polygons as two arguments"
@@ -98,6 +101,11 @@ def _polygons_of_cells(cells: Iterable[Any]) -> object:
     flat: list[Any] = []
     others: list[Any] = []
     for block in cells:
+        if not (hasattr(block, "type") and hasattr(block, "data")):
+            raise InputError(
+                f"cells must have a type and data, as those of meshio, not be {shown(block)}; make them cell"
+                " blocks"
+            )
         kind = str(block.type)
         is_flat = kind in FLAT_CELLS or kind.removeprefix("polygon").isdigit()
         (flat if is_flat else others).append(block)

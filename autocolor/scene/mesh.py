@@ -56,6 +56,7 @@ class Mesh(Immutable):
     def __post_init__(self) -> None:
         problems: list[str] = []
         coordinate_rows = _rows(problems, "node table", self.coordinates, np.float64, (3,))
+        has_nodes = not problems
         node_rows = _rows(problems, "polygon table", self.node_numbers, np.intp, (3, 4))
         if len(node_rows) == 3:
             node_rows = node_rows[[0, 1, 2, 2]]
@@ -80,7 +81,8 @@ class Mesh(Immutable):
                 f" {coordinate_rows[:, row].tolist()} (row {row})"
             )
         node_count, polygon_count = coordinate_rows.shape[1], node_rows.shape[1]
-        _check_rows(problems, "polygon table: a node number", node_rows, node_count, "node table")
+        if has_nodes:
+            _check_rows(problems, "polygon table: a node number", node_rows, node_count, "node table")
         _check_rows(problems, "polygon table: a part number", part_numbers, len(names), "part table")
         if part_numbers.shape != (polygon_count,):
             problems.append(
@@ -204,7 +206,8 @@ def _numbers(problems: list[str], what: str, value: object, dtype: type) -> AnyA
         array = np.array(None)
     if array.size and array.dtype.kind not in ("iu" if dtype is np.intp else "iuf"):
         kind = "whole numbers" if dtype is np.intp else "numbers"
-        problems.append(f"{what}: it must be an array of {kind}, not {type(value).__name__}")
+        found = f"of {array.dtype}" if array.dtype.kind in "bcf" else type(value).__name__
+        problems.append(f"{what}: it must be an array of {kind}, not {found}; convert it")
         array = np.empty(0)
     return array.astype(dtype, copy=False)
 

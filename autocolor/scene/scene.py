@@ -255,6 +255,15 @@ def _missing_names(
                 yield Problem((), text)
 
 
+def check_scene(value: object) -> None:
+    """Raise UsageError if a value is no Scene."""
+    if not isinstance(value, Scene):
+        raise UsageError(
+            f"a scene must be a Scene, not {shown(value)}; `read_scene` reads one from files, and `scene_of`"
+            " makes one of a mesh"
+        )
+
+
 def cost_of_edit(old: Scene, new: Scene) -> Tier | None:
     """The cost of an edit from one scene to another, None where they are equal."""
     return cost(old, new)

@@ -110,6 +110,7 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
         (Chord("s"), Chord("s", shift=True)),
         "select the next surface, the previous one",
         lambda viewer, number: viewer.choose_surface((1, -1)[number]),
+        repeats=True,
     ),
     Binding(
         (Chord("["), Chord("]")),
@@ -122,17 +123,19 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
         (Chord("c"), Chord("c", shift=True)),
         "the next object color, the previous one",
         lambda viewer, number: viewer.repaint((1, -1)[number]),
+        repeats=True,
     ),
     Binding(
         (Chord("e"),),
         "hold the exposure (less light is darker), release it",
         lambda viewer, _: viewer.switch_exposure(),
     ),
-    Binding((Chord("z", control=True),), "undo", lambda viewer, _: viewer.undo()),
+    Binding((Chord("z", control=True),), "undo", lambda viewer, _: viewer.undo(), repeats=True),
     Binding(
         (Chord("y", control=True), Chord("z", control=True, shift=True)),
         "redo",
         lambda viewer, _: viewer.redo(),
+        repeats=True,
     ),
     Binding((Chord("s", control=True),), "save the picture with its scene", lambda viewer, _: viewer.save()),
     Binding(

@@ -39,9 +39,10 @@ class Chord:
 class Binding(Generic[Viewer]):
     """Keys that are bound to an action.
 
-    `run` is called with the viewer and the index in `chords` of the key that was pressed. With `held`, all
-    repetitions while the key is held down are undone as one step. `does` describes the action on the help
-    page; `label` replaces the names of the keys there.
+    `run` is called with the viewer and the index in `chords` of the key that was pressed. While the key is
+    held down, it is called again and again only with `held`, where all is undone as one step, or with
+    `repeats`, where each is a step. `does` describes the action on the help page; `label` replaces the names
+    of the keys there.
     """
 
     chords: tuple[Chord, ...]
@@ -49,6 +50,7 @@ class Binding(Generic[Viewer]):
     run: Callable[[Viewer, int], object]
     label: str | None = None
     held: bool = False
+    repeats: bool = False
 
     def __str__(self) -> str:
         return self.label or ", ".join(map(str, self.chords))

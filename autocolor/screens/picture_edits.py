@@ -127,6 +127,7 @@ class PictureEdits(ABC):
     def choose_surface(self, step: int) -> None:
         """Select another surface in use for the color keys, `step` positions further."""
         self.surface = (self.surface + step) % max(1, len(self.studio.level_ranges))
+        self.message = f"surface {self.surface_name}" if self.surface_name else "the scene has no surface"
 
     def blend(self, step: float) -> None:
         """Change the blend of the selected surface."""

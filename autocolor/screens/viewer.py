@@ -95,6 +95,9 @@ class Viewer(PictureEdits):
         if not chosen:
             return False
         binding, number, _ = chosen[0]
+        if repeated and not (binding.held or binding.repeats):
+            # A switch would flip for as long as its key is down.
+            return True
         gesture, continues = (binding, number), repeated and binding.held
         return self._do(gesture, lambda: binding.run(self, number), continues, binding.held) is not False
 

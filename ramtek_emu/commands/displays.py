@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
-from ramtek_emu.configuration import GMR_9300, Configuration, configuration_named
+from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300, Configuration, configuration_named
 from ramtek_emu.errors import MissingInputError
 from ramtek_emu.writing import Output, refuse_output, write_atomically
 
@@ -24,11 +24,21 @@ TICK_SECONDS: Final = 0.01
 """How long a host is served before the window is handled again."""
 
 
+def complete_configurations(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
+    """The names of configurations, for a shell; capitals need not be typed."""
+    return [name for name in CONFIGURATIONS if name.startswith(incomplete.upper())]
+
+
 def display_options(function: Function) -> Function:
     """Add the options of all commands with a display: the configuration, and the files to write."""
     for option in (
         click.option("--force", is_flag=True, help="Overwrite what exists."),
-        click.option("--configuration", metavar="NAME", help="The display; GMR_9300 if not given."),
+        click.option(
+            "--configuration",
+            metavar="NAME",
+            shell_complete=complete_configurations,
+            help="The display; GMR_9300 if not given.",
+        ),
         click.option(
             "--start", type=click.Path(), metavar="SNAPSHOT", help="Go on with the display of a snapshot."
         ),

@@ -8,7 +8,7 @@ from typing import Final
 
 import click
 
-from ramtek_emu.commands.displays import configuration_asked_for, open_stream
+from ramtek_emu.commands.displays import complete_configurations, configuration_asked_for, open_stream
 
 EXAMPLES: Final = """\b
 Examples:
@@ -22,7 +22,12 @@ PIECE: Final = 1 << 18
 
 @click.command(name="list", epilog=EXAMPLES)
 @click.argument("stream", type=click.Path())
-@click.option("--configuration", metavar="NAME", help="The display that it is for; GMR_9300 if not given.")
+@click.option(
+    "--configuration",
+    metavar="NAME",
+    shell_complete=complete_configurations,
+    help="The display that it is for; GMR_9300 if not given.",
+)
 @click.option("--json", "as_json", is_flag=True, help="One object for each instruction.")
 def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
     """List STREAM, a file of 16-bit words with the low byte first, as instructions; - is stdin.

@@ -131,7 +131,9 @@ class Console(ABC):
             if not key.repeated:
                 self._tell_of_screenshot()
         elif key.name == "q" and key.control:
-            self.ask_to_close()
+            # Asked twice in a row, a program may take it for consent to lose changes.
+            if not key.repeated:
+                self.ask_to_close()
         elif self.on_key is not None and self.on_key(key):
             return
         elif key.name in PAGES:

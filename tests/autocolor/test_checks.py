@@ -56,6 +56,7 @@ def test_names_are_listed_as_in_a_sentence() -> None:
         ("fov", ["eye", "field_of_view"], "field_of_view"),
         ("colour", ["blend", "object_color"], "object_color"),
         ("N", ["Nose"], "Nose"),
+        ("BODY", ["bodywork", "body"], "body"),
         ("conc", ["cone_angle", "concentration"], "concentration"),
     ],
 )

@@ -7,7 +7,18 @@ import pytest
 from hypothesis import given
 from PIL import Image
 
-from autocolor import InputError, OutputError, Scene, Studio, Surface, image, render, save_image, scene_of
+from autocolor import (
+    InputError,
+    OutputError,
+    Scene,
+    Studio,
+    Surface,
+    UsageError,
+    image,
+    render,
+    save_image,
+    scene_of,
+)
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import STRETCHED, cube
 from tests.autocolor.strategies import scenes
@@ -40,6 +51,27 @@ def test_an_image_is_written_as_a_png_and_never_over_a_file_unasked(tmp_path: Pa
     with pytest.raises(OutputError, match="exists"):
         save_image(path, scene, picture)
     save_image(path, scene, picture, overwrite=True)
+
+
+def test_an_image_under_the_name_of_another_kind_is_refused(tmp_path: Path) -> None:
+    scene = scene_of(cube())
+    path = tmp_path / "cube.jpg"
+    with pytest.raises(UsageError) as refusal:
+        save_image(path, scene, render(scene, 48, 64))
+    assert (
+        str(refusal.value)
+        == f"an image must be written to a file that ends in .png, not to {path}; rename it"
+    )
+    assert not path.exists()
+
+
+def test_a_scene_and_a_picture_in_the_wrong_order_are_refused_in_words() -> None:
+    scene = scene_of(cube())
+    picture = render(scene, 24, 32)
+    with pytest.raises(UsageError, match=r"a scene must be a Scene, not Picture\(.*; `read_scene` reads one"):
+        image(picture, scene)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match=r"a picture must be a Picture, not Scene\(.*; `render` makes one"):
+        image(scene, scene)  # type: ignore[arg-type]
 
 
 def test_a_picture_of_other_surfaces_is_refused() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from types import ModuleType
 from typing import ClassVar, NamedTuple
 
@@ -161,3 +162,13 @@ def test_help_shows_the_table_in_its_order_and_loads_no_command(
 def test_a_wrong_name_is_told_the_nearest_right_one(group: TwoCommands) -> None:
     assert "there is no command 'pant'; did you mean 'paint'?" in run_group(group, "pant")[1]
     assert "there is no command 'xyz'; known are paint, list" in run_group(group, "xyz")[1]
+
+
+def test_a_file_without_a_command_is_told_where_one_stands(
+    group: TwoCommands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "car.obj").write_text("")
+    code, said = run_group(group, "car.obj")
+    assert code == 2
+    assert "a command must stand before a file, as in `house paint car.obj`; known are paint, list" in said

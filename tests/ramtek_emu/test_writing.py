@@ -19,7 +19,8 @@ def test_saving_again_replaces_the_file_unless_told_otherwise(tmp_path: Path) ->
     with pytest.raises(OutputExistsError) as refusal:
         save_png(FIELD, path, overwrite=False)
     assert str(refusal.value) == (
-        f"an output must be a new file, not {path}, which exists; choose another name or add --force"
+        f"an output must be a new file, not {path}, which exists; choose another name, or overwrite it"
+        " with --force (overwrite=True in Python)"
     )
     assert path.read_bytes() == b"old"
     save_png(FIELD, path)

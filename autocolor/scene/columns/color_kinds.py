@@ -21,7 +21,7 @@ LONGEST_COLOR: Final = 100
 
 IN_FULL: Final = re.compile("#[0-9a-fA-F]{6}")
 OF_DIGITS: Final = re.compile("#[0-9a-fA-F]*")
-A_NAME: Final = re.compile("[A-Za-z]+")
+A_NAME: Final = re.compile("[A-Za-z]{2,}")
 
 
 @dataclass(frozen=True)
@@ -120,4 +120,5 @@ def _advice_on_floats(value: object) -> str:
         color = _within_range((red, green, blue))
     except (TypeError, ValueError, OverflowError):
         return ""
-    return f"; write {color} or {in_digits(color)!r}"
+    # A list is one in Python, in scene files and after --set.
+    return f"; write {list(color)} or {in_digits(color)!r}"

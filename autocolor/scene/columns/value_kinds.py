@@ -162,6 +162,9 @@ class VectorKind(Leaf):
         require(all(abs(component) <= LARGEST_PLACE for component in (x, y, z)))
         return x, y, z
 
+    def advice(self, value: object) -> str:
+        return "; write them as in [1, 2, 3]" if isinstance(value, str) else ""
+
     def held(self, value: object, path: Path, problems: list[Problem]) -> object:
         vector = super().held(value, path, problems)
         if self.has_length and vector == (0.0, 0.0, 0.0):

@@ -89,6 +89,8 @@ def test_lights_are_those_of_the_scene_on_the_line(folder: Path) -> None:
         ("li", ["lights.key.", "lights.key.2."]),
         ("surfaces.side.two", [f"surfaces.side.two_sided{end}" for end in ("=", "=true", "=false")]),
         ("dither=o", ["dither=off", "dither=ordered"]),
+        ("background=na", ["background=navajowhite", "background=navy"]),
+        ("background=#", ["background=#000000"]),
         ("ambient", ["ambient=", "ambient=0.1"]),
         ("lights.key.flaps.z.m", ["lights.key.flaps.z.minimum=", "lights.key.flaps.z.maximum="]),
         ("surfaces.front.low.le", ["surfaces.front.low.levels="]),

@@ -66,7 +66,7 @@ def test_what_exists_is_refused_unless_forced(folder: Path) -> None:
     (folder / "a.png").write_bytes(b"mine")
     (folder / "link.npz").symlink_to("nowhere")
     for output, save in (("a.png", None), (None, "link.npz")):
-        with pytest.raises(OutputError, match="add --force"):
+        with pytest.raises(OutputError, match="overwrite it"):
             refuse_outputs(output, save, force=False)
         refuse_outputs(output, save, force=True)
 

@@ -101,8 +101,8 @@ def test_an_existing_output_is_kept_without_force(folder: Path, run: Run) -> Non
     for name, option in (("mine.png", "-o"), ("mine.npz", "--save")):
         (folder / name).write_bytes(b"mine")
         expected = (
-            f"autocolor: an output must be a new file, not {name}, which exists; choose another name or add"
-            " --force\n"
+            f"autocolor: an output must be a new file, not {name}, which exists; choose another name, or"
+            " overwrite it with --force (overwrite=True in Python)\n"
         )
         assert run("render", "two.obj", option, name) == (73, "", expected)
         assert (folder / name).read_bytes() == b"mine"

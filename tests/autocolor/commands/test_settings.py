@@ -164,7 +164,9 @@ def test_a_value_that_breaks_a_rule_is_refused(scene: Scene, setting: str, sente
     assert sentence in str(caught.value)
 
 
-def test_a_setting_without_an_equals_sign_is_wrong_usage(scene: Scene) -> None:
+def test_a_setting_without_a_key_or_an_equals_sign_is_wrong_usage(scene: Scene) -> None:
+    with pytest.raises(UsageError, match=r"must be KEY=VALUE, not '=0\.2'"):
+        with_settings(scene, ("=0.2",))
     with pytest.raises(UsageError, match="--set must be KEY=VALUE, not 'ambient'"):
         with_settings(scene, ("ambient",))
 
@@ -185,6 +187,7 @@ def test_a_wrong_setting_ends_before_anything_is_written(
         (("lights.key.cone_angle=30", "lights.key.cone_angle=none"), "cone_angle", None),
         (("lights.key.aim=none", "lights.key.direction=[0, 1, 0]"), "aim", None),
         (("lights.key.aim = none ",), "aim", None),
+        (("lights.key.aim=None",), "aim", None),
     ],
 )
 def test_none_unsets_a_field_of_a_light_that_may_be_absent(
@@ -210,6 +213,8 @@ def test_none_unsets_the_target_of_a_view_the_levels_of_a_surface_and_flaps(scen
 def test_what_is_named_none_stays_a_name(scene: Scene) -> None:
     scene = scene.replace(surfaces=(*scene.surfaces, Surface("none")))
     assert with_settings(scene, ("parts.side.surface=none",)).part("side").surface == "none"
+    with pytest.raises(UsageError, match="surface 'None' is not in the surface table"):
+        with_settings(scene, ("parts.side.surface=None",))
     changed = with_settings(scene, ("surfaces.none.levels=9", "surfaces.none.levels=none"))
     assert changed.surface("none").levels is None
 

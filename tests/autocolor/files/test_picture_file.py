@@ -19,7 +19,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, Light, Scene, read_picture, read_scene, render, write_picture
+from autocolor import Flap, Flaps, Light, Scene, UsageError, read_picture, read_scene, render, write_picture
 from autocolor.errors import InputError, MissingInputError, OutputError, WriteError
 from autocolor.files.picture_file import PICTURE_FILE, SavedPicture
 from autocolor.mapping.display_image import display_image
@@ -103,6 +103,17 @@ def equal_scenes(one: Scene, other: Scene) -> bool:
             for name in ("coordinates", "node_numbers", "part_numbers")
         )
     )
+
+
+def test_a_picture_file_under_the_name_of_an_image_is_refused(tmp_path: Path) -> None:
+    scene = lit_wall()
+    path = tmp_path / "wall.png"
+    with pytest.raises(UsageError) as refusal:
+        write_picture(path, render(scene, 24, 32), scene)
+    assert str(refusal.value) == (
+        f"a picture with its scene must be written to a file that ends in .npz, not to {path}; rename it"
+    )
+    assert not path.exists()
 
 
 def test_a_picture_comes_back_with_its_scene(tmp_path: Path) -> None:

@@ -438,6 +438,23 @@ def test_a_path_that_the_system_cannot_hold_is_refused(tmp_path: Path, name: str
     assert list(tmp_path.iterdir()) == []
 
 
+def test_an_empty_path_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(
+        UsageError, match=r"must have a place, not an empty name; for the current folder write '\.'"
+    ):
+        write_scene("", scene_of(cube()))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_value_that_is_no_scene_is_refused_in_words(tmp_path: Path) -> None:
+    with pytest.raises(
+        UsageError, match=r"a scene must be a Scene, not '.*'; `read_scene` reads one from files"
+    ):
+        write_scene(tmp_path / "new", "scenes/coupe")  # type: ignore[arg-type]
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_no_mesh_file_is_ever_overwritten(tmp_path: Path) -> None:
     (tmp_path / "mesh.obj").write_text(CAR)
     write_scene(tmp_path, scene_of(cube()))

@@ -23,7 +23,8 @@ def test_an_existing_file_is_refused_without_overwrite(tmp_path: Path) -> None:
     with pytest.raises(OutputError) as caught:
         write_atomically(path, b"new", overwrite=False)
     assert str(caught.value) == (
-        f"an output must be a new file, not {path}, which exists; choose another name or add --force"
+        f"an output must be a new file, not {path}, which exists; choose another name, or overwrite it"
+        " with --force (overwrite=True in Python)"
     )
     assert path.read_bytes() == b"old"
     assert os.listdir(tmp_path) == ["a.npz"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -109,7 +110,7 @@ def test_a_part_may_be_named_and_a_mesh_of_ours_stays_itself() -> None:
 @pytest.mark.parametrize(
     "source",
     [
-        None, "car.obj", 3, [POINTS, TRIANGLES], (POINTS, TRIANGLES), SimpleNamespace(points=POINTS),
+        None, 3, [POINTS, TRIANGLES], (POINTS, TRIANGLES), SimpleNamespace(points=POINTS),
         SimpleNamespace(points=POINTS, cells=np.array([4, 0, 1, 2, 4]), celltypes=np.array([10])),
         SimpleNamespace(vertices=POINTS), SimpleNamespace(geometry={}),
     ],
@@ -120,6 +121,24 @@ def test_anything_else_is_refused_in_a_sentence(source: Any) -> None:
     assert str(refusal.value) == (
         "a mesh must be a Mesh, nodes and polygons, or a surface of trimesh, PyVista or meshio, not"
         f" {type(source).__name__}; take its surface, or give its nodes and its polygons as two arguments"
+    )
+
+
+@pytest.mark.parametrize("source", ["car.obj", Path("car.obj")])
+def test_a_file_is_sent_to_read_scene(source: object) -> None:
+    with pytest.raises(UsageError) as refusal:
+        scene_of(source)
+    assert str(refusal.value) == (
+        f"a mesh must be in memory, not a file, {source!r}; read that with read_scene"
+    )
+
+
+def test_cells_that_are_not_those_of_meshio_are_refused_in_a_sentence() -> None:
+    with pytest.raises(InputError) as refusal:
+        scene_of(SimpleNamespace(points=POINTS, cells=[("triangle", [[0, 1, 2]])]))
+    assert str(refusal.value) == (
+        "cells must have a type and data, as those of meshio, not be ('triangle', [[0, 1, 2]]); make them"
+        " cell blocks"
     )
 
 

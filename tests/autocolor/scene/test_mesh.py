@@ -82,9 +82,15 @@ def test_the_bounds_hold_the_nodes_that_polygons_use_and_no_other(mesh: Mesh) ->
             "node table: coordinates must be finite and at most 1e30 in size, not [0.0, nan, 0.0] (row 1)",
         ),
         ({"coordinates": np.eye(3)[:, :2]}, "node table: its shape must be (rows, 3), not (3, 2)"),
-        ({"coordinates": [[1, 2], [3]]}, "node table: it must be an array of numbers, not list"),
-        ({"coordinates": [["1", "2", "3"]] * 3}, "node table: it must be an array of numbers, not list"),
-        ({"node_numbers": [[0, 1, 2.5]]}, "polygon table: it must be an array of whole numbers, not list"),
+        ({"coordinates": [[1, 2], [3]]}, "node table: it must be an array of numbers, not list; convert it"),
+        (
+            {"coordinates": [["1", "2", "3"]] * 3},
+            "node table: it must be an array of numbers, not list; convert it",
+        ),
+        (
+            {"node_numbers": [[0, 1, 2.5]]},
+            "polygon table: it must be an array of whole numbers, not of float64; convert it",
+        ),
         ({"node_numbers": [[0, 1]]}, "polygon table: its shape must be (rows, 3) or (rows, 4), not (1, 2)"),
         (
             {"node_numbers": [[0, 1, 3]]},
@@ -103,8 +109,11 @@ def test_the_bounds_hold_the_nodes_that_polygons_use_and_no_other(mesh: Mesh) ->
             {"part_numbers": [0, 0]},
             "polygon table: there must be one part number a polygon (1), not an array of shape (2,)",
         ),
-        ({"part_numbers": [0.5]}, "part numbers: it must be an array of whole numbers, not list"),
-        ({"part_numbers": "x"}, "part numbers: it must be an array of whole numbers, not str"),
+        (
+            {"part_numbers": [0.5]},
+            "part numbers: it must be an array of whole numbers, not of float64; convert it",
+        ),
+        ({"part_numbers": "x"}, "part numbers: it must be an array of whole numbers, not str; convert it"),
         ({"part_names": ("door", "door")}, "part table: part names must differ, not repeat"),
         ({"crease_angle": 181}, "mesh: crease_angle must be a number from 0 to 180, not 181"),
     ],
@@ -113,6 +122,12 @@ def test_a_mesh_that_breaks_a_rule_is_refused(fields: dict[str, Any], sentence: 
     with pytest.raises(InputError) as refusal:
         mesh_of(**fields)
     assert sentence in refusal.value.problems
+
+
+def test_what_is_wrong_with_the_nodes_is_not_said_of_the_polygons_again() -> None:
+    with pytest.raises(InputError) as refusal:
+        mesh_of(coordinates=np.eye(3)[:, :2])
+    assert refusal.value.problems == ("node table: its shape must be (rows, 3), not (3, 2)",)
 
 
 def test_an_empty_mesh_is_a_mesh() -> None:

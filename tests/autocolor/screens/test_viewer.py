@@ -179,6 +179,34 @@ def test_a_key_held_down_is_one_step(viewer: Viewer, name: str, typed: str) -> N
     assert not viewer.studio.undo()
 
 
+@pytest.mark.parametrize(("name", "typed"), [("f1", ""), ("f4", ""), ("1", "1"), ("e", "e")])
+def test_a_switch_does_not_flip_while_its_key_is_held_down(viewer: Viewer, name: str, typed: str) -> None:
+    assert viewer.on_key(name, typed=typed)
+    switched = viewer.page, viewer.studio.scene
+    for _ in range(3):
+        assert viewer.on_key(name, typed=typed, repeated=True)
+        assert (viewer.page, viewer.studio.scene) == switched
+
+
+def test_escape_held_down_goes_back_one_step_only(viewer: Viewer) -> None:
+    viewer.on_key("f1")
+    viewer.on_key("escape", repeated=True)
+    assert viewer.page == "help"
+    viewer.on_key("escape")
+    assert viewer.page == "picture"
+    assert viewer.on_key("escape", repeated=True)
+
+
+def test_undo_and_colors_go_on_while_their_key_is_held_down(viewer: Viewer) -> None:
+    before = viewer.studio.scene
+    press_c(viewer)
+    viewer.on_key("c", typed="c", repeated=True)
+    viewer.on_key("z", control=True)
+    assert viewer.studio.scene is not before
+    viewer.on_key("z", control=True, repeated=True)
+    assert viewer.studio.scene is before
+
+
 def test_a_key_pressed_again_is_a_step_of_its_own(viewer: Viewer) -> None:
     viewer.on_key("left")
     once = viewer.studio.scene
@@ -274,6 +302,12 @@ def test_undo_on_a_page_leads_back_to_the_picture(viewer: Viewer) -> None:
     viewer.on_key("f4")
     control(viewer, "z")
     assert is_true_to(viewer, before)
+
+
+def test_the_message_names_the_surface_that_was_chosen(viewer: Viewer) -> None:
+    # In full screen, the message is all that tells which one it is.
+    viewer.on_key("s")
+    assert viewer.message == f"surface {viewer.surface_name}"
 
 
 def test_the_chosen_surface_is_the_one_that_is_recolored(viewer: Viewer) -> None:

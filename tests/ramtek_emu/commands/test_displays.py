@@ -8,10 +8,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.shell_completion import BashComplete
 
 from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, read_snapshot
+from ramtek_emu.commands.ramtek import ramtek
 from tests.ramtek_emu.processes import environment, run, started, stream
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, words
+
+
+@pytest.mark.parametrize("command", ["play", "list", "serve"])
+def test_the_names_of_configurations_are_completed(command: str) -> None:
+    shell = BashComplete(ramtek, {}, "ramtek", "_RAMTEK_COMPLETE")
+    found = shell.get_completions([command, "--configuration"], "p")
+    assert [item.value for item in found] == ["PRINCETON_9300"]
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,10 @@ def test_a_played_stream_gives_its_picture_its_recording_and_its_snapshot(tmp_pa
     assert record.read_bytes() == path.read_bytes()[:-1]
     again = run(*arguments)
     assert again.returncode == 73
-    assert b"which exists; choose another name or add --force" in again.stderr
+    assert (
+        b"which exists; choose another name, or overwrite it with --force (overwrite=True in Python)"
+        in again.stderr
+    )
     assert run("play", "-", "-o", picture, "--force", data=record.read_bytes()).returncode == 0
     windowless = run("play", path)
     assert windowless.returncode == 69

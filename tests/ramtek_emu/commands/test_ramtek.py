@@ -52,7 +52,7 @@ def test_the_pattern_goes_to_a_picture_file_once(tmp_path: Path) -> None:
     assert again.returncode == 73
     assert again.stderr == (
         f"ramtek: an output must be a new file, not {path}, which exists; "
-        "choose another name or add --force\n"
+        "choose another name, or overwrite it with --force (overwrite=True in Python)\n"
     )
     assert ramtek("-o", str(path), "--force").returncode == 0
 

@@ -143,6 +143,15 @@ def test_escape_leaves_full_screen_before_it_goes_to_the_program(console: PlainC
     assert taken == [Key("escape")]
 
 
+def test_a_window_is_asked_to_close_once_for_each_press(console: PlainConsole) -> None:
+    answers = [False, True]
+    console.on_close = lambda: answers.pop(0)
+    console.handle_key(Key("q", control=True))
+    console.handle_key(Key("q", control=True, repeated=True))
+    assert answers == [True]
+    assert console.asked == []
+
+
 def test_shortcuts_do_not_repeat(console: PlainConsole) -> None:
     for name in ("f11", "f12", "f1"):
         console.handle_key(Key(name, repeated=True))

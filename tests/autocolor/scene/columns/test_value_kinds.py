@@ -126,7 +126,15 @@ def test_a_value_is_held_in_one_type_whatever_it_came_in(kind: Kind, value: obje
     ],
 )  # fmt: skip
 def test_what_is_no_vector_is_refused(value: object) -> None:
-    assert refusal(VectorKind(), value) == f"it must be three finite numbers of at most 1e36, not {value!r}"
+    assert refusal(VectorKind(), value).startswith(
+        f"it must be three finite numbers of at most 1e36, not {value!r}"
+    )
+
+
+def test_a_vector_without_its_brackets_is_told_how_to_be_written() -> None:
+    advice = "it must be three finite numbers of at most 1e36, not '1,2,3'; write them as in [1, 2, 3]"
+    assert refusal(VectorKind(), "1,2,3") == advice
+    assert refusal(VectorKind(), (1, 2)).endswith("not (1, 2)")
 
 
 @pytest.mark.parametrize(
