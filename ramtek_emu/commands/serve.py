@@ -108,7 +108,9 @@ def serve(
     from ramtek_emu.host.unix_server import UnixServer
 
     def lines_for(resettable: HostSession | Server) -> JoystickLines | None:
-        return JoystickLines(joystick, display.joystick, resettable.reset, tell) if joystick else None
+        if joystick is None:
+            return None
+        return JoystickLines(joystick, display.joystick, resettable.reset, tell)
 
     with recording(record, force) as kept:
         if stdio:

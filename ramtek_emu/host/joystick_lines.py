@@ -12,10 +12,12 @@ follows a # are ignored. A line that holds anything else does nothing and is ans
 
 from __future__ import annotations
 
+import errno
 import os
 import queue
 import re
 import stat
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from typing import Final
@@ -93,10 +95,14 @@ def opened(path: str) -> int:
     """The number of the open file, stdin for `-`; MissingInputError if it cannot be read."""
     try:
         if path == "-":
-            return os.dup(0)
+            if sys.stdin is None:
+                raise OSError(errno.EBADF, "stdin is closed")
+            return os.dup(sys.stdin.fileno())
+        kind = os.stat(path).st_mode
+        if stat.S_ISDIR(kind):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
         # A FIFO that is open for writing, too, does not end when one of its writers leaves.
-        is_fifo = stat.S_ISFIFO(os.stat(path).st_mode)
-        return os.open(path, os.O_RDWR if is_fifo else os.O_RDONLY)
+        return os.open(path, os.O_RDWR if stat.S_ISFIFO(kind) else os.O_RDONLY)
     except (OSError, ValueError) as cause:
         reason = (getattr(cause, "strerror", None) or str(cause)).lower()
         raise MissingInputError(

@@ -229,6 +229,13 @@ def test_one_of_the_ways_to_serve_must_be_given() -> None:
         assert b"on one of --port, --unix and --stdio" in asked.stderr
 
 
+def test_a_joystick_without_a_name_or_in_a_folder_is_refused(tmp_path: Path) -> None:
+    for name in ("", tmp_path):
+        asked = run("serve", "--port", 0, "--joystick", name)
+        assert asked.returncode == 66
+        assert b"a joystick's lines must come from a file or a FIFO that can be read" in asked.stderr
+
+
 def test_lines_on_stdin_move_the_joystick_of_a_server() -> None:
     with started("serve", "--port", 0, "--joystick", "-") as process:
         assert process.stdin is not None
