@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 import click
 
 from ramtek_emu.configuration import GMR_9300, Configuration, configuration_named
-from ramtek_emu.errors import MissingInputError
+from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.writing import Output, refuse_output, write_atomically
 
 if TYPE_CHECKING:
@@ -110,9 +110,8 @@ def open_stream(path: str) -> BinaryIO:
     except MissingInputError:
         raise
     except (OSError, ValueError) as cause:
-        reason = (getattr(cause, "strerror", None) or str(cause)).lower()
         raise MissingInputError(
-            f"a stream must be a file that can be read, not {path!r} ({reason}); check the name"
+            f"a stream must be a file that can be read, not {path!r} ({reason_of(cause)}); check the name"
         ) from None
 
 
@@ -124,9 +123,8 @@ def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
         try:
             return os.read(number, most)
         except OSError as cause:
-            reason = (cause.strerror or str(cause)).lower()
             raise MissingInputError(
-                f"a stream must be readable to its end, and it is not ({reason}); try a copy of it"
+                f"a stream must be readable to its end, and it is not ({reason_of(cause)}); try a copy of it"
             ) from None
 
     return read

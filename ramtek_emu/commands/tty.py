@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, NoReturn
 import click
 
 from ramtek_emu.commands.displays import tell
-from ramtek_emu.errors import MissingInputError, OutputError, OutputExistsError, PortError
+from ramtek_emu.errors import MissingInputError, OutputError, OutputExistsError, PortError, reason_of
 
 if TYPE_CHECKING:
     from ramtek_emu.host.write_notices import WriteNotices
@@ -119,9 +119,8 @@ def linked(name: str, device: str) -> Iterator[None]:
             f"a link must be a new name, not {name}, which exists; choose another"
         ) from None
     except (OSError, ValueError) as cause:
-        reason = (getattr(cause, "strerror", None) or str(cause)).lower()
         raise OutputError(
-            f"a link must be made where it can, not at {name} ({reason}); choose another"
+            f"a link must be made where it can, not at {name} ({reason_of(cause)}); choose another"
         ) from None
     try:
         yield
@@ -207,10 +206,10 @@ def become(
         try:
             socket.send_fds(parent, [b"told of"], [ask_for_notices()] if with_notices else [])
         except OSError as cause:
-            parent.send((cause.strerror or "unknown").lower().encode())
+            parent.send(reason_of(cause).encode())
         try:
             os.execvpe(command[0], command, environment)
         except (OSError, ValueError) as cause:
-            parent.send((getattr(cause, "strerror", None) or str(cause)).lower().encode())
+            parent.send(reason_of(cause).encode())
     finally:
         os._exit(127)

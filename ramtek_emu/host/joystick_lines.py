@@ -22,7 +22,7 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from ramtek_emu.errors import MissingInputError
+from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.memory.cursors import Joystick
 
 MOST_BYTES: Final = 1 << 12
@@ -104,10 +104,9 @@ def opened(path: str) -> int:
         # A FIFO that is open for writing, too, does not end when one of its writers leaves.
         return os.open(path, os.O_RDWR if stat.S_ISFIFO(kind) else os.O_RDONLY)
     except (OSError, ValueError) as cause:
-        reason = (getattr(cause, "strerror", None) or str(cause)).lower()
         raise MissingInputError(
-            f"a joystick's lines must come from a file or a FIFO that can be read, not {path!r} ({reason}); "
-            "make a FIFO with mkfifo, or give - for stdin"
+            f"a joystick's lines must come from a file or a FIFO that can be read, not {path!r} "
+            f"({reason_of(cause)}); make a FIFO with mkfifo, or give - for stdin"
         ) from None
 
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from ramtek_emu.arrays import Words
 from ramtek_emu.checks import checked_stream
-from ramtek_emu.errors import PortError, ReplyError
+from ramtek_emu.errors import PortError, ReplyError, reason_of
 from ramtek_emu.host.marks import Sign
 
 HURRIED: Final = 1.0
@@ -37,6 +37,8 @@ class SocketPort(ABC):
         self.address = address
         self.timeout = timeout
         self._received = bytearray()
+        self._mark_is_due = False
+        """Whether a reset was asked for and not answered yet; what is received until then is dropped."""
         self._socket = connected
         connected.setblocking(False)
 
@@ -65,7 +67,7 @@ class SocketPort(ABC):
         """The next `count` words, uint16; ReplyError at the timeout, PortError if the connection is lost."""
         if count < 0:
             raise ReplyError(f"the words received must be 0 or more, not {count}; ask for fewer")
-        while len(self._received) < 2 * count:
+        while self._mark_is_due or len(self._received) < 2 * count:
             readable, _ = self._wait(writing=False)
             if not readable:
                 raise ReplyError(
@@ -86,16 +88,16 @@ class SocketPort(ABC):
         is asked for is told in `marks`.
         """
         asked = False
-        while True:
-            readable, writable = self._wait(writing=not asked)
-            if writable and not asked:
+        while self._mark_is_due or not asked:
+            # A reset that was given up is answered first: two marks at once would be one.
+            readable, writable = self._wait(writing=not self._mark_is_due)
+            if writable:
                 with self._lost_as_port_error(), suppress(BlockingIOError):
                     self._send_mark()
-                    asked = True
-            if readable and self._take() and asked:
-                self._received.clear()
-                return
-            if asked and not readable and not writable:
+                    asked = self._mark_is_due = True
+            if readable:
+                self._take()
+            elif not writable:
                 raise PortError(
                     f"a display must reset within {self.timeout:g} seconds, and {self.address} does not; "
                     "wait until no other host is served, or start it again"
@@ -168,16 +170,17 @@ class SocketPort(ABC):
         events = ready[0][1] if ready else 0
         return bool(events & selectors.EVENT_READ), bool(events & selectors.EVENT_WRITE)
 
-    def _take(self) -> bool:
-        """Keep the replies that have arrived; returns whether a mark has arrived instead."""
+    def _take(self) -> None:
+        """Keep the replies that have arrived; at a mark, drop those that precede it."""
         with suppress(BlockingIOError), self._lost_as_port_error():
             data = self._read()
             if data is Sign.END:
                 raise self._gone(None)
             if data is Sign.MARK:
-                return True
-            self._received += data
-        return False
+                self._received.clear()
+                self._mark_is_due = False
+            else:
+                self._received += data
 
     @abstractmethod
     def _read(self) -> bytes | Sign:
@@ -209,8 +212,3 @@ class LostAsPortError:
     ) -> None:
         if isinstance(error, OSError) and not isinstance(error, (BlockingIOError, PortError)):
             raise self._port._gone(error) from error
-
-
-def reason_of(cause: Exception) -> str:
-    """Why a system call failed, as it is put into a sentence."""
-    return (getattr(cause, "strerror", None) or str(cause) or type(cause).__name__).lower()

@@ -6,9 +6,9 @@ import re
 import socket
 from typing import Final
 
-from ramtek_emu.errors import PortError
+from ramtek_emu.errors import PortError, reason_of
 from ramtek_emu.host.marks import Sign, expect_marks, marks_are_known, read_stream, send_stream_mark
-from ramtek_emu.host.socket_port import SocketPort, reason_of
+from ramtek_emu.host.socket_port import SocketPort
 
 ADDRESS: Final = re.compile(r"tcp://(?P<host>\[[0-9A-Fa-f:.%\w]+\]|[^\s:/\[\]@]+):(?P<port>[0-9]{1,5})")
 

@@ -11,10 +11,10 @@ import socket
 import time
 from typing import Final
 
-from ramtek_emu.errors import PortError
+from ramtek_emu.errors import PortError, reason_of
 from ramtek_emu.host.connection import PACKET_BYTES
 from ramtek_emu.host.marks import Sign, read_packet, send_packet_mark
-from ramtek_emu.host.socket_port import SocketPort, reason_of
+from ramtek_emu.host.socket_port import SocketPort
 
 RETRY_SECONDS: Final = 0.05
 

@@ -142,6 +142,22 @@ def test_a_reset_that_is_not_answered_is_told() -> None:
             port.close()
 
 
+def test_a_reset_that_is_answered_late_still_drops_the_replies_of_before() -> None:
+    with silent_listener() as listener:
+        port = TcpPort(f"tcp://127.0.0.1:{listener.getsockname()[1]}", timeout=0.2)
+        connected, _ = listener.accept()
+        with connected:
+            with pytest.raises(PortError):
+                port.reset()
+            connected.sendall(b"\1\0")
+            connected.send(b"\0", socket.MSG_OOB)
+            connected.sendall(b"\7\0")
+            port.timeout = 10
+            assert port.receive(1).tolist() == [7]
+    with pytest.raises(PortError):
+        port.close()
+
+
 def test_replies_that_come_while_words_are_sent_are_kept_in_order() -> None:
     with serving() as server, TcpPort(server.address) as port:
         threads = threading.active_count()
