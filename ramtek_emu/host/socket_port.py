@@ -17,12 +17,14 @@ from typing import Final, NoReturn, TypeVar
 import numpy as np
 
 from ramtek_emu.arrays import Words
-from ramtek_emu.checks import checked_stream
+from ramtek_emu.checks import checked_stream, is_whole
 from ramtek_emu.errors import PortError, ReplyError, reason_of
 from ramtek_emu.host.marks import Sign
 
 HURRIED: Final = 1.0
 """Seconds that closing waits for the display's end while an error is under way."""
+MOST_SECONDS: Final = 1_000_000
+"""The longest timeout; what the system waits for at once is not much more."""
 
 Self = TypeVar("Self", bound="SocketPort")
 
@@ -65,8 +67,11 @@ class SocketPort(ABC):
 
     def receive(self, count: int) -> Words:
         """The next `count` words, uint16; ReplyError at the timeout, PortError if the connection is lost."""
-        if count < 0:
-            raise ReplyError(f"the words received must be 0 or more, not {count}; ask for fewer")
+        if not is_whole(count) or count < 0:
+            raise ReplyError(
+                f"the words received must be a whole number from 0 on, not {count!r}; "
+                "ask for as many as an instruction replies"
+            )
         while self._mark_is_due or len(self._received) < 2 * count:
             readable, _ = self._wait(writing=False)
             if not readable:
@@ -196,6 +201,16 @@ class SocketPort(ABC):
     def _gone(self, cause: OSError | None) -> PortError:
         why = "it closed the connection" if cause is None else reason_of(cause)
         return PortError(f"a display must stay at {self.address}, and it left ({why}); connect again later")
+
+
+def checked_timeout(seconds: object) -> float:
+    """How long a port waits, as a float; PortError if it is no time in seconds."""
+    if not isinstance(seconds, int | float) or isinstance(seconds, bool) or not 0 < seconds <= MOST_SECONDS:
+        raise PortError(
+            f"a timeout must be a number of seconds from 0 to {MOST_SECONDS:,}, not {seconds!r}; "
+            "choose another"
+        )
+    return float(seconds)
 
 
 class LostAsPortError:

@@ -4,6 +4,7 @@ import copy
 import pickle
 import socket
 import threading
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,9 +28,9 @@ def test_a_port_without_a_display_is_refused_in_one_sentence() -> None:
 
 @pytest.mark.parametrize(
     "address",
-    ["", "127.0.0.1:1", "tcp://", "tcp://a", "tcp://a:0", "tcp://a:70000", "tcp://a:b", "tcp://a b:1"],
+    ["", "127.0.0.1:1", "tcp://", "tcp://a", "tcp://a:0", "tcp://a:70000", "tcp://a:b", "tcp://a b:1", 9300],
 )
-def test_what_is_no_address_is_refused(address: str) -> None:
+def test_what_is_no_address_is_refused(address: Any) -> None:
     with pytest.raises(PortError) as refusal:
         host_and_port(address)
     assert str(refusal.value) == (
