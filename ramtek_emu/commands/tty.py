@@ -34,7 +34,9 @@ WAIT_SECONDS: Final = 600.0
 
 @click.command(epilog=EXAMPLES)
 @click.option("--stream", is_flag=True, help="Do not round writes down: for programs that use C's stdio.")
-@click.option("--link", type=click.Path(), metavar="NAME", help="Make NAME a link to the device meanwhile.")
+@click.option(
+    "--link", type=click.Path(), metavar="NAME", help="Make NAME a link to the device while PROGRAM runs."
+)
 @click.argument("path", type=click.Path())
 @click.argument("program")
 @click.argument("arguments", nargs=-1, type=click.UNPROCESSED)
@@ -50,9 +52,9 @@ def tty(
     """Run PROGRAM with its device on the display that `ramtek serve --unix PATH` makes.
 
     The device is a pseudoterminal: the program finds its path in the environment as RAMTEK_DEVICE, and in
-    place of {} in its arguments. Each of its writes is rounded down to whole words alone, as the drivers of
-    the time did, and what the display replies can be read there. The exit code is the program's, or 128 and
-    the number of the signal that ended it.
+    place of {} in its arguments. Each of its writes is rounded down to whole words by itself, as the drivers
+    of the time did, and the replies of the display can be read there. The exit code is the program's, or 128
+    and the number of the signal that ended it.
 
     A program that draws with fwrite and putc needs --stream: for a terminal, C's stdio ends a write at each
     byte 0A, wherever that is in a word.

@@ -120,7 +120,7 @@ def lines_of(number: int) -> Iterator[str]:
             data = b""
         *lines, rest = (rest + data).split(b"\n")
         yield from (line.decode("utf-8", "replace") for line in lines)
-        # What is cut is no number and no word, whatever it was.
+        # A line that was cut begins with a question mark, so that it is refused whatever it held.
         rest = rest if len(rest) <= MOST_BYTES else b"?" + rest[:MOST_BYTES]
         if not data:
             if rest:

@@ -3,7 +3,8 @@
 A terminal hands over bytes, not writes: what a program wrote twice in quick succession is read at once. With
 a seccomp filter, Linux (5.5 and later) stops each `write` of the program before it begins and lets it go on
 when we say so. Everything that arrived until then belongs to the writes before it. The program and its
-children see nothing of it, however they were built; a write takes about a tenth of a millisecond longer.
+children need not know: they may be statically linked, or of 32 bits. A write takes about a tenth of a
+millisecond longer.
 
 What this does **not** do: writes of two processes or threads at the same time are not told apart, nor those
 by other calls (`io_uring`). With the filter, the program gains no privileges from set-user-ID files; children
