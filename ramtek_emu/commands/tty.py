@@ -144,7 +144,7 @@ class Running(NamedTuple):
 
 @contextmanager
 def started(command: list[str], environment: dict[str, str], with_notices: bool) -> Iterator[Running]:
-    """Run a program; Ctrl+C is left to it, and a termination signal passed on. It is hung up on an error."""
+    """Run a program; Ctrl+C is left to it, other signals to end are passed on. It is hung up on an error."""
     from ramtek_emu.host.write_notices import WriteNotices
 
     process, reason, number, failure = forked(command, environment, with_notices)
@@ -163,6 +163,7 @@ def started(command: list[str], environment: dict[str, str], with_notices: bool)
     before = {
         signal.SIGINT: signal.signal(signal.SIGINT, signal.SIG_IGN),
         signal.SIGTERM: signal.signal(signal.SIGTERM, pass_on),
+        signal.SIGHUP: signal.signal(signal.SIGHUP, pass_on),
     }
     try:
         if failure:

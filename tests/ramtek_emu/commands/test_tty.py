@@ -183,7 +183,9 @@ def test_a_program_that_a_signal_ends_gives_its_number(display: UnixServer) -> N
     assert tty(display, "sh", "-c", "kill -9 $$").returncode == 137
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGINT, 42)])
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGINT, 42)]
+)
 def test_signals_are_the_program_s(display: UnixServer, number: signal.Signals, code: int) -> None:
     script = "trap 'exit 42' INT; echo ready; while :; do sleep 0.05; done"
     with started("tty", display.address, "--", "sh", "-c", script) as process:
