@@ -121,6 +121,8 @@ class Client:
 
     def leave(self) -> None:
         """Close the connection and drop what is unfinished."""
+        if self._pending is not None:
+            self.connection.break_off()
         self._pending = None
         self.session.leave()
         self.socket.close()
