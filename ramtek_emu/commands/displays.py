@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
+from ramtek_emu.commands.end_signals import end_signals
 from ramtek_emu.configuration import GMR_9300, Configuration, configuration_named
 from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.writing import Output, refuse_output, write_atomically
@@ -137,12 +138,18 @@ def tell(message: str) -> None:
 
 def show(display: Ramtek9300, serve_for: Callable[[float], None]) -> None:
     """Show the display in a window until that is closed; `serve_for` is called at each tick."""
-    from ramtek_emu.monitor.window import Monitor
+    # Signals close the window between two ticks, never while a host is served; outputs are still written.
+    with end_signals() as signals:
+        from ramtek_emu.monitor.window import Monitor
 
-    name = display.configuration.name.replace("_", " ")
-    # Ctrl+C closes the window; the output files are still written.
-    with suppress(KeyboardInterrupt):
-        Monitor(display, f"RAMTEK {name}", on_tick=lambda: serve_for(TICK_SECONDS)).run()
+        def tick() -> None:
+            if signals.received:
+                monitor.close()
+            else:
+                serve_for(TICK_SECONDS)
+
+        monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
+        monitor.run()
 
 
 def tell_the_end(display: Ramtek9300, held_words: int, odd_byte: bytes) -> None:
