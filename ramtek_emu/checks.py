@@ -17,7 +17,7 @@ BYTE: Final = np.dtype(np.uint8)
 
 
 def is_whole(value: object) -> bool:
-    """Whether a value is one whole number, of Python or of numpy; True and False are none."""
+    """Whether a value is one whole number, of Python or of numpy; True and False are not."""
     return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 

@@ -88,3 +88,8 @@ class WriteError(RamtekError, OSError):
     """A file that could not be written."""
 
     exit_code = 74
+
+
+def reason_of(cause: Exception) -> str:
+    """Why a system call failed, as an error's sentence tells it in parentheses."""
+    return (getattr(cause, "strerror", None) or str(cause) or type(cause).__name__).lower()

@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from ramtek_emu.errors import OutputError, OutputExistsError, WriteError
+from ramtek_emu.errors import OutputError, OutputExistsError, WriteError, reason_of
 
 NO_PLACE: Final = (
     errno.ENOENT,
@@ -139,7 +139,7 @@ def _exists(path: Path) -> OutputExistsError:
 
 
 def _refusal(path: Path, error: OSError) -> OutputError | WriteError:
-    reason = (error.strerror or str(error)).lower()
+    reason = reason_of(error)
     if error.errno in NO_PLACE:
         other = "name" if error.errno == errno.ENAMETOOLONG else "place"
         return OutputError(

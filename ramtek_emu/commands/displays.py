@@ -5,14 +5,15 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
+from ramtek_emu.commands.end_signals import end_signals
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300, Configuration, configuration_named
-from ramtek_emu.errors import MissingInputError
+from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.writing import Output, refuse_output, write_atomically
 
 if TYPE_CHECKING:
@@ -120,9 +121,8 @@ def open_stream(path: str) -> BinaryIO:
     except MissingInputError:
         raise
     except (OSError, ValueError) as cause:
-        reason = (getattr(cause, "strerror", None) or str(cause)).lower()
         raise MissingInputError(
-            f"a stream must be a file that can be read, not {path!r} ({reason}); check the name"
+            f"a stream must be a file that can be read, not {path!r} ({reason_of(cause)}); check the name"
         ) from None
 
 
@@ -134,9 +134,8 @@ def reader_of(file: BinaryIO) -> Callable[[int], bytes]:
         try:
             return os.read(number, most)
         except OSError as cause:
-            reason = (cause.strerror or str(cause)).lower()
             raise MissingInputError(
-                f"a stream must be readable to its end, and it is not ({reason}); try a copy of it"
+                f"a stream must be readable to its end, and it is not ({reason_of(cause)}); try a copy of it"
             ) from None
 
     return read
@@ -149,12 +148,18 @@ def tell(message: str) -> None:
 
 def show(display: Ramtek9300, serve_for: Callable[[float], None]) -> None:
     """Show the display in a window until that is closed; `serve_for` is called at each tick."""
-    from ramtek_emu.monitor.window import Monitor
+    # Signals close the window between two ticks, never while a host is served; outputs are still written.
+    with end_signals() as signals:
+        from ramtek_emu.monitor.window import Monitor
 
-    name = display.configuration.name.replace("_", " ")
-    # Ctrl+C closes the window; the output files are still written.
-    with suppress(KeyboardInterrupt):
-        Monitor(display, f"RAMTEK {name}", on_tick=lambda: serve_for(TICK_SECONDS)).run()
+        def tick() -> None:
+            if signals.received:
+                monitor.close()
+            else:
+                serve_for(TICK_SECONDS)
+
+        monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
+        monitor.run()
 
 
 def tell_the_end(display: Ramtek9300, held_words: int, odd_byte: bytes) -> None:

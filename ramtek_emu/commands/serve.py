@@ -64,7 +64,7 @@ PIPE_SECONDS: Final = 0.002
     default=600.0,
     show_default=True,
     metavar="SECONDS",
-    help="Show a silent host out after this long.",
+    help="Disconnect a host that is silent for this long.",
 )
 @click.option("--once", is_flag=True, help="End when the first host has left.")
 @display_options
@@ -87,9 +87,9 @@ def serve(
     """Be a display that a program sends words to, low byte first, and receives words from.
 
     With --port or --unix it serves one host after the other until Ctrl+C; others wait in line meanwhile. At a
-    Unix socket each write is rounded down to whole words alone, as the drivers of the time did. With --stdio
-    it ends at the end of its input. Nobody is asked for a password: keep to the loopback address unless
-    everyone who reaches the port may draw; a Unix socket is for its owner only.
+    Unix socket each write is rounded down to whole words by itself, as the drivers of the time did. With
+    --stdio it ends at the end of its input. Nobody is asked for a password: keep to the loopback address
+    unless everyone who reaches the port may draw; a Unix socket is for its owner only.
     """
     if (port is not None) + (unix is not None) + stdio != 1:
         raise click.UsageError(
@@ -108,7 +108,9 @@ def serve(
     from ramtek_emu.host.unix_server import UnixServer
 
     def lines_for(resettable: HostSession | Server) -> JoystickLines | None:
-        return JoystickLines(joystick, display.joystick, resettable.reset, tell) if joystick else None
+        if joystick is None:
+            return None
+        return JoystickLines(joystick, display.joystick, resettable.reset, tell)
 
     with recording(record, force) as kept:
         if stdio:

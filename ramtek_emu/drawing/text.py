@@ -80,12 +80,13 @@ def write_text(
     """Write characters along the scan of the window from `start` on; returns the place of the next cell.
 
     Hardware: BTL, LIN, JPL (whole cells, advance 7, line 9); NCAR (the scan order turns the letters); LIN
-    (the dots between are background); JPL (its window begins at 1, 1 and its text anywhere, also before it).
+    (the dots between are background); JPL (its driver sets a window from 1, 1 on and starts text anywhere,
+    also before that).
     Assumed: a cell that would cross the edge of the window starts the next line of text, at the edge where
     the scan starts. A next line of text that would cross the far edge of the window is not begun: what is
     left of the text is dropped, and the operating point stays behind the last cell that was written. The
-    first line is where the start point is, whatever the window is there, and a cell larger than the window is
-    written whole, since only the write window clips.
+    first line is written from the start point on, even if that lies outside the window, and a cell larger
+    than the window is written whole, since only the write window clips.
     """
     if window.is_empty:
         window = order.block_window(start, 0x10000, 0x10000)

@@ -106,7 +106,11 @@ class Client:
         """Pass one piece of the host's words to the display; returns whether there was one."""
         if not self.has_work or self._pending is None:
             return False
+        begin = time.monotonic()
         reply = next(self._pending, None)
+        # The clocks of the host stand still while it is the display that takes its time.
+        took = time.monotonic() - begin
+        self._moved, self._whole = self._moved + took, self._whole + took
         if reply is None:
             self._pending = None
         elif self._takes_replies:
@@ -117,6 +121,8 @@ class Client:
 
     def leave(self) -> None:
         """Close the connection and drop what is unfinished."""
+        if self._pending is not None:
+            self.connection.break_off()
         self._pending = None
         self.session.leave()
         self.socket.close()

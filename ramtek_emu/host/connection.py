@@ -10,7 +10,9 @@ No call waits: BlockingIOError tells that nothing can be done now, any other OSE
 from __future__ import annotations
 
 import socket
+import struct
 from collections import deque
+from contextlib import suppress
 from typing import Final
 
 from ramtek_emu.host.marks import (
@@ -25,6 +27,9 @@ from ramtek_emu.host.marks import (
 READ_BYTES: Final = 1 << 16
 PACKET_BYTES: Final = 1 << 19
 """The largest packet that is taken whole; more than the system lets a socket hold unless it is told to."""
+
+AT_ONCE: Final = struct.pack("ii", 1, 0)
+"""The value of SO_LINGER with which closing resets a connection."""
 
 
 class StreamConnection:
@@ -69,6 +74,12 @@ class StreamConnection:
         self.waiting = 0
         self._mark_is_due = False
 
+    def break_off(self) -> None:
+        """Let the end of the connection look like a loss, since not all of the host's words were executed."""
+        # On some systems, a connection that is lost already takes no options.
+        with suppress(OSError):
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, AT_ONCE)
+
     def send(self) -> None:
         """Send one piece of what waits."""
         if self._mark_is_due:
@@ -95,6 +106,9 @@ class PacketConnection(StreamConnection):
         """The words of the next packet, low byte first, without its odd byte; or a sign."""
         packet = read_packet(self.socket, PACKET_BYTES)
         return packet if isinstance(packet, Sign) else packet[: len(packet) & ~1]
+
+    def break_off(self) -> None:
+        """Do nothing: a Unix socket has only one kind of end, unless the host's words were not even read."""
 
     def _send_mark(self) -> None:
         send_packet_mark(self.socket)

@@ -11,6 +11,9 @@ kernel tells of each write before it begins (`write_notices`); what was read unt
 exact for writes of any size while one process writes at a time. Where there are no notices, a write that
 follows another before this relay has read is taken as a part of it, which shifts what follows if the first
 was of odd length; a piece shorter than 4,095 bytes is taken as the end of a write.
+
+A terminal is line-buffered in C's stdio: a program that draws with `fwrite` ends a write at each byte 0A,
+wherever that is in a word. What it means is one stream of bytes, and it can be passed on as that.
 """
 
 from __future__ import annotations
@@ -36,9 +39,15 @@ TERMINAL_PIECE: Final = 4095
 class DeviceRelay:
     """Passes bytes between the terminal of a program and a display, until the program has ended."""
 
-    def __init__(self, port: UnixPort, terminal: int, notices: WriteNotices | None) -> None:
-        """Begin; `terminal` is our side of the pseudoterminal, which is set not to block."""
+    def __init__(
+        self, port: UnixPort, terminal: int, notices: WriteNotices | None, as_stream: bool = False
+    ) -> None:
+        """Begin; `terminal` is our side of the pseudoterminal, which is set not to block.
+
+        With `as_stream`, writes are not rounded down: all of them are one stream of bytes.
+        """
         self._port, self._terminal, self._notices = port, terminal, notices
+        self._as_stream = as_stream
         self._written = bytearray()
         """What the program wrote and the display has not got; it ends with an odd byte in mid-write."""
         self._replies = bytearray()
@@ -102,7 +111,7 @@ class DeviceRelay:
             except OSError:
                 return
             self._written += data
-            if self._notices is None and len(data) < TERMINAL_PIECE:
+            if self._notices is None and not self._as_stream and len(data) < TERMINAL_PIECE:
                 self._end_write()
 
     def _end_write(self) -> None:

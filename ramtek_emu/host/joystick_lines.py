@@ -12,15 +12,17 @@ follows a # are ignored. A line that holds anything else does nothing and is ans
 
 from __future__ import annotations
 
+import errno
 import os
 import queue
 import re
 import stat
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from ramtek_emu.errors import MissingInputError
+from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.memory.cursors import Joystick
 
 MOST_BYTES: Final = 1 << 12
@@ -93,15 +95,18 @@ def opened(path: str) -> int:
     """The number of the open file, stdin for `-`; MissingInputError if it cannot be read."""
     try:
         if path == "-":
-            return os.dup(0)
+            if sys.stdin is None:
+                raise OSError(errno.EBADF, "stdin is closed")
+            return os.dup(sys.stdin.fileno())
+        kind = os.stat(path).st_mode
+        if stat.S_ISDIR(kind):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
         # A FIFO that is open for writing, too, does not end when one of its writers leaves.
-        is_fifo = stat.S_ISFIFO(os.stat(path).st_mode)
-        return os.open(path, os.O_RDWR if is_fifo else os.O_RDONLY)
+        return os.open(path, os.O_RDWR if stat.S_ISFIFO(kind) else os.O_RDONLY)
     except (OSError, ValueError) as cause:
-        reason = (getattr(cause, "strerror", None) or str(cause)).lower()
         raise MissingInputError(
-            f"a joystick's lines must come from a file or a FIFO that can be read, not {path!r} ({reason}); "
-            "make a FIFO with mkfifo, or give - for stdin"
+            f"a joystick's lines must come from a file or a FIFO that can be read, not {path!r} "
+            f"({reason_of(cause)}); make a FIFO with mkfifo, or give - for stdin"
         ) from None
 
 
@@ -115,7 +120,7 @@ def lines_of(number: int) -> Iterator[str]:
             data = b""
         *lines, rest = (rest + data).split(b"\n")
         yield from (line.decode("utf-8", "replace") for line in lines)
-        # What is cut is no number and no word, whatever it was.
+        # A line that was cut begins with a question mark, so that it is refused whatever it held.
         rest = rest if len(rest) <= MOST_BYTES else b"?" + rest[:MOST_BYTES]
         if not data:
             if rest:

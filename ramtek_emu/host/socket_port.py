@@ -17,12 +17,14 @@ from typing import Final, NoReturn, TypeVar
 import numpy as np
 
 from ramtek_emu.arrays import Words
-from ramtek_emu.checks import checked_stream
-from ramtek_emu.errors import PortError, ReplyError
+from ramtek_emu.checks import checked_stream, is_whole
+from ramtek_emu.errors import PortError, ReplyError, reason_of
 from ramtek_emu.host.marks import Sign
 
 HURRIED: Final = 1.0
 """Seconds that closing waits for the display's end while an error is under way."""
+MOST_SECONDS: Final = 1_000_000
+"""The longest timeout; what the system waits for at once is not much more."""
 
 Self = TypeVar("Self", bound="SocketPort")
 
@@ -37,6 +39,8 @@ class SocketPort(ABC):
         self.address = address
         self.timeout = timeout
         self._received = bytearray()
+        self._mark_is_due = False
+        """Whether a reset was asked for and not answered yet; what is received until then is dropped."""
         self._socket = connected
         connected.setblocking(False)
 
@@ -63,9 +67,12 @@ class SocketPort(ABC):
 
     def receive(self, count: int) -> Words:
         """The next `count` words, uint16; ReplyError at the timeout, PortError if the connection is lost."""
-        if count < 0:
-            raise ReplyError(f"the words received must be 0 or more, not {count}; ask for fewer")
-        while len(self._received) < 2 * count:
+        if not is_whole(count) or count < 0:
+            raise ReplyError(
+                f"the words received must be a whole number from 0 on, not {count!r}; "
+                "ask for as many as an instruction replies"
+            )
+        while self._mark_is_due or len(self._received) < 2 * count:
             readable, _ = self._wait(writing=False)
             if not readable:
                 raise ReplyError(
@@ -86,16 +93,16 @@ class SocketPort(ABC):
         is asked for is told in `marks`.
         """
         asked = False
-        while True:
-            readable, writable = self._wait(writing=not asked)
-            if writable and not asked:
+        while self._mark_is_due or not asked:
+            # A reset that was given up is answered first: two marks at once would be one.
+            readable, writable = self._wait(writing=not self._mark_is_due)
+            if writable:
                 with self._lost_as_port_error(), suppress(BlockingIOError):
                     self._send_mark()
-                    asked = True
-            if readable and self._take() and asked:
-                self._received.clear()
-                return
-            if asked and not readable and not writable:
+                    asked = self._mark_is_due = True
+            if readable:
+                self._take()
+            elif not writable:
                 raise PortError(
                     f"a display must reset within {self.timeout:g} seconds, and {self.address} does not; "
                     "wait until no other host is served, or start it again"
@@ -168,16 +175,17 @@ class SocketPort(ABC):
         events = ready[0][1] if ready else 0
         return bool(events & selectors.EVENT_READ), bool(events & selectors.EVENT_WRITE)
 
-    def _take(self) -> bool:
-        """Keep the replies that have arrived; returns whether a mark has arrived instead."""
+    def _take(self) -> None:
+        """Keep the replies that have arrived; at a mark, drop those that precede it."""
         with suppress(BlockingIOError), self._lost_as_port_error():
             data = self._read()
             if data is Sign.END:
                 raise self._gone(None)
             if data is Sign.MARK:
-                return True
-            self._received += data
-        return False
+                self._received.clear()
+                self._mark_is_due = False
+            else:
+                self._received += data
 
     @abstractmethod
     def _read(self) -> bytes | Sign:
@@ -195,6 +203,16 @@ class SocketPort(ABC):
         return PortError(f"a display must stay at {self.address}, and it left ({why}); connect again later")
 
 
+def checked_timeout(seconds: object) -> float:
+    """How long a port waits, as a float; PortError if it is no time in seconds."""
+    if not isinstance(seconds, int | float) or isinstance(seconds, bool) or not 0 < seconds <= MOST_SECONDS:
+        raise PortError(
+            f"a timeout must be a number of seconds from 0 to {MOST_SECONDS:,}, not {seconds!r}; "
+            "choose another"
+        )
+    return float(seconds)
+
+
 class LostAsPortError:
     """A `with` block in which a lost connection is raised as PortError."""
 
@@ -209,8 +227,3 @@ class LostAsPortError:
     ) -> None:
         if isinstance(error, OSError) and not isinstance(error, (BlockingIOError, PortError)):
             raise self._port._gone(error) from error
-
-
-def reason_of(cause: Exception) -> str:
-    """Why a system call failed, as it is put into a sentence."""
-    return (getattr(cause, "strerror", None) or str(cause) or type(cause).__name__).lower()

@@ -6,9 +6,9 @@ import re
 import socket
 from typing import Final
 
-from ramtek_emu.errors import PortError
+from ramtek_emu.errors import PortError, reason_of
 from ramtek_emu.host.marks import Sign, expect_marks, marks_are_known, read_stream, send_stream_mark
-from ramtek_emu.host.socket_port import SocketPort, reason_of
+from ramtek_emu.host.socket_port import SocketPort, checked_timeout
 
 ADDRESS: Final = re.compile(r"tcp://(?P<host>\[[0-9A-Fa-f:.%\w]+\]|[^\s:/\[\]@]+):(?P<port>[0-9]{1,5})")
 
@@ -25,6 +25,7 @@ class TcpPort(SocketPort):
 
     def __init__(self, address: str, timeout: float = 30.0) -> None:
         host, port = host_and_port(address)
+        timeout = checked_timeout(timeout)
         try:
             connected = socket.create_connection((host, port), timeout)
         except (OSError, UnicodeError) as cause:
@@ -54,7 +55,7 @@ def host_and_port(address: str) -> tuple[str, int]:
     >>> host_and_port("tcp://127.0.0.1:9300"), host_and_port("tcp://[::1]:9300")
     (('127.0.0.1', 9300), ('::1', 9300))
     """
-    found = ADDRESS.fullmatch(address)
+    found = ADDRESS.fullmatch(address) if isinstance(address, str) else None
     if found is None or not 1 <= int(found["port"]) <= 0xFFFF:
         raise PortError(
             f"an address must be tcp://host:port with a port from 1 to 65535, not {address!r}; write it so"

@@ -10,7 +10,7 @@ import socket
 from typing import Final
 
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.errors import PortError
+from ramtek_emu.errors import PortError, reason_of
 from ramtek_emu.host.connection import StreamConnection
 from ramtek_emu.host.host_session import Record
 from ramtek_emu.host.server import IDLE_SECONDS, LINE, PARTIAL_SECONDS, Server
@@ -36,9 +36,8 @@ class TcpServer(Server):
             family = socket.AF_INET6 if ":" in host else socket.AF_INET
             listener = socket.create_server((host, port), family=family, backlog=LINE)
         except (OSError, OverflowError, UnicodeError) as cause:
-            reason = (getattr(cause, "strerror", None) or str(cause)).lower()
             raise PortError(
-                f"a server must have a port to itself, and {host}:{port} cannot be had ({reason}); "
+                f"a server must have a port to itself, and {host}:{port} cannot be had ({reason_of(cause)}); "
                 "choose another, or 0 for any"
             ) from cause
         super().__init__(

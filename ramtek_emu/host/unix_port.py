@@ -11,10 +11,10 @@ import socket
 import time
 from typing import Final
 
-from ramtek_emu.errors import PortError
+from ramtek_emu.errors import PortError, reason_of
 from ramtek_emu.host.connection import PACKET_BYTES
 from ramtek_emu.host.marks import Sign, read_packet, send_packet_mark
-from ramtek_emu.host.socket_port import SocketPort, reason_of
+from ramtek_emu.host.socket_port import SocketPort, checked_timeout
 
 RETRY_SECONDS: Final = 0.05
 
@@ -25,7 +25,7 @@ class UnixPort(SocketPort):
     at_once = 1 << 16
 
     def __init__(self, path: str | os.PathLike[str], timeout: float = 30.0) -> None:
-        address = os.fspath(path)
+        address, timeout = os.fspath(path), checked_timeout(timeout)
         super().__init__(address, connected_socket(address, timeout), timeout)
 
     @property

@@ -12,7 +12,7 @@ import stat
 from contextlib import suppress
 
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.errors import OutputError, OutputExistsError
+from ramtek_emu.errors import OutputError, OutputExistsError, reason_of
 from ramtek_emu.host.connection import PacketConnection
 from ramtek_emu.host.host_session import Record
 from ramtek_emu.host.server import IDLE_SECONDS, LINE, PARTIAL_SECONDS, Server
@@ -50,10 +50,9 @@ class UnixServer(Server):
             raise
         except (OSError, ValueError) as cause:
             listener.close()
-            reason = (getattr(cause, "strerror", None) or str(cause)).lower()
             raise OutputError(
-                f"a server's socket must be where one can be made, not at {self.address!r} ({reason}); "
-                "choose another path"
+                f"a server's socket must be where one can be made, not at {self.address!r} "
+                f"({reason_of(cause)}); choose another path"
             ) from cause
         super().__init__(
             display,

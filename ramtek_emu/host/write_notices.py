@@ -3,10 +3,13 @@
 A terminal hands over bytes, not writes: what a program wrote twice in quick succession is read at once. With
 a seccomp filter, Linux (5.5 and later) stops each `write` of the program before it begins and lets it go on
 when we say so. Everything that arrived until then belongs to the writes before it. The program and its
-children see nothing of it, however they were built; a write takes about a tenth of a millisecond longer.
+children need not know: they may be statically linked, or of 32 bits. A write takes about a tenth of a
+millisecond longer.
 
-What this does **not** do: with the filter, the program gains no privileges from set-user-ID files; children
-that outlive us cannot write any more (their writes fail); writes by other calls (`io_uring`) are not told.
+What this does **not** do: writes of two processes or threads at the same time are not told apart, nor those
+by other calls (`io_uring`). With the filter, the program gains no privileges from set-user-ID files; children
+that outlive us cannot write any more, to any file (ENOSYS); and a signal that comes while a write waits to
+begin ends it with EINTR, unless its handler was installed with SA_RESTART.
 """
 
 from __future__ import annotations
@@ -83,7 +86,8 @@ def ask_for_notices() -> int:
     The filter stays when a program is run in this process. OSError where the system does not offer it.
     """
     machine = MACHINES.get(platform.machine())
-    if platform.system() != "Linux" or machine is None:
+    # A Python of 32 bits has other numbers than the machine it runs on.
+    if platform.system() != "Linux" or machine is None or PROGRAM.size != 16:
         raise OSError(errno.ENOSYS, f"not on {platform.system()}, {platform.machine()}")
     library = ctypes.CDLL(None, use_errno=True)
     steps = filter_of(machine)

@@ -2,7 +2,8 @@
 
 A program may take longer for a key than the keyboard takes to repeat it. Of the repeats of a key that wait,
 only the last is kept, and none when the key is released; of successive places of the mouse, only the last.
-So there is never more waiting than the user can see happening, and nothing goes on after a key is released.
+So however long the program takes, one repeat of a key and one movement of the mouse wait at most, and nothing
+goes on after a key is released.
 """
 
 from __future__ import annotations

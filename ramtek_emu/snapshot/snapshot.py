@@ -22,7 +22,7 @@ import numpy as np
 
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.display import Ramtek9300
-from ramtek_emu.errors import ConfigurationError, MissingInputError, SnapshotError
+from ramtek_emu.errors import ConfigurationError, MissingInputError, SnapshotError, reason_of
 from ramtek_emu.processor.environment_executors import MOST_SAVED
 from ramtek_emu.processor.processor import Status
 from ramtek_emu.snapshot.plain_values import listed, packed, plain, refusal, restored, unpacked, whole_number
@@ -127,9 +127,9 @@ def read_snapshot(path: str | PathLike[str]) -> Ramtek9300:
     except MissingInputError:
         raise
     except (OSError, ValueError) as cause:
-        reason = (getattr(cause, "strerror", None) or str(cause)).lower()
         raise MissingInputError(
-            f"a snapshot must be a file that can be read, not {os.fspath(path)!r} ({reason}); check the name"
+            f"a snapshot must be a file that can be read, not {os.fspath(path)!r} ({reason_of(cause)}); "
+            "check the name"
         ) from None
     if len(data) > MOST_FILE:
         raise SnapshotError(

@@ -207,7 +207,8 @@ class ScanOut:
                 low = (table >> 4 & 0xF0 | table & 0x0F) if short else table & 0xFF
                 self._gray = self._lookup_table.written, (low * 0x010101).astype(np.uint32)
             table = self._gray[1]
-        return table[self._partition() :] if self._is_parted else table
+        first = self._partition()
+        return table[first : first + self._words] if self._is_parted else table
 
     def _partition(self) -> int:
         return self._lookup_table.addressed_entry // self._words * self._words if self._is_parted else 0

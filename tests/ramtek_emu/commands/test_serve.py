@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from ramtek_emu import Ramtek9300, TcpPort, UnixPort, instructions, read_snapshot
+from ramtek_emu.commands.displays import show
 from ramtek_emu.host.tcp_server import TcpServer
 from ramtek_emu.monitor.window import Monitor
 from tests.ramtek_emu.processes import ROOT, PipedHost, environment, field_of, run, started, stream
@@ -229,6 +230,13 @@ def test_one_of_the_ways_to_serve_must_be_given() -> None:
         assert b"on one of --port, --unix and --stdio" in asked.stderr
 
 
+def test_a_joystick_without_a_name_or_in_a_folder_is_refused(tmp_path: Path) -> None:
+    for name in ("", tmp_path):
+        asked = run("serve", "--port", 0, "--joystick", name)
+        assert asked.returncode == 66
+        assert b"a joystick's lines must come from a file or a FIFO that can be read" in asked.stderr
+
+
 def test_lines_on_stdin_move_the_joystick_of_a_server() -> None:
     with started("serve", "--port", 0, "--joystick", "-") as process:
         assert process.stdin is not None
@@ -365,6 +373,22 @@ def test_a_command_with_a_window_stays_until_it_is_told(
     assert time.monotonic() - begin < 2
     assert process.returncode == 0
     assert b"Traceback" not in said
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_that_comes_while_a_host_is_served_closes_the_window_afterwards(
+    number: signal.Signals, on_screen: str
+) -> None:
+    display = Ramtek9300()
+    served = 0
+
+    def serve_for(seconds: float) -> None:
+        nonlocal served
+        os.kill(os.getpid(), number)
+        served += 1
+
+    show(display, serve_for)
+    assert served == 1
 
 
 def test_the_server_s_window_is_a_command(on_screen: str, tmp_path: Path) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import platform
 import random
 import shutil
 import signal
@@ -15,8 +17,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ramtek_emu import Ramtek9300
+from ramtek_emu import PortError, Ramtek9300
+from ramtek_emu.commands.tty import refuse_systems_without_pidfd
 from ramtek_emu.host.unix_server import UnixServer
+from ramtek_emu.host.write_notices import MACHINES
 from tests.ramtek_emu.processes import ROOT, environment, run, started, stream
 from tests.ramtek_emu.recorded_streams import words
 from tests.ramtek_emu.serving import serving_at, until
@@ -95,6 +99,64 @@ def test_quick_writes_of_all_sizes_are_rounded_down_one_by_one(display: UnixServ
     assert display.display.processor.illegal_words == 0
 
 
+LINE_BUFFERED = """
+import os, re
+device = os.open(os.environ["RAMTEK_DEVICE"], os.O_RDWR)
+words = bytes.fromhex(%r)
+for line in re.findall(rb"[^\\n]*\\n|[^\\n]+", words):
+    os.write(device, line)
+"""
+
+
+def test_as_a_stream_the_lines_that_stdio_makes_of_words_are_put_together(display: UnixServer) -> None:
+    drawing = stream(words("0902 0044 10A 5 A 5 A 0902 0044 7 A 6 A 6"))
+    program = [sys.executable, "-c", LINE_BUFFERED % drawing.hex()]
+    done = run("tty", "--stream", display.address, "--", *program)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert (display.display.words[10, 5], display.display.words[6, 10]) == (0x10A, 7)
+
+
+IN_A_SANDBOX = """
+import ctypes, os, platform, sys
+from ramtek_emu.host.write_notices import *
+number = MACHINES[platform.machine()].seccomp
+ends, allows = (RETURN, 0, 0, 0x80000000), (RETURN, 0, 0, 0x7FFF0000)
+steps = ((LOAD, 0, 0, 0), (JUMP_IF_EQUAL, 0, 1, number), ends, allows)
+data = ctypes.create_string_buffer(b"".join(INSTRUCTION.pack(*step) for step in steps))
+program = ctypes.create_string_buffer(PROGRAM.pack(len(steps), ctypes.addressof(data)))
+library = ctypes.CDLL(None)
+assert library.prctl(38, *map(ctypes.c_ulong, (1, 0, 0, 0))) == 0
+assert library.prctl(22, ctypes.c_ulong(2), program) == 0
+os.execv(sys.executable, [sys.executable, "-m", "ramtek_emu", *sys.argv[1:]])
+"""
+
+
+def test_in_a_sandbox_that_ends_who_asks_for_notices_the_program_runs_without(display: UnixServer) -> None:
+    if platform.machine() not in MACHINES:
+        pytest.skip("needs a machine with notices")
+    arguments = ["tty", display.address, "--", "sh", "-c", "exit 5"]
+    done = subprocess.run(
+        [sys.executable, "-c", IN_A_SANDBOX, *arguments],
+        env=environment(),
+        capture_output=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 5
+    assert b"(asking for it is forbidden)" in done.stderr
+
+
+def test_a_system_that_cannot_wait_for_a_program_is_told_before_it_runs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refused(process: int) -> int:
+        raise OSError(errno.ENOSYS, "Function not implemented")
+
+    monkeypatch.setattr(os, "pidfd_open", refused, raising=False)
+    with pytest.raises(PortError, match=r"must be made on Linux 5.3 or later, not on .*; pipe the program"):
+        refuse_systems_without_pidfd()
+
+
 def test_the_shell_redirects_a_program_to_the_device(display: UnixServer) -> None:
     script = r'printf "\002\011\104\000\007\000\005\000\005\000\005\000\005\000!" > "$RAMTEK_DEVICE"; exit 3'
     assert tty(display, "sh", "-c", script).returncode == 3
@@ -121,7 +183,9 @@ def test_a_program_that_a_signal_ends_gives_its_number(display: UnixServer) -> N
     assert tty(display, "sh", "-c", "kill -9 $$").returncode == 137
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGINT, 42)])
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGINT, 42)]
+)
 def test_signals_are_the_program_s(display: UnixServer, number: signal.Signals, code: int) -> None:
     script = "trap 'exit 42' INT; echo ready; while :; do sleep 0.05; done"
     with started("tty", display.address, "--", "sh", "-c", script) as process:

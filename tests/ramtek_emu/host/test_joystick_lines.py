@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import os
 import random
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -70,10 +71,18 @@ def test_lines_of_a_fifo_are_done_and_bad_ones_answered_with_their_number(tmp_pa
     assert answers[0].startswith("joystick, line 2: a joystick line must hold")
 
 
-def test_lines_without_a_file_are_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["none", ".", "a\0b"])
+def test_lines_without_a_file_are_refused(tmp_path: Path, name: str) -> None:
     display = Ramtek9300()
     with pytest.raises(MissingInputError, match="a joystick's lines must come from a file or a FIFO"):
-        JoystickLines(str(tmp_path / "none"), display.joystick, display.reset, print)
+        JoystickLines(str(tmp_path / name), display.joystick, display.reset, print)
+
+
+def test_lines_from_a_stdin_that_is_closed_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", None)
+    display = Ramtek9300()
+    with pytest.raises(MissingInputError, match="stdin is closed"):
+        JoystickLines("-", display.joystick, display.reset, print)
 
 
 def test_bytes_that_are_no_lines_are_read_in_bounded_memory(tmp_path: Path) -> None:

@@ -154,6 +154,28 @@ def test_two_hundred_hosts_one_right_after_another_all_draw() -> None:
     assert server.served == 200
 
 
+def test_a_server_that_closes_before_all_is_drawn_is_lost_for_the_host() -> None:
+    server = TcpServer(Ramtek9300())
+    port = TcpPort(server.address, timeout=20)
+    port.send(np.tile(words("0902 0044 7 5 5 5 5"), 1000))
+    errors: list[str] = []
+
+    def close() -> None:
+        try:
+            port.close()
+        except PortError as error:
+            errors.append(str(error))
+
+    host = threading.Thread(target=close)
+    host.start()
+    time.sleep(0.2)
+    until(lambda: server.step(0.1) and server.display.words[5, 5] == 7)
+    server.close()
+    host.join()
+    assert len(errors) == 1
+    assert "and it left (connection reset by peer)" in errors[0]
+
+
 def test_two_hundred_plain_sockets_one_right_after_another_all_draw() -> None:
     with serving() as server:
         for number in range(200):

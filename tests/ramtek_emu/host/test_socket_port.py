@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 import socket
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from ramtek_emu import PortError
+from ramtek_emu import PortError, ReplyError, TcpPort, UnixPort
 from ramtek_emu.host.marks import Sign
 from ramtek_emu.host.socket_port import SocketPort
 
@@ -51,3 +53,19 @@ def test_a_display_that_takes_nothing_or_is_lost_is_told_as_such() -> None:
     port.close()
     with pytest.raises(PortError, match="must be open"):
         port.send(np.zeros(1, np.uint16))
+
+
+@pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf"), None, "30", True])
+def test_what_is_no_time_to_wait_is_refused(seconds: Any, tmp_path: Path) -> None:
+    with pytest.raises(PortError, match="a timeout must be a number of seconds from 0 to 1,000,000"):
+        TcpPort("tcp://127.0.0.1:1", seconds)
+    with pytest.raises(PortError, match="a timeout must be a number of seconds from 0 to 1,000,000"):
+        UnixPort(tmp_path / "display", seconds)
+
+
+@pytest.mark.parametrize("count", [-1, 1.0, None, "1", True])
+def test_what_is_no_number_of_words_to_receive_is_refused(count: Any) -> None:
+    port, display = paired()
+    with display, pytest.raises(ReplyError, match="the words received must be a whole number from 0 on"):
+        port.receive(count)
+    port._socket.close()

@@ -4,6 +4,7 @@ import copy
 import pickle
 import socket
 import threading
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,9 +28,9 @@ def test_a_port_without_a_display_is_refused_in_one_sentence() -> None:
 
 @pytest.mark.parametrize(
     "address",
-    ["", "127.0.0.1:1", "tcp://", "tcp://a", "tcp://a:0", "tcp://a:70000", "tcp://a:b", "tcp://a b:1"],
+    ["", "127.0.0.1:1", "tcp://", "tcp://a", "tcp://a:0", "tcp://a:70000", "tcp://a:b", "tcp://a b:1", 9300],
 )
-def test_what_is_no_address_is_refused(address: str) -> None:
+def test_what_is_no_address_is_refused(address: Any) -> None:
     with pytest.raises(PortError) as refusal:
         host_and_port(address)
     assert str(refusal.value) == (
@@ -140,6 +141,22 @@ def test_a_reset_that_is_not_answered_is_told() -> None:
             port.reset()
         with pytest.raises(PortError):
             port.close()
+
+
+def test_a_reset_that_is_answered_late_still_drops_the_replies_of_before() -> None:
+    with silent_listener() as listener:
+        port = TcpPort(f"tcp://127.0.0.1:{listener.getsockname()[1]}", timeout=0.2)
+        connected, _ = listener.accept()
+        with connected:
+            with pytest.raises(PortError):
+                port.reset()
+            connected.sendall(b"\1\0")
+            connected.send(b"\0", socket.MSG_OOB)
+            connected.sendall(b"\7\0")
+            port.timeout = 10
+            assert port.receive(1).tolist() == [7]
+    with pytest.raises(PortError):
+        port.close()
 
 
 def test_replies_that_come_while_words_are_sent_are_kept_in_order() -> None:

@@ -88,3 +88,15 @@ def test_a_write_begins_only_when_it_is_allowed() -> None:
     ours.close()
     for number in (read_end, write_end):
         os.close(number)
+
+
+def test_a_python_of_32_bits_on_a_machine_of_64_asks_for_nothing() -> None:
+    program = (
+        "import struct\n"
+        "from ramtek_emu.host import write_notices\n"
+        "write_notices.PROGRAM = struct.Struct('=HxxI')\n"
+        "try:\n    write_notices.ask_for_notices()\n"
+        "except OSError:\n    raise SystemExit(3)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], env=environment(), timeout=60, check=False)
+    assert done.returncode == 3

@@ -279,6 +279,15 @@ def test_a_black_and_white_monitor_sees_the_low_eight_bits() -> None:
     assert wide.field()[0, 0].tolist() == [30, 30, 30]
 
 
+@pytest.mark.parametrize("section", range(4))
+def test_the_colors_of_all_words_are_those_of_the_section_in_use(section: int) -> None:
+    display = Ramtek9300(JPL_9460)
+    for each in range(4):
+        display.send(sent_words([0x0300, 0x200 * each, 1024, *([each + 1, 0] * 256)]))
+    display.send(sent_words([0x0300, 0x200 * section, 0]))
+    assert display.scan_out.table().tolist() == [section + 1] * 256
+
+
 @pytest.mark.parametrize("configuration", [JPL_9460, NCAR_9460])
 def test_four_sections_of_the_table_are_picked_by_the_pointer(configuration: Configuration) -> None:
     display = Ramtek9300(configuration)
