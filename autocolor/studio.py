@@ -125,8 +125,8 @@ class Studio:
         """Make a scene the current one; nothing happens if it equals the current one.
 
         With `same_step`, this edit and the previous one are undone together, as for the many edits of a drag.
-        With `moving`, a picture that would take longer than a thirtieth of a second is computed at a half or
-        a quarter of its lines and elements; call `refine` when the movement rests.
+        With `moving`, a picture that would take too long for a movement (see `pacing`) is computed at a half
+        or a quarter of its lines and elements; call `refine` when the movement rests.
         """
         costs = cost_of_edit(self.scene, scene)
         if costs is not None:

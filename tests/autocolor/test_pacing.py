@@ -3,7 +3,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.pacing import BLOCKS, FRAME_SECONDS, block_for, blocks_of
+from autocolor.pacing import BLOCKS, PICTURE_SECONDS, block_for, blocks_of
 
 SECONDS = st.floats(0, 10)
 
@@ -18,12 +18,12 @@ def test_blocks_divide_the_raster(lines: int, elements: int) -> None:
 @given(st.sampled_from(BLOCKS), SECONDS)
 def test_a_block_is_expected_to_be_fast_enough_or_is_the_largest(block: int, seconds: float) -> None:
     chosen = block_for(BLOCKS, block, seconds)
-    assert seconds * block / chosen <= FRAME_SECONDS or chosen == BLOCKS[-1]
+    assert seconds * block / chosen <= PICTURE_SECONDS or chosen == BLOCKS[-1]
 
 
 @given(st.sampled_from(BLOCKS), SECONDS)
 def test_a_block_that_is_fast_enough_gets_no_larger(block: int, seconds: float) -> None:
-    if seconds <= FRAME_SECONDS:
+    if seconds <= PICTURE_SECONDS:
         assert block_for(BLOCKS, block, seconds) <= block
 
 
