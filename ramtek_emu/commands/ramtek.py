@@ -31,6 +31,13 @@ class RamtekGroup(CommandGroup):
     }
 
 
+def configurations(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+    """The names of configurations, for a shell."""
+    from ramtek_emu.commands.displays import complete_configurations
+
+    return complete_configurations(context, parameter, incomplete)
+
+
 @click.group(
     cls=RamtekGroup,
     invoke_without_command=True,
@@ -44,7 +51,12 @@ class RamtekGroup(CommandGroup):
     metavar="PNG",
     help="Write the picture, open no window.",
 )
-@click.option("--configuration", metavar="NAME", help="The display to show it on; GMR_9300 if not given.")
+@click.option(
+    "--configuration",
+    metavar="NAME",
+    shell_complete=configurations,
+    help="The display to show it on; GMR_9300 if not given.",
+)
 @click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")
 @click.option("--full-screen", is_flag=True, help="Fill the screen.")
 @click.option("--fit", is_flag=True, help="Fill the window, at the cost of uneven pixels.")
@@ -62,7 +74,7 @@ def ramtek(
 ) -> None:
     """A RAMTEK 9300 display.
 
-    Without a command it shows the test pattern. F11 is full screen, F12 saves a screenshot, Ctrl+Q quits.
+    Without a command it shows the test pattern; F1 lists the keys of the window.
     """
     if context.invoked_subcommand is not None:
         return

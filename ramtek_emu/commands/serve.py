@@ -189,6 +189,10 @@ def serve_hosts(
 ) -> None:
     """Serve hosts until Ctrl+C, until the window is closed, or, with `once`, until a host leaves."""
     if window:
+        from ramtek_emu.monitor.window import open_screen
+
+        # Fail before a host is told where to connect.
+        open_screen()
         announce(server)
         show(server.display, obeying(lines, server.serve_for))
         return

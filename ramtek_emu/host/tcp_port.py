@@ -10,7 +10,7 @@ from ramtek_emu.errors import PortError, reason_of
 from ramtek_emu.host.marks import Sign, expect_marks, marks_are_known, read_stream, send_stream_mark
 from ramtek_emu.host.socket_port import SocketPort, checked_timeout
 
-ADDRESS: Final = re.compile(r"tcp://(?P<host>\[[0-9A-Fa-f:.%\w]+\]|[^\s:/\[\]@]+):(?P<port>[0-9]{1,5})")
+ADDRESS: Final = re.compile(r"(?i:tcp)://(?P<host>\[[0-9A-Fa-f:.%\w]+\]|[^\s:/\[\]@]+):(?P<port>[0-9]{1,5})")
 
 
 class TcpPort(SocketPort):
@@ -52,7 +52,7 @@ class TcpPort(SocketPort):
 def host_and_port(address: str) -> tuple[str, int]:
     """The host and the port of `tcp://host:port`; PortError if the address is not of that form.
 
-    >>> host_and_port("tcp://127.0.0.1:9300"), host_and_port("tcp://[::1]:9300")
+    >>> host_and_port("tcp://127.0.0.1:9300"), host_and_port("TCP://[::1]:9300")
     (('127.0.0.1', 9300), ('::1', 9300))
     """
     found = ADDRESS.fullmatch(address) if isinstance(address, str) else None

@@ -16,10 +16,10 @@ from tests.ramtek_emu.processes import environment, run, started, stream
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, words
 
 
-@pytest.mark.parametrize("command", ["play", "list", "serve"])
-def test_the_names_of_configurations_are_completed(command: str) -> None:
+@pytest.mark.parametrize("command", [[], ["play"], ["list"], ["serve"]])
+def test_the_names_of_configurations_are_completed(command: list[str]) -> None:
     shell = BashComplete(ramtek, {}, "ramtek", "_RAMTEK_COMPLETE")
-    found = shell.get_completions([command, "--configuration"], "p")
+    found = shell.get_completions([*command, "--configuration"], "p")
     assert [item.value for item in found] == ["PRINCETON_9300"]
 
 

@@ -37,6 +37,12 @@ def test_without_a_screen_it_says_so_in_one_sentence() -> None:
     )
 
 
+def test_a_window_without_a_screen_is_refused_before_a_host_is_told_where_to_connect() -> None:
+    run = ramtek("serve", "--port", "0", "--window")
+    assert (run.returncode, run.stdout) == (69, "")
+    assert run.stderr.startswith("ramtek: a window must have a screen")
+
+
 def test_a_screen_that_does_not_answer_is_no_screen() -> None:
     run = ramtek(DISPLAY=":4711")
     assert run.returncode == 69
@@ -95,7 +101,9 @@ def test_a_pygame_that_is_missing_or_broken_is_told_with_what_to_install(tmp_pat
     assert "()" not in run.stderr
 
 
-@pytest.mark.parametrize("arguments", [("play", "-"), ("serve", "--stdio", "--window")])
+@pytest.mark.parametrize(
+    "arguments", [("play", "-"), ("serve", "--stdio", "--window"), ("serve", "--port", "0", "--window")]
+)
 def test_every_command_that_opens_a_window_tells_what_it_lacks(
     tmp_path: Path, arguments: tuple[str, ...]
 ) -> None:
