@@ -106,6 +106,14 @@ class Studio:
         """Change fields of a light."""
         self.edit(self.scene.with_light(name, **changes))
 
+    def add_light(self, name: str, /, **fields: Unpack[LightChanges]) -> None:
+        """Add a light after the others; it must have a position. Its planes alone are computed."""
+        self.edit(self.scene.with_new_light(name, **fields))
+
+    def remove_light(self, name: str) -> None:
+        """Remove a light; nothing but the sum of the others is computed."""
+        self.edit(self.scene.without_light(name))
+
     def view(self, /, **changes: Unpack[ViewChanges]) -> None:
         """Change fields of the view; everything is recomputed."""
         self.edit(self.scene.with_view(**changes))

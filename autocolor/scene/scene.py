@@ -208,6 +208,19 @@ class Scene(Row):
         """The scene with some fields of the view changed."""
         return with_values(self, {"view": self.view.replace(**changes)})
 
+    def with_new_light(self, name: str, /, **fields: Unpack[LightChanges]) -> Scene:
+        """The scene with another light after the others; it must have a position.
+
+        Raises InputError if a field is invalid or a light has that name already.
+        """
+        new: dict[str, Any] = {**fields, "name": name}
+        return changed(self, {"lights": (*self.lights, new)})
+
+    def without_light(self, name: str) -> Scene:
+        """The scene without one light. Raises UsageError if there is none of that name."""
+        place = _place("light", self.lights, name)
+        return with_values(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
+
     def only_lights(self, *names: str) -> Scene:
         """The scene with the named lights on and all others off (Paper: Figure 8)."""
         wanted = [self.light(name).name for name in names]

@@ -625,3 +625,54 @@ def test_recoloring_a_dithered_picture_writes_no_word(division: Any) -> None:
 def test_a_studio_says_why_it_is_not_pickled(pickled: Callable[[Studio], object]) -> None:
     with pytest.raises(TypeError, match="connected to a display; pickle its scene"):
         pickled(opened()[0])
+
+
+LIGHT_NAMES = st.sampled_from(["key", "fill", "a", "b"])
+
+
+@settings(max_examples=30)
+@given(st.lists(st.tuples(st.sampled_from(["add", "remove", "undo", "redo"]), LIGHT_NAMES), max_size=10))
+def test_lights_come_and_go_and_come_back(edits: list[tuple[str, str]]) -> None:
+    studio, display = opened()
+    for number, (kind, name) in enumerate(edits):
+        there = name in [light.name for light in studio.scene.lights]
+        if kind == "add" and not there:
+            studio.add_light(name, position=(number - 3.0, -4.0, 2.0), cone_angle=40, aim=(0, 0, 0))
+        elif kind == "remove" and there:
+            studio.remove_light(name)
+        elif kind in ("undo", "redo"):
+            getattr(studio, kind)()
+    assert held(display) == fresh(studio.scene)
+
+
+def test_a_light_that_is_added_or_removed_leaves_the_planes_of_the_others() -> None:
+    studio, _ = opened()
+    before = studio.picture.light_planes
+    studio.add_light("rim", position=(0, 4, 3))
+    after = studio.picture.light_planes
+    assert [after[name].values is before[name].values for name in before] == [True, True]
+    studio.remove_light("key")
+    assert studio.picture.light_planes["rim"].values is after["rim"].values
+    assert "key" not in studio.picture.light_planes
+
+
+@pytest.mark.parametrize(
+    ("name", "fields", "message"),
+    [
+        ("rim", {}, "lights[3]: position must be three finite numbers of at most 1e36, not missing; add it"),
+        (
+            "key",
+            {"position": (0, 0, 1)},
+            "lights[3].name must be unique, not the same as lights[1]; rename it",
+        ),
+    ],
+)
+def test_a_light_that_cannot_be_added_changes_nothing(name: str, fields: Any, message: str) -> None:
+    studio, display = opened()
+    scene, before = studio.scene, held(display)
+    with pytest.raises(InputError) as refusal:
+        studio.add_light(name, **fields)
+    assert str(refusal.value) == message
+    with pytest.raises(UsageError, match="there is no light 'kye'; did you mean 'key'"):
+        studio.remove_light("kye")
+    assert (studio.scene, held(display)) == (scene, before)

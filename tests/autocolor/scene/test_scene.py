@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 
-from autocolor import InputError, Light, Mesh, Part, Scene, UsageError, scene_of
+from autocolor import Flap, Flaps, InputError, Light, Mesh, Part, Scene, UsageError, scene_of
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.curves import CURVES
 from autocolor.scene.defaults import object_coordinates
@@ -41,6 +41,18 @@ def test_an_edit_shares_all_that_it_does_not_change() -> None:
     assert (edited.light("key").intensity, scene.light("key").intensity) == (2.0, 1.0)
 
 
+def test_a_light_is_added_after_the_others_and_removed_by_its_name() -> None:
+    scene = car_scene()
+    names = [light.name for light in scene.lights]
+    more = scene.with_new_light("lamp", position=(0, 4, 3), cone_angle=None, flaps={"z": {"minimum": 0.1}})
+    assert [light.name for light in more.lights] == [*names, "lamp"]
+    assert more.light("lamp") == Light("lamp", (0, 4, 3), flaps=Flaps(z=Flap(0.1)))
+    assert cost_of_edit(more.without_light("lamp"), scene) is None
+    assert [light.name for light in more.without_light(names[0]).lights] == [*names[1:], "lamp"]
+    assert more.mesh is scene.mesh
+    assert cost_of_edit(scene, more) is Tier.MIX
+
+
 def test_every_row_is_changed_by_its_name() -> None:
     scene = scene_of(car(), surface_of_part={"door": "door", "pane": "hood", "hood": "hood"})
     assert scene.with_part("door", surface="hood").part("door").surface == "hood"
@@ -56,6 +68,7 @@ def test_every_row_is_changed_by_its_name() -> None:
         (lambda scene: scene.surface("dor"), "there is no surface 'dor'; did you mean 'door'?"),
         (lambda scene: scene.part("x"), "there is no part 'x'; known are 'door', 'hood', 'pane'"),
         (lambda scene: scene.only_lights("kee"), "there is no light 'kee'; did you mean 'key'?"),
+        (lambda scene: scene.without_light("kee"), "there is no light 'kee'; did you mean 'key'?"),
     ],
 )
 def test_an_unknown_name_is_refused_with_the_nearest_right_one(ask: Any, sentence: str) -> None:
