@@ -30,9 +30,12 @@ from autocolor.files.scenes.scene_file import report_of_text
 from autocolor.files.scenes.scene_text import scene_text
 from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.writing import refuse_output, write_atomically
+from autocolor.logs import logger_of
 from autocolor.scene.columns.column import Row, row_label
 from autocolor.scene.node_normals import CREASE_ANGLE
 from autocolor.scene.scene import Scene, check_scene
+
+LOG: Final = logger_of(__name__)
 
 SCENE_FILE: Final = "scene.toml"
 
@@ -73,6 +76,8 @@ def write_scene_with_tables(
             meshes = written_mesh(target.parent, scene.mesh, written)
         data = None if old is None else _edited(old, target, scene, meshes, complete)
         if data is None:
+            if old is not None:
+                LOG.warning("%s: written anew; what it held, comments included, is not kept", target)
             data = _fresh(target, scene, meshes, complete)
         write_atomically(target, data, overwrite=overwrite)
         return [*written, target]

@@ -275,8 +275,14 @@ def test_parts_that_are_gone_go_from_the_file(car: Path) -> None:
     assert same(read_scene(car), scene)
 
 
-def test_over_the_file_of_another_object_nothing_of_it_is_kept(car: Path) -> None:
-    write_scene(car, scene_of(cube()), overwrite=True)
+def test_over_the_file_of_another_object_nothing_of_it_is_kept(
+    car: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    with caplog.at_level("WARNING", "autocolor"):
+        write_scene(car, scene_of(cube()), overwrite=True)
+    assert caplog.messages == [
+        f"{car / 'scene.toml'}: written anew; what it held, comments included, is not kept"
+    ]
     assert "by hand" not in (car / "scene.toml").read_text()
     assert same(read_scene(car), scene_of(cube()))
 
