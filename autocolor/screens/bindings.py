@@ -25,6 +25,9 @@ class Actions(Protocol):
     def tilt(self, degrees: float) -> object:
         """Rotate the picture plane by some degrees."""
 
+    def see_from(self, number: int) -> object:
+        """Look at the object from one of the sides that have names."""
+
     def rescale(self, is_surface: bool) -> object:
         """Fill the picture with the object, or with the selected surface."""
 
@@ -57,7 +60,8 @@ class Actions(Protocol):
 
 
 TURN: Final = 5.0
-"""Degrees for each press of a key that turns."""
+FINE_TURN: Final = 1.0
+"""Degrees for each press of a key that turns, and with Shift."""
 
 CLOSER: Final = 0.9
 BLEND: Final = 0.05
@@ -70,15 +74,17 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
         lambda viewer, _: viewer.show_entries(),
     ),
     Binding(
-        (Chord("left"), Chord("right")),
-        "turn around the object",
-        lambda viewer, number: viewer.turn((-TURN, TURN)[number], 0),
+        (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
+        "turn around the object; finely with Shift",
+        lambda viewer, number: viewer.turn((-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),
+        label="Left, Right",
         held=True,
     ),
     Binding(
-        (Chord("up"), Chord("down")),
-        "look from above, from below",
-        lambda viewer, number: viewer.turn(0, (TURN, -TURN)[number]),
+        (Chord("up"), Chord("down"), Chord("up", shift=True), Chord("down", shift=True)),
+        "look from above, from below; finely with Shift",
+        lambda viewer, number: viewer.turn(0, (TURN, -TURN, FINE_TURN, -FINE_TURN)[number]),
+        label="Up, Down",
         held=True,
     ),
     Binding(
@@ -94,6 +100,12 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
         lambda viewer, number: viewer.tilt((-TURN, TURN)[number]),
         label="comma, period",
         held=True,
+    ),
+    Binding(
+        tuple(Chord(f"f{number}") for number in range(5, 10)),
+        "view from the front, side, back, top, three quarters",
+        lambda viewer, number: viewer.see_from(number),
+        label="F5 to F9",
     ),
     Binding(
         (Chord("r"), Chord("r", shift=True)),
@@ -148,7 +160,7 @@ WINDOW_KEYS: Final = (
     ("F11, Alt+Enter", "full screen, and back"),
     ("F12", "save a numbered screenshot"),
     ("Ctrl+Q", "leave"),
-    ("mouse", "drag: turn around the object; wheel: closer, farther"),
+    ("mouse", "drag: turn; with the middle button: move; wheel: closer"),
     ("a file dropped", "open it: a scene, a mesh or a picture file"),
 )
 """The keys that the window itself handles, and the mouse."""

@@ -10,7 +10,7 @@ from autocolor.scene.defaults import framed
 from autocolor.scene.scene import Exposure, Scene
 from autocolor.scene.view import View
 from autocolor.screens.color_cycle import color_after
-from autocolor.screens.orbit import moved, turned
+from autocolor.screens.orbit import SIDES, moved, panned, seen_from, turned
 from autocolor.studio import Studio
 
 
@@ -79,6 +79,16 @@ class PictureEdits(ABC):
     def move(self, ratio: float) -> None:
         """Multiply the distance of the eye by a ratio."""
         self._look(moved(self.studio.scene, ratio))
+
+    def pan(self, right: float, down: float) -> None:
+        """Move the picture by elements and lines."""
+        self._look(panned(self.studio.scene, right, down, len(self.studio.words)))
+
+    def see_from(self, number: int) -> None:
+        """Look at the object from one of the sides that have names, counted from 0."""
+        side = list(SIDES)[number]
+        self._look(seen_from(self.studio.scene, side))
+        self.message = f"view: {side}"
 
     def rescale(self, is_surface: bool = False) -> None:
         """Move the eye so that the object, or the selected surface, fills the picture.

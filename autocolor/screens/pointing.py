@@ -1,4 +1,7 @@
-"""Pointing: what the mouse does on the picture. A drag turns around the object, the wheel moves closer."""
+"""Pointing: what the mouse does on the picture.
+
+A drag turns around the object, with the middle button it moves the picture, and the wheel moves closer.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +14,18 @@ STEP_CLOSER: Final = 0.92
 """Assumed: the ratio of distances for each step of the wheel."""
 
 
+LEFT: Final = 1
+MIDDLE: Final = 2
+"""The buttons that drag."""
+
+
 class Drag(NamedTuple):
     """A drag that has come to an element and a line; `number` tells it from other drags."""
 
     number: int
     element: int
     line: int
+    button: int = LEFT
 
     def turn_to(self, element: int, line: int) -> tuple[float, float]:
         """How far to turn to the right and up, in degrees, so that the object follows the mouse.

@@ -22,7 +22,7 @@ from autocolor.screens.entries_screen import draw_entries
 from autocolor.screens.help_screen import draw_help
 from autocolor.screens.message_line import TOP, MessageLine
 from autocolor.screens.picture_edits import PictureEdits
-from autocolor.screens.pointing import Drag, wheel_ratio
+from autocolor.screens.pointing import LEFT, MIDDLE, Drag, wheel_ratio
 from autocolor.studio import Studio
 from ramtek_emu import HostPort, RamtekError, instructions
 
@@ -30,7 +30,6 @@ REST_SECONDS: Final = 0.1
 """Assumed: the time without a change after which a movement rests that has not ended by a release: while a
 key is held down, and after a step of the wheel."""
 
-LEFT_BUTTON: Final = 1
 WHEEL: Final = "wheel"
 """The gesture of the wheel, which has steps but no beginning and no end."""
 
@@ -102,21 +101,28 @@ class Viewer(PictureEdits):
         return self._do(gesture, lambda: binding.run(self, number), continues, binding.held) is not False
 
     def on_pointer(self, element: int, line: int, action: str, button: int = 0, steps: int = 1) -> None:
-        """Handle what the mouse does over an element and a line: a drag turns, the wheel moves closer."""
+        """Handle what the mouse does over an element and a line: a drag, or a step of the wheel."""
         if self.page != "picture":
             self._drag = None
-        elif action == "press" and button == LEFT_BUTTON:
+        elif action == "press" and button in (LEFT, MIDDLE):
             self._drags += 1
-            self._drag = Drag(self._drags, element, line)
-        elif action == "release" and button == LEFT_BUTTON:
+            self._drag = Drag(self._drags, element, line, button)
+        elif action == "release" and self._drag is not None and button == self._drag.button:
             self._drag = None
         elif action == "move" and self._drag is not None:
-            right, up = self._drag.turn_to(element, line)
-            self._drag = self._drag._replace(element=element, line=line)
-            self._do(("drag", self._drag.number), lambda: self.turn(right, up), continues=True, moving=True)
+            drag, self._drag = self._drag, self._drag._replace(element=element, line=line)
+            self._do(
+                ("drag", drag.number), lambda: self._drag_to(drag, element, line), continues=True, moving=True
+            )
         elif action.startswith("wheel"):
             ratio = wheel_ratio(action, steps)
             self._do(WHEEL, lambda: self.move(ratio), continues=True, moving=True)
+
+    def _drag_to(self, drag: Drag, element: int, line: int) -> None:
+        if drag.button == MIDDLE:
+            self.pan(element - drag.element, line - drag.line)
+        else:
+            self.turn(*drag.turn_to(element, line))
 
     def on_tick(self, is_at_rest: bool = True, is_full_screen: bool = False) -> None:
         """Refine a coarse picture when the movement rests, and show the message where there is no title."""

@@ -3,12 +3,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View, scene_of
-from autocolor.screens.orbit import moved, target_of, turned
+from autocolor.screens.orbit import moved, panned, seen_from, target_of, turned
 from tests.autocolor.meshes import cube, grid, wall_scene
 
 
@@ -77,3 +78,48 @@ def test_the_eye_goes_around_the_object_and_not_around_its_stage() -> None:
     scene = scene_of(Mesh.joined([cube(), floor]), view=view, parts={"floor": {"stage": True}})
     assert target_of(scene).tolist() == target_of(alone).tolist() == [0.5, 0.5, 0.5]
     assert target_of(scene.with_part("floor", stage=False))[1] > 1
+
+
+def place(view: View, point: npt.ArrayLike) -> tuple[float, float]:
+    """Where a point is seen, in elements and lines from the middle of a picture of 480 lines."""
+    right, down, deep = (np.array(point) - np.array(view.eye)) @ view.axes.T
+    scale = 240 / math.tan(math.radians(view.field_of_view) / 2)
+    return scale * right / deep, scale * down / deep
+
+
+@given(st.floats(-300, 300), st.floats(-200, 200), st.floats(-170, 170), st.booleans())
+def test_the_target_moves_with_the_picture(right: float, down: float, angle: float, has_target: bool) -> None:
+    aim = {"target": (0.3, 0.1, 0.5)} if has_target else {"direction": (-3, 4, -1)}
+    scene = wall_scene(view=View((3, -4, 1), angle=angle, field_of_view=40, **aim))
+    before = target_of(scene)
+    view = panned(scene, right, down, 480)
+    assert np.allclose(view.axes, scene.view.axes)
+    old = place(scene.view, before)
+    assert place(view, before) == pytest.approx((old[0] + right, old[1] + down), abs=1e-6)
+    assert distance(view) == pytest.approx(math.dist(scene.view.eye, before))
+
+
+@pytest.mark.parametrize(
+    ("side", "right", "down"),
+    [
+        ("front", (1, 0, 0), (0, 0, -1)),
+        ("side", (0, 1, 0), (0, 0, -1)),
+        ("back", (-1, 0, 0), (0, 0, -1)),
+        ("top", (1, 0, 0), (0, -1, 0)),
+    ],
+)
+def test_a_named_view_has_the_axes_of_a_drawing_and_the_object_fills_it(
+    side: str, right: tuple[int, ...], down: tuple[int, ...]
+) -> None:
+    scene = scene_of(cube()).with_view(angle=30.0, field_of_view=20.0)
+    view = seen_from(scene, side)
+    assert np.allclose(view.axes[:2], (right, down))
+    assert view.field_of_view == 20
+    places = np.array([place(view, node) for node in cube().coordinates])
+    assert np.abs(places).max() == pytest.approx(0.86 * 240)
+
+
+def test_the_view_of_three_quarters_is_the_one_that_is_created() -> None:
+    scene = scene_of(cube())
+    turned_away = scene.replace(view=turned(scene, 50, 10))
+    assert seen_from(turned_away, "three quarters").eye == pytest.approx(scene.view.eye)

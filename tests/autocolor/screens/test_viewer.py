@@ -13,6 +13,7 @@ from autocolor import InputError, Light, Mesh, Scene, Surface, View, read_pictur
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.defaults import framed
 from autocolor.screens.entries_screen import draw_entries
+from autocolor.screens.orbit import panned
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
 from ramtek_emu import Ramtek9300
@@ -597,6 +598,47 @@ def test_a_drag_turns_around_the_object_and_is_one_step(viewer: Viewer) -> None:
     control(viewer, "z")
     assert viewer.studio.scene is before
     assert not viewer.studio.undo()
+
+
+def test_a_drag_with_the_middle_button_moves_the_picture_and_is_one_step(viewer: Viewer) -> None:
+    before = viewer.studio.scene
+    viewer.on_pointer(300, 200, "press", 2)
+    # The release of another button does not end it.
+    viewer.on_pointer(310, 210, "move")
+    viewer.on_pointer(310, 210, "release", 1)
+    viewer.on_pointer(330, 190, "move")
+    viewer.on_pointer(330, 190, "release", 2)
+    viewer.on_pointer(400, 400, "move")
+    once = panned(before, 30, -10, 480)
+    assert viewer.studio.scene.view.eye == pytest.approx(once.eye)
+    assert is_true_to(viewer, viewer.studio.scene)
+    control(viewer, "z")
+    assert viewer.studio.scene is before
+
+
+def test_a_key_with_shift_turns_finely(viewer: Viewer) -> None:
+    before = viewer.studio.scene
+    for _ in range(5):
+        viewer.on_key("left", shift=True)
+    finely = viewer.studio.scene.view.eye
+    viewer.studio.edit(before)
+    viewer.on_key("left")
+    assert finely == pytest.approx(viewer.studio.scene.view.eye)
+
+
+def test_named_views_look_from_the_sides(viewer: Viewer) -> None:
+    seen = []
+    for number in range(5, 10):
+        viewer.on_key(f"f{number}")
+        assert is_true_to(viewer, viewer.studio.scene)
+        seen.append((viewer.message, np.round(viewer.studio.scene.view.axes[2], 2).tolist()))
+    assert seen[:4] == [
+        ("view: front", [0, 1, 0]),
+        ("view: side", [-1, 0, 0]),
+        ("view: back", [0, -1, 0]),
+        ("view: top", [0, 0, -1]),
+    ]
+    assert seen[4][0] == "view: three quarters"
 
 
 def test_a_movement_without_a_button_and_a_click_change_nothing(viewer: Viewer) -> None:
