@@ -13,6 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from autocolor.arrays import Numbers
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 from autocolor.visibility.depth import (
@@ -79,45 +80,56 @@ def watkins(
 ) -> VisiblePoints:
     """What is visible at each pixel; the arguments are those of `visible_surfaces`."""
     projected = projection(mesh, view, lines, elements)
-    scale = depth_scale(projected)
-    buckets = y_buckets(projected)
-    active: list[Edge] = []
-    number_at_pixel = np.zeros(lines * elements, np.int64)
-
-    for line in range(lines):
-        # Add the edges that begin on this line, and drop those that ended above it.
-        active = [edge for edge in active if edge.end_line > line] + buckets.get(line, [])
-        # Find the visible spans from left to right.
-        for segment, first, end in visible_spans(segments_of_line(active, projected, scale, line)):
-            number_at_pixel[line * elements + first : line * elements + end] = segment.number
-
+    number_at_pixel = np.concatenate(list(numbers_by_line(projected)))
     return interpolated_points(projected, number_at_pixel, surface_numbers, one_sided)
 
 
-def y_buckets(projected: Projection) -> dict[int, list[Edge]]:
-    """The edges that cross a line, by the first line that they cross."""
+def numbers_by_line(projected: Projection) -> Iterator[Numbers]:
+    """What is visible on one line after the other, from the top; a line is computed when it is asked for.
+
+    For each line, (elements,) int64, the number of the polygon that is visible at each pixel, as depth keys
+    have it, 0 for none.
+    """
+    scale = depth_scale(projected)
+    active: list[Edge] = []
+    for line, beginning in enumerate(edges_by_line(projected)):
+        # Add the edges that begin on this line, and drop those that ended above it.
+        active = [edge for edge in active if edge.end_line > line] + beginning
+        # Find the visible spans from left to right.
+        numbers = np.zeros(projected.elements, np.int64)
+        for segment, first, end in visible_spans(segments_of_line(active, projected, scale, line)):
+            numbers[first:end] = segment.number
+        yield numbers
+
+
+def edges_by_line(projected: Projection) -> Iterator[list[Edge]]:
+    """For each line, from the top, the edges of which it is the first that they cross.
+
+    These are Watkins' y-buckets. The edges of a line are made when it is asked for, so that the first line
+    does not wait for all of them.
+    """
     first_lines = projected.first_line[projected.corners]
     polygons = projected.corners.shape[1]
     starts = np.flatnonzero(first_lines != np.roll(first_lines, -1, axis=0))
     ends = (starts + polygons) % max(projected.corners.size, 1)
     descends = first_lines.ravel()[starts] < first_lines.ravel()[ends]
     found = edges(projected, np.where(descends, starts, ends), np.where(descends, ends, starts))
-    numbers = numbers_of_polygons(projected, starts % max(polygons, 1))
-    buckets: dict[int, list[Edge]] = {}
-    for row in range(len(starts)):
-        first_line = int(found.first_line[row])
-        edge = Edge(
-            int(numbers[row]),
-            bool(descends[row]),
-            first_line,
-            first_line + int(found.count[row]),
-            float(found.x[row]),
-            float(found.x_step[row]),
-            float(found.inverse_depth[row]),
-            float(found.inverse_depth_step[row]),
-        )
-        buckets.setdefault(first_line, []).append(edge)
-    return buckets
+    columns = (
+        numbers_of_polygons(projected, starts % max(polygons, 1)),
+        descends,
+        found.first_line,
+        found.first_line + found.count,
+        found.x,
+        found.x_step,
+        found.inverse_depth,
+        found.inverse_depth_step,
+    )
+    by_first_line = np.argsort(found.first_line, kind="stable")
+    bounds = np.searchsorted(found.first_line[by_first_line], np.arange(projected.lines + 1))
+    for first, end in pairwise(bounds.tolist()):
+        rows = by_first_line[first:end]
+        fields = [column[rows].tolist() for column in columns]
+        yield [Edge(*row) for row in zip(*fields, strict=True)]
 
 
 def segments_of_line(

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
+from autocolor.visibility import watkins as watkins_room
+from autocolor.visibility.depth import polygons_of_numbers
+from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from autocolor.visibility.watkins import watkins
+from autocolor.visibility.watkins import numbers_by_line, watkins
 from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
 from tests.autocolor.strategies import meshes, outside_views, rasters, soups, views
 
@@ -69,3 +74,33 @@ def test_batch_and_watkins_find_nothing_in_an_empty_mesh() -> None:
     view = View((0.0, -1.0, 0.0), target=(0.0, 0.0, 0.0))
     assert_same(visible_surfaces(empty, view, (), 4, 5), watkins(empty, view, (), 4, 5))
     assert len(visible_surfaces(empty, view, (), 4, 5).pixels) == 0
+
+
+@given(meshes() | soups(), views() | outside_views(), rasters)
+def test_the_lines_one_after_the_other_have_the_polygons_of_the_batch(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    batch = visible_surfaces(mesh, view, (1, 2), *raster)
+    expected = np.full(raster, -1).ravel()
+    expected[batch.pixels] = batch.polygon_numbers
+    projected = projection(mesh, view, *raster)
+    for numbers, of_batch in zip(numbers_by_line(projected), expected.reshape(raster), strict=True):
+        polygons = np.full(raster[1], -1)
+        seen = numbers > 0
+        polygons[seen] = projected.polygon_numbers[polygons_of_numbers(projected, numbers[seen])]
+        assert polygons.tolist() == of_batch.tolist()
+
+
+def test_a_line_is_computed_when_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    computed: list[int] = []
+
+    def segments_of_line(active: list[watkins_room.Edge], *arguments: Any) -> list[watkins_room.Segment]:
+        computed.append(arguments[-1])
+        return []
+
+    monkeypatch.setattr(watkins_room, "segments_of_line", segments_of_line)
+    lines = numbers_by_line(projection(cube(), View((3.0, -5.0, 2.0), target=(0.0, 0.0, 0.0)), 9, 12))
+    assert computed == []
+    next(lines)
+    next(lines)
+    assert computed == [0, 1]
