@@ -14,7 +14,7 @@ must be recomputed and sent.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from time import perf_counter
 from typing import TYPE_CHECKING, NoReturn, Unpack
 
@@ -27,6 +27,7 @@ from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.pacing import block_for, blocks_of
 from autocolor.rendering import rendering
+from autocolor.scan_lines import words_by_line
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns.column import Tier, fields_of
 from autocolor.scene.scene import AUTO, Scene, cost_of_edit
@@ -181,6 +182,19 @@ class Studio:
 
         write_scene(path, self.scene, overwrite=overwrite)
         self.keep()
+
+    def watch(self) -> Iterator[tuple[int, Words]]:
+        """The lines of the picture from the top, each computed when it is asked for: its number and words.
+
+        The words are (1, elements) uint16, as `write_image` takes them. Nothing is sent but a refined
+        picture; all lines together are the `words` of that moment. See `scan_lines` for what is
+        computed again.
+
+            for line, words in studio.watch():
+                display.send(instructions.write_image(words, top=line))
+        """
+        self.refine()
+        return words_by_line(self._shown)
 
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""

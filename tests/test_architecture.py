@@ -35,7 +35,8 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "lighting", "mapping",
-        "files", "rendering", "pacing", "sending", "studio", "images", "screens", "commands", "__main__",
+        "files", "rendering", "pacing", "sending", "scan_lines", "studio", "images", "screens",
+        "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png",

@@ -260,6 +260,41 @@ def turn(studio: Studio, angle: float) -> None:
     studio.edit(studio.scene.with_view(angle=angle), same_step=True, moving=True)
 
 
+@given(scenes(), scenes())
+@settings(max_examples=25, suppress_health_check=[HealthCheck.too_slow])
+def test_the_lines_that_are_watched_are_the_picture_that_the_display_has(one: Scene, other: Scene) -> None:
+    studio, display = opened(one)
+    studio.edit(other)
+    written = display.frame_buffer.written
+    lines = dict(studio.watch())
+    assert list(lines) == list(range(24))
+    assert np.concatenate(list(lines.values())).tolist() == display.words.tolist()
+    assert display.frame_buffer.written == written
+
+
+def test_watching_goes_on_with_the_picture_with_which_it_began() -> None:
+    studio, _ = opened()
+    words, lines = studio.words, studio.watch()
+    first = next(lines)[1]
+    studio.view(angle=30)
+    assert studio.words.tolist() != words.tolist()
+    assert np.concatenate([first, *(rest for _, rest in lines)]).tolist() == words.tolist()
+
+
+@pytest.mark.usefixtures("slow")
+def test_watching_refines_a_coarse_picture_and_is_no_step() -> None:
+    studio, display = opened()
+    turn(studio, 10.0)
+    assert studio.is_coarse
+    scene = studio.scene
+    lines = np.concatenate([words for _, words in studio.watch()])
+    assert not studio.is_coarse
+    assert lines.tolist() == display.words.tolist()
+    assert studio.scene is scene
+    assert studio.undo()
+    assert not studio.undo()
+
+
 @pytest.mark.usefixtures("slow")
 @settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(any_edits | st.just("turn") | st.just("refine"), min_size=1, max_size=8))
