@@ -46,6 +46,9 @@ class Actions(Protocol):
     def switch_exposure(self) -> object:
         """Hold the exposure, or let it follow the picture."""
 
+    def watch(self) -> object:
+        """Let the picture come in line by line."""
+
     def undo(self) -> object:
         """Undo the last step."""
 
@@ -141,6 +144,11 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
         (Chord("e"),),
         "hold the exposure (less light is darker), release it",
         lambda viewer, _: viewer.switch_exposure(),
+    ),
+    Binding(
+        (Chord("w"),),
+        "watch the picture being computed, line by line",
+        lambda viewer, _: viewer.watch(),
     ),
     Binding((Chord("z", control=True),), "undo", lambda viewer, _: viewer.undo(), repeats=True),
     Binding(

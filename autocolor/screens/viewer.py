@@ -23,6 +23,7 @@ from autocolor.screens.help_screen import draw_help
 from autocolor.screens.message_line import TOP, MessageLine
 from autocolor.screens.picture_edits import PictureEdits
 from autocolor.screens.pointing import LEFT, MIDDLE, Drag, wheel_ratio
+from autocolor.screens.watching import ENDING, MESSAGE, Watching
 from autocolor.studio import Studio
 from ramtek_emu import HostPort, RamtekError, instructions
 
@@ -50,6 +51,7 @@ class Viewer(PictureEdits):
 
     def _open(self, scene: Scene) -> None:
         self.begin(Studio(scene, self.display))
+        self._watching = Watching(self.display)
         self.saved: Path | None = None
         self.page = "picture"
         self.message = "F1 help"
@@ -72,7 +74,8 @@ class Viewer(PictureEdits):
         changed = "*" if self.studio.is_changed else ""
         name = f"{self.studio.scene.name}{changed}"
         surface = f"[{self.surface_name}]" if self.surface_name else ""
-        return " - ".join(part for part in ("autocolor", name, surface, self.message) if part)
+        message = MESSAGE if self._watching.is_on else self.message
+        return " - ".join(part for part in ("autocolor", name, surface, message) if part)
 
     def on_key(
         self, name: str, control: bool = False, shift: bool = False, typed: str = "", repeated: bool = False
@@ -81,6 +84,9 @@ class Viewer(PictureEdits):
 
         `typed` is the character that the key produces; `repeated` is whether the key is being held down.
         """
+        # The key that began it may still be down.
+        if not repeated and self._watching.end() and name in ENDING and not control:
+            return True
         chords = [
             (binding, number, chord)
             for binding in BINDINGS
@@ -102,6 +108,8 @@ class Viewer(PictureEdits):
 
     def on_pointer(self, element: int, line: int, action: str, button: int = 0, steps: int = 1) -> None:
         """Handle what the mouse does over an element and a line: a drag, or a step of the wheel."""
+        if action == "press":
+            self._watching.end()
         if self.page != "picture":
             self._drag = None
         elif action == "press" and button in (LEFT, MIDDLE):
@@ -125,7 +133,11 @@ class Viewer(PictureEdits):
             self.turn(*drag.turn_to(element, line))
 
     def on_tick(self, is_at_rest: bool = True, is_full_screen: bool = False) -> None:
-        """Refine a coarse picture when the movement rests, and show the message where there is no title."""
+        """Refine a coarse picture when the movement rests, and show the message where there is no title.
+
+        A picture that is watched comes in by some lines.
+        """
+        self._watching.advance()
         has_ended = is_at_rest and self._edited_by != WHEEL
         rests = has_ended or time.monotonic() - self._edited_at > REST_SECONDS
         if rests and self.studio.is_coarse:
@@ -147,6 +159,10 @@ class Viewer(PictureEdits):
             self.message = str(error).replace("\n", "; ")
 
     def _update_line(self) -> None:
+        if self._watching.is_on:
+            # The lines come in over the message, which is drawn anew when all are there.
+            self._line.update(False, self._watching)
+            return
         below = self.studio.words if self.page == "picture" else self.page
         self._line.update(self._is_full_screen, below)
 
@@ -162,6 +178,7 @@ class Viewer(PictureEdits):
 
         If it continues the gesture by which the last edit was made, both are one step to undo.
         """
+        self._watching.end()
         warned, self.message = self._warned, ""
         before = self.studio.scene
         self.same_step = continues and self._edited_by == gesture
@@ -232,6 +249,11 @@ class Viewer(PictureEdits):
         else:
             self.display.send(instructions.reset())
             draw_entries(self.display, self.studio.level_ranges)
+
+    def watch(self) -> None:
+        """Blank the picture and let it come in line by line as it is computed; any key shows it at once."""
+        self.back()
+        self._watching.begin(self.studio)
 
     def escape(self) -> bool:
         """Take a drag back, or return to the picture; if neither, and nothing is unsaved, returns False."""
