@@ -22,7 +22,7 @@ they are computed: the coupe's 480 take a third of a second."""
 TICK_SECONDS: Final = 0.01
 """Assumed: after this time no further line is begun in a tick of the window, which has 15 ms; so a key waits
 for one line at most. Measured: the slowest line takes 3 ms for the coupe, 35 for 90,000 polygons. The first
-line waits for the projection, 3 and 34 ms; an edit of the view takes three times as long."""
+line waits for the projection, 3 and 34 ms; an edit of the view takes at least three times as long."""
 
 MESSAGE: Final = "line by line; any key shows the whole picture"
 
