@@ -168,6 +168,20 @@ def test_a_key_held_down_is_undone_at_once(session: Session) -> None:
     assert session.end() == (0, "", "")
 
 
+def test_a_picture_that_comes_in_line_by_line_is_whole_after_a_key_or_a_while(session: Session) -> None:
+    session.press("w")
+    session.wait_for(lambda: "line by line" in session.caption() and not session.shows_the_field())
+    session.press("Escape")
+    session.wait_for_the_field()
+    session.press("w")
+    session.wait_for(lambda: "line by line" in session.caption() and not session.shows_the_field())
+    # The caption tells the end: the last lines of this picture show nothing that could be missed.
+    session.wait_for(lambda: "line by line" not in session.caption())
+    session.wait_for_the_field()
+    session.press("Escape")
+    assert session.end() == (0, "", "")
+
+
 def test_after_a_key_is_released_nothing_goes_on(session: Session) -> None:
     session.tool("keydown", "Right")
     session.wait_for(lambda: not session.shows_the_field())
