@@ -202,7 +202,7 @@ class Studio:
         """
         from autocolor.journal.script import Source, journal_text
 
-        return journal_text(self._history, Source(fspath(path), self._history.start, up, surfaces))
+        return journal_text(self._history, Source(fspath(path), up, surfaces))
 
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final, NamedTuple, NoReturn
 
-from autocolor.checks import shown
+from autocolor.checks import listed, shown
 from autocolor.errors import AutocolorError, InputError, MissingInputError, UsageError
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_sources import read_scene
@@ -35,6 +35,9 @@ LONGEST_PROBLEM: Final = 400
 
 STUDIO_METHODS: Final = {short: method for method, short in SHORT.items()}
 SCENE_METHODS: Final = ("replace", *ROW_METHODS.values(), *SHORT)
+
+MADE_BY: Final = ("read_scene", "replace", "a checksum")
+"""The lines between the header and the studio."""
 
 NAMED: Final = frozenset((*ROW_METHODS.values(), "with_new_light", "without_light"))
 """The methods whose one argument without a keyword is the name of a row."""
@@ -58,8 +61,8 @@ class Called(NamedTuple):
 def read_journal(path: str | os.PathLike[str]) -> Session:
     """The session of a journal, which is not run: `Studio(read_journal(path).history, display)` goes on.
 
-    The scene with which it began is read again. Raises InputError if a line is no known call with plain
-    values, if a step is refused, or if the scene is not the same as then; MissingInputError if a file is
+    The mesh with which it began is read again. Raises InputError if a line is no known call with plain
+    values, if a step is refused, or if the mesh is not the same as then; MissingInputError if a file is
     missing.
     """
     name = Path(path).name
@@ -81,12 +84,20 @@ def session_of(text: str, name: str = "journal") -> Session:
     if tuple(given[: len(HEADER)]) != HEADER or STUDIO not in given:
         raise InputError(f"{name}: a journal must begin as autocolor writes it; choose another file")
     begun = given.index(STUDIO)
-    with _in_line(name, lines[len(HEADER)][0]):
-        source = _source(given[len(HEADER) : begun])
-    start = source.scene
-    for number, line in lines[len(HEADER) + 2 : begun]:
-        with _in_line(name, number):
-            start = _set_at_first(line, start)
+    if begun != len(HEADER) + len(MADE_BY):
+        raise InputError(f"{name}: a journal must make its scene by {listed(MADE_BY)}; choose another file")
+    (first, read), (second, replaced), (third, checksum) = lines[len(HEADER) : begun]
+    with _in_line(name, first):
+        source = _source(read)
+        start = read_scene(source.path, up=source.up, surfaces=source.surfaces)
+    with _in_line(name, second):
+        start = _with_tables(start, replaced)
+    with _in_line(name, third):
+        if _plain(_value_of(checksum, "checksum"), checksum) != checksum_of(start):
+            raise InputError(
+                f"{source.path} must hold the mesh with which the session began, and it was changed since;"
+                " bring the old file back"
+            )
     history = History(start)
     for number, line in lines[begun + 1 :]:
         with _in_line(name, number):
@@ -105,31 +116,23 @@ def _in_line(name: str, number: int) -> Iterator[None]:
         raise kind(f"{name}, line {number}: {problem[:LONGEST_PROBLEM]}") from None
 
 
-def _source(lines: list[str]) -> Source:
-    """What the first lines after the header say of the first scene, which is read."""
-    if len(lines) < 2:
-        raise InputError("the scene must be read and have a checksum before the studio; choose another file")
-    called = _called(_value_of(lines[0], "scene"), lines[0])
-    options = {key: _plain(value, lines[0]) for key, value in called.keywords.items()}
-    paths = [_plain(value, lines[0]) for value in called.arguments]
+def _source(line: str) -> Source:
+    """What the first scene is read from."""
+    called = _called(_value_of(line, "scene"), line)
+    options = {key: _plain(value, line) for key, value in called.keywords.items()}
+    paths = [_plain(value, line) for value in called.arguments]
     is_known = called.name == "autocolor.read_scene" and options.keys() <= {"up", "surfaces"}
     if (
         not is_known
         or len(paths) != 1
         or not all(isinstance(each, str) for each in (*paths, *options.values()))
     ):
-        _refuse(lines[0])
-    scene = read_scene(paths[0], **options)
-    if _plain(_value_of(lines[1], "checksum"), lines[1]) != checksum_of(scene):
-        raise InputError(
-            f"{paths[0]} must give the scene that it gave when the session began, and it was changed since;"
-            " bring the old files back"
-        )
-    return Source(paths[0], scene, **options)
+        _refuse(line)
+    return Source(paths[0], **options)
 
 
-def _set_at_first(line: str, scene: Scene) -> Scene:
-    """The scene that a line makes of the one that was read."""
+def _with_tables(scene: Scene, line: str) -> Scene:
+    """The first scene of a session: its tables, with the mesh of the scene that was read."""
     called = _called(_value_of(line, "scene"), line)
     if called.name != "scene.replace":
         _refuse(line)

@@ -1,6 +1,7 @@
 """The journal of a session: a Python script, one line a step, that gives the same scenes when it is run.
 
     scene = autocolor.read_scene('/home/ann/coupe', up='z', surfaces='materials')
+    scene = scene.replace(parts=[...], surfaces=[...], lights=[...], view={...}, ambient=0.1, ...)
     checksum = '9f2c...'
     studio = autocolor.Studio(scene, Ramtek9300())
     studio.recolor('body', blend=0.5)
@@ -50,10 +51,9 @@ SHORT: Final = {
 
 
 class Source(NamedTuple):
-    """What the first scene of a session is read from, how, and the scene as it was read."""
+    """What the first scene of a session is read from, and how (see `read_scene`)."""
 
     path: str
-    scene: Scene
     up: str = "z"
     surfaces: SurfaceSource = "materials"
 
@@ -71,17 +71,25 @@ def journal_text(history: History, source: Source) -> str:
 
     Raises InputError if the mesh was changed, which no line tells: save the scene, and begin with that.
     """
-    lines = [
+    return "\n".join([*first_lines(history.start, source), *map(step_line, history.steps), ""])
+
+
+def first_lines(start: Scene, source: Source) -> list[str]:
+    """The lines of a journal up to the studio, which make the first scene.
+
+    All its tables are told, so that only the mesh must still be in the files: the others may have been saved
+    over since.
+    """
+    path = os.path.abspath(source.path)
+    options = {"up": source.up, "surfaces": source.surfaces}
+    return [
         *HEADER,
         "",
-        f"scene = autocolor.read_scene({_arguments((os.path.abspath(source.path),), _options(source))})",
-        f"checksum = {literal(checksum_of(source.scene))}",
+        f"scene = autocolor.read_scene({_arguments((path,), options)})",
+        f"scene = scene.replace({_arguments((), plain(start))})",
+        f"checksum = {literal(checksum_of(start))}",
+        STUDIO,
     ]
-    _refuse_another_mesh(source.scene, history.start)
-    set_at_first = difference(source.scene, history.start)
-    if set_at_first:
-        lines.append(f"scene = scene.replace({_arguments((), set_at_first)})")
-    return "\n".join([*lines, STUDIO, *map(step_line, history.steps), ""])
 
 
 def step_line(step: Step) -> str:
@@ -137,10 +145,7 @@ def _light_call(lights: tuple[Any, ...], others: tuple[Any, ...]) -> Call | None
 
 
 def checksum_of(scene: Scene) -> str:
-    """The SHA-256 of all values of a scene, in hexadecimal digits.
-
-    It changes with the files that the scene is read from, and with the defaults of what they do not tell.
-    """
+    """The SHA-256 of all values of a scene, its mesh included, in hexadecimal digits."""
     digest = hashlib.sha256(json.dumps(plain_scene(scene), sort_keys=True).encode())
     mesh = scene.mesh
     for array, kind in ((mesh.coordinates, "<f8"), (mesh.node_numbers, "<i8"), (mesh.part_numbers, "<i8")):

@@ -88,7 +88,7 @@ def test_a_journal_is_read_with_its_steps(folder: Path, text: str) -> None:
 def test_anything_but_a_known_call_with_plain_values_is_refused(text: str, line: str) -> None:
     problem = refusal(text + line + "\n")
     assert problem.startswith(
-        "journal, line 9: it must be a call that autocolor writes, with plain values, not "
+        "journal, line 10: it must be a call that autocolor writes, with plain values, not "
     )
     assert problem.endswith("; remove it")
 
@@ -112,7 +112,7 @@ def test_nothing_of_a_journal_is_run(text: str, folder: Path) -> None:
     ],
 )
 def test_a_step_that_is_refused_is_told_with_its_line(text: str, line: str, problem: str) -> None:
-    number = 9 + line.count("\n")
+    number = 10 + line.count("\n")
     assert refusal(f"{text}{line}\n") == f"journal, line {number}: {problem}"
 
 
@@ -121,7 +121,7 @@ def test_another_file_is_no_journal(tmp_path: Path) -> None:
     assert refusal("print('hello')\n") == f"journal: {begin}"
     assert refusal("") == f"journal: {begin}"
     assert refusal("\n".join([*HEADER, STUDIO])) == (
-        "journal, line 4: the scene must be read and have a checksum before the studio; choose another file"
+        "journal: a journal must make its scene by read_scene, replace and a checksum; choose another file"
     )
     (tmp_path / "a.py").write_bytes(b"\xff\xfe")
     with pytest.raises(InputError, match=r"^a\.py: a journal must be text in UTF-8; choose another file$"):
@@ -137,6 +137,7 @@ def test_another_file_is_no_journal(tmp_path: Path) -> None:
         ("up='z'", "up=5"),
         ("up='z'", "strict=True"),
         ("scene = autocolor", "other = autocolor"),
+        ("scene = scene.replace", "scene = scene.with_view"),
         ("checksum = ", "checksum: str = "),
     ],
 )
@@ -144,29 +145,27 @@ def test_a_scene_that_is_read_otherwise_is_refused(text: str, old: str, new: str
     assert "it must be a call that autocolor writes" in refusal(text.replace(old, new))
 
 
-def test_a_scene_that_was_changed_since_or_is_gone_is_told(text: str, folder: Path) -> None:
-    path = folder / "car" / "scene.toml"
-    before = path.read_bytes()
+def test_a_mesh_that_was_changed_since_or_is_gone_is_told(text: str, folder: Path) -> None:
+    (path,) = (folder / "car").glob("*.obj")
+    before = path.read_text()
     try:
-        path.write_bytes(b"ambient = 0.875\n" + before.replace(b"ambient", b"# ambient"))
+        path.write_text(before.replace("v ", "v 1", 1))
         assert refusal(text) == (
-            f"journal, line 5: {folder / 'car'} must give the scene that it gave when the session began, and"
-            " it was changed since; bring the old files back"
+            f"journal, line 7: {folder / 'car'} must hold the mesh with which the session began, and it was"
+            " changed since; bring the old file back"
         )
-        path.unlink()
-        refusal(text)
     finally:
-        path.write_bytes(before)
+        path.write_text(before)
     with pytest.raises(MissingInputError, match="line 5"):
         session_of(text.replace(str(folder / "car"), str(folder / "cat")))
 
 
 def test_long_lines_and_many_are_refused(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reading, "LONGEST_LINE", 500)
-    problem = refusal(f"{text}studio.undo({'1,' * 500})\n")
-    assert problem == "journal, line 9: it must be at most 500 characters, not 1,013; remove it"
+    monkeypatch.setattr(reading, "LONGEST_LINE", 5000)
+    problem = refusal(f"{text}studio.undo({'1,' * 5000})\n")
+    assert problem == "journal, line 10: it must be at most 5,000 characters, not 10,013; remove it"
     monkeypatch.setattr(reading, "MOST_STEPS", 20)
-    assert refusal(text + "studio.undo()\n" * 20) == ("journal: a journal must have at most 20 lines, not 27")
+    assert refusal(text + "studio.undo()\n" * 20) == ("journal: a journal must have at most 20 lines, not 28")
 
 
 letters = st.text("studio.edit(scene)replace=[]{}'\"\\,:1e9-*#\n \0\ud800", max_size=60)
@@ -204,4 +203,4 @@ def test_any_line_is_read_or_refused(text: str, pieces: list[str]) -> None:
 def test_any_plain_value_is_taken_or_refused(text: str, value: object, call: str) -> None:
     line = f"studio.{call}={value!r}{')' * call.count('(')}"
     problem = problem_of(f"{text}{line}\n")
-    assert problem == "" or problem.startswith("journal, line 9: ")
+    assert problem == "" or problem.startswith("journal, line 10: ")
