@@ -126,6 +126,26 @@ def test_any_session_is_given_by_its_script_run_or_read_byte_for_byte(
     assert states(Studio(session.history, other), other) == expected
 
 
+def test_a_drag_after_a_redo_and_one_that_came_back_are_given_by_the_script(written: Path) -> None:
+    display = Ramtek9300(SMALL)
+    studio = Studio(read_scene(written), display)
+    studio.recolor("body", blend=0.25)
+    studio.recolor("body", blend=0.75)
+    studio.undo()
+    studio.redo()
+    studio.edit(studio.scene.with_view(angle=5), same_step=True)
+    studio.view(angle=10)
+    studio.edit(studio.scene.with_view(angle=5), same_step=True)
+    text = studio.journal(written)
+    assert text.count("same_step=True") == 2
+    other = Ramtek9300(SMALL)
+    read = Studio(session_of(text).history, other)
+    expected = states(studio, display)
+    assert len(expected) == 4
+    assert states(*run_script(text)) == expected
+    assert states(read, other) == expected
+
+
 def lines_of(*scenes: Scene) -> list[str]:
     return [step_line(Edit(before, after)) for before, after in pairwise(scenes)]
 
