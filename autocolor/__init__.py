@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from autocolor.files.scene_writing import write_scene as write_scene
     from autocolor.images import image as image
     from autocolor.images import save_image as save_image
+    from autocolor.journal.reading import read_journal as read_journal
     from autocolor.lighting.picture import Picture as Picture
     from autocolor.mapping.level_ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
@@ -77,6 +78,7 @@ _HOME: Final = {
     "WriteError": "errors",
     "demo": "commands.demo",
     "image": "images",
+    "read_journal": "journal.reading",
     "read_picture": "files.picture_file",
     "read_scene": "files.scene_sources",
     "render": "rendering",

@@ -14,13 +14,15 @@ must be recomputed and sent.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from os import fspath
 from time import perf_counter
 from typing import TYPE_CHECKING, NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
+from autocolor.journal.history import History
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
@@ -38,6 +40,8 @@ from ramtek_emu import HostPort
 if TYPE_CHECKING:
     from os import PathLike
 
+    from autocolor.scene.creation import SurfaceSource
+
 
 class Studio:
     """A scene shown on a display, which can be edited step by step, with undo and redo.
@@ -46,7 +50,10 @@ class Studio:
     whole picture; each edit then sends only what changed. An edit that raises an error changes nothing.
     """
 
-    def __init__(self, scene: Scene, display: HostPort) -> None:
+    def __init__(self, scene: Scene | History, display: HostPort) -> None:
+        """Show a scene, or go on with the history of a session, such as that of a journal."""
+        self._history = scene if isinstance(scene, History) else History(scene)
+        scene = self._history.scene
         configuration = configuration_of(display)
         self._display = display
         self._size = configuration.shown_lines, configuration.shown_elements
@@ -55,15 +62,18 @@ class Studio:
         self._shown = display_image(scene, self._rendering.picture)
         self._pace = 1, perf_counter() - begun
         """The block of the last picture that was computed from scratch, and the seconds it took."""
-        self._done: list[Scene] = []
-        self._undone: list[Scene] = []
-        self._kept = scene
+        self._kept = self._history.start
         self.send_everything()
 
     @property
     def scene(self) -> Scene:
         """The current scene."""
         return self._shown.scene
+
+    @property
+    def history(self) -> History:
+        """The steps of the session, of which `journal` makes a script."""
+        return self._history
 
     @property
     def picture(self) -> Picture:
@@ -153,11 +163,11 @@ class Studio:
 
     def undo(self) -> bool:
         """Undo the last step; returns False if there is none."""
-        return self._step(self._done, self._undone)
+        return self._step(self._history.to_undo, self._history.undo)
 
     def redo(self) -> bool:
         """Redo the last undone step; returns False if there is none."""
-        return self._step(self._undone, self._done)
+        return self._step(self._history.to_redo, self._history.redo)
 
     @property
     def is_changed(self) -> bool:
@@ -196,25 +206,32 @@ class Studio:
         self.refine()
         return words_by_line(self._shown)
 
+    def journal(
+        self, path: str | PathLike[str], *, up: str = "z", surfaces: SurfaceSource = "materials"
+    ) -> str:
+        """The session as a Python script, one line a step, which `read_journal` reads without running it.
+
+        `path` is what the scene of the first step was read from, and `up` and `surfaces` are how. Raises
+        InputError if the mesh was changed since.
+        """
+        from autocolor.journal.script import Source, journal_text
+
+        return journal_text(self._history, Source(fspath(path), up, surfaces))
+
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
         send_image(self._display, self._shown)
 
     def _take(self, scene: Scene, costs: Tier, same_step: bool = False, moving: bool = False) -> None:
         """Make a scene the current one by an edit of a cost, and note the step."""
-        before = self.scene
         self._show(scene, costs, moving)
-        if not (same_step and self._done and not self._undone):
-            self._done.append(before)
-        self._undone.clear()
+        self._history.take(scene, same_step)
 
-    def _step(self, source: list[Scene], target: list[Scene]) -> bool:
-        if not source:
+    def _step(self, scenes: Sequence[Scene], move: Callable[[], None]) -> bool:
+        if not scenes:
             return False
-        before = self.scene
-        self._show(source[-1], cost_of_edit(before, source[-1]) or Tier.NOTHING)
-        source.pop()
-        target.append(before)
+        self._show(scenes[-1], cost_of_edit(self.scene, scenes[-1]) or Tier.NOTHING)
+        move()
         return True
 
     def _show(self, scene: Scene, costs: Tier, moving: bool = False) -> None:
@@ -253,4 +270,5 @@ class Studio:
         )
 
     def __repr__(self) -> str:
-        return f"Studio({self.scene.name!r}, to undo {len(self._done)}, to redo {len(self._undone)})"
+        undo, redo = len(self._history.to_undo), len(self._history.to_redo)
+        return f"Studio({self.scene.name!r}, to undo {undo}, to redo {redo})"

@@ -5,9 +5,12 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import signal
+from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 UNHURRIED = (HealthCheck.too_slow, HealthCheck.data_too_large)
@@ -24,3 +27,13 @@ settings.load_profile(
 # A shell that starts a command in the background has it ignore interrupts, and so all that it starts in turn.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+_NUMBERS = itertools.count()
+
+
+@pytest.fixture(autouse=True)
+def state(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The state folder of each test, its own; it is made when something is kept there."""
+    home = tmp_path_factory.getbasetemp() / f"state-{next(_NUMBERS)}"
+    monkeypatch.setenv("XDG_STATE_HOME", str(home))
+    return home / "autocolor"

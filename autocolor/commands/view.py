@@ -10,6 +10,11 @@ from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.commands.settings import created_again, set_option, with_settings
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from autocolor.journal.history import History
+    from autocolor.journal.script import Source
     from autocolor.scene.scene import Scene
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import Ramtek9300
@@ -19,6 +24,7 @@ EXAMPLES: Final = """\b
 Examples:
   autocolor view scenes/coupe
   autocolor view car.obj --up y --full-screen
+  autocolor view --recover
   autocolor view scenes/coupe --set background=navy --set lights.key.cone_angle=none
 """
 
@@ -26,6 +32,14 @@ Examples:
 @click.command(epilog=EXAMPLES)
 @scene_options
 @set_option
+@click.option(
+    "--recover",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=lambda context, _, asked: recover(context) if asked else None,
+    help="Go on with the last session that did not end orderly; without SCENE.",
+)
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @click.pass_context
@@ -37,9 +51,11 @@ def view(
     fit: bool,
 ) -> None:
     """Show SCENE in an interactive window; press F1 there for a list of keys."""
+    from autocolor.journal.script import Source
+
     report = read(source)
     edited = created_again(report, with_settings(report.scene, settings))
-    show(edited, full_screen, fit)
+    show(edited, Source(source.path, source.up, source.surfaces), full_screen, fit)
     context.exit(ended(report, source))
 
 
@@ -47,12 +63,47 @@ def show_demo() -> None:
     """Show the built-in demo in a window."""
     from autocolor.commands.demo import demo_folder
     from autocolor.files.scene_sources import read_scene
+    from autocolor.journal.script import Source
 
-    show(read_scene(demo_folder()))
+    folder = demo_folder()
+    show(read_scene(folder), Source(str(folder)))
 
 
-def show(scene: Scene, full_screen: bool = False, fit: bool = False) -> None:
-    """Show a scene in a window until that is closed. Raises UnavailableError if there is no screen."""
+def recover(context: click.Context) -> None:
+    """Go on with the last session that did not end orderly, and exit."""
+    from autocolor.errors import InputError, MissingInputError
+    from autocolor.journal.autosave import JOURNAL, left_sessions
+    from autocolor.journal.reading import read_journal
+
+    if context.resilient_parsing:
+        return
+    for left in left_sessions():
+        try:
+            session = read_journal(left / JOURNAL)
+        except InputError as error:
+            click.echo(f"autocolor: {left}: {error}", err=True)
+        else:
+            show(session.history, session.source, left=left)
+            context.exit()
+    raise MissingInputError(
+        "--recover: there must be a session that did not end orderly and can be read, and there is none;"
+        " name a scene"
+    )
+
+
+def show(
+    scene: Scene | History,
+    source: Source,
+    full_screen: bool = False,
+    fit: bool = False,
+    left: Path | None = None,
+) -> None:
+    """Show a scene, or the session whose folder was left, in a window until that is closed.
+
+    `source` is what the first scene was read from. The journal of the session is kept in the state folder
+    until then. Raises UnavailableError if there is no screen.
+    """
+    from autocolor.commands.kept_session import kept_session
     from autocolor.errors import UnavailableError
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import NoScreenError, Ramtek9300
@@ -62,13 +113,24 @@ def show(scene: Scene, full_screen: bool = False, fit: bool = False) -> None:
         # Fail before rendering if there is no screen.
         open_screen()
         display = Ramtek9300()
-        monitor_of(Viewer(scene, display), display, full_screen, fit).run()
+        viewer = Viewer(scene, display)
+        with kept_session(viewer, source, left) as update:
+            monitor_of(viewer, display, full_screen, fit, update).run()
     except NoScreenError as error:
         raise UnavailableError(f"{error}; `autocolor render SCENE -o PNG` renders without a screen") from None
 
 
-def monitor_of(viewer: Viewer, display: Ramtek9300, full_screen: bool = False, fit: bool = False) -> Monitor:
-    """A window, not yet open, that shows the display of a viewer and hands keys and the mouse to it."""
+def monitor_of(
+    viewer: Viewer,
+    display: Ramtek9300,
+    full_screen: bool = False,
+    fit: bool = False,
+    update: Callable[[], None] = lambda: None,
+) -> Monitor:
+    """A window, not yet open, that shows the display of a viewer and hands keys and the mouse to it.
+
+    `update` is called after each change, and often.
+    """
     from ramtek_emu.monitor.window import Key, Monitor, Pointer
 
     def on_key(key: Key) -> bool:
@@ -79,6 +141,7 @@ def monitor_of(viewer: Viewer, display: Ramtek9300, full_screen: bool = False, f
 
     def on_tick() -> None:
         viewer.on_tick(monitor.is_at_rest, monitor.full_screen)
+        update()
         if monitor.caption != viewer.caption:
             monitor.caption = viewer.caption
 

@@ -16,6 +16,7 @@ from typing import Final
 from autocolor.errors import AutocolorError
 from autocolor.files.file_stem import file_stem
 from autocolor.files.scene_sources import read_scene
+from autocolor.journal.history import History
 from autocolor.scene.scene import Scene
 from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS
 from autocolor.screens.entries_screen import draw_entries
@@ -38,7 +39,7 @@ WHEEL: Final = "wheel"
 class Viewer(PictureEdits):
     """The viewer of one scene on a display: its studio, the page that is shown, and the file to save to."""
 
-    def __init__(self, scene: Scene, display: HostPort, folder: Path | None = None) -> None:
+    def __init__(self, scene: Scene | History, display: HostPort, folder: Path | None = None) -> None:
         self.display = display
         self.folder = Path.cwd() if folder is None else folder
         self._line = MessageLine(display, self._restore_line)
@@ -49,7 +50,7 @@ class Viewer(PictureEdits):
         self._edited_at = 0.0
         self._open(scene)
 
-    def _open(self, scene: Scene) -> None:
+    def _open(self, scene: Scene | History) -> None:
         self.begin(Studio(scene, self.display))
         self._watching = Watching(self.display)
         self.saved: Path | None = None

@@ -71,6 +71,10 @@ class Kind:
         """The keys and plain values to write for a field of this name; None values are not written."""
         return {name: value}
 
+    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
+        """The keys and values that change a field of this name from one value to another, neither None."""
+        return {} if repr(one) == repr(other) else self.written(name, other)
+
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         """The cost of a change from one value to another, None for no change; `own` is the column's tier."""
         return None if one == other else own

@@ -9,7 +9,7 @@ from typing import Any, Final
 from autocolor.checks import either, listed, nearest, shown
 from autocolor.scene.columns.column import Column, Kind, Row, Tier, keys_of
 from autocolor.scene.columns.problems import REFUSED, Path, Problem, RowError
-from autocolor.scene.columns.rows import changed, cost, made, plain
+from autocolor.scene.columns.rows import changed, cost, difference, made, plain
 
 MOST_ROWS: Final = 1_000_000
 
@@ -59,6 +59,10 @@ class Nested(Kind):
 
     def written(self, name: str, value: Any) -> Mapping[str, object]:
         return plain(value) if self.inline else {name: plain(value)}
+
+    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
+        told = difference(one, other)
+        return told if self.inline or not told else {name: told}
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         return own if one is None or other is None else cost(one, other)
@@ -123,6 +127,9 @@ class Variant(Kind):
 
     def written(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: self.name_of(value), **plain(value)}
+
+    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
+        return difference(one, other) if type(one) is type(other) else self.written(name, other)
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         return cost(one, other, own)

@@ -129,6 +129,26 @@ def plain(row: Row) -> dict[str, object]:
     }
 
 
+def difference(one: Row, other: Row) -> dict[str, object]:
+    """The keys and plain values by which `changed` makes one row equal to another of its class.
+
+    A value that is taken away is None; an infinite one is written as it is. Meshes are left out.
+    """
+    ones, others = vars(one), vars(other)
+    told: dict[str, object] = {}
+    for name, field in fields_of(type(one)).items():
+        before, after, kind = ones[name], others[name], field.column.kind
+        if before is after:
+            continue
+        if after is None:
+            told[name] = None
+        elif before is None:
+            told.update(kind.written(name, after))
+        else:
+            told.update(kind.difference(name, before, after))
+    return told
+
+
 def cost(one: Row, other: Row, own: Tier = Tier.FRAME) -> Tier | None:
     """The cost of an edit from one row to another: the largest of its columns; None if all are equal.
 

@@ -88,6 +88,10 @@ class Number(Leaf):
     def written(self, name: str, value: float) -> Mapping[str, object]:
         return {name: None if value == self.endless else value}
 
+    def difference(self, name: str, one: float, other: float) -> Mapping[str, object]:
+        # A limit that is taken away must be told: the key that is left out keeps its value.
+        return {} if repr(one) == repr(other) else {name: other}
+
 
 @dataclass(frozen=True)
 class Whole(Leaf):
@@ -242,6 +246,9 @@ class Instance(Leaf):
         return value
 
     def written(self, name: str, value: Any) -> Mapping[str, object]:
+        return {}
+
+    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
         return {}
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:

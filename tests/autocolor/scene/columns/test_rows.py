@@ -9,7 +9,7 @@ from hypothesis import given
 from autocolor import Scene, Surface, View
 from autocolor.scene.columns.column import Row, Tier
 from autocolor.scene.columns.problems import RowError
-from autocolor.scene.columns.rows import changed, cost, made, plain
+from autocolor.scene.columns.rows import changed, cost, difference, made, plain
 from tests.autocolor.scene.columns.spans import Span, sentences
 from tests.autocolor.strategies import lights, scenes, surfaces, views
 
@@ -124,3 +124,22 @@ def test_a_change_of_a_surface_costs_the_tier_of_its_column(change: dict[str, An
 def test_an_edit_costs_nothing_at_all_where_rows_are_equal(one: Surface, other: Surface) -> None:
     assert (cost(one, other) is None) == (one == other)
     assert cost(one, dataclasses.replace(one)) is None
+
+
+@given(scenes(), scenes())
+def test_a_difference_makes_of_one_row_the_other_and_of_equal_ones_is_empty(one: Scene, other: Scene) -> None:
+    rows: list[tuple[Row, Row]] = [
+        (one.view, other.view),
+        *zip(one.surfaces, other.surfaces, strict=True),
+        *zip(one.lights, other.lights, strict=False),
+    ]
+    for before, after in rows:
+        told = difference(before, after)
+        assert changed(before, told) == after
+        assert bool(told) == (before != after)
+        assert difference(after, changed(after, {})) == {}
+        assert "name" not in told or vars(before)["name"] != vars(after)["name"]
+
+
+def test_a_difference_tells_what_was_taken_away() -> None:
+    assert difference(Span("a", 1, 2), Span("b", 1)) == {"name": "b", "end": None}

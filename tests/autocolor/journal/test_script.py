@@ -1,0 +1,225 @@
+"""The script of a session: its lines, and that it gives the same words and entries when it is run."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import autocolor
+from autocolor import InputError, Mesh, Scene, Studio, UsageError, View, read_journal, read_scene
+from autocolor.journal.history import Edit
+from autocolor.journal.reading import session_of
+from autocolor.journal.script import checksum_of, literal, step_line
+from autocolor.scene.scene import AUTO
+from ramtek_emu import Ramtek9300
+from tests.autocolor.sessions import SMALL, car, held
+from tests.autocolor.strategies import MAPPINGS, colors, exposures, lights, numbers, surfaces, views
+from tests.autocolor.test_studio import any_edits, apply, recolorings
+
+CAR = car()
+NAMES = ["key", "fill", "rim"]
+
+columns_of_scenes = st.fixed_dictionaries(
+    {},
+    optional={
+        "parts": st.tuples(*[st.sampled_from(["body", "glass", "wheels"])] * 3).map(
+            lambda names: tuple(
+                part.replace(surface=name, stage=name == "glass")
+                for part, name in zip(CAR.parts, names, strict=True)
+            )
+        ),
+        "surfaces": st.tuples(*(surfaces(name) for name in ("body", "glass", "wheels"))),
+        "lights": st.tuples(*(lights(name) for name in NAMES)).flatmap(
+            lambda three: st.integers(0, 3).map(lambda count: three[:count])
+        ),
+        "view": views(),
+        "ambient": numbers(0, 1),
+        "scaling": st.sampled_from(["surface", "object"]),
+        "mapping": st.sampled_from(MAPPINGS),
+        "contrast": st.sampled_from(["stretch", "floor"]),
+        "exposure": exposures,
+        "dither": st.sampled_from(["off", "ordered"]),
+        "division": st.sampled_from(["covered", "equal"]),
+        "background": colors,
+        "name": st.sampled_from(["scene", "a 'name'\n", "\N{SNOWMAN}"]),
+    },
+)
+moves = (
+    any_edits
+    | recolorings
+    | st.tuples(st.just("columns"), st.booleans(), columns_of_scenes)
+    | st.tuples(st.sampled_from(["undo", "redo"]), st.none(), st.none())
+    | st.tuples(st.just("add_light"), st.sampled_from(NAMES), lights())
+    | st.tuples(st.just("remove_light"), st.sampled_from(NAMES), st.none())
+)
+
+
+def do(studio: Studio, move: tuple[str, Any, Any]) -> None:
+    """Make a move of a session, unless it is refused."""
+    kind, what, value = move
+    with contextlib.suppress(InputError, UsageError):
+        if kind == "columns":
+            studio.edit(studio.scene.replace(**value), same_step=what)
+        elif kind in ("undo", "redo"):
+            getattr(studio, kind)()
+        elif kind == "add_light":
+            studio.edit(studio.scene.replace(lights=(*studio.scene.lights, value.replace(name=what))))
+        elif kind == "remove_light":
+            studio.remove_light(what)
+        else:
+            apply(studio, move)
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("journal") / "car"
+    autocolor.write_scene(folder, CAR)
+    return folder
+
+
+def run_script(text: str) -> tuple[Studio, Ramtek9300]:
+    """The studio and the display of a script that is run, on a small display."""
+    display = Ramtek9300(SMALL)
+    names: dict[str, Any] = {}
+    assert text.count("Ramtek9300())") == 1
+    exec(text.replace("Ramtek9300())", "display)"), {"display": display}, names)
+    studio = names["studio"]
+    assert isinstance(studio, Studio)
+    return studio, display
+
+
+def states(studio: Studio, display: Ramtek9300) -> list[tuple[bytes, bytes]]:
+    """What the display holds after each step back to the beginning, and forth to the end."""
+    studio.refine()
+    found = [held(display)]
+    while studio.redo():
+        found.append(held(display))
+    while studio.undo():
+        found.append(held(display))
+    return found
+
+
+@settings(max_examples=30)
+@given(st.lists(moves, max_size=8))
+def test_any_session_is_given_by_its_script_run_or_read_byte_for_byte(
+    written: Path, made: list[tuple[str, Any, Any]]
+) -> None:
+    display = Ramtek9300(SMALL)
+    studio = Studio(read_scene(written), display)
+    for move in made:
+        do(studio, move)
+    text = studio.journal(written)
+    path = written.parent / "session.py"
+    path.write_text(text, "utf-8")
+    session = read_journal(path)
+    assert Studio(session.history, Ramtek9300(SMALL)).journal(written) == text
+    other = Ramtek9300(SMALL)
+    expected = states(studio, display)
+    assert states(*run_script(text)) == expected
+    assert states(Studio(session.history, other), other) == expected
+
+
+def test_a_drag_after_a_redo_and_one_that_came_back_are_given_by_the_script(written: Path) -> None:
+    display = Ramtek9300(SMALL)
+    studio = Studio(read_scene(written), display)
+    studio.recolor("body", blend=0.25)
+    studio.recolor("body", blend=0.75)
+    studio.undo()
+    studio.redo()
+    studio.edit(studio.scene.with_view(angle=5), same_step=True)
+    studio.view(angle=10)
+    studio.edit(studio.scene.with_view(angle=5), same_step=True)
+    text = studio.journal(written)
+    assert text.count("same_step=True") == 2
+    other = Ramtek9300(SMALL)
+    read = Studio(session_of(text).history, other)
+    expected = states(studio, display)
+    assert len(expected) == 4
+    assert states(*run_script(text)) == expected
+    assert states(read, other) == expected
+
+
+def lines_of(*scenes: Scene) -> list[str]:
+    return [step_line(Edit(before, after)) for before, after in pairwise(scenes)]
+
+
+def test_each_kind_of_step_has_the_narrowest_line() -> None:
+    painted = CAR.with_surface("body", blend=0.25, object_color="red")
+    matt = painted.with_surface("body", model="blinn")
+    off = matt.with_light("key", on=False, cone_angle=None)
+    turned = off.with_view(angle=3, target=None, direction=(0, 1, 0))
+    more = turned.with_new_light("rim", position=(1, 2, 3))
+    fewer = more.without_light("key")
+    stage = fewer.with_part("pane", stage=True)
+    many = stage.replace(ambient=0.5, background="navy")
+    assert lines_of(CAR, painted, matt, off, turned, more, fewer, stage, many) == [
+        "studio.recolor('body', object_color='#ff0000', blend=0.25)",
+        "studio.surface('body', model='blinn', exponent=20.0)",
+        "studio.light('key', on=False, cone_angle=None)",
+        "studio.view(direction=[0.0, 1.0, 0.0], target=None, angle=3.0)",
+        "studio.add_light('rim', position=[1.0, 2.0, 3.0], intensity=1.0, on=True,"
+        " concentration=0.0, flaps={})",
+        "studio.remove_light('key')",
+        "studio.edit(studio.scene.with_part('pane', stage=True))",
+        "studio.edit(studio.scene.replace(ambient=0.5, background='#000080'))",
+    ]
+
+
+def test_what_is_undone_with_the_step_before_says_so() -> None:
+    line = step_line(Edit(CAR, CAR.with_light("key", on=False), joins=True))
+    assert line == "studio.edit(studio.scene.with_light('key', on=False), same_step=True)"
+
+
+def test_a_limit_that_was_taken_away_is_told() -> None:
+    narrow = CAR.with_light("fill", flaps={"z": {"maximum": 0.5}})
+    wide = narrow.with_light("fill", flaps={"z": {"maximum": math.inf}})
+    assert lines_of(narrow, wide) == ["studio.light('fill', flaps={'z': {'maximum': 1e999}})"]
+    assert narrow.with_light("fill", flaps={"z": {"maximum": float("1e999")}}).equals(wide)
+
+
+def test_lights_in_another_order_are_told_in_full() -> None:
+    (line,) = lines_of(CAR, CAR.replace(lights=CAR.lights[::-1]))
+    assert line.startswith("studio.edit(studio.scene.replace(lights=[{'name': 'fill', 'position': [-3.0")
+
+
+def test_only_the_mesh_must_still_be_in_the_files(tmp_path: Path) -> None:
+    autocolor.write_scene(tmp_path / "car", CAR)
+    studio = Studio(read_scene(tmp_path / "car").replace(ambient=0.75), Ramtek9300(SMALL))
+    studio.light("key", on=False)
+    text = studio.journal(tmp_path / "car")
+    other = studio.scene.replace(ambient=0.25, lights=(), view=View((0, 0, 9), direction=(0, 0, -1)))
+    autocolor.write_scene(tmp_path / "car", other, overwrite=True)
+    again = run_script(text)[0].scene
+    assert again.equals(studio.scene.replace(mesh=again.mesh))
+    assert session_of(text).history.scene.lights == studio.scene.lights
+
+
+def test_another_mesh_is_refused() -> None:
+    mesh = Mesh(CAR.mesh.coordinates * 2, CAR.mesh.node_numbers, CAR.mesh.part_numbers, CAR.mesh.part_names)
+    with pytest.raises(InputError) as refusal:
+        step_line(Edit(CAR, CAR.replace(mesh=mesh)))
+    assert str(refusal.value) == (
+        "a journal must keep to one mesh, and this session changed it; save the scene, and begin with it"
+    )
+
+
+def test_the_checksum_is_that_of_all_values(written: Path) -> None:
+    scene = read_scene(written)
+    assert checksum_of(scene) == checksum_of(read_scene(written))
+    mesh = scene.mesh
+    other = Mesh(mesh.coordinates * 2, mesh.node_numbers, mesh.part_numbers, mesh.part_names)
+    different = [scene.replace(mesh=other), scene.replace(ambient=0.2), scene.replace(exposure=AUTO)]
+    assert [checksum_of(each) == checksum_of(scene) for each in different] == [False, False, True]
+
+
+def test_literals_are_read_as_they_were() -> None:
+    values: list[Any] = ["it's \"\n\ud800", -0.0, 1e-320, -math.inf, True, None, [1, [2.5]], {"a": {}}]
+    assert eval(literal(values)) == values
+    assert literal([-math.inf, -0.0]) == "[-1e999, -0.0]"
