@@ -52,3 +52,12 @@ class WriteError(AutocolorError):
     """A write that failed; the previous content of the file is intact."""
 
     exit_code = 74
+
+
+def reason_of(cause: Exception) -> str:
+    """Why a system call failed, as a message tells it in parentheses.
+
+    >>> reason_of(PermissionError(13, "Permission denied"))
+    'permission denied'
+    """
+    return (getattr(cause, "strerror", None) or str(cause)).lower()

@@ -62,7 +62,7 @@ def render(scene: Scene, lines: int = 480, elements: int = 640, algorithm: str =
     """The picture of a scene, (lines, elements).
 
     `algorithm` is "batch", which processes all lines at once, or "watkins", the literal scan-line algorithm,
-    which gives the same picture about a hundred times slower. Raises InputError if an intensity exceeds the
+    which gives the same picture some fifteen times slower. Raises InputError if an intensity exceeds the
     range of float32, UsageError for an invalid size or algorithm.
     """
     for what, size in (("lines", lines), ("elements", elements)):

@@ -8,7 +8,7 @@ import stat
 from pathlib import Path
 from typing import Final
 
-from autocolor.errors import InputError, MissingInputError
+from autocolor.errors import InputError, MissingInputError, reason_of
 
 LARGEST_MESH_FILE: Final = 256 * 1024 * 1024
 """Assumed: in bytes, about three million polygons as OBJ; it bounds the memory that a reader needs."""
@@ -80,8 +80,7 @@ def unreadable(path: Path, error: OSError) -> InputError:
     """The error that says why a file could not be read."""
     if error.errno in (errno.ENOENT, errno.ENOTDIR):
         return MissingInputError(f"{path}: there is no such file or folder; check the name")
-    reason = (error.strerror or str(error)).lower()
-    return InputError(f"{path}: it cannot be read ({reason}); check the name and its permissions")
+    return InputError(f"{path}: it cannot be read ({reason_of(error)}); check the name and its permissions")
 
 
 def text_problem(data: bytes) -> str | None:

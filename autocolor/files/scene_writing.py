@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
-from autocolor.errors import InputError, OutputError, UsageError
+from autocolor.errors import InputError, OutputError, UsageError, reason_of
 from autocolor.files.mesh_sources import source_of
 from autocolor.files.mesh_writing import Meshes, entries_of, meshes_there, reports_of, written_mesh
 from autocolor.files.meshes.formats import mesh_suffixes
@@ -120,9 +120,8 @@ def _folder_made(folder: Path) -> Iterator[None]:
         yield
         return
     except (OSError, ValueError) as error:
-        reason = (getattr(error, "strerror", None) or str(error)).lower()
         raise OutputError(
-            f"a scene must have a folder to be in, and {str(folder)!r} cannot be made ({reason});"
+            f"a scene must have a folder to be in, and {str(folder)!r} cannot be made ({reason_of(error)});"
             " choose another place"
         ) from None
     try:

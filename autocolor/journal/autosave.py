@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
-from autocolor.errors import AutocolorError, WriteError
+from autocolor.errors import AutocolorError, WriteError, reason_of
 from autocolor.files.file_lock import lock_file
 from autocolor.files.scene_writing import write_scene
 from autocolor.files.state_folder import state_folder
@@ -152,8 +152,7 @@ def _told() -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
         raise WriteError(
             "the journal of the session must be kept in the state folder, and cannot be"
-            f" ({reason}); save often"
+            f" ({reason_of(error)}); save often"
         ) from None

@@ -81,11 +81,10 @@ def first_lines(start: Scene, source: Source) -> list[str]:
     over since.
     """
     path = os.path.abspath(source.path)
-    options = {"up": source.up, "surfaces": source.surfaces}
     return [
         *HEADER,
         "",
-        f"scene = autocolor.read_scene({_arguments((path,), options)})",
+        f"scene = autocolor.read_scene({_arguments((path,), _options(source))})",
         f"scene = scene.replace({_arguments((), plain(start))})",
         f"checksum = {literal(checksum_of(start))}",
         STUDIO,
