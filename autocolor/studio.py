@@ -63,6 +63,8 @@ class Studio:
         self._pace = 1, perf_counter() - begun
         """The block of the last picture that was computed from scratch, and the seconds it took."""
         self._kept = self._history.start
+        self.sends = True
+        """Whether edits are sent to the display; programs that draw over the picture send it themselves."""
         self.send_everything()
 
     @property
@@ -246,7 +248,8 @@ class Studio:
             now = display_image(scene, rendered.picture, before, block)
         else:
             now = DisplayImage(scene, before.picture, before.ranges, before.words, block)
-        send_image(self._display, now, before)
+        if self.sends:
+            send_image(self._display, now, before)
         self._rendering, self._shown = rendered, now
         if costs == Tier.FRAME:
             self._pace = block, perf_counter() - begun

@@ -41,7 +41,7 @@ def kept_session(viewer: Viewer, source: Source, left: Path | None = None) -> It
         except AutocolorError as error:
             if str(error) not in told:
                 told.add(str(error))
-                viewer.message = str(error)
+                viewer.tell(str(error))
 
     before = {number: signal.signal(number, _end) for number in ENDING}
     try:
@@ -71,4 +71,4 @@ def _tell_left(viewer: Viewer) -> None:
     click.echo(
         f"autocolor: {what} of {when} did not end orderly; `autocolor view --recover` opens it", err=True
     )
-    viewer.message = "a session did not end orderly: autocolor view --recover opens it"
+    viewer.tell("a session did not end orderly: autocolor view --recover opens it")

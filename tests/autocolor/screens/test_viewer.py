@@ -12,7 +12,6 @@ import pytest
 from autocolor import InputError, Light, Mesh, Scene, Surface, View, read_picture, scene_of
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.defaults import framed
-from autocolor.screens.entries_screen import draw_entries
 from autocolor.screens.orbit import panned
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
@@ -47,11 +46,15 @@ def display_of(viewer: Viewer) -> Ramtek9300:
 
 
 def is_true_to(viewer: Viewer, scene: Scene) -> bool:
-    """Whether the display has what it has after that scene alone was sent to it."""
+    """Whether the display has what it has after that scene alone was sent to it, but for the message."""
+    message = viewer.message
+    viewer.tell("")
     fresh = Ramtek9300()
     Studio(scene, fresh)
     display = display_of(viewer)
-    return np.array_equal(display.words, fresh.words) and np.array_equal(display.entries, fresh.entries)
+    is_true = np.array_equal(display.words, fresh.words)
+    viewer.tell(message)
+    return is_true and np.array_equal(display.entries, fresh.entries)
 
 
 def control(viewer: Viewer, letter: str, shift: bool = False) -> None:
