@@ -24,6 +24,7 @@ from autocolor.scene.changes import (
     SurfaceChanges,
     ViewChanges,
 )
+from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Column, Row, Tier, fields_of, row_label
 from autocolor.scene.columns.problems import REFUSED, Problem, RowError
@@ -74,7 +75,13 @@ class Scene(Row):
     lights: Annotated[tuple[Light, ...], Column(Rows(Light), Tier.MIX, "The lights.")]
     view: Annotated[View, Column(Nested(View), Tier.FRAME, "The eye position and the view direction.")]
     ambient: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "The intensity of every point without any light.")
+        float,
+        Column(
+            Number(at_least=0),
+            Tier.MIX,
+            "The intensity of every point without any light.",
+            bar=Bar(0, 1, 0.01),
+        ),
     ] = 0.1
     scaling: Annotated[
         str,
