@@ -116,7 +116,7 @@ def bar_of(column: Column) -> Bar | None:
 
 
 def on_bar(column: Column, value: float) -> float:
-    """The nearest value on the bar of a column, an int if it holds whole ones; without a bar, the value itself."""
+    """The nearest value on the bar of a column, an int if it holds whole numbers; itself without a bar."""
     bar = bar_of(column)
     if bar is None:
         return value
