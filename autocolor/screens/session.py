@@ -12,9 +12,11 @@ from typing import Final, NamedTuple, Unpack
 
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.lights import Light
+from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import Surface
+from autocolor.scene.surfaces import Part, Surface
 from autocolor.studio import Studio
+from autocolor.widgets.column_rows import World
 from ramtek_emu import HostPort, instructions
 
 PICTURE: Final = "picture"
@@ -54,6 +56,7 @@ class Session:
         self.part_name = ""
         """The part that was pointed at last, if any."""
         self._light = ""
+        self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
         self.news = News("", False, 0.0)
         """The last message."""
 
@@ -61,6 +64,14 @@ class Session:
     def scene(self) -> Scene:
         """The current scene."""
         return self.studio.scene
+
+    @property
+    def world(self) -> World:
+        """The bounds of the object, from which bars of coordinates get their range."""
+        scene = self.scene
+        if self._world is None or self._world[0] is not scene.mesh or self._world[1] != scene.parts:
+            self._world = scene.mesh, scene.parts, World(*scene.object_bounds)
+        return self._world[2]
 
     def turn_to(self, screen: str) -> None:
         """Turn to a screen by its name."""
