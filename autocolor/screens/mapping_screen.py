@@ -92,14 +92,14 @@ class MappingScreen(OverPicture):
 
     def handles(self) -> Sequence[Handle]:
         return [
-            Handle(str(number), *place_of(x, y), f"intensity {x:.2f}, level {y:.2f}")
+            Handle(number, *place_of(x, y), f"intensity {x:.2f}, level {y:.2f}")
             for number, (x, y) in enumerate(self._points())
         ]
 
     def place(self, handle: Handle, element: int, line: int) -> None:
         points = list(self._points())
-        number = int(handle.key)
-        if number >= len(points):
+        number = handle.key
+        if not isinstance(number, int) or number >= len(points):
             return
         x, y = fractions_of(element, line)
         # The ends stay at the ends, and the curve stays a rising one.

@@ -18,9 +18,12 @@ from autocolor.widgets.widget import Widget
 
 
 class Handle(NamedTuple):
-    """A place on a screen that can be grabbed and put elsewhere; `label` is what the message line says."""
+    """A place on a screen that can be grabbed and put elsewhere; `label` is what the message line says.
 
-    key: str
+    `key` is what the screen knows it by.
+    """
+
+    key: object
     element: int
     line: int
     label: str
