@@ -1,7 +1,8 @@
 """Items: the parts of a page, each with the area that it covers and the instructions that draw it.
 
 An item changes no pixel outside its area. Its instructions set every parameter that they depend on, so that
-items can be drawn in any company; two that are equal draw the same.
+items can be drawn in any company; two that are equal draw the same. What lies beyond every display draws
+nothing.
 """
 
 from __future__ import annotations
@@ -83,6 +84,9 @@ class Area(NamedTuple):
 
 SCREEN: Final = Area(0, 0, WIDTH - 1, HEIGHT - 1)
 
+DRAWABLE: Final = Area(-0x8000, -0x8000, 0x7FFF, 0x7FFF)
+"""Hardware: what the sixteen bits of an element and a line can tell."""
+
 
 class Item(NamedTuple):
     """Something on a page: its area, and the words of its instructions in bytes, as `Words` holds them.
@@ -98,7 +102,10 @@ class Item(NamedTuple):
 @lru_cache(maxsize=4096)
 def filled(area: Area, word: int) -> Item:
     """An area filled with one word."""
-    return Item(area, instructions.erase(area, word).tobytes(), is_solid=True)
+    drawn = area.within(DRAWABLE)
+    if drawn.is_empty:
+        return Item(area, b"")
+    return Item(drawn, instructions.erase(drawn, word).tobytes(), is_solid=True)
 
 
 @lru_cache(maxsize=4096)
@@ -106,31 +113,78 @@ def text(line: str, left: int, top: int, word: int = WHITE, background: int = NI
     """A line of text whose upper left corner is at (left, top), on a background."""
     width = CHARACTER * size * max(1, len(line))
     area = Area(left, top, left + width - 1, top + CHARACTER_LINES * size - 1)
+    if not DRAWABLE.covers(area):
+        return Item(area, b"")
     return Item(area, instructions.write_text(line, left, top, word, background, size).tobytes(), True)
 
 
 @lru_cache(maxsize=1024)
 def outline(area: Area, word: int) -> Item:
     """The edges of an area, one pixel wide."""
+    if area.is_empty:
+        return Item(area, b"")
     left, top, right, bottom = area
     corners = ((left, top), (right, top), (right, bottom), (left, bottom), (left, top))
     return lines([corners], word, area)
 
 
 def lines(polylines: Iterable[Sequence[Sequence[float]] | Floats], word: int, area: Area) -> Item:
-    """Polylines, each of (n, 2) elements and lines, clipped at an area."""
-    parts = [instructions.set_parameters(window=tuple(area), foreground=word)]
+    """Polylines, each of (n, 2) elements and lines, clipped at an area; what is not finite is left out.
+
+    They are clipped here, because the 9300 has no window for lines.
+    """
+    parts = []
+    inner = area.within(DRAWABLE)
     for each in polylines:
-        vertices = rounded(np.asarray(each, np.float64))
-        if len(vertices):
-            parts.append(instructions.write_vectors(vertices))
-    return Item(area, np.concatenate(parts).tobytes())
+        places = np.asarray(each, np.float64).reshape(-1, 2)
+        pieces = [rounded(places)] if is_inside(places, inner) else pieces_inside(places, inner)
+        parts += [instructions.write_vectors(piece, word) for piece in pieces]
+    return Item(area, np.concatenate(parts).tobytes() if parts else b"")
+
+
+def is_inside(places: Floats, area: Area) -> bool:
+    """Whether there are places, (n, 2), and all are within an area."""
+    if not len(places):
+        return False
+    left, top, right, bottom = area
+    (low_element, low_line), (high_element, high_line) = places.min(axis=0), places.max(axis=0)
+    return bool(left <= low_element and high_element <= right and top <= low_line and high_line <= bottom)
+
+
+def pieces_inside(places: Floats, area: Area) -> list[Numbers]:
+    """The pieces of a polyline, (n, 2), that are inside an area, each (n, 2) elements and lines."""
+    if area.is_empty or len(places) < 2:
+        return []
+    # Beyond this, sums would lose what is seen.
+    places = np.clip(places, -1e9, 1e9)
+    starts, steps = places[:-1], np.diff(places, axis=0)
+    low, high = np.array(area[:2], np.float64), np.array(area[2:], np.float64)
+    # Find the part of each line, 0 to 1, between the two edges of each direction.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at_low, at_high = (low - starts) / steps, (high - starts) / steps
+    between = (starts >= low) & (starts <= high)
+    still = steps == 0
+    enter = np.where(still, np.where(between, 0.0, np.inf), np.minimum(at_low, at_high)).max(axis=1)
+    leave = np.where(still, 1.0, np.maximum(at_low, at_high)).min(axis=1)
+    enter, leave = np.maximum(enter, 0.0), np.minimum(leave, 1.0)
+    pieces: list[list[Numbers]] = []
+    for number in np.flatnonzero(enter <= leave):
+        ends = starts[number] + np.outer((enter[number], leave[number]), steps[number])
+        begin, end = np.clip(rounded(ends), area[:2], area[2:])
+        # Lines that meet inside are drawn as one.
+        if enter[number] == 0 and pieces and np.array_equal(pieces[-1][-1], begin):
+            pieces[-1].append(end)
+        else:
+            pieces.append([begin, end])
+    return [np.array(piece) for piece in pieces]
 
 
 def image(words: Words, left: int, top: int) -> Item:
     """An array of words, (lines, elements), with its upper left corner at (left, top)."""
     down, across = words.shape
     area = Area(left, top, left + across - 1, top + down - 1)
+    if area.is_empty or not DRAWABLE.covers(area):
+        return Item(area, b"")
     return Item(area, instructions.write_image(words, left, top).tobytes(), is_solid=True)
 
 
@@ -145,7 +199,7 @@ def area_of(points: Floats, margin: int = 0, limit: Area = SCREEN) -> Area:
 
 def rounded(places: Floats) -> Numbers:
     """Places as whole elements and lines, half up, within what a vertex can be."""
-    return np.clip(np.floor(places + 0.5), -0x8000, 0x7FFF).astype(np.int64)
+    return np.clip(np.floor(places + 0.5), DRAWABLE.left, DRAWABLE.right).astype(np.int64)
 
 
 def fitted(line: str, most: int) -> str:
