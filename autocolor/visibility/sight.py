@@ -25,7 +25,7 @@ class Seen(NamedTuple):
     `surface` and `part` are names, and `polygon` is a row of the polygon table. `point` is P, in object
     coordinates; `normal` is the unit normal N that is used for shading, turned to the eye where the surface
     is two-sided; `reflected_view` is the unit vector R = 2 (N.V) N - V, where V is the direction from P to
-    the eye. N is zero on a polygon without area.
+    the eye. N is zero where those of the corners cancel.
     """
 
     surface: str
@@ -87,7 +87,7 @@ def seen_at(sight: Sight, line: int, element: int) -> Seen | None:
     from_eye = (points.rows[POINT, place] + points.middle) @ axes
     point = from_eye * points.unit + np.array(points.view.eye)
     normal = points.rows[NORMAL, place].astype(np.float64) @ axes
-    # Make it as long as float64 can tell; it is zero on a polygon without area.
+    # Make it as long as float64 can tell, unless it is zero.
     normal /= np.linalg.norm(normal) or 1.0
     # Reflect the view direction at the normal.
     ray = from_eye / np.linalg.norm(from_eye)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -7,9 +8,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from autocolor import Mesh, Scene, UsageError, View
+from autocolor import Light, Mesh, Scene, UsageError, View
+from autocolor.lighting.light_drags import highlight_placed
 from autocolor.rendering import rendering
 from autocolor.visibility.sight import Sight, seen_at
+from autocolor.visibility.visible_points import NORMAL
 from tests.autocolor.meshes import grid, sphere, wall, wall_scene
 from tests.autocolor.reference import dot, minus, plus, ray, times, unit
 from tests.autocolor.sessions import car
@@ -87,6 +90,19 @@ def test_the_part_is_named_also_where_parts_share_a_surface() -> None:
     scene = scene.with_part("right", surface="left")
     seen = [seen_at(sight_of(scene), LINES // 2, element) for element in (4, 11)]
     assert [each and (each.part, each.surface) for each in seen] == [("left", "left"), ("right", "left")]
+
+
+def test_where_the_normals_of_corners_cancel_there_is_a_point_but_no_highlight() -> None:
+    sight = sight_of(wall_scene(lights=[Light("key", (1.0, -3.0, 2.0))]))
+    rows = sight.points.rows.copy()
+    rows[NORMAL] = 0
+    canceled = Sight(sight.scene, dataclasses.replace(sight.points, rows=rows))
+    seen = seen_at(canceled, LINES // 2, ELEMENTS // 2)
+    assert seen is not None
+    assert seen.normal == (0.0, 0.0, 0.0)
+    assert seen[:4] == (seen_at(sight, LINES // 2, ELEMENTS // 2) or ())[:4]
+    with pytest.raises(UsageError, match="a highlight must be placed where the normal faces the eye"):
+        highlight_placed(canceled.scene, seen, "key")
 
 
 def test_all_pixels_of_a_block_see_the_same_and_are_found_in_its_middle() -> None:
