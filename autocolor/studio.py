@@ -26,7 +26,7 @@ from autocolor.journal.history import History
 from autocolor.lighting.highlights import highlight_of
 from autocolor.lighting.light_drags import highlight_placed
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, display_image
+from autocolor.mapping.display_image import display_image
 from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.pacing import block_for, blocks_of
@@ -264,10 +264,7 @@ class Studio:
             # Else what is visible stays: what was computed for it is used again.
             lines, elements = (size // block for size in self._size)
             rendered = rendering(scene, lines, elements, rendered)
-        if costs >= Tier.LEVELS:
-            now = display_image(scene, rendered.picture, before, block)
-        else:
-            now = DisplayImage(scene, before.picture, before.ranges, before.words, block)
+        now = display_image(scene, rendered.picture, before, block)
         send_image(self._display, now, before)
         self._rendering, self._shown = rendered, now
         if costs == Tier.FRAME:
