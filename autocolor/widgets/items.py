@@ -127,6 +127,13 @@ def lines(polylines: Iterable[Sequence[Sequence[float]] | Floats], word: int, ar
     return Item(area, np.concatenate(parts).tobytes())
 
 
+def segments(strokes: Floats, word: int, area: Area) -> Item:
+    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area."""
+    if not len(strokes):
+        return Item(area, b"")
+    return Item(area, instructions.write_segments(rounded(strokes), word, area).tobytes())
+
+
 def image(words: Words, left: int, top: int) -> Item:
     """An array of words, (lines, elements), with its upper left corner at (left, top)."""
     down, across = words.shape
