@@ -17,9 +17,10 @@ from autocolor.screens.gestures import Gesture
 from autocolor.screens.screen import Handle, Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.typing_line import TypingLine
+from autocolor.widgets.areas import Area
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.colors import BLACK, HEIGHT, ORANGE, WHITE, WIDTH, YELLOW
-from autocolor.widgets.items import CHARACTER, Area, Item, filled, fitted, text
+from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
 from autocolor.widgets.menu import (
     MENU,
     MESSAGE_LINES,

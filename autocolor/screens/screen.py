@@ -88,6 +88,9 @@ class Screen:
     def place(self, handle: Handle, element: int, line: int) -> None:
         """Put what was grabbed at a place: once after a pick, at each movement during a drag."""
 
+    def release(self) -> None:
+        """What was held or grabbed is let go of."""
+
     def pick(self, gesture: Gesture) -> None:
         """A click, or ENTER, where no widget and no handle is."""
 
