@@ -175,3 +175,11 @@ def test_the_edges_of_a_cube_are_strokes_from_corner_to_corner() -> None:
         [element - 50, line + 50, element - 50, line + 50],
         [element - 50, line + 50, element - 50, line - 50],
     ]
+
+
+@pytest.mark.parametrize("size", [2.0**-90, 2.0**90])
+def test_no_size_of_the_object_makes_a_difference(size: float) -> None:
+    pairs = np.array([(0, 1), (0, 7), (3, 4)])
+    expected = fitted_views(cube().coordinates).strokes(SIDE, cube().coordinates, pairs)
+    coordinates = cube(size).coordinates
+    assert fitted_views(coordinates).strokes(SIDE, coordinates, pairs) == pytest.approx(expected)
