@@ -157,6 +157,7 @@ class Board:
     def release(self) -> None:
         """Let go of what is grabbed or held."""
         self._grabbed = self.held = None
+        self.screens[self._shown].release()
 
     def _hover(self, gesture: Gesture) -> None:
         element, line = self._pointer
@@ -181,6 +182,7 @@ class Board:
             return
         elif held is not None:
             self.screen.place(held, element, line)
+            self.screen.release()
         else:
             handle = self.handle_at(element, line)
             if handle is None:
@@ -230,7 +232,7 @@ class Board:
             grabbed.drag(self._start, self._last, gesture)
 
     def _drop(self, gesture: Gesture) -> None:
-        self._grabbed = None
+        self.release()
 
     def _wheel(self, gesture: Gesture) -> None:
         widget = self.widget_at(*self._pointer)

@@ -104,6 +104,10 @@ class Screen:
         """A key that nothing else takes was pressed; returns False if it does nothing here."""
         return False
 
+    def idle(self) -> bool:
+        """Do a part of what can wait while nothing moves; returns whether something looks different now."""
+        return False
+
     def enter(self) -> None:
         """The screen is about to be shown."""
 

@@ -82,7 +82,7 @@ class Grip(NamedTuple):
 
 
 def handles_in(scene: Scene, views: OrthographicViews, chosen: str) -> list[Handle]:
-    """Everything that can be taken hold of; what is of the chosen light comes last, and goes before others."""
+    """Everything that can be taken hold of; the chosen light comes last, and goes before the others."""
     found: list[Handle] = []
     for side in SIDES:
         _add(found, Grip(TARGET, side.name), side, scene, views)

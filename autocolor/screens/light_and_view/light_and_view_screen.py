@@ -12,10 +12,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Words
+from autocolor.arrays import Words
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
-from autocolor.scene.scene import Scene
 from autocolor.screens.gestures import Gesture, turn_between, wheel_ratio
 from autocolor.screens.light_and_view.areas import PICTURE_AREA, area_of_picture
 from autocolor.screens.light_and_view.grips import AXES, FLAP, Grip, handles_in, told, vector
@@ -28,6 +27,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     Side,
     fitted_views,
 )
+from autocolor.screens.light_and_view.shown_points import shown_points
 from autocolor.screens.orbit import target_of
 from autocolor.screens.picture_edits import PictureEdits
 from autocolor.screens.screen import Handle, Screen
@@ -75,7 +75,7 @@ class LightAndViewScreen(Screen):
     def views(self) -> OrthographicViews:
         """The scale and the middle of the three views."""
         if self._views is None:
-            self._views = fitted_views(everything_in(self.session.scene))
+            self._views = fitted_views(shown_points(self.session.scene))
         return self._views
 
     def enter(self) -> None:
@@ -196,7 +196,7 @@ class LightAndViewScreen(Screen):
 
     def fit(self) -> None:
         """Show everything, with space left on all sides."""
-        self._views = fitted_views(everything_in(self.session.scene))
+        self._views = fitted_views(shown_points(self.session.scene))
         self.session.tell("the views show everything")
 
     def fit_surface(self) -> None:
@@ -210,6 +210,9 @@ class LightAndViewScreen(Screen):
     def zoom(self, steps: float) -> None:
         """Move nearer, or farther."""
         self._views = self.views.zoomed(CLOSER**steps)
+
+    def idle(self) -> bool:
+        return self._lines.leave_out_hidden(self.session.scene)
 
     # The menu.
 
@@ -276,19 +279,12 @@ class FlapSwitch(Switch):
         return self.flip()
 
 
-def everything_in(scene: Scene) -> Floats:
-    """What the views must show, (n, 3): the corners of the object, the eye, the lights and their aims."""
-    points = [*scene.object_bounds, scene.view.eye]
-    points += [light.position for light in scene.lights]
-    points += [light.aim for light in scene.lights if light.aim is not None]
-    return np.array(points, np.float64)
-
-
 def smaller(words: Words, area: Area) -> Words:
     """The words of a picture at the size of an area: each pixel is one of the picture's."""
     lines = np.arange(area.height) * len(words) // area.height
     elements = np.arange(area.width) * words.shape[1] // area.width
-    return words[np.ix_(lines, elements)]
+    found: Words = words[np.ix_(lines, elements)]
+    return found
 
 
 def side_at(element: int, line: int) -> Side | None:

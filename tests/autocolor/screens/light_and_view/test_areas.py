@@ -7,9 +7,9 @@ from autocolor.screens.light_and_view.areas import (
     PICTURE_AREA,
     SIDE_AREA,
     TOP_AREA,
-    Area,
     area_of_picture,
 )
+from autocolor.widgets.areas import Area
 
 QUARTERS = (TOP_AREA, PICTURE_AREA, FRONT_AREA, SIDE_AREA)
 
@@ -37,10 +37,10 @@ def test_an_area_holds_its_outer_pixels_and_no_others() -> None:
     area = Area(8, 16, 4, 2)
     assert (area.right, area.bottom) == (11, 17)
     assert area.middle == (9.5, 16.5)
-    assert area.holds(8, 16)
-    assert area.holds(11, 17)
-    assert not area.holds(7, 16)
-    assert not area.holds(8, 18)
+    assert area.has(8, 16)
+    assert area.has(11, 17)
+    assert not area.has(7, 16)
+    assert not area.has(8, 18)
 
 
 def test_the_picture_has_its_shape_in_a_high_area_and_in_a_wide_one() -> None:

@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given
 
 from autocolor import Mesh, View
-from autocolor.screens.light_and_view.areas import Area, area_of_picture
+from autocolor.screens.light_and_view.areas import area_of_picture
 from autocolor.screens.light_and_view.mesh_edges import mesh_edges
 from autocolor.screens.light_and_view.perspective_strokes import perspective_strokes
 from autocolor.visibility.projection import projection
+from autocolor.widgets.areas import Area
 from tests.autocolor.meshes import cube, sphere, wall
 from tests.autocolor.strategies import meshes, views
 

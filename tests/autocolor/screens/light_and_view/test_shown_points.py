@@ -35,5 +35,5 @@ def test_all_that_can_be_grabbed_is_in_each_of_the_fitted_views(scene: Scene) ->
     views = fitted_views(shown_points(scene))
     for side in SIDES:
         for light in scene.lights:
-            assert side.area.holds(*views.position(side, light.position))
-        assert side.area.holds(*views.position(side, scene.view.eye))
+            assert side.area.has(*views.position(side, light.position))
+        assert side.area.has(*views.position(side, scene.view.eye))

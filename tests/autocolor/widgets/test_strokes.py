@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.arrays import Floats
-from autocolor.screens.light_and_view.areas import Area
-from autocolor.screens.light_and_view.strokes import between, clipped, drawn, joined, together
+from autocolor.widgets.areas import Area
+from autocolor.widgets.strokes import between, clipped, drawn, joined, together
 
 AREA = Area(10, 20, 31, 21)
 
@@ -54,7 +54,7 @@ def test_what_is_left_of_a_stroke_is_all_of_it_that_is_in_the_area(
     found = clipped(between(np.array([start]), np.array([end])), AREA)
     along = np.linspace(0, 1, 201)[:, None]
     points = np.array(start) + along * (np.array(end) - np.array(start))
-    inside = [point for point in points.tolist() if AREA.holds(*point)]
+    inside = [point for point in points.tolist() if AREA.has(*point)]
     if not len(found):
         assert not inside
         return
@@ -62,7 +62,7 @@ def test_what_is_left_of_a_stroke_is_all_of_it_that_is_in_the_area(
     first, last = kept[:2], kept[2:]
     # Both ends are in the area and on the stroke, and each of its points in the area is between them.
     for place in (first, last):
-        assert AREA.holds(*place)
+        assert AREA.has(*place)
         whole = math.dist(start, place) + math.dist(place, end)
         assert whole == pytest.approx(math.dist(start, end), abs=1e-6)
     for point in inside:
