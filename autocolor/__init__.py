@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from autocolor.errors import WriteError as WriteError
     from autocolor.files.picture_file import read_picture as read_picture
     from autocolor.files.picture_file import write_picture as write_picture
+    from autocolor.files.rig_file import read_rig as read_rig
+    from autocolor.files.rig_file import write_rig as write_rig
     from autocolor.files.scene_sources import read_scene as read_scene
     from autocolor.files.scene_writing import write_scene as write_scene
     from autocolor.images import image as image
@@ -41,6 +43,7 @@ if TYPE_CHECKING:
     from autocolor.scene.reflection_models import BlinnPhong as BlinnPhong
     from autocolor.scene.reflection_models import CookTorrance as CookTorrance
     from autocolor.scene.reflection_models import Phong as Phong
+    from autocolor.scene.rigs import Rig as Rig
     from autocolor.scene.scene import Scene as Scene
     from autocolor.scene.surfaces import Paint as Paint
     from autocolor.scene.surfaces import Part as Part
@@ -69,6 +72,7 @@ _HOME: Final = {
     "Phong": "scene.reflection_models",
     "Picture": "lighting.picture",
     "Reflectance": "scene.surfaces",
+    "Rig": "scene.rigs",
     "Scene": "scene.scene",
     "Studio": "studio",
     "Surface": "scene.surfaces",
@@ -80,12 +84,14 @@ _HOME: Final = {
     "image": "images",
     "read_journal": "journal.reading",
     "read_picture": "files.picture_file",
+    "read_rig": "files.rig_file",
     "read_scene": "files.scene_sources",
     "render": "rendering",
     "save_image": "images",
     "scene_of": "scene.creation",
     "send_picture": "sending",
     "write_picture": "files.picture_file",
+    "write_rig": "files.rig_file",
     "write_scene": "files.scene_writing",
 }
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from autocolor.files.scenes.scene_meshes import MeshEntry
-from autocolor.scene.columns.column import Column, Kind, Row, Tier, fields_of, keys_of
+from autocolor.scene.columns.column import WORLD_UNITS, Column, Kind, Row, Tier, bar_of, fields_of, keys_of
 from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.columns.rows import plain
 from autocolor.scene.lights import Flap, Light
@@ -26,8 +26,9 @@ HEAD = """# The columns
 Every table of a scene and every key, as `scene.toml`, `--set`, Python and picture files have them. The page
 is written from the columns in `autocolor/scene` by `python -m tests.column_reference > docs/COLUMNS.md`.
 
-A key that has no default must be given; one whose default is "absent" may be left out. The last column says
-what an edit of it costs:
+A key that has no default must be given; one whose default is "absent" may be left out. "On a bar" is the
+usual range of a number and its step where it is set by pointing, and what it starts with if it was absent;
+typed numbers may be any that the value's own rule allows. The last column says what an edit of it costs:
 
 | an edit costs | what is computed again |
 |---|---|
@@ -67,12 +68,21 @@ def lines_of(title: str, text: str, cls: type[Row]) -> Iterator[str]:
     yield f"## {title}\n"
     if text:
         yield f"{text}\n"
-    yield "| key | what it is | unit | value | default | an edit costs |\n|---|---|---|---|---|---|"
+    yield "| key | what it is | unit | value | default | on a bar | an edit costs |"
+    yield "|---|---|---|---|---|---|---|"
     for key, (column, field, _) in keys_of(cls).items():
         if key not in LEFT_OUT.get(cls, ()):
             rule = column.kind.rule().removeprefix("must be ")
             text = f"{column.help}{going_with(fields_of(cls)[field].column.kind, key)}"
-            cells = (f"`{key}`", text, column.unit, rule, default(cls, key, field), tier(column))
+            cells = (
+                f"`{key}`",
+                text,
+                column.unit,
+                rule,
+                default(cls, key, field),
+                on_a_bar(column),
+                tier(column),
+            )
             yield f"| {' | '.join(cells)} |"
     yield ""
 
@@ -87,6 +97,15 @@ def going_with(kind: Kind, key: str) -> str:
         return ""
     names = [repr(name) for name, cls in kind.classes.items() if key in keys_of(cls)]
     return f" Goes with {' or '.join(names)}." if names else ""
+
+
+def on_a_bar(column: Column) -> str:
+    """The usual range and the step of a number, and what it starts with when it is switched on, if absent."""
+    bar = bar_of(column)
+    if bar is None:
+        return "that of the object" if column.unit == WORLD_UNITS else ""
+    start = "" if column.start is None else f", from {column.start:g}"
+    return f"{bar.low:g} to {bar.high:g} by {bar.step:g}{start}"
 
 
 def tier(column: Column) -> str:

@@ -40,7 +40,7 @@ def kept_session(viewer: Viewer, left: Path | None = None) -> Iterator[Callable[
         except AutocolorError as error:
             if str(error) not in told:
                 told.add(str(error))
-                viewer.message = str(error)
+                viewer.tell(str(error))
 
     before = {number: signal.signal(number, _end) for number in ENDING}
     try:
@@ -72,4 +72,4 @@ def _tell_left(viewer: Viewer) -> None:
         f" `--sessions` lists {'them' if many else 'it'}, `--forget` removes {'one' if many else 'it'}",
         err=True,
     )
-    viewer.message = "a session did not end orderly: autocolor view --recover opens it"
+    viewer.tell("a session did not end orderly: autocolor view --recover opens it")

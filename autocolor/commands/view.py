@@ -137,7 +137,7 @@ def monitor_of(
         viewer.on_pointer(pointer.element, pointer.line, pointer.action, pointer.button, pointer.steps)
 
     def on_tick() -> None:
-        viewer.on_tick(monitor.is_at_rest, monitor.full_screen)
+        viewer.on_tick(monitor.is_at_rest)
         update()
         if monitor.caption != viewer.caption:
             monitor.caption = viewer.caption

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Final
 
@@ -19,3 +20,12 @@ def file_stem(name: str) -> str:
     stem = "".join("_" if letter in REFUSED or ord(letter) < 32 else letter for letter in Path(name).name)
     stem = stem.strip()[:LONGEST_STEM].strip()
     return stem if stem.strip(" .") else "scene"
+
+
+def free_path(path: Path) -> Path:
+    """The path if nothing is there, else with the lowest number from 2 that makes it free: "rig-2.toml"."""
+    stem, number, free = path.stem, 1, path
+    while os.path.lexists(free):
+        number += 1
+        free = path.with_name(f"{stem}-{number}{path.suffix}")
+    return free

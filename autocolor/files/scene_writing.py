@@ -8,7 +8,7 @@ that fails, the mesh is removed again, and the old scene file still names the ol
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
@@ -66,7 +66,7 @@ def write_scene_with_tables(
     """
     target = _target(path)
     check_scene(scene)
-    _refuse_names(scene)
+    refuse_names((*scene.parts, *scene.surfaces, *scene.lights))
     with _folder_made(target.parent), _removed_on_failure() as written:
         refuse_output(target, overwrite=overwrite)
         old = _existing(target)
@@ -102,9 +102,8 @@ def _target(path: str | os.PathLike[str]) -> Path:
     return target if suffix == ".toml" else target / SCENE_FILE
 
 
-def _refuse_names(scene: Scene) -> None:
-    """Raise InputError if a name has a character that UTF-8 does not."""
-    rows: list[Row] = [*scene.parts, *scene.surfaces, *scene.lights]
+def refuse_names(rows: Iterable[Row]) -> None:
+    """Raise InputError if the name of a row has a character that UTF-8 does not."""
     for row in rows:
         if any(0xD800 <= ord(letter) < 0xE000 for letter in vars(row)["name"]):
             raise InputError(f"{row_label(row)}: a name in a file must be text in UTF-8; rename it")

@@ -13,7 +13,7 @@ from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
-from autocolor.files.file_stem import file_stem
+from autocolor.files.file_stem import file_stem, free_path
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.picture_file import write_picture
 from autocolor.files.scene_writing import write_scene
@@ -112,10 +112,7 @@ def _new_names(name: str, folder: Path, has_scene: bool, has_picture: bool) -> t
 
 def _copied(path: Path) -> Path:
     """Copy a file to a numbered name beside it that is free; returns that."""
-    for number in count(1):
-        other = path.with_name(f"{path.stem}-{number}{path.suffix}")
-        if not os.path.lexists(other):
-            break
+    other = free_path(path)
     write_atomically(other, path.read_bytes(), overwrite=False)
     return other
 

@@ -45,16 +45,7 @@ def words_of(
             name = picture.surfaces[surface.surface_number - 1]
             raise InputError(f"surface {name!r}: an intensity must be finite, not {extent.maximum:g}")
     extents = mapped_ranges(picture, scaling, exposure)
-    intensities_of = {surface.surface_number: picture.relative[surface.pixels] for surface in picture.slices}
-    fractions_of: dict[int, Fractions] = {}
-    for number in intensities_of:
-        # Surfaces that are mapped by the whole object's range share one function.
-        of = WHOLE if extents[number] is extents[WHOLE] else number
-        if of not in fractions_of:
-            everything = picture.relative if of == WHOLE else intensities_of[number]
-            found = picture.relative_ranges[of]
-            fractions_of[of] = fraction_of(extents[of], mapping, everything, found)
-        fractions_of[number] = fractions_of[of]
+    fractions_of = fractions_by_surface(picture, extents, mapping)
     thresholds = ordered_thresholds(picture.lines, picture.elements) if dither == "ordered" else None
     for chunk in point_chunks(picture.slices):
         intensities, pixels = picture.relative[chunk.pixels], picture.pixels[chunk.pixels]
@@ -71,6 +62,25 @@ def words_of(
         words[pixels] = here
     words.flags.writeable = False
     return words.reshape(picture.lines, picture.elements)
+
+
+def fractions_by_surface(
+    picture: Picture, extents: Mapping[int, IntensityRange], mapping: str | CurvePoints
+) -> Mapping[int, Fractions]:
+    """The function from the intensities of each visible surface to fractions, 0 to 1, by surface number.
+
+    `extents` are those of `mapped_ranges`; intensities are relative to the picture's scale.
+    """
+    intensities_of = {surface.surface_number: picture.relative[surface.pixels] for surface in picture.slices}
+    found: dict[int, Fractions] = {}
+    for number in intensities_of:
+        # Surfaces that are mapped by the whole object's range share one function.
+        of = WHOLE if extents[number] is extents[WHOLE] else number
+        if of not in found:
+            everything = picture.relative if of == WHOLE else intensities_of[number]
+            found[of] = fraction_of(extents[of], mapping, everything, picture.relative_ranges[of])
+        found[number] = found[of]
+    return found
 
 
 def levels_of(fractions: Singles, levels: int, out: Singles | None = None) -> Singles:

@@ -125,7 +125,7 @@ def framed(view: View, coordinates: Floats, aspect: float = ASPECT) -> View:
     """
     axes = view.axes
     low, high = bounds_of(coordinates)
-    center, radius = _sphere_around(low, high)
+    center, radius = sphere_around(low, high)
     points = coordinates.T
     if _is_a_point(low, high):
         points = center[:, None] + radius * np.array([[-0.5, 0.5]] * 3)
@@ -189,7 +189,7 @@ def _is_a_point(low: Floats, high: Floats) -> bool:
     return float((high - low).max()) <= POINT * float(np.abs([low, high]).max())
 
 
-def _sphere_around(low: Floats, high: Floats) -> tuple[Floats, float]:
+def sphere_around(low: Floats, high: Floats) -> tuple[Floats, float]:
     """The center and radius of a sphere around an object; one treated as a point gets some room."""
     if _is_a_point(low, high):
         return (low + high) / 2, max(1.0, 1e3 * POINT * float(np.abs([low, high]).max()))
@@ -198,21 +198,28 @@ def _sphere_around(low: Floats, high: Floats) -> tuple[Floats, float]:
     return (low + high) / 2, float(np.linalg.norm((high - low) / extent) * extent / 2)
 
 
+def studio_axes(view: View) -> tuple[Floats, Floats, Floats]:
+    """The unit vectors to the right, up, and away from the eye, as seen from it; level with the world.
+
+    Where the view is close to vertical, up is that of the picture.
+    """
+    right, down, forward = view.axes
+    if abs(forward[2]) > 0.99:
+        return right, -down, forward
+    up = np.array([0.0, 0.0, 1.0])
+    away = np.array([forward[0], forward[1], 0.0])
+    away /= np.linalg.norm(away)
+    return np.cross(away, up), up, away
+
+
 def default_lights(coordinates: Floats, view: View) -> tuple[Light, ...]:
     """Four studio lights aimed at the object, with positions relative to the view.
 
     As seen from the eye, the key light is at the upper left, the fill light at the right, the top light above
     and the rim light behind, as around a car in a photographer's studio (Paper: "Light Controls").
     """
-    center, radius = _sphere_around(*bounds_of(coordinates))
-    right, down, forward = view.axes
-    if abs(forward[2]) > 0.99:
-        up, away = -down, forward
-    else:
-        up = np.array([0.0, 0.0, 1.0])
-        away = np.array([forward[0], forward[1], 0.0])
-        away /= np.linalg.norm(away)
-        right = np.cross(away, up)
+    center, radius = sphere_around(*bounds_of(coordinates))
+    right, up, away = studio_axes(view)
 
     def light(
         name: str, to_right: float, to_up: float, to_eye: float, intensity: float, concentration: float

@@ -14,7 +14,8 @@ from typing import Annotated, ClassVar, Unpack
 
 from autocolor.checks import Vector
 from autocolor.scene.changes import FlapChanges, FlapsChanges, LightChanges
-from autocolor.scene.columns.column import Column, Row, Tier
+from autocolor.scene.columns.bars import Bar
+from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.columns.row_kinds import Nested
 from autocolor.scene.columns.rows import changed
@@ -31,10 +32,12 @@ class Flap(Row):
     noun: ClassVar[str] = "flap"
 
     minimum: Annotated[
-        float, Column(Number(endless=-math.inf), Tier.LIGHT, "The smallest coordinate that is lit.", "units")
+        float,
+        Column(Number(endless=-math.inf), Tier.LIGHT, "The smallest coordinate that is lit.", WORLD_UNITS),
     ] = -math.inf
     maximum: Annotated[
-        float, Column(Number(endless=math.inf), Tier.LIGHT, "The largest coordinate that is lit.", "units")
+        float,
+        Column(Number(endless=math.inf), Tier.LIGHT, "The largest coordinate that is lit.", WORLD_UNITS),
     ] = math.inf
     on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether the flap restricts the light.")] = True
 
@@ -76,9 +79,15 @@ class Light(Row):
     alternatives: ClassVar[tuple[str, ...]] = ("direction", "aim")
 
     name: Annotated[str, Column(Text(), Tier.LIGHT, "The name of the light, which must be unique.")]
-    position: Annotated[Vector, Column(VectorKind(), Tier.LIGHT, "The position of the light.", "world units")]
+    position: Annotated[Vector, Column(VectorKind(), Tier.LIGHT, "The position of the light.", WORLD_UNITS)]
     intensity: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "The intensity of the light, without an upper limit.")
+        float,
+        Column(
+            Number(at_least=0),
+            Tier.MIX,
+            "The intensity of the light, without an upper limit.",
+            bar=Bar(0, 2, 0.01),
+        ),
     ] = 1.0
     on: Annotated[bool, Column(Switch(), Tier.MIX, "Whether the light is switched on.")] = True
     direction: Annotated[
@@ -95,12 +104,17 @@ class Light(Row):
             VectorKind(),
             Tier.LIGHT,
             "The point at which the light is aimed; excludes a direction.",
-            "world units",
+            WORLD_UNITS,
         ),
     ] = None
     concentration: Annotated[
         float,
-        Column(Number(at_least=0), Tier.LIGHT, "C: the exponent of the cosine falloff around the direction."),
+        Column(
+            Number(at_least=0),
+            Tier.LIGHT,
+            "C: the exponent of the cosine falloff around the direction.",
+            bar=Bar(0, 100, 1),
+        ),
     ] = 0.0
     cone_angle: Annotated[
         float | None,
@@ -109,6 +123,8 @@ class Light(Row):
             Tier.LIGHT,
             "A: the largest angle from the direction that is lit; if absent, there is no cone.",
             "degrees",
+            bar=Bar(1, 90, 1),
+            start=30.0,
         ),
     ] = None
     flaps: Annotated[

@@ -25,6 +25,7 @@ from typing import Annotated, Final, NamedTuple, TypeVar
 import numpy as np
 
 from autocolor.arrays import Singles, power
+from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.column import Column, Row, Tier
 from autocolor.scene.columns.value_kinds import Number
 
@@ -89,9 +90,10 @@ def registered(name: str) -> Callable[[Model], Model]:
 class Phong(ReflectionModel):
     """cos^N(E). Paper: Figure 2."""
 
-    exponent: Annotated[float, Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.")] = (
-        20.0
-    )
+    exponent: Annotated[
+        float,
+        Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.", bar=Bar(1, 200, 1)),
+    ] = 20.0
 
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
         """cos^N(E); a negative cosine counts as 0."""
@@ -107,9 +109,10 @@ class Phong(ReflectionModel):
 class BlinnPhong(ReflectionModel):
     """cos^N of the angle between normal and half vector. Departs: J. Blinn, SIGGRAPH 1977, not Figure 2."""
 
-    exponent: Annotated[float, Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.")] = (
-        20.0
-    )
+    exponent: Annotated[
+        float,
+        Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.", bar=Bar(1, 200, 1)),
+    ] = 20.0
 
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
         """(N.H)^N; a negative cosine counts as 0."""
@@ -128,10 +131,22 @@ class CookTorrance(ReflectionModel):
     """
 
     roughness: Annotated[
-        float, Column(Number(0.01, 1), Tier.LIGHT, "How rough it is: m, the slope of the microfacets.")
+        float,
+        Column(
+            Number(0.01, 1),
+            Tier.LIGHT,
+            "How rough it is: m, the slope of the microfacets.",
+            bar=Bar(0.01, 1, 0.01),
+        ),
     ] = 0.3
     normal_reflectance: Annotated[
-        float, Column(Number(0.001, 1), Tier.LIGHT, "F0: what is reflected at normal incidence.")
+        float,
+        Column(
+            Number(0.001, 1),
+            Tier.LIGHT,
+            "F0: what is reflected at normal incidence.",
+            bar=Bar(0.01, 1, 0.01),
+        ),
     ] = 0.05
 
     @property

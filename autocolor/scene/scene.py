@@ -13,7 +13,7 @@ from itertools import islice
 from typing import Annotated, Any, Final, TypeVar, Unpack
 
 from autocolor.arrays import Floats
-from autocolor.checks import Color, nearest, shown
+from autocolor.checks import Color, Vector, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.immutable import read_only
 from autocolor.scene.changes import (
@@ -24,6 +24,7 @@ from autocolor.scene.changes import (
     SurfaceChanges,
     ViewChanges,
 )
+from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Column, Row, Tier, fields_of, row_label
 from autocolor.scene.columns.problems import REFUSED, Problem, RowError
@@ -32,9 +33,11 @@ from autocolor.scene.columns.row_kinds import Nested, Rows
 from autocolor.scene.columns.rows import changed, cost, with_values
 from autocolor.scene.columns.value_kinds import Choice, CurveKind, Instance, Number, Text
 from autocolor.scene.curves import CURVES, CurvePoints
-from autocolor.scene.defaults import object_coordinates
+from autocolor.scene.defaults import object_bounds, object_coordinates
+from autocolor.scene.light_copies import axis_number, free_name, mirrored
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.rigs import Rig
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
 
@@ -74,7 +77,13 @@ class Scene(Row):
     lights: Annotated[tuple[Light, ...], Column(Rows(Light), Tier.MIX, "The lights.")]
     view: Annotated[View, Column(Nested(View), Tier.FRAME, "The eye position and the view direction.")]
     ambient: Annotated[
-        float, Column(Number(at_least=0), Tier.MIX, "The intensity of every point without any light.")
+        float,
+        Column(
+            Number(at_least=0),
+            Tier.MIX,
+            "The intensity of every point without any light.",
+            bar=Bar(0, 1, 0.01),
+        ),
     ] = 0.1
     scaling: Annotated[
         str,
@@ -221,6 +230,53 @@ class Scene(Row):
         place = _place("light", self.lights, name)
         return with_values(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
 
+    def with_copied_light(self, name: str, new_name: str | None = None) -> Scene:
+        """The scene with a copy of one light after the others, named like "key 2" unless a name is given.
+
+        Raises UsageError if there is no light of that name, InputError if the new name is taken.
+        """
+        light = self.light(name)
+        if new_name is None:
+            new_name = self._free_light_name(name)
+        return changed(self, {"lights": (*self.lights, light.replace(name=new_name))})
+
+    def with_mirrored_light(
+        self, name: str, axis: str = "x", about: float | None = None, new_name: str | None = None
+    ) -> Scene:
+        """The scene with a mirrored copy of one light after the others; the light itself stays.
+
+        It is mirrored in the plane where the coordinate of the axis, "x", "y" or "z", is `about`, by default
+        in the middle of the object: position, aim or direction, and the flap of that axis. Its name is like
+        "key mirrored" unless one is given. Raises UsageError for an unknown light or axis, InputError if the
+        new name is taken.
+        """
+        light, number = self.light(name), axis_number(axis)
+        if about is None:
+            low, high = self.object_bounds
+            about = (low[number] + high[number]) / 2
+        if new_name is None:
+            new_name = self._free_light_name(f"{name} mirrored")
+        return changed(self, {"lights": (*self.lights, mirrored(light, new_name, axis, about))})
+
+    def with_all_lights_on(self) -> Scene:
+        """The scene with all lights switched on, as they are again after `only_lights`."""
+        return self.replace(lights=tuple(light.replace(on=True) for light in self.lights))
+
+    def with_rig(self, rig: Rig) -> Scene:
+        """The scene with the lights of a rig instead of its own, fitted to the size of its object.
+
+        Raises InputError if they cannot be (see `Rig.fitted`).
+        """
+        return self.replace(lights=rig.fitted(*self.object_bounds))
+
+    @property
+    def rig(self) -> Rig:
+        """The lights, with the size of the object that they were placed for."""
+        return Rig(*self.object_bounds, self.lights)
+
+    def _free_light_name(self, name: str) -> str:
+        return free_name(name, [light.name for light in self.lights])
+
     def only_lights(self, *names: str) -> Scene:
         """The scene with the named lights on and all others off (Paper: Figure 8)."""
         wanted = [self.light(name).name for name in names]
@@ -246,6 +302,12 @@ class Scene(Row):
     def object_coordinates(self) -> Floats:
         """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage."""
         return read_only(object_coordinates(self.mesh, self.parts))
+
+    @property
+    def object_bounds(self) -> tuple[Vector, Vector]:
+        """The least and the largest coordinates of the object; zeros if it has no nodes."""
+        low, high = (tuple(corner.tolist()) for corner in object_bounds(self.mesh, self.parts))
+        return low, high
 
     def __repr__(self) -> str:
         return (

@@ -12,6 +12,7 @@ from typing import Annotated, ClassVar, Final, Unpack
 
 from autocolor.checks import Color
 from autocolor.scene.changes import PaintChanges, PartChanges, ReflectanceChanges, SurfaceChanges
+from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Column, Row, Tier
 from autocolor.scene.columns.problems import Problem, RowError
@@ -56,8 +57,12 @@ class Reflectance(Row):
     Paper: Figure 2.
     """
 
-    diffuse: Annotated[float, Column(Number(at_least=0), Tier.MIX, "D: the diffuse reflectance.")] = 0.7
-    specular: Annotated[float, Column(Number(at_least=0), Tier.MIX, "S: the specular reflectance.")] = 0.5
+    diffuse: Annotated[
+        float, Column(Number(at_least=0), Tier.MIX, "D: the diffuse reflectance.", bar=Bar(0, 1, 0.01))
+    ] = 0.7
+    specular: Annotated[
+        float, Column(Number(at_least=0), Tier.MIX, "S: the specular reflectance.", bar=Bar(0, 1, 0.01))
+    ] = 0.5
     model: Annotated[
         ReflectionModel,
         Column(Variant(MODELS), Tier.LIGHT, "The reflection model of the specular highlight."),
@@ -163,6 +168,8 @@ class Surface(Row):
             Whole(at_least=2, at_most=MOST_LEVELS),
             Tier.LEVELS,
             "The number of lookup table entries; if absent, a share of the rest.",
+            bar=Bar(2, 256, 1),
+            start=64,
         ),
     ] = None
 

@@ -17,7 +17,8 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.immutable import read_only
 from autocolor.scene.changes import ViewChanges
-from autocolor.scene.columns.column import Column, Row, Tier
+from autocolor.scene.columns.bars import Bar
+from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.columns.rows import changed
 from autocolor.scene.columns.value_kinds import Number, VectorKind
@@ -30,7 +31,7 @@ class View(Row):
     noun: ClassVar[str] = "view"
     alternatives: ClassVar[tuple[str, ...]] = ("direction", "target")
 
-    eye: Annotated[Vector, Column(VectorKind(), Tier.FRAME, "The position of the eye.", "world units")]
+    eye: Annotated[Vector, Column(VectorKind(), Tier.FRAME, "The position of the eye.", WORLD_UNITS)]
     direction: Annotated[
         Vector | None,
         Column(
@@ -40,11 +41,18 @@ class View(Row):
     target: Annotated[
         Vector | None,
         Column(
-            VectorKind(), Tier.FRAME, "The point that the eye looks at; excludes a direction.", "world units"
+            VectorKind(), Tier.FRAME, "The point that the eye looks at; excludes a direction.", WORLD_UNITS
         ),
     ] = None
     angle: Annotated[
-        float, Column(Number(), Tier.FRAME, "Rotates the horizontal axis of the picture plane.", "degrees")
+        float,
+        Column(
+            Number(),
+            Tier.FRAME,
+            "Rotates the horizontal axis of the picture plane.",
+            "degrees",
+            bar=Bar(-180, 180, 1),
+        ),
     ] = 0.0
     field_of_view: Annotated[
         float,
@@ -53,6 +61,7 @@ class View(Row):
             Tier.FRAME,
             "The vertical field of view.",
             "degrees",
+            bar=Bar(5, 120, 1),
         ),
     ] = 30.0
 

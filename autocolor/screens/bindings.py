@@ -5,46 +5,21 @@ from __future__ import annotations
 from typing import Final, Protocol
 
 from autocolor.screens.keys import Binding, Chord
+from autocolor.screens.picture_edits import PictureEdits
 
 
 class Actions(Protocol):
     """The actions that keys can be bound to."""
 
-    def show_help(self) -> object:
-        """Show the help page, or return to the picture."""
+    @property
+    def edits(self) -> PictureEdits:
+        """The edits of the picture."""
 
-    def show_entries(self) -> object:
-        """Show the lookup table, or return to the picture."""
+    def toggle(self, screen: str) -> object:
+        """Turn to a screen, or back to the picture if it is shown."""
 
-    def turn(self, right: float, up: float) -> object:
-        """Move the eye around the object, in degrees."""
-
-    def move(self, ratio: float) -> object:
-        """Multiply the distance of the eye by a ratio."""
-
-    def tilt(self, degrees: float) -> object:
-        """Rotate the picture plane by some degrees."""
-
-    def see_from(self, number: int) -> object:
-        """Look at the object from one of the sides that have names."""
-
-    def rescale(self, is_surface: bool) -> object:
-        """Fill the picture with the object, or with the selected surface."""
-
-    def switch_light(self, number: int) -> object:
-        """Switch a light on or off."""
-
-    def choose_surface(self, step: int) -> object:
-        """Select another surface."""
-
-    def blend(self, step: float) -> object:
-        """Change the blend of the selected surface."""
-
-    def repaint(self, step: int) -> object:
-        """Change the object color of the selected surface."""
-
-    def switch_exposure(self) -> object:
-        """Hold the exposure, or let it follow the picture."""
+    def toggle_menu(self) -> object:
+        """Bring the menu, or take it away."""
 
     def watch(self) -> object:
         """Let the picture come in line by line."""
@@ -59,7 +34,7 @@ class Actions(Protocol):
         """Save the picture with its scene."""
 
     def escape(self) -> object:
-        """Return to the picture, or leave."""
+        """Take back, close, return to the picture, or leave."""
 
 
 TURN: Final = 5.0
@@ -70,80 +45,83 @@ CLOSER: Final = 0.9
 BLEND: Final = 0.05
 
 BINDINGS: Final[tuple[Binding[Actions], ...]] = (
-    Binding((Chord("f1"),), "this help, and back", lambda viewer, _: viewer.show_help()),
+    Binding((Chord("f1"),), "this help, and back", lambda viewer, _: viewer.toggle("help")),
     Binding(
         (Chord("f4"),),
         "the 1024 entries of the lookup table, and back",
-        lambda viewer, _: viewer.show_entries(),
+        lambda viewer, _: viewer.toggle("entries"),
+    ),
+    Binding(
+        (Chord("tab"),), "the menu, and its keys: arrows, Return", lambda viewer, _: viewer.toggle_menu()
     ),
     Binding(
         (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
         "turn around the object; finely with Shift",
-        lambda viewer, number: viewer.turn((-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),
+        lambda viewer, number: viewer.edits.turn((-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),
         label="Left, Right",
         held=True,
     ),
     Binding(
         (Chord("up"), Chord("down"), Chord("up", shift=True), Chord("down", shift=True)),
         "look from above, from below; finely with Shift",
-        lambda viewer, number: viewer.turn(0, (TURN, -TURN, FINE_TURN, -FINE_TURN)[number]),
+        lambda viewer, number: viewer.edits.turn(0, (TURN, -TURN, FINE_TURN, -FINE_TURN)[number]),
         label="Up, Down",
         held=True,
     ),
     Binding(
         (Chord("+"), Chord("="), Chord("-")),
         "move closer, farther",
-        lambda viewer, number: viewer.move((CLOSER, CLOSER, 1 / CLOSER)[number]),
+        lambda viewer, number: viewer.edits.move((CLOSER, CLOSER, 1 / CLOSER)[number]),
         label="+ and -",
         held=True,
     ),
     Binding(
         (Chord(","), Chord(".")),
         "rotate the picture's horizontal axis",
-        lambda viewer, number: viewer.tilt((-TURN, TURN)[number]),
+        lambda viewer, number: viewer.edits.tilt((-TURN, TURN)[number]),
         label="comma, period",
         held=True,
     ),
     Binding(
         tuple(Chord(f"f{number}") for number in range(5, 10)),
         "view from the front, side, back, top, three quarters",
-        lambda viewer, number: viewer.see_from(number),
+        lambda viewer, number: viewer.edits.see_from(number),
         label="F5 to F9",
     ),
     Binding(
         (Chord("r"), Chord("r", shift=True)),
         "rescale: fill the picture with the object, the surface",
-        lambda viewer, number: viewer.rescale(number == 1),
+        lambda viewer, number: viewer.edits.rescale(number == 1),
     ),
     Binding(
         tuple(Chord(str(digit)) for digit in range(1, 10)),
         "switch a light on or off",
-        lambda viewer, number: viewer.switch_light(number),
+        lambda viewer, number: viewer.edits.switch_light(number),
         label="1 to 9",
     ),
     Binding(
         (Chord("s"), Chord("s", shift=True)),
         "select the next surface, the previous one",
-        lambda viewer, number: viewer.choose_surface((1, -1)[number]),
+        lambda viewer, number: viewer.edits.choose_surface((1, -1)[number]),
         repeats=True,
     ),
     Binding(
         (Chord("["), Chord("]")),
         "blend: light color from a lower, from a higher level",
-        lambda viewer, number: viewer.blend((-BLEND, BLEND)[number]),
+        lambda viewer, number: viewer.edits.blend((-BLEND, BLEND)[number]),
         label="[ and ]",
         held=True,
     ),
     Binding(
         (Chord("c"), Chord("c", shift=True)),
         "the next object color, the previous one",
-        lambda viewer, number: viewer.repaint((1, -1)[number]),
+        lambda viewer, number: viewer.edits.repaint((1, -1)[number]),
         repeats=True,
     ),
     Binding(
         (Chord("e"),),
         "hold the exposure (less light is darker), release it",
-        lambda viewer, _: viewer.switch_exposure(),
+        lambda viewer, _: viewer.edits.switch_exposure(),
     ),
     Binding(
         (Chord("w"),),
@@ -172,3 +150,8 @@ WINDOW_KEYS: Final = (
     ("a file dropped", "open it: a scene, a mesh or a picture file"),
 )
 """The keys that the window itself handles, and the mouse."""
+
+
+def rows_of_help() -> list[tuple[str, str]]:
+    """Each key with what it does."""
+    return [(str(binding), binding.does) for binding in BINDINGS] + list(WINDOW_KEYS)

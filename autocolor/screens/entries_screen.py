@@ -1,16 +1,18 @@
-"""The lookup table page: its 1024 entries as 32 x 32 cells, each level range with its outline and name."""
+"""The entries screen: the 1024 entries as 32 x 32 cells, each level range with its outline and name."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
 
 from autocolor.arrays import Words
 from autocolor.mapping.level_ranges import BACKGROUND, SCREENS, WORDS, LevelRange
-from autocolor.screens.drawing import BLACK, CHARACTER, HEIGHT, WHITE, WIDTH, YELLOW, fitted, text
-from ramtek_emu import HostPort, instructions
+from autocolor.screens.screen import Screen
+from autocolor.widgets.colors import BLACK, HEIGHT, WHITE, WIDTH, YELLOW
+from autocolor.widgets.items import CHARACTER, Item, fitted, text
 
 SIDE: Final = 32
 CELL_WIDTH: Final = WIDTH // SIDE
@@ -54,8 +56,33 @@ def _characters(cells: int) -> int:
     return (min(cells, SIDE) * CELL_WIDTH - 2 * MARGIN) // CHARACTER
 
 
-def draw_entries(display: HostPort, ranges: Mapping[str, LevelRange]) -> None:
-    """Show the page; it also shows later changes of the entries."""
-    display.send(instructions.write_image(cell_words(ranges)))
-    for name, row, column in named_cells(ranges):
-        text(display, name, column * CELL_WIDTH + MARGIN, row * CELL_HEIGHT + MARGIN, WHITE, BLACK)
+class EntriesScreen(Screen):
+    """The lookup table as it is now; later changes of the entries are seen at once."""
+
+    name = "entries"
+    title = "entries"
+    help = "The 1024 entries of the lookup table, and who owns them."
+    has_menu = False
+    shows_scene = False
+    is_in_menu = False
+
+    def base(self) -> Words:
+        return cells_of(tuple(self.session.studio.level_ranges.items()))
+
+    def items(self) -> Sequence[Item]:
+        return entries_items(self.session.studio.level_ranges)
+
+
+@lru_cache(maxsize=1)
+def cells_of(ranges: tuple[tuple[str, LevelRange], ...]) -> Words:
+    """The page as words, the same array for equal ranges."""
+    return cell_words(dict(ranges))
+
+
+def entries_items(ranges: Mapping[str, LevelRange]) -> list[Item]:
+    """The names of the ranges in their cells."""
+    return [
+        text(name, column * CELL_WIDTH + MARGIN, row * CELL_HEIGHT + MARGIN, WHITE, BLACK)
+        for name, row, column in named_cells(ranges)
+        if name
+    ]

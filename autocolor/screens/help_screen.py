@@ -1,17 +1,20 @@
-"""The help page: what each key does, and the limits of the method."""
+"""The help screen: what each key does, and the limits of the method."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Final
 
-from autocolor.screens.drawing import LIGHT_GRAY, ORANGE, WHITE, YELLOW, clear, text
-from ramtek_emu import HostPort
+from autocolor.screens.bindings import rows_of_help
+from autocolor.screens.screen import Screen
+from autocolor.widgets.colors import LIGHT_GRAY, ORANGE, WHITE, YELLOW
+from autocolor.widgets.items import Item, text
 
+TITLE: Final = "AUTOCOLOR"
 LEFT: Final = 24
 MIDDLE: Final = 220
-TOP: Final = 62
-STEP: Final = 15
+TOP: Final = 58
+STEP: Final = 14
 
 LIMITS: Final = (
     "The blend gives the brightest points of a surface the color of the light.",
@@ -20,13 +23,23 @@ LIMITS: Final = (
 """Paper: "Light Source Color Blending", the simplifications of the method."""
 
 
-def draw_help(display: HostPort, title: str, rows: Sequence[tuple[str, str]]) -> None:
-    """Show a title, a line for each row (keys, what they do), and the limits of the method."""
-    clear(display)
-    text(display, title, LEFT, 22, YELLOW, size=2)
+class HelpScreen(Screen):
+    """The keys and the mouse."""
+
+    name = "help"
+    title = "help"
+    help = "What keys and the mouse do."
+    has_menu = False
+    shows_scene = False
+
+    def items(self) -> Sequence[Item]:
+        return help_items(TITLE, rows_of_help())
+
+
+def help_items(title: str, rows: Sequence[tuple[str, str]]) -> list[Item]:
+    """A title, a line for each row (keys, what they do), and the limits of the method."""
+    found = [text(title, LEFT, 22, YELLOW, size=2)]
     for number, (keys, does) in enumerate(rows):
         top = TOP + STEP * number
-        text(display, keys, LEFT, top, ORANGE)
-        text(display, does, MIDDLE, top, WHITE)
-    for number, line in enumerate(LIMITS):
-        text(display, line, LEFT, 446 + 12 * number, LIGHT_GRAY)
+        found += [text(keys, LEFT, top, ORANGE), text(does, MIDDLE, top, WHITE)]
+    return found + [text(line, LEFT, 438 + 12 * number, LIGHT_GRAY) for number, line in enumerate(LIMITS)]

@@ -48,11 +48,11 @@ def scene_text(
         for key, value in tables.items()
         if key != "name" and (not isinstance(kinds[key], (Nested, Rows)) or (key, value) == ("lights", []))
     }
-    blocks = [_table("", keys)] if keys else []
-    blocks.append(_table("[view]", tables["view"]))
+    blocks = [table_text("", keys)] if keys else []
+    blocks.append(table_text("[view]", tables["view"]))
     for row, files in enumerate(mesh_files):
         entry = {**files} if row else {**files, "crease_angle": scene.mesh.crease_angle}
-        blocks.append(_table("[[mesh]]", sparse_entry(entry) if without_defaults else entry))
+        blocks.append(table_text("[[mesh]]", sparse_entry(entry) if without_defaults else entry))
     for name, kind in kinds.items():
         if isinstance(kind, Rows):
             blocks.extend(_rows(name, kind, tables[name]))
@@ -65,9 +65,9 @@ def sparse_tables(scene: Scene) -> dict[str, Any]:
     for name, field in fields_of(Scene).items():
         value, kind = vars(scene)[name], field.column.kind
         if isinstance(kind, Rows):
-            tables[name] = [_sparse_row(row) for row in value]
+            tables[name] = [sparse_row(row) for row in value]
         elif isinstance(kind, Nested):
-            tables[name] = _sparse_row(value)
+            tables[name] = sparse_row(value)
         elif field.default is None or value != field.default():
             tables.update(kind.written(name, value))
     return tables
@@ -79,7 +79,7 @@ def sparse_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in entry.items() if value != defaults.get(key)}
 
 
-def _sparse_row(row: Row) -> dict[str, object]:
+def sparse_row(row: Row) -> dict[str, object]:
     """The row as keys and plain values, without keys whose values are what they are if omitted."""
     keys = plain(row)
     always = ALWAYS_WRITTEN[type(row)]
@@ -87,9 +87,7 @@ def _sparse_row(row: Row) -> dict[str, object]:
     model = {key: keys[key] for key in ("model",) if key in keys}
     default, of_model = plain(made(type(row), given)), plain(made(type(row), {**given, **model}))
     if isinstance(row, Light):
-        keys["flaps"] = {
-            axis: _sparse_row(flap) for axis, flap in vars(row.flaps).items() if flap is not None
-        }
+        keys["flaps"] = {axis: sparse_row(flap) for axis, flap in vars(row.flaps).items() if flap is not None}
     return {
         key: value
         for key, value in keys.items()
@@ -102,12 +100,12 @@ def _rows(name: str, kind: Rows, rows: Any) -> Iterator[str]:
     for keys in rows:
         if kind.by_name:
             others = {key: value for key, value in keys.items() if key != "name"}
-            yield _table(f"[{name}.{toml_key(keys['name'])}]", others)
+            yield table_text(f"[{name}.{toml_key(keys['name'])}]", others)
         else:
-            yield _table(f"[[{name}]]", keys)
+            yield table_text(f"[[{name}]]", keys)
 
 
-def _table(header: str, keys: Any) -> str:
+def table_text(header: str, keys: Any) -> str:
     """A table with a line for each key; a table of tables, such as flaps, has a line for each inner table."""
     lines = [header] if header else []
     for key, value in keys.items():

@@ -41,16 +41,16 @@ TOKEN: Final = re.compile(
 KeyPath = tuple[str | int, ...]
 
 
-def parsed_toml(data: bytes, place: str) -> dict[str, Any]:
+def parsed_toml(data: bytes, place: str, what: str = "a scene file") -> dict[str, Any]:
     """The parsed TOML text; `place` is the file's name in messages. Raises InputError with the line."""
     if problem := text_problem(data):
-        raise InputError(f"{place}: a scene file {problem}")
+        raise InputError(f"{place}: {what} {problem}")
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise InputError(
-            f"{place}, line {line}: a scene file must be text in UTF-8, not bytes like"
+            f"{place}, line {line}: {what} must be text in UTF-8, not bytes like"
             f" 0x{data[error.start]:02x}; save it as UTF-8"
         ) from None
     _check_bounds(text, place)

@@ -20,7 +20,11 @@ from typing import Any, ClassVar, Final, NamedTuple, TypeVar, get_type_hints
 
 from autocolor.checks import shown
 from autocolor.immutable import Immutable
+from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.problems import REFUSED, Path, Problem, RowError
+
+WORLD_UNITS: Final = "world units"
+"""The unit of coordinates and lengths, whose usual range is that of the object; they have no bar."""
 
 
 class Tier(IntEnum):
@@ -42,6 +46,9 @@ class Tier(IntEnum):
 
 class Kind:
     """The kind of values in a column: how they are checked, changed, written and compared."""
+
+    is_whole: ClassVar[bool] = False
+    """Whether the values are whole numbers."""
 
     def rule(self) -> str:
         """The rule for a value, as part of a message: "must be true or false"."""
@@ -75,6 +82,10 @@ class Kind:
         """The keys and values that change a field of this name from one value to another, neither None."""
         return {} if repr(one) == repr(other) else self.written(name, other)
 
+    def bar(self) -> Bar | None:
+        """The bar of the kind's own limits; None where it has no numbers, or not both limits."""
+        return None
+
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         """The cost of a change from one value to another, None for no change; `own` is the column's tier."""
         return None if one == other else own
@@ -82,12 +93,34 @@ class Kind:
 
 @dataclasses.dataclass(frozen=True)
 class Column:
-    """One column: its kind, the cost of an edit, one line of help, and its unit."""
+    """One column: its kind, the cost of an edit, one line of help, and its unit.
+
+    `bar` is its usual range and step, where the kind's own limits do not give them (see `bar_of`). `start` is
+    what an absent number begins with when it is switched on.
+    """
 
     kind: Kind
     tier: Tier
     help: str
     unit: str = ""
+    bar: Bar | None = None
+    start: float | None = None
+
+
+def bar_of(column: Column) -> Bar | None:
+    """The bar of a column: its usual range and its step; None if it has no numbers, or WORLD_UNITS.
+
+    Whole numbers have whole steps.
+    """
+    return column.bar if column.bar is not None else column.kind.bar()
+
+
+def on_bar(column: Column, value: float) -> float:
+    """The nearest value on the bar of a column, an int if it holds whole numbers; itself without a bar."""
+    bar = bar_of(column)
+    if bar is None:
+        return value
+    return int(bar.rounded(value)) if column.kind.is_whole else bar.rounded(value)
 
 
 class Row(Immutable):

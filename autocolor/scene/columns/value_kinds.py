@@ -7,11 +7,12 @@ import math
 from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 
 from autocolor.checks import either, nearest, shown
+from autocolor.scene.columns.bars import Bar, bar_within
 from autocolor.scene.columns.column import Kind, Tier
 from autocolor.scene.columns.problems import REFUSED, Path, Problem
 
@@ -85,6 +86,10 @@ class Number(Leaf):
             raise ValueError
         return number
 
+    def bar(self) -> Bar | None:
+        is_limited = -math.inf < self.at_least < self.at_most < math.inf and not self.above
+        return bar_within(self.at_least, self.at_most) if is_limited else None
+
     def written(self, name: str, value: float) -> Mapping[str, object]:
         return {name: None if value == self.endless else value}
 
@@ -97,11 +102,16 @@ class Number(Leaf):
 class Whole(Leaf):
     """A whole number within bounds."""
 
+    is_whole: ClassVar[bool] = True
+
     at_least: int
     at_most: int
 
     def accepts(self) -> str:
         return "int"
+
+    def bar(self) -> Bar:
+        return Bar(self.at_least, self.at_most, 1)
 
     def rule(self) -> str:
         return f"must be a whole number from {self.at_least} to {self.at_most}"

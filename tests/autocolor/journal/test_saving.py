@@ -77,7 +77,7 @@ def test_a_scene_file_keeps_its_comments_and_what_it_held_is_kept_beside_once(
     studio = studio_of(scene_file.parent)
     studio.recolor("body", blend=0.25)
     saved = studio.save_session(work)
-    kept = scene_file.with_name("scene-1.toml")
+    kept = scene_file.with_name("scene-2.toml")
     assert saved == SavedFiles(scene_file, work / "car.npz", (kept,))
     assert saved.told(work) == f"saved {scene_file} and car.npz; what was there is in {kept}"
     assert kept.read_text() == before
@@ -85,7 +85,7 @@ def test_a_scene_file_keeps_its_comments_and_what_it_held_is_kept_beside_once(
     assert read_scene(scene_file).surface("body").paint.blend == 0.25
     studio.recolor("body", blend=0.5)
     assert studio.save_session(work) == SavedFiles(scene_file, work / "car.npz")
-    assert [path.name for path in scene_file.parent.glob("scene*")].count("scene-2.toml") == 0
+    assert [path.name for path in scene_file.parent.glob("scene*")].count("scene-3.toml") == 0
     assert read_scene(scene_file).surface("body").paint.blend == 0.5
 
 
@@ -95,8 +95,8 @@ def test_a_picture_file_that_was_opened_is_saved_to_and_kept(work: Path) -> None
     studio = studio_of(work / "old.npz")
     studio.recolor("body", blend=0.25)
     saved = studio.save_session(work)
-    assert saved == SavedFiles(work / "scene" / "scene.toml", work / "old.npz", (work / "old-1.npz",))
-    assert (work / "old-1.npz").read_bytes() == before
+    assert saved == SavedFiles(work / "scene" / "scene.toml", work / "old.npz", (work / "old-2.npz",))
+    assert (work / "old-2.npz").read_bytes() == before
     assert read_picture(work / "old.npz").scene.surface("body").paint.blend == 0.25
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import math
 from itertools import pairwise
@@ -19,7 +20,8 @@ from autocolor.journal.meshes_beside import MeshesBeside
 from autocolor.journal.opening import checksum_of
 from autocolor.journal.places import Source
 from autocolor.journal.reading import session_of
-from autocolor.journal.script import literal, step_line
+from autocolor.journal.script import call_between, literal, step_line
+from autocolor.scene.new_lights import new_light_of
 from autocolor.scene.scene import AUTO
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube
@@ -235,6 +237,24 @@ def test_a_limit_that_was_taken_away_is_told() -> None:
 def test_lights_in_another_order_are_told_in_full() -> None:
     (line,) = lines_of(CAR, CAR.replace(lights=CAR.lights[::-1]))
     assert line.startswith("studio.edit(studio.scene.replace(lights=[{'name': 'fill', 'position': [-3.0")
+
+
+@pytest.mark.parametrize(
+    "after",
+    [
+        CAR.with_copied_light("key"),
+        CAR.with_mirrored_light("key", "y"),
+        CAR.only_lights("fill"),
+        CAR.only_lights("fill").with_all_lights_on(),
+        CAR.with_light("key", name="main"),
+        CAR.with_rig(CAR.with_light("key", position=(9, 8, 7)).rig),
+        CAR.replace(lights=(*CAR.lights, new_light_of(CAR))),
+    ],
+)
+def test_every_edit_of_lights_is_told(after: Scene) -> None:
+    call = call_between(CAR, after)
+    again = getattr(CAR, call.method)(*call.names, **ast.literal_eval(literal(call.changes)))
+    assert again.equals(after)
 
 
 def test_only_the_mesh_must_still_be_in_the_files(tmp_path: Path) -> None:

@@ -53,6 +53,52 @@ def test_a_light_is_added_after_the_others_and_removed_by_its_name() -> None:
     assert cost_of_edit(scene, more) is Tier.MIX
 
 
+def test_a_copied_light_stands_after_the_others_under_a_free_name() -> None:
+    scene = scene_of(car(), lights=[Light("key", (0, -1, 0), 0.5), Light("rim", (0, 2, 0))])
+    more = scene.with_copied_light("key").with_copied_light("key 2").with_copied_light("rim", "back")
+    assert [light.name for light in more.lights] == ["key", "rim", "key 2", "key 3", "back"]
+    assert more.light("key 3") == scene.light("key").replace(name="key 3")
+    with pytest.raises(InputError, match="must be unique"):
+        scene.with_copied_light("key", "rim")
+    with pytest.raises(UsageError, match="there is no light 'kee'; did you mean 'key'"):
+        scene.with_copied_light("kee")
+
+
+def test_a_mirrored_light_is_a_copy_on_the_other_side_of_the_object() -> None:
+    scene = scene_of(car(), lights=[Light("key", (-1, -1, 3), aim=(0.25, 0, 0))])
+    low, high = scene.object_bounds
+    assert (low[0], high[0]) == (0.0, 1.0)
+    more = scene.with_mirrored_light("key").with_mirrored_light("key")
+    assert [light.name for light in more.lights] == ["key", "key mirrored", "key mirrored 2"]
+    assert more.light("key mirrored") == Light("key mirrored", (2, -1, 3), aim=(0.75, 0, 0))
+    assert scene.with_mirrored_light("key", "y", -1, "back").light("back").position == (-1, -1, 3)
+    with pytest.raises(UsageError, match="an axis must be 'x', 'y' or 'z', not 'w'"):
+        scene.with_mirrored_light("key", "w")
+
+
+@given(scenes())
+def test_all_lights_are_on_again_after_some_were_alone(scene: Scene) -> None:
+    alone = scene.only_lights(*(light.name for light in scene.lights[:1]))
+    assert all(light.on for light in alone.with_all_lights_on().lights)
+    assert alone.with_all_lights_on().equals(scene.with_all_lights_on())
+
+
+def test_a_rig_carries_the_lights_of_one_scene_to_another() -> None:
+    scene = scene_of(car(), lights=[Light("key", (1, -2, 3))])
+    assert scene.rig.lights == scene.lights
+    assert (scene.rig.minimum, scene.rig.maximum) == scene.object_bounds
+    assert scene_of(cube(3.0)).with_rig(scene.rig).rig.fitted(*scene.object_bounds)[0].position == (
+        pytest.approx((1, -2, 3))
+    )
+
+
+def test_a_renamed_light_keeps_its_place_and_its_name_stays_unique() -> None:
+    scene = scene_of(car(), lights=[Light("key", (0, -1, 0)), Light("rim", (0, 2, 0))])
+    assert [light.name for light in scene.with_light("key", name="main").lights] == ["main", "rim"]
+    with pytest.raises(InputError, match=r"lights\[2\]\.name must be unique, not the same as lights\[1\]"):
+        scene.with_light("rim", name="key")
+
+
 def test_every_row_is_changed_by_its_name() -> None:
     scene = scene_of(car(), surface_of_part={"door": "door", "pane": "hood", "hood": "hood"})
     assert scene.with_part("door", surface="hood").part("door").surface == "hood"

@@ -1,0 +1,70 @@
+"""Rig files: the lights of a scene as a small TOML file, to put on another scene.
+
+    minimum = [-2.3, -0.9, 0.0]        # the least and the largest coordinates of the object
+    maximum = [2.3, 0.9, 1.3]
+
+    [[lights]]                         # as in a scene file
+    name = "key"
+    position = [4.0, -6.0, 5.0]
+
+Paper: "Introduction": tables with the lighting parameters can be supplied as input.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from autocolor.checks import shown
+from autocolor.errors import OutputError, UsageError
+from autocolor.files.reading import read_bytes
+from autocolor.files.scene_writing import refuse_names
+from autocolor.files.scenes.problems import SceneProblems
+from autocolor.files.scenes.scene_text import sparse_row, table_text
+from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
+from autocolor.files.writing import check_suffix, write_atomically
+from autocolor.scene.columns.problems import RowError
+from autocolor.scene.columns.rows import made
+from autocolor.scene.rigs import Rig
+from autocolor.scene.scene import Scene
+
+
+def write_rig(path: str | os.PathLike[str], scene: Scene | Rig, *, overwrite: bool = False) -> None:
+    """Write the lights of a scene, with the size of its object, to a rig file (.toml), atomically.
+
+    `read_rig` gives back the same rig. Raises UsageError for a name that ends otherwise; InputError for a
+    name of a light that is no text; OutputError if the file exists and `overwrite` is false, or if it cannot
+    be created; WriteError if writing fails.
+    """
+    check_suffix(path, ".toml", "a rig")
+    rig = scene.rig if isinstance(scene, Scene) else scene
+    if not isinstance(rig, Rig):
+        raise UsageError(f"a rig must be of a Scene, not {shown(rig)}; give the scene with the lights")
+    refuse_names(rig.lights)
+    bounds: dict[str, object] = {"minimum": rig.minimum, "maximum": rig.maximum}
+    if not rig.lights:
+        bounds["lights"] = ()
+    tables = [table_text("[[lights]]", sparse_row(light)) for light in rig.lights]
+    data = "\n".join([table_text("", bounds), *tables]).encode()
+    if len(data) > LARGEST_TEXT:
+        raise OutputError(
+            f"{path}: a rig file must have at most {LARGEST_TEXT:,} bytes, not {len(data):,}; remove lights"
+        )
+    write_atomically(path, data, overwrite=overwrite)
+
+
+def read_rig(path: str | os.PathLike[str]) -> Rig:
+    """The rig of a rig file; `scene.with_rig(rig)` puts its lights on a scene.
+
+    Raises InputError with every problem and its line, MissingInputError if there is no such file.
+    """
+    path = Path(path)
+    data = read_bytes(path, LARGEST_TEXT)
+    document = parsed_toml(data, path.name, "a rig file")
+    problems = SceneProblems(path.name, data, document)
+    try:
+        return made(Rig, document)
+    except RowError as error:
+        problems.note_all(error.found)
+        problems.raise_any()
+        raise

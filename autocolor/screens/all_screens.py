@@ -1,0 +1,22 @@
+"""Every screen, in the order of the main menu. A new screen is its module, and its line here."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from autocolor.screens.entries_screen import EntriesScreen
+from autocolor.screens.help_screen import HelpScreen
+from autocolor.screens.lights_screen import LightsScreen
+from autocolor.screens.mapping_screen import MappingScreen
+from autocolor.screens.picture_screen import PictureScreen
+from autocolor.screens.reflectance_screen import ReflectanceScreen
+from autocolor.screens.screen import Screen
+
+SCREENS: Final[tuple[type[Screen], ...]] = (
+    PictureScreen,
+    LightsScreen,
+    ReflectanceScreen,
+    MappingScreen,
+    EntriesScreen,
+    HelpScreen,
+)

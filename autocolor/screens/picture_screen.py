@@ -1,0 +1,83 @@
+"""The picture screen: the whole picture, over which the main menu comes on demand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Final
+
+from autocolor.screens.orbit import SIDES
+from autocolor.screens.over_picture import OverPicture
+from autocolor.screens.session import PICTURE
+from autocolor.widgets.pairs import Pair
+from autocolor.widgets.widget import Choice, Gap, Steps, Switch, Widget
+
+TURN: Final = 5.0
+"""Degrees for each step of a menu row that turns."""
+
+CLOSER: Final = 0.9
+PAN: Final = 16.0
+"""Elements or lines for each step of a menu row that moves the picture."""
+
+
+class PictureScreen(OverPicture):
+    """The picture."""
+
+    name = PICTURE
+    title = "picture"
+    help = "drag: turn; click: choose a surface; Tab or the right edge: the menu"
+    has_menu = False
+
+    def rows(self) -> Sequence[Widget]:
+        session, edits = self.session, self.edits
+        return [
+            Choice(
+                "surface",
+                "The surface that colors and reflectance are for; a click in the picture chooses, too.",
+                names=tuple(session.studio.level_ranges),
+                present=session.surface_name,
+                choose=session.choose_surface,
+            ),
+            *self._light_rows(),
+            Gap("view gap"),
+            Choice("view", "The view from a side.", names=tuple(SIDES), choose=self._see_from),
+            Steps(
+                "turn", "Turn around the object.", step=lambda n: edits.turn(n * TURN, 0), signs=("<", ">")
+            ),
+            Steps("rise", "Look from lower or from higher.", step=lambda n: edits.turn(0, n * TURN)),
+            Steps("closer", "Move farther or closer.", step=lambda n: edits.move(CLOSER**n)),
+            Steps(
+                "move",
+                "Move the picture sideways.",
+                step=lambda n: edits.pan(n * PAN, 0),
+                signs=("<", ">"),
+            ),
+            Steps("lift", "Move the picture down or up.", step=lambda n: edits.pan(0, -n * PAN)),
+            Pair(
+                "rescale",
+                "Fill the picture with the object, or with the chosen surface.",
+                run=edits.rescale,
+                other="surface",
+                run_other=lambda: edits.rescale(True),
+            ),
+        ]
+
+    def _light_rows(self) -> list[Widget]:
+        session = self.session
+        return [
+            Switch(
+                light.name,
+                f"Switch light {light.name} on or off; beside the box: choose it.",
+                is_on=light.on,
+                flip=partial(self.edits.switch_light, number),
+                choose=partial(self._choose_light, light.name),
+            )
+            for number, light in enumerate(session.scene.lights)
+        ]
+
+    def _choose_light(self, name: str) -> None:
+        self.session.choose_light(name)
+        self.session.tell(f"light {name}")
+
+    def _see_from(self, side: str) -> None:
+        self.edits.see_from(list(SIDES).index(side))

@@ -1,0 +1,39 @@
+"""The reflectance screen: D, S, and the reflection model of the chosen surface with its parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+from autocolor.screens.over_picture import OverPicture
+from autocolor.widgets.column_rows import rows_of
+from autocolor.widgets.widget import Choice, Gap, Widget
+
+
+class ReflectanceScreen(OverPicture):
+    """The chosen surface, without its colors."""
+
+    name = "reflectance"
+    title = "reflectance"
+    help = "How the chosen surface reflects; click in the picture: choose another"
+
+    def rows(self) -> Sequence[Widget]:
+        session = self.session
+        surface = session.chosen_surface
+        if surface is None:
+            return []
+        return [
+            Choice(
+                "surface",
+                "The surface that these are the properties of.",
+                names=tuple(session.studio.level_ranges),
+                present=surface.name,
+                choose=session.choose_surface,
+            ),
+            Gap("properties gap"),
+            *rows_of(surface, partial(self._put, surface.name), session.world, leave_out=("name", "paint")),
+        ]
+
+    def _put(self, name: str, changes: Mapping[str, Any]) -> None:
+        self.session.change_surface(name, **changes)

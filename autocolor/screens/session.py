@@ -1,0 +1,173 @@
+"""The session on the screens: the studio, what is chosen, which screen is shown, and the message.
+
+Every screen edits the scene through `edit`, so that a gesture is one step to undo, and its pictures may be
+coarse while it moves.
+"""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Final, NamedTuple, Unpack
+
+from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
+from autocolor.scene.lights import Light
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Part, Surface
+from autocolor.studio import Studio
+from autocolor.widgets.column_rows import World
+from ramtek_emu import HostPort, instructions
+
+PICTURE: Final = "picture"
+"""The name of the screen that a session begins with, and comes back to."""
+
+MESSAGE_SECONDS: Final = 5.0
+"""Assumed: how long a message stands."""
+
+
+class News(NamedTuple):
+    """A message, whether it tells of something that could not be done, and when it was told."""
+
+    text: str
+    is_warning: bool
+    told_at: float
+
+
+class Session:
+    """What the screens share. `folder` is where new files are saved."""
+
+    def __init__(self, studio: Studio, display: HostPort, folder: Path) -> None:
+        self.studio = studio
+        self.display = display
+        self.folder = folder
+        self.screen = PICTURE
+        """The name of the screen that is shown; setting it turns to another one."""
+        self.leaves = False
+        """Whether the user asked to leave the program."""
+        self.same_step = False
+        """Whether the next edit is undone together with the one before."""
+        self.moving = False
+        """Whether the next edit is one of a movement, whose pictures may be coarse."""
+        self.has_keyboard = False
+        """Whether something can be typed."""
+        self.surface = 0
+        """The number of the chosen surface among those in use; see `surface_name`."""
+        self.part_name = ""
+        """The part that was pointed at last, if any."""
+        self._light = ""
+        self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
+        self.news = News("", False, 0.0)
+        """The last message."""
+
+    @property
+    def scene(self) -> Scene:
+        """The current scene."""
+        return self.studio.scene
+
+    @property
+    def world(self) -> World:
+        """The bounds of the object, from which bars of coordinates get their range."""
+        scene = self.scene
+        if self._world is None or self._world[0] is not scene.mesh or self._world[1] != scene.parts:
+            self._world = scene.mesh, scene.parts, World(*scene.object_bounds)
+        return self._world[2]
+
+    def turn_to(self, screen: str) -> None:
+        """Turn to a screen by its name."""
+        self.screen = screen
+
+    def word_at(self, element: int, line: int) -> int:
+        """The word of a pixel, read back from the display."""
+        ((read, count),) = instructions.read_image(element, line, 1, 1)
+        self.display.send(read)
+        return int(self.display.receive(count)[0])
+
+    def surface_of(self, word: int) -> str:
+        """The name of the surface that owns a word; empty for the background and the words of screens."""
+        ranges = self.studio.level_ranges.items()
+        return next((name for name, levels in ranges if levels.first <= word <= levels.last), "")
+
+    # The message.
+
+    @property
+    def message(self) -> str:
+        """The text of the last message."""
+        return self.news.text
+
+    @property
+    def has_news(self) -> bool:
+        """Whether there is a message whose time has not passed."""
+        return bool(self.news.text) and time.monotonic() - self.news.told_at < MESSAGE_SECONDS
+
+    def tell(self, message: str, is_warning: bool = False) -> None:
+        """Show a message; an empty one takes the last one away."""
+        self.news = News(message, is_warning, time.monotonic())
+
+    def warn(self, message: object) -> None:
+        """Show an error, in one line."""
+        self.tell(str(message).replace("\n", "; "), is_warning=True)
+
+    # What is chosen.
+
+    @property
+    def surface_name(self) -> str:
+        """The name of the chosen surface; empty if the scene has none in use."""
+        names = list(self.studio.level_ranges)
+        return names[self.surface % len(names)] if names else ""
+
+    @property
+    def chosen_surface(self) -> Surface | None:
+        """The chosen surface; None if the scene has none in use."""
+        return self.scene.surface(self.surface_name) if self.surface_name else None
+
+    def choose_surface(self, name: str) -> None:
+        """Choose a surface in use by its name; another name changes nothing."""
+        names = list(self.studio.level_ranges)
+        if name in names:
+            self.surface = names.index(name)
+
+    @property
+    def light_name(self) -> str:
+        """The name of the chosen light; empty if the scene has none."""
+        names = [light.name for light in self.scene.lights]
+        return self._light if self._light in names else next(iter(names), "")
+
+    @property
+    def chosen_light(self) -> Light | None:
+        """The chosen light; None if the scene has none."""
+        return self.scene.light(self.light_name) if self.light_name else None
+
+    def choose_light(self, name: str) -> None:
+        """Choose a light by its name."""
+        self._light = name
+
+    # Edits.
+
+    def edit(self, scene: Scene) -> None:
+        """Make a scene the current one; the edits of one gesture are one step to undo."""
+        before = self.studio.scene
+        self.studio.edit(scene, same_step=self.same_step, moving=self.moving)
+        # Further edits of the same gesture belong to its step; one that changed nothing has none.
+        self.same_step = self.same_step or self.studio.scene is not before
+
+    def change_light(self, name: str, /, **changes: Unpack[LightChanges]) -> None:
+        """Change fields of a light."""
+        self.edit(self.scene.with_light(name, **changes))
+
+    def change_surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> None:
+        """Change fields of a surface."""
+        self.edit(self.scene.with_surface(name, **changes))
+
+    def paint(self, **changes: Unpack[PaintChanges]) -> None:
+        """Change the colors of the chosen surface, if there is one."""
+        if self.surface_name:
+            self.edit(self.scene.with_paint(self.surface_name, **changes))
+
+    def undo(self) -> None:
+        """Undo the last step."""
+        self.tell("undone" if self.studio.undo() else "nothing to undo")
+
+    def redo(self) -> None:
+        """Redo the last undone step."""
+        self.tell("redone" if self.studio.redo() else "nothing to redo")

@@ -1,0 +1,233 @@
+"""Widgets: values that stand for what a user can point at on a screen, in a menu or beside it.
+
+A widget knows its area, how it looks, and what a pick or a drag on it does. Screens make their widgets anew
+from the scene whenever they are shown; a widget holds no state of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Final, NamedTuple, TypeVar
+
+from autocolor.widgets.colors import BLACK, GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
+from autocolor.widgets.items import CHARACTER, Area, Item, filled, fitted, text
+
+ROW_LINES: Final = 16
+"""The height of a row of a menu."""
+
+MARGIN: Final = 8
+"""Elements between the edge of a row and its text."""
+
+TEXT_DOWN: Final = 3
+"""Lines between the top of a row and its text."""
+
+BOX: Final = 8
+"""Elements and lines of the box of a switch."""
+
+NOWHERE: Final = Area(0, 0, -1, -1)
+
+SomeWidget = TypeVar("SomeWidget", bound="Widget")
+
+
+class Place(NamedTuple):
+    """An element and a line of the screen."""
+
+    element: int
+    line: int
+
+
+class Typed(NamedTuple):
+    """What can be typed into a widget: the text that stands there, and what takes the new one."""
+
+    text: str
+    take: Callable[[str], object]
+
+
+@dataclass(frozen=True)
+class Widget:
+    """Something to point at. `why_not` tells why it cannot be used now; it is dim then."""
+
+    label: str
+    help: str = ""
+    why_not: str = ""
+    area: Area = NOWHERE
+
+    @property
+    def key(self) -> str:
+        """What tells it from the others of its screen, however often it is made anew."""
+        return self.label
+
+    @property
+    def typed(self) -> Typed | None:
+        """What can be typed into it, if anything."""
+        return None
+
+    def at(self: SomeWidget, area: Area) -> SomeWidget:
+        """The same at an area."""
+        return replace(self, area=area)
+
+    def items(self, lit: bool) -> list[Item]:
+        """How it looks; lit while the pointer is over it."""
+        raise NotImplementedError
+
+    def pick(self, place: Place) -> object:
+        """A click on it, or ENTER."""
+
+    def drag(self, start: Place, last: Place, place: Place) -> object:
+        """The pointer has come from `last` to `place` in a drag that began at `start`."""
+
+    def nudge(self, steps: float) -> object:
+        """A step up or down by a key or the wheel."""
+
+    # How rows look.
+
+    @property
+    def ink(self) -> int:
+        """The word of its text."""
+        return GRAY if self.why_not else WHITE
+
+    def row(self, lit: bool, label: str = "", value: str = "", chosen: bool = False) -> list[Item]:
+        """A row with a label at the left and a value at the right."""
+        left, top, right, _ = self.area
+        background = WHITE if chosen else SLATE if lit else NIGHT
+        ink = BLACK if chosen else self.ink
+        room = (self.area.width - 2 * MARGIN) // CHARACTER
+        shown = fitted(value, room)
+        found = [filled(self.area, background)]
+        if shown:
+            start = right + 1 - MARGIN - CHARACTER * len(shown)
+            found.append(text(shown, start, top + TEXT_DOWN, ink, background))
+        label = fitted(label, room - len(shown) - bool(shown))
+        if label:
+            quiet = LIGHT_GRAY if value and ink == WHITE else ink
+            found.append(text(label, left + MARGIN, top + TEXT_DOWN, quiet, background))
+        return found
+
+
+@dataclass(frozen=True)
+class Heading(Widget):
+    """A line of text that does nothing."""
+
+    def items(self, lit: bool) -> list[Item]:
+        left, top, *_ = self.area
+        room = (self.area.width - MARGIN) // CHARACTER
+        return [
+            filled(self.area, NIGHT),
+            text(fitted(self.label, room), left + MARGIN, top + TEXT_DOWN, YELLOW),
+        ]
+
+
+@dataclass(frozen=True)
+class Gap(Widget):
+    """Some empty lines between rows."""
+
+    def items(self, lit: bool) -> list[Item]:
+        return [filled(self.area, NIGHT)]
+
+
+@dataclass(frozen=True)
+class Button(Widget):
+    """Does something when it is picked; `value` stands at its right."""
+
+    run: Callable[[], object] = lambda: None
+    value: str = ""
+    is_chosen: bool = False
+
+    def items(self, lit: bool) -> list[Item]:
+        return self.row(lit, self.label, self.value, self.is_chosen)
+
+    def pick(self, place: Place) -> object:
+        return self.run()
+
+
+@dataclass(frozen=True)
+class Switch(Widget):
+    """A box that is full when something is on; the rest of its row may choose what it belongs to."""
+
+    is_on: bool = False
+    flip: Callable[[], object] = lambda: None
+    choose: Callable[[], object] | None = None
+    """What a pick beside the box does; without it, the same as the box."""
+    is_chosen: bool = False
+
+    def items(self, lit: bool) -> list[Item]:
+        background = WHITE if self.is_chosen else SLATE if lit else NIGHT
+        found = self.row(lit, self.label, "  ", self.is_chosen)
+        return [*found, *box_items(self._box, self.is_on, BLACK if self.is_chosen else self.ink, background)]
+
+    @property
+    def _box(self) -> Area:
+        left = self.area.right + 1 - MARGIN - BOX
+        top = self.area.top + (ROW_LINES - BOX) // 2
+        return Area(left, top, left + BOX - 1, top + BOX - 1)
+
+    def pick(self, place: Place) -> object:
+        if self.choose is not None and place.element < self._box.left - MARGIN:
+            return self.choose()
+        return self.flip()
+
+
+def box_items(area: Area, is_on: bool, word: int, background: int) -> list[Item]:
+    """A box, full or empty."""
+    found = [filled(area, word), filled(area.inset(1), background)]
+    return [*found, filled(area.inset(2), word)] if is_on else found
+
+
+@dataclass(frozen=True)
+class Steps(Widget):
+    """Two signs, one at each end of a row: a pick takes one step, a drag along the row many small ones."""
+
+    step: Callable[[float], object] = lambda _: None
+    signs: tuple[str, str] = ("-", "+")
+
+    def items(self, lit: bool) -> list[Item]:
+        low, high = self.signs
+        room = (self.area.width - 2 * MARGIN) // CHARACTER - len(low) - len(high) - 2
+        return self.row(lit, f"{low} {fitted(self.label, room)}", high)
+
+    def pick(self, place: Place) -> object:
+        return self.step(1 if place.element > (self.area.left + self.area.right) / 2 else -1)
+
+    def drag(self, start: Place, last: Place, place: Place) -> object:
+        return self.step((place.element - last.element) / 16)
+
+    def nudge(self, steps: float) -> object:
+        return self.step(steps)
+
+
+@dataclass(frozen=True)
+class Choice(Widget):
+    """One of several names: a pick on the row goes to the next, at its left end to the one before."""
+
+    names: Sequence[str] = ()
+    present: str = ""
+    choose: Callable[[str], object] = lambda _: None
+
+    def items(self, lit: bool) -> list[Item]:
+        return self.row(lit, self.label, self.present)
+
+    def pick(self, place: Place) -> object:
+        return self.nudge(-1 if place.element < self.area.left + 3 * MARGIN else 1)
+
+    def nudge(self, steps: float) -> object:
+        if not self.names:
+            return None
+        names = list(self.names)
+        start = names.index(self.present) if self.present in names else -1
+        return self.choose(names[(start + (1 if steps > 0 else -1)) % len(names)])
+
+
+@dataclass(frozen=True)
+class Entry(Widget):
+    """A text that is typed where there is a keyboard."""
+
+    value: str = ""
+    take: Callable[[str], Any] = lambda _: None
+
+    @property
+    def typed(self) -> Typed:
+        return Typed(self.value, self.take)
+
+    def items(self, lit: bool) -> list[Item]:
+        return self.row(lit, self.label, self.value)
