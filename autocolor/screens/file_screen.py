@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
+from autocolor.errors import InputError, reason_of
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.recent import recent_files
 from autocolor.files.scene_sources import opened_suffixes
@@ -145,8 +146,8 @@ def entries_of(folder: Path) -> list[Path]:
             if not path.name.startswith(".") and kind_of(path):
                 paths.append(path)
     except OSError as error:
-        raise AutocolorError(
-            f"{folder}: the folder cannot be read ({error.strerror}); choose another"
+        raise InputError(
+            f"{folder}: a folder must be one that can be read ({reason_of(error)}); choose another"
         ) from None
     order = ("scene", "mesh", "picture", "rig or scene", "folder")
     return sorted(paths, key=lambda path: (order.index(kind_of(path)), path.name.lower()))
