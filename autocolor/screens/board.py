@@ -127,9 +127,13 @@ class Board:
 
     def release(self) -> None:
         """Let go of what is grabbed, held or typed."""
+        self._let_go()
+        self.typing.end()
+
+    def _let_go(self) -> None:
         self.held = None
         self._grip.release()
-        self.typing.end()
+        self.screens[self._shown].release()
 
     def _light(self, widget: Widget | None) -> None:
         self._lit, self._lit_area = ("", NOWHERE) if widget is None else (widget.key, widget.area)
@@ -162,7 +166,7 @@ class Board:
         elif self.held is not None:
             # One that is refused is still held.
             self.screen.place(self.held, element, line)
-            self.held = None
+            self._let_go()
         else:
             handle = layout.handle_at(element, line)
             if handle is None:
@@ -196,7 +200,7 @@ class Board:
         self._grip.drag(self.layout(), gesture)
 
     def _drop(self, gesture: Gesture) -> None:
-        self._grip.release()
+        self._let_go()
 
     def _wheel(self, gesture: Gesture) -> None:
         layout = self.layout()

@@ -44,6 +44,14 @@ class Doing:
         """Whether the last edit was made a while ago."""
         return time.monotonic() - self._edited_at > REST_SECONDS
 
+    def warns_of_changes(self, otherwise: str) -> bool:
+        """Whether to stop because of unsaved changes. They are announced once; the next attempt succeeds."""
+        if not self._session.studio.is_changed or self.is_warned:
+            return False
+        self.is_warned = True
+        self._session.warn(f"not saved: Ctrl+S saves, {otherwise}")
+        return True
+
     def do(self, source: object, run: Callable[[], object], continues: bool, moving: bool) -> bool:
         """Do what a key or a gesture asks for.
 

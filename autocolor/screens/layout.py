@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Final
 
 from autocolor.screens.screen import Handle, Screen
+from autocolor.widgets.areas import Area
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.items import Area
 from autocolor.widgets.menu import WIDE_BAR
 from autocolor.widgets.widget import Gap, Widget
 

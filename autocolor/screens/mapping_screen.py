@@ -21,9 +21,10 @@ from autocolor.scene.scene import AUTO, Exposure
 from autocolor.screens.gestures import Gesture
 from autocolor.screens.over_picture import OverPicture
 from autocolor.screens.screen import Handle
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
 from autocolor.widgets.column_rows import rows_of
-from autocolor.widgets.items import Area, Item, filled, lines, outline, text
+from autocolor.widgets.items import Item, filled, lines, outline, text
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.pairs import Pair
 from autocolor.widgets.widget import Button, Choice, Gap, Widget

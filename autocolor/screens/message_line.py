@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLACK, HEIGHT, WIDTH
-from autocolor.widgets.items import CHARACTER, Area, Item, filled, fitted, text
+from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
 from autocolor.widgets.menu import MESSAGE_LINES
 
 MESSAGE: Final = Area(0, HEIGHT - MESSAGE_LINES, WIDTH - 1, HEIGHT - 1)

@@ -88,6 +88,9 @@ class Screen:
     def place(self, handle: Handle, element: int, line: int) -> None:
         """Put what was grabbed at a place: once after a pick, at each movement during a drag."""
 
+    def release(self) -> None:
+        """What was held or grabbed is let go of."""
+
     def pick(self, gesture: Gesture) -> None:
         """A click, or ENTER, where no widget and no handle is."""
 
@@ -99,6 +102,10 @@ class Screen:
 
     def key(self, name: str, typed: str) -> bool:
         """A key that nothing else takes was pressed; returns False if it does nothing here."""
+        return False
+
+    def idle(self) -> bool:
+        """Do a part of what can wait while nothing moves; returns whether something looks different now."""
         return False
 
     def enter(self) -> None:

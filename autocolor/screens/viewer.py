@@ -10,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from autocolor.errors import AutocolorError
-from autocolor.files.scene_sources import read_scene
 from autocolor.journal.history import History
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import Scene
@@ -21,7 +20,6 @@ from autocolor.screens.gestures import Gesture, Mouse
 from autocolor.screens.keyboard import Keyboard
 from autocolor.screens.picture_edits import PictureEdits
 from autocolor.screens.pointing import WHEEL, Pointing
-from autocolor.screens.saving import Saving
 from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.unit import Unit
 from autocolor.screens.watching import ENDING, MESSAGE, Watching
@@ -53,7 +51,6 @@ class Viewer:
         self.edits = PictureEdits(self.session)
         self._watching = Watching(self.display)
         self._doing = Doing(self.session)
-        self._saving = Saving(self.session, self._doing)
         self._pointing = Pointing(self.board, self._do)
         self._keyboard = Keyboard(self.board, self, self._do)
         self._had_news = True
@@ -81,11 +78,6 @@ class Viewer:
         surface = f"[{self.session.surface_name}]" if self.session.surface_name else ""
         message = MESSAGE if self._watching.is_on else self.message
         return " - ".join(part for part in ("autocolor", name, surface, message) if part)
-
-    @property
-    def saved(self) -> Path | None:
-        """The file that the session was saved to, if it was."""
-        return self._saving.path
 
     # What is done.
 
@@ -146,7 +138,7 @@ class Viewer:
         if rests and self.studio.is_coarse:
             self._refine()
             self._update()
-        elif self._had_news != self.session.has_news:
+        elif (rests and self.board.screen.idle()) or self._had_news != self.session.has_news:
             self._update()
 
     def tell(self, message: str) -> None:
@@ -184,19 +176,13 @@ class Viewer:
         return taken
 
     def on_drop(self, path: Path) -> None:
-        """Open a file that was dropped on the window."""
-        if self._saving.stops("drop it again to discard the changes"):
-            self._update()
-            return
-        try:
-            self._open(read_scene(path))
-        except (AutocolorError, RamtekError) as error:
-            self.session.warn(error)
-            self._update()
+        """Open a file that was dropped on the window, as one step to undo."""
+        self._do(None, lambda: self.session.open(path))
+        self._update()
 
     def on_close(self) -> bool:
         """Whether the window may close: nothing is unsaved, or this is the second attempt in a row."""
-        may_close = not self._saving.stops("close again to discard the changes")
+        may_close = not self._doing.warns_of_changes("close again to discard the changes")
         self._update()
         return may_close
 
@@ -260,5 +246,5 @@ class Viewer:
             self.session.turn_to(PICTURE)
 
     def save(self) -> None:
-        """Save the picture with its scene: to a new file the first time, then to the same file."""
-        self._saving.save(self.folder)
+        """Save the scene and the picture."""
+        self.session.save()

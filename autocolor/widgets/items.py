@@ -14,7 +14,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Numbers, Words
-from autocolor.widgets.colors import HEIGHT, NIGHT, WHITE, WIDTH
+from autocolor.widgets.areas import SCREEN, Area
+from autocolor.widgets.colors import NIGHT, WHITE
+from autocolor.widgets.strokes import clipped, joined
 from ramtek_emu import instructions
 
 CHARACTER: Final = 7
@@ -22,67 +24,6 @@ CHARACTER: Final = 7
 
 CHARACTER_LINES: Final = 9
 
-
-class Area(NamedTuple):
-    """A rectangle of pixels, its edges included."""
-
-    left: int
-    top: int
-    right: int
-    bottom: int
-
-    @property
-    def width(self) -> int:
-        """The number of elements."""
-        return self.right - self.left + 1
-
-    @property
-    def height(self) -> int:
-        """The number of lines."""
-        return self.bottom - self.top + 1
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether it has no pixels."""
-        return self.right < self.left or self.bottom < self.top
-
-    def has(self, element: int, line: int) -> bool:
-        """Whether a pixel is inside."""
-        return self.left <= element <= self.right and self.top <= line <= self.bottom
-
-    def overlaps(self, other: Area) -> bool:
-        """Whether the two have a pixel in common."""
-        return (
-            self.left <= other.right
-            and other.left <= self.right
-            and self.top <= other.bottom
-            and other.top <= self.bottom
-        )
-
-    def covers(self, other: Area) -> bool:
-        """Whether all pixels of another area are inside."""
-        return (
-            self.left <= other.left
-            and other.right <= self.right
-            and self.top <= other.top
-            and other.bottom <= self.bottom
-        )
-
-    def within(self, other: Area) -> Area:
-        """The pixels that both have."""
-        return Area(
-            max(self.left, other.left),
-            max(self.top, other.top),
-            min(self.right, other.right),
-            min(self.bottom, other.bottom),
-        )
-
-    def inset(self, margin: int) -> Area:
-        """The area without a margin on all sides."""
-        return Area(self.left + margin, self.top + margin, self.right - margin, self.bottom - margin)
-
-
-SCREEN: Final = Area(0, 0, WIDTH - 1, HEIGHT - 1)
 
 DRAWABLE: Final = Area(-0x8000, -0x8000, 0x7FFF, 0x7FFF)
 """Hardware: what the sixteen bits of an element and a line can tell."""
@@ -121,62 +62,39 @@ def text(line: str, left: int, top: int, word: int = WHITE, background: int = NI
 @lru_cache(maxsize=1024)
 def outline(area: Area, word: int) -> Item:
     """The edges of an area, one pixel wide."""
-    if area.is_empty:
-        return Item(area, b"")
     left, top, right, bottom = area
-    corners = ((left, top), (right, top), (right, bottom), (left, bottom), (left, top))
-    return lines([corners], word, area)
+    return lines([[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)]], word, area)
 
 
-def lines(polylines: Iterable[Sequence[Sequence[float]] | Floats], word: int, area: Area) -> Item:
-    """Polylines, each of (n, 2) elements and lines, clipped at an area; what is not finite is left out.
-
-    They are clipped here, because the 9300 has no window for lines.
-    """
+def lines(polylines: Iterable[Sequence[tuple[float, float]] | Floats], word: int, area: Area) -> Item:
+    """Polylines, each of (n, 2) elements and lines, clipped at an area; what is not finite is left out."""
     parts = []
-    inner = area.within(DRAWABLE)
     for each in polylines:
-        places = np.asarray(each, np.float64).reshape(-1, 2)
-        pieces = [rounded(places)] if is_inside(places, inner) else pieces_inside(places, inner)
-        parts += [instructions.write_vectors(piece, word) for piece in pieces]
+        pixels = pixels_inside(joined(each), area)
+        # What is still linked after the clipping goes into one instruction.
+        breaks = np.flatnonzero((pixels[1:, :2] != pixels[:-1, 2:]).any(axis=1)) + 1
+        for chain in np.split(pixels, breaks):
+            if len(chain):
+                parts.append(instructions.write_vectors(np.vstack([chain[:1, :2], chain[:, 2:]]), word))
     return Item(area, np.concatenate(parts).tobytes() if parts else b"")
 
 
-def is_inside(places: Floats, area: Area) -> bool:
-    """Whether there are places, (n, 2), and all are within an area."""
-    if not len(places):
-        return False
-    left, top, right, bottom = area
-    (low_element, low_line), (high_element, high_line) = places.min(axis=0), places.max(axis=0)
-    return bool(left <= low_element and high_element <= right and top <= low_line and high_line <= bottom)
+def segments(strokes: Floats, word: int, area: Area) -> Item:
+    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area, by WVU of later models."""
+    pixels = pixels_inside(strokes, area)
+    return Item(area, instructions.write_segments(pixels, word).tobytes() if len(pixels) else b"")
 
 
-def pieces_inside(places: Floats, area: Area) -> list[Numbers]:
-    """The pieces of a polyline, (n, 2), that are inside an area, each (n, 2) elements and lines."""
-    if area.is_empty or len(places) < 2:
-        return []
-    # Beyond this, sums would lose what is seen.
-    places = np.clip(places, -1e9, 1e9)
-    starts, steps = places[:-1], np.diff(places, axis=0)
-    low, high = np.array(area[:2], np.float64), np.array(area[2:], np.float64)
-    # Find the part of each line, 0 to 1, between the two edges of each direction.
-    with np.errstate(divide="ignore", invalid="ignore"):
-        at_low, at_high = (low - starts) / steps, (high - starts) / steps
-    between = (starts >= low) & (starts <= high)
-    still = steps == 0
-    enter = np.where(still, np.where(between, 0.0, np.inf), np.minimum(at_low, at_high)).max(axis=1)
-    leave = np.where(still, 1.0, np.maximum(at_low, at_high)).min(axis=1)
-    enter, leave = np.maximum(enter, 0.0), np.minimum(leave, 1.0)
-    pieces: list[list[Numbers]] = []
-    for number in np.flatnonzero(enter <= leave):
-        ends = starts[number] + np.outer((enter[number], leave[number]), steps[number])
-        begin, end = np.clip(rounded(ends), area[:2], area[2:])
-        # Lines that meet inside are drawn as one.
-        if enter[number] == 0 and pieces and np.array_equal(pieces[-1][-1], begin):
-            pieces[-1].append(end)
-        else:
-            pieces.append([begin, end])
-    return [np.array(piece) for piece in pieces]
+def pixels_inside(strokes: Floats, area: Area) -> Numbers:
+    """The pixels at both ends, (kept, 4), of what is inside an area of finite strokes, (n, 4).
+
+    Hardware: the 9300 clips lines at its memory alone; the write window is of later models.
+    """
+    area = area.within(DRAWABLE)
+    if area.is_empty:
+        return np.empty((0, 4), np.int64)
+    strokes = strokes[np.isfinite(strokes).all(axis=1)]
+    return rounded(clipped(strokes, area))
 
 
 def image(words: Words, left: int, top: int) -> Item:

@@ -16,7 +16,8 @@ import numpy as np
 from autocolor.arrays import Bytes, Words
 from autocolor.mapping.level_ranges import BACKGROUND
 from autocolor.sending import configuration_of, encoder_of_entries
-from autocolor.widgets.items import Area, Item
+from autocolor.widgets.areas import Area
+from autocolor.widgets.items import Item
 from ramtek_emu import HostPort, instructions
 
 

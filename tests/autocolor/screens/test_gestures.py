@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from autocolor.screens.gestures import LEFT, MIDDLE, SLOP, Gesture, Mouse, turn_between, wheel_ratio
@@ -11,7 +13,7 @@ def kinds(gestures: list[Gesture]) -> list[str]:
 
 def test_the_degrees_of_a_drag_do_not_depend_on_its_steps() -> None:
     places, total = [(100, 100), (130, 90), (90, 140), (160, 80)], [0.0, 0.0]
-    for before, after in zip(places, places[1:], strict=False):
+    for before, after in pairwise(places):
         right, up = turn_between(*before, *after)
         total = [total[0] + right, total[1] + up]
     assert total == pytest.approx(turn_between(*places[0], *places[-1]))

@@ -16,8 +16,9 @@ from autocolor.mapping.level_ranges import BACKGROUND
 from autocolor.screens.viewer import Viewer
 from autocolor.screens.watching import MESSAGE, PICTURE_SECONDS, TICK_SECONDS
 from autocolor.studio import Studio
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import WHITE
-from autocolor.widgets.items import Area, filled
+from autocolor.widgets.items import filled
 from ramtek_emu import Ramtek9300
 from tests.autocolor.sessions import SMALL, car
 from tests.autocolor.strategies import scenes

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import NIGHT, WHITE
 from autocolor.widgets.items import (
     DRAWABLE,
-    Area,
     Item,
     area_of,
     filled,
