@@ -97,8 +97,17 @@ class Session:
     def shows_the_field(self) -> bool:
         if not self.window():
             return False
+        self.follow()
         blocks = self.display.field().repeat(2, axis=0).repeat(2, axis=1)
         return np.array_equal(self.shown(), blocks)
+
+    def follow(self) -> None:
+        """Let the viewer's pointer be where the mouse is, and take a message away when its time has passed."""
+        place = dict(line.split("=") for line in self.tool("getmouselocation", "--shell").split())
+        left, top, *_ = self.place()
+        element, line = (int(place.get("X", 0)) - left) // 2, (int(place.get("Y", 0)) - top) // 2
+        self.display.joystick.move_to(element, line)
+        self.viewer.on_tick()
 
     def wait_for(self, happened: Callable[[], object]) -> None:
         end = time.monotonic() + PATIENCE
@@ -226,19 +235,19 @@ def test_in_full_screen_a_message_stands_on_the_display_and_escape_leaves(sessio
         return session.caption().endswith(session.viewer.message)
 
     session.wait_for(has_told)
-    session.viewer.on_tick(True, True)
+    session.viewer.on_tick()
     assert session.viewer.message == "the scene has no light 9"
     session.wait_for(has_the_field)
     session.press("F12")
     screenshot = session.folder / "autocolor-0001.png"
     session.viewer.tell(f"saved {screenshot}")
-    session.viewer.on_tick(True, True)
+    session.viewer.on_tick()
     session.wait_for(has_the_field)
     # The screenshot itself is without a message.
     session.viewer.tell("")
     assert screenshot.read_bytes() == session.display._repr_png_()
     session.press("Escape")
-    session.viewer.on_tick(True, False)
+    session.viewer.on_tick()
     session.wait_for_the_field()
 
 

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -19,8 +20,8 @@ def session(tmp_path: Path) -> Session:
 def test_what_continues_is_one_step_and_what_does_not_another(session: Session) -> None:
     doing, before = Doing(session), session.scene
     for value, source, continues in ((0.1, "a", True), (0.2, "a", True), (0.3, "b", True), (0.4, "b", False)):
-        change = session.scene.replace(ambient=value)
-        assert doing.do((source, 0), lambda change=change: session.edit(change), continues, False)
+        change = partial(session.edit, session.scene.replace(ambient=value))
+        assert doing.do((source, 0), change, continues, False)
         assert doing.was_by((source, 0))
         assert doing.kind == source
         assert doing.costs is Tier.MIX

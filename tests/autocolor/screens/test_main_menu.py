@@ -41,7 +41,8 @@ def test_each_menu_undoes_and_redoes(tmp_path: Path) -> None:
 
 def test_the_last_row_of_a_page_turns_to_the_next_and_around() -> None:
     rows: list[Widget] = [Button(str(number)) for number in range(60)]
-    seen, number = [], 0
+    seen: list[int] = []
+    number = 0
     for _ in range(3):
         page = page_of_menu(rows, number, seen.append)
         page[-1].pick(Place(0, 0))

@@ -34,7 +34,10 @@ def painted(item: Item, *before: Item, ground: int = UNUSED, display: Ramtek9300
 
 def inside(area: Area, display: Ramtek9300) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
     rows, columns = np.indices(display.words.shape)
-    return (columns >= area.left) & (columns <= area.right) & (rows >= area.top) & (rows <= area.bottom)
+    within: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = (
+        (columns >= area.left) & (columns <= area.right) & (rows >= area.top) & (rows <= area.bottom)
+    )
+    return within
 
 
 @given(items())
