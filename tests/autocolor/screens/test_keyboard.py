@@ -12,8 +12,14 @@ from tests.autocolor.screens.boards import Desk, desk_viewer, middle_of, point
 def test_a_key_goes_to_the_typed_text_then_to_the_screen_then_to_its_binding(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    viewer, before = desk_viewer(tmp_path), []
-    monkeypatch.setattr(Desk, "key", lambda desk, name, typed: before.append(name) or name == "c")
+    viewer = desk_viewer(tmp_path)
+    before: list[str] = []
+
+    def key(desk: Desk, name: str, typed: str) -> bool:
+        before.append(name)
+        return name == "c"
+
+    monkeypatch.setattr(Desk, "key", key)
     scene = viewer.studio.scene
     viewer.on_key("c", typed="c")
     assert viewer.studio.scene is scene
