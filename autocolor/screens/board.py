@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Bytes
-from autocolor.screens.gestures import Gesture
+from autocolor.screens.gestures import MIDDLE, Gesture
 from autocolor.screens.screen import Handle, Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.typing_line import TypingLine
@@ -117,15 +117,26 @@ class Board:
             step=lambda amount: session.undo() if amount < 0 else session.redo(),
             signs=("undo", "redo"),
         )
+        steps: list[Widget] = [undo]
+        if screen.shows_picture:
+            comparing, other = session.comparing, session.comparing.other
+            compare = Button(
+                "compare",
+                "" if other is None else f"Show {other.name} in place of the present one, and back.",
+                "there is no step to undo" if other is None else "",
+                run=session.switch_comparing,
+                is_chosen=comparing.is_on,
+            )
+            steps.append(compare)
         if screen.name == PICTURE:
             ways: list[Widget] = [
                 Button(each.title, each.help, run=partial(session.turn_to, each.name))
                 for each in self.screens.values()
                 if each.is_in_menu and each is not screen
             ]
-            return [Heading("AUTOCOLOR"), *ways, Gap("ways"), *screen.rows(), undo]
+            return [Heading("AUTOCOLOR"), *ways, Gap("ways"), *screen.rows(), *steps]
         back = Button("< picture", "Back to the picture.", run=partial(session.turn_to, PICTURE))
-        return [Heading(screen.title.upper()), back, Gap("ways"), *screen.rows(), Gap("undo gap"), undo]
+        return [Heading(screen.title.upper()), back, Gap("ways"), *screen.rows(), Gap("undo gap"), *steps]
 
     def widgets(self) -> list[Widget]:
         """Everything that can be pointed at, the topmost first."""
@@ -216,7 +227,9 @@ class Board:
             self._grabbed = None if widget.why_not else widget
             self._lit = widget.key
             return
-        handle = self.handle_at(element, line)
+        # Other buttons and modifiers are for the screen.
+        is_plain = gesture.button != MIDDLE and not gesture.shift and not gesture.control
+        handle = self.handle_at(element, line) if is_plain else None
         self._grabbed = self.screen if handle is None else handle
         if handle is not None:
             self.screen.hold(handle)

@@ -109,6 +109,13 @@ class Viewer:
         self._update()
         return taken
 
+    def on_release(self, name: str) -> None:
+        """Handle that a key was let go."""
+        for binding in BINDINGS:
+            if binding.release is not None and any(chord.name == name for chord in binding.chords):
+                binding.release(self)
+                self._update()
+
     def _typed(self, name: str, typed: str, repeated: bool) -> bool:
         """Let the text that is being typed, the menu or the screen take a key."""
         board = self.board
@@ -183,7 +190,8 @@ class Viewer:
         self._watching.advance()
         has_ended = is_at_rest and self._edited_by != WHEEL and not self.board.is_dragging
         rests = has_ended or time.monotonic() - self._edited_at > REST_SECONDS
-        if rests and self.studio.is_coarse:
+        if rests and (self.studio.is_coarse or self.session.moving):
+            self.session.moving = False
             self._refine()
             self._update()
         elif (rests and self.board.screen.idle()) or self._had_news != self.session.has_news:
@@ -236,7 +244,10 @@ class Viewer:
             session.news = news
             return False
         if session is self.session:
-            costs = cost_of_edit(before, session.scene) if session.scene is not before else None
+            costs = None
+            if session.scene is not before:
+                session.comparing.end()
+                costs = cost_of_edit(before, session.scene)
             if costs is not None:
                 self._edited_by, self._edited_at = source, time.monotonic()
                 if costs > Tier.ENTRIES and not self.board.screen.shows_scene:
@@ -285,10 +296,17 @@ class Viewer:
     def watch(self) -> None:
         """Blank the picture and let it come in line by line as it is computed; any key shows it at once."""
         self.session.turn_to(PICTURE)
+        self.session.comparing.end()
         self.board.turn()
         self.board.close()
         self._update()
         self._watching.begin(self.studio)
+
+    def compare(self) -> None:
+        """Show the state to compare with, over the picture."""
+        if not self.board.screen.shows_picture:
+            self.session.turn_to(PICTURE)
+        self.session.compare()
 
     def escape(self) -> bool:
         """Take a drag back, close what is open, or return to the picture.
