@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Final
 
 from autocolor.screens.entries_screen import EntriesScreen
+from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
+from autocolor.screens.kept_screen import KeptScreen
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
@@ -19,6 +21,8 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     LightsScreen,
     ReflectanceScreen,
     MappingScreen,
+    KeptScreen,
+    FileScreen,
     EntriesScreen,
     HelpScreen,
 )
