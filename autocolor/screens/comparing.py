@@ -47,6 +47,11 @@ class Comparing:
         self.end()
         self._chosen = other
 
+    def forget(self, scene: Scene) -> None:
+        """Do not compare with a scene any longer that was chosen."""
+        if self._chosen is not None and self._chosen.scene is scene:
+            self.choose(None)
+
     @property
     def image(self) -> DisplayImage | None:
         """The display image that is shown in place of the present one, if any."""

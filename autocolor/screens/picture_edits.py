@@ -63,12 +63,16 @@ class PictureEdits:
         else:
             self.look(framed(scene.view, scene.object_coordinates))
 
+    @property
+    def chosen_parts(self) -> list[int]:
+        """The number of the part that was pointed at last, if the scene has it."""
+        scene, name = self.session.scene, self.session.part_name
+        return [part for part in scene.mesh.parts_in_use if scene.parts[part].name == name]
+
     def rescale_part(self) -> None:
         """Move the eye so that the part that was pointed at last, if any, fills the picture."""
-        scene, name = self.session.scene, self.session.part_name
-        parts = [part for part in scene.mesh.parts_in_use if scene.parts[part].name == name]
-        if parts:
-            self._fill(parts)
+        if self.chosen_parts:
+            self._fill(self.chosen_parts)
 
     def _fill(self, parts: Sequence[int]) -> None:
         """Move the eye so that some parts, by their numbers, fill the picture."""

@@ -75,8 +75,8 @@ class PictureScreen(OverPicture):
             ),
             Button(
                 "rescale part",
-                f"Fill the picture with the part {session.part_name}.",
-                "" if session.part_name else "click at a part in the picture first",
+                f"Fill the picture with {session.part_name}, the part that was clicked.",
+                "" if edits.chosen_parts else "click at a part in the picture first",
                 run=edits.rescale_part,
             ),
         ]
