@@ -186,13 +186,15 @@ class Board:
         self._hover(gesture)
         element, line = self._pointer
         widget = self.widget_at(element, line)
-        held, self.held = self.held, None
         if widget is not None:
+            self.held = None
             self.pick_widget(widget)
         elif self.has_menu and MENU.has(element, line):
             return
-        elif held is not None:
-            self.screen.place(held, element, line)
+        elif self.held is not None:
+            # One that is refused is still held.
+            self.screen.place(self.held, element, line)
+            self.held = None
             self.screen.release()
         else:
             handle = self.handle_at(element, line)

@@ -56,7 +56,7 @@ class LightHandles:
         self._has_rims = has_rims
         self._highlight: tuple[Vector, VisiblePoints, tuple[int, int] | None] | None = None
         """The position of a light, the visible points, and the line and element of its highlight: those that
-        it was placed at, as it may have the same at others."""
+        it was placed at, which need not be searched and may be one of several."""
         self._rims: tuple[Light, VisiblePoints, Sequence[Handle], Sequence[Item]] | None = None
         """A light, the visible points, and the handles and marks at its rims."""
 
