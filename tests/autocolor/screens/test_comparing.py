@@ -107,6 +107,10 @@ def go_to_the_mapping_and_back(hand: Hand) -> None:
     hand.pick("< picture")
 
 
+def recolor(hand: Hand) -> None:
+    hand.viewer.on_key("c", typed="c")
+
+
 def watch(hand: Hand) -> None:
     hand.viewer.on_key("w", typed="w")
     hand.viewer.on_key("escape")
@@ -118,7 +122,7 @@ ENDINGS: dict[str, Callable[[Hand], None]] = {
     "a switch": switch_a_light,
     "an undo": undo,
     "an undo with a redo": undo_and_redo,
-    "a key": lambda hand: hand.viewer.on_key("c", typed="c") and None,
+    "a key": recolor,
     "another screen": go_to_the_mapping_and_back,
     "watching": watch,
 }

@@ -55,11 +55,7 @@ def yellow(hand: Hand) -> set[tuple[int, int]]:
     display = hand.viewer.display
     assert isinstance(display, Ramtek9300)
     found = np.argwhere(display.words[: WORK.bottom + 1, : WORK.right + 1] == YELLOW)
-    return set(map(tuple, found.tolist()))
-
-
-def near(hand: Hand, places: object) -> bool:
-    return bool((np.abs(np.subtract(places, hand.viewer.board.mark)).max(axis=1) <= REACH).any())
+    return {(line, element) for line, element in found.tolist()}
 
 
 # The highlight.
@@ -285,6 +281,8 @@ def test_what_can_be_grabbed_is_marked_before(at_lights: Hand) -> None:
     hand = at_lights
     element, line = hand.handle("end of the cone of key")
     hand.move(element + 2, line)
-    assert hand.viewer.board.mark is not None
-    pixels = rims(hand.viewer.studio.sight, "key")["cone"]
-    assert near(hand, pixels[:, ::-1])
+    mark = hand.viewer.board.mark
+    assert mark is not None
+    assert max(abs(mark[0] - element - 2), abs(mark[1] - line)) <= REACH
+    assert mark[::-1] in {(a, b) for a, b in rims(hand.viewer.studio.sight, "key")["cone"].tolist()}
+    assert hand.viewer.board.message[0] == "end of the cone of key"

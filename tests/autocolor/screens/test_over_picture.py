@@ -1,10 +1,11 @@
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from autocolor import Scene
+from autocolor import Scene, View
 from autocolor.screens.gestures import turn_between, wheel_ratio
 from autocolor.screens.orbit import moved, panned, turned
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
@@ -88,7 +89,7 @@ def test_the_chosen_part_fills_the_picture(hand: Hand) -> None:
     assert fill_with(hand, "rescale").view != part
 
 
-HELD = {
+HELD: dict[str, tuple[dict[str, bool], int, Callable[[Scene], View]]] = {
     "plain": ({}, 1, lambda scene: turned(scene, *turn_between(400, 100, 430, 110))),
     "Shift": ({"shift": True}, 1, lambda scene: panned(scene, 30, 10, 480)),
     "middle": ({}, 2, lambda scene: panned(scene, 30, 10, 480)),
