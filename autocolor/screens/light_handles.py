@@ -39,7 +39,7 @@ PERIOD: Final = 5
 """Of so many neighboring pixels of a rim, so many are drawn."""
 
 
-class Grip(NamedTuple):
+class HandleKey(NamedTuple):
     """What a handle moves of a light. Those of one rim are told apart by their line and element."""
 
     light: str
@@ -83,22 +83,22 @@ class LightHandles:
 
     def place(self, handle: Handle, element: int, line: int) -> None:
         """Let the light follow a handle to a place. Raises UsageError on the background."""
-        grip, session = handle.key, self.session
-        assert isinstance(grip, Grip)
+        key, session = handle.key, self.session
+        assert isinstance(key, HandleKey)
         # What is beside the area is covered by the menu.
         element, line = min(element, self._area.right), min(line, self._area.bottom)
         scene, seen = session.scene, session.studio.seen_at(line, element)
-        if grip.what == HIGHLIGHT:
-            scene = highlight_placed(scene, seen, grip.light)
-        elif grip.what == CONE:
-            scene = cone_placed(scene, seen, grip.light)
+        if key.what == HIGHLIGHT:
+            scene = highlight_placed(scene, seen, key.light)
+        elif key.what == CONE:
+            scene = cone_placed(scene, seen, key.light)
         else:
-            scene = flap_placed(scene, seen, grip.light, *grip.what)
+            scene = flap_placed(scene, seen, key.light, *key.what)
         session.edit(scene)
-        light = scene.light(grip.light)
-        if grip.what == HIGHLIGHT:
+        light = scene.light(key.light)
+        if key.what == HIGHLIGHT:
             self._highlight = light.position, session.studio.sight.points, (line, element)
-        session.tell(told(light, grip.what))
+        session.tell(told(light, key.what))
 
     def _seen_light(self) -> Light | None:
         """The chosen light, if it is on and what is shown is the finished picture of the scene."""
@@ -116,7 +116,7 @@ class LightHandles:
         if known[2] is None:
             return []
         line, element = known[2]
-        handle = Handle(Grip(light.name, HIGHLIGHT), element, line, f"highlight of {light.name}")
+        handle = Handle(HandleKey(light.name, HIGHLIGHT), element, line, f"highlight of {light.name}")
         return [handle] if self._area.has(element, line) else []
 
     def _at_rims(self, light: Light) -> tuple[Sequence[Handle], Sequence[Item]]:
@@ -142,7 +142,7 @@ def rim_handles(light: str, rim: Rim, pixels: Indices) -> list[Handle]:
     _, chosen = np.unique(lines * SCREEN.width + elements, return_index=True)
     label = f"end of the {name_of(rim)} of {light}"
     return [
-        Handle(Grip(light, rim, (line, element)), element, line, label)
+        Handle(HandleKey(light, rim, (line, element)), element, line, label)
         for line, element in pixels[chosen].tolist()
     ]
 

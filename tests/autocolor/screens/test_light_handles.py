@@ -8,7 +8,7 @@ import pytest
 from autocolor import Light, Scene, Studio
 from autocolor.lighting.light_drags import cone_placed, highlight_placed
 from autocolor.lighting.rims import rims
-from autocolor.screens.light_handles import Grip
+from autocolor.screens.light_handles import HandleKey
 from autocolor.widgets.colors import YELLOW
 from autocolor.widgets.menu import WORK
 from ramtek_emu import Ramtek9300
@@ -188,7 +188,7 @@ def test_each_pixel_of_a_rim_is_within_reach_of_a_handle(at_lights: Hand) -> Non
     assert set(found) == {"cone", ("z", "minimum")}
     for rim, pixels in found.items():
         assert len(pixels)
-        places = [(each.line, each.element) for each in handles if _grip(each.key).what == rim]
+        places = [(each.line, each.element) for each in handles if key_of(each.key).what == rim]
         assert set(places) <= set(map(tuple, pixels.tolist()))
         seen = pixels[(pixels <= (WORK.bottom, WORK.right)).all(axis=1)]
         assert len(places) < len(seen) / 2
@@ -196,8 +196,8 @@ def test_each_pixel_of_a_rim_is_within_reach_of_a_handle(at_lights: Hand) -> Non
         assert apart.max() <= REACH
 
 
-def _grip(value: object) -> Grip:
-    assert isinstance(value, Grip)
+def key_of(value: object) -> HandleKey:
+    assert isinstance(value, HandleKey)
     return value
 
 
