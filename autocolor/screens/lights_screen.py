@@ -6,8 +6,13 @@ from collections.abc import Sequence
 
 from autocolor.scene.lights import Light
 from autocolor.scene.new_lights import new_light_of
+from autocolor.screens.light_handles import LightHandles
 from autocolor.screens.light_parameters import parameter_rows
 from autocolor.screens.over_picture import OverPicture
+from autocolor.screens.screen import Handle
+from autocolor.screens.session import Session
+from autocolor.widgets.items import Item
+from autocolor.widgets.menu import WORK
 from autocolor.widgets.pairs import Pair
 from autocolor.widgets.widget import Button, Choice, Gap, Widget
 
@@ -17,7 +22,20 @@ class LightsScreen(OverPicture):
 
     name = "lights"
     title = "lights"
-    help = "The chosen light; click in the picture: choose a surface"
+    help = "The chosen light: drag its highlight, and where its cone and its flaps end"
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self._handles = LightHandles(session, WORK, has_rims=True)
+
+    def items(self) -> Sequence[Item]:
+        return self._handles.items()
+
+    def handles(self) -> Sequence[Handle]:
+        return self._handles.handles()
+
+    def place(self, handle: Handle, element: int, line: int) -> None:
+        self._handles.place(handle, element, line)
 
     def rows(self) -> Sequence[Widget]:
         light = self.session.chosen_light
