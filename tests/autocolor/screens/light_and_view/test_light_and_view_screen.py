@@ -121,6 +121,26 @@ def test_a_pick_outside_of_its_view_is_refused_in_one_sentence(place: tuple[int,
     assert hand.viewer.session.news.is_warning
     assert hand.viewer.message == "key: its new place must be in the top view; pick it there"
     assert (words_of(hand)[464:] == ORANGE).any()
+    # The light is still held.
+    hand.click(100, 90)
+    assert where(hand, TOP) == pytest.approx((100, 90), abs=0.6)
+    assert is_undone_at_once(hand, before)
+
+
+def test_the_lines_of_a_light_that_is_held_go_when_it_is_let_go_of() -> None:
+    hand = opened(boxed(KEY))
+    for let_go in (
+        lambda: hand.viewer.on_key("escape"),
+        lambda: hand.pick("display"),
+        lambda: hand.drag((20, 440), (21, 440)),
+        lambda: hand.click(150, 150),
+    ):
+        element, line = place_of(hand, Grip(LIGHT, "top", "key"))
+        hand.click(element, line)
+        assert (words_of(hand)[240:440, element] == SLATE).sum() > 150
+        let_go()
+        hand.move(20, 440)
+        assert (words_of(hand)[240:440, element] == SLATE).sum() < 100
 
 
 def words_of(hand: Hand) -> np.ndarray[tuple[int, int], np.dtype[np.uint16]]:
