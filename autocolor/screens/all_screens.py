@@ -8,6 +8,7 @@ from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.help_screen import HelpScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
+from autocolor.screens.mixing_screen import MixingScreen
 from autocolor.screens.picture_screen import PictureScreen
 from autocolor.screens.reflectance_screen import ReflectanceScreen
 from autocolor.screens.screen import Screen
@@ -16,6 +17,7 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     PictureScreen,
     LightsScreen,
     ReflectanceScreen,
+    MixingScreen,
     MappingScreen,
     EntriesScreen,
     HelpScreen,
