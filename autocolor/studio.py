@@ -15,16 +15,18 @@ must be recomputed and sent.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from os import fspath
 from time import perf_counter
-from typing import TYPE_CHECKING, NoReturn, Unpack
+from typing import NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.journal.history import History
+from autocolor.journal.studio_session import StudioSession
+from autocolor.lighting.highlights import highlight_of
+from autocolor.lighting.light_drags import highlight_placed
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, display_image
+from autocolor.mapping.display_image import display_image
 from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.pacing import block_for, blocks_of
@@ -35,15 +37,11 @@ from autocolor.scene.columns.column import Tier, fields_of
 from autocolor.scene.scene import AUTO, Scene, cost_of_edit
 from autocolor.scene.surfaces import Paint
 from autocolor.sending import configuration_of, send_image
+from autocolor.visibility.sight import Seen, Sight, seen_at
 from ramtek_emu import HostPort
 
-if TYPE_CHECKING:
-    from os import PathLike
 
-    from autocolor.scene.creation import SurfaceSource
-
-
-class Studio:
+class Studio(StudioSession):
     """A scene shown on a display, which can be edited step by step, with undo and redo.
 
     `display` is a host port: a `Ramtek9300`, a `TcpPort` to one, or a `Recorder`. It is reset and sent the
@@ -62,7 +60,6 @@ class Studio:
         self._shown = display_image(scene, self._rendering.picture)
         self._pace = 1, perf_counter() - begun
         """The block of the last picture that was computed from scratch, and the seconds it took."""
-        self._kept = self._history.start
         self.sends = True
         """Whether edits are sent to the display; programs that draw over the picture send it themselves."""
         self.send_everything()
@@ -71,11 +68,6 @@ class Studio:
     def scene(self) -> Scene:
         """The current scene."""
         return self._shown.scene
-
-    @property
-    def history(self) -> History:
-        """The steps of the session, of which `journal` makes a script."""
-        return self._history
 
     @property
     def picture(self) -> Picture:
@@ -96,6 +88,23 @@ class Studio:
     def entries(self) -> Bytes:
         """The entries of the lookup table, (1024, 3) uint8, read-only."""
         return self._shown.entries
+
+    @property
+    def sight(self) -> Sight:
+        """What the pixels of the display see of the scene, for `lighting.rims` and the methods below."""
+        return Sight(self.scene, self._rendering.points, self._shown.block)
+
+    def seen_at(self, line: int, element: int) -> Seen | None:
+        """What is seen at a pixel of the display; None on the background."""
+        return seen_at(self.sight, line, element)
+
+    def highlight_of(self, light: str, surface: str | None = None) -> tuple[int, int] | None:
+        """The line and element where a light's highlight is, on one surface or on all; None if nowhere."""
+        return highlight_of(self.sight, light, surface)
+
+    def place_highlight(self, light: str, line: int, element: int) -> None:
+        """Move a light so that its highlight is at a pixel; for drags, `edit` with `highlight_placed`."""
+        self.edit(highlight_placed(self.scene, self.seen_at(line, element), light))
 
     def recolor(self, surface: str, /, **changes: Unpack[PaintChanges]) -> None:
         """Change the colors of a surface; this sends entries, but no words.
@@ -131,12 +140,17 @@ class Studio:
         """Change fields of the view; everything is recomputed."""
         self.edit(self.scene.with_view(**changes))
 
-    def hold_exposure(self) -> None:
-        """Keep the intensity ranges of the current picture, so that less light looks darker from now on."""
-        self.refine()
-        self.edit(
-            self.scene.replace(exposure=held_exposure(self.picture, self.scene.scaling, self.scene.exposure))
-        )
+    def hold_exposure(self, ranges: Mapping[str, Sequence[float]] | None = None) -> None:
+        """Keep the intensity ranges of the current picture, so that less light looks darker from now on.
+
+        If `ranges` are given, as by a journal, these are kept: a minimum and a maximum by the surface's name.
+        """
+        if ranges is None:
+            self.refine()
+            held = held_exposure(self.picture, self.scene.scaling, self.scene.exposure)
+            self.edit(self.scene.replace(exposure=held))
+        else:
+            self.edit(self.scene.replace(exposure=ranges))
 
     def release_exposure(self) -> None:
         """Let the intensity ranges follow the picture again."""
@@ -171,54 +185,16 @@ class Studio:
         """Redo the last undone step; returns False if there is none."""
         return self._step(self._history.to_redo, self._history.redo)
 
-    @property
-    def is_changed(self) -> bool:
-        """Whether the scene differs from that with which the session began or that was saved last."""
-        return cost_of_edit(self._kept, self.scene) is not None
-
-    def keep(self) -> None:
-        """Mark the current scene as saved."""
-        self._kept = self.scene
-
-    def save(self, path: str | PathLike[str], overwrite: bool = False) -> None:
-        """Write the picture with its scene to a picture file, and mark the scene as saved."""
-        from autocolor.files.picture_file import write_picture
-
-        self.refine()
-        write_picture(path, self.picture, self.scene, overwrite=overwrite)
-        self.keep()
-
-    def save_scene(self, path: str | PathLike[str], overwrite: bool = False) -> None:
-        """Write the scene to a scene file (see `write_scene`), and mark it as saved."""
-        from autocolor.files.scene_writing import write_scene
-
-        write_scene(path, self.scene, overwrite=overwrite)
-        self.keep()
-
     def watch(self) -> Iterator[tuple[int, Words]]:
-        """The lines of the picture from the top, each computed when it is asked for: its number and words.
+        """The lines of the picture from the top, each computed when it is asked for (see `words_by_line`).
 
-        The words are (1, elements) uint16, as `write_image` takes them. Nothing is sent but a refined
-        picture; all lines together are the `words` of that moment. See `scan_lines` for what is
-        computed again.
+        All lines together are the `words` of that moment. Nothing is sent but a refined picture.
 
             for line, words in studio.watch():
                 display.send(instructions.write_image(words, top=line))
         """
         self.refine()
         return words_by_line(self._shown)
-
-    def journal(
-        self, path: str | PathLike[str], *, up: str = "z", surfaces: SurfaceSource = "materials"
-    ) -> str:
-        """The session as a Python script, one line a step, which `read_journal` reads without running it.
-
-        `path` is what the scene of the first step was read from, and `up` and `surfaces` are how. Raises
-        InputError if the mesh was changed since.
-        """
-        from autocolor.journal.script import Source, journal_text
-
-        return journal_text(self._history, Source(fspath(path), up, surfaces))
 
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
@@ -232,34 +208,31 @@ class Studio:
     def _step(self, scenes: Sequence[Scene], move: Callable[[], None]) -> bool:
         if not scenes:
             return False
-        self._show(scenes[-1], cost_of_edit(self.scene, scenes[-1]) or Tier.NOTHING)
+        self._show_scene(scenes[-1])
         move()
         return True
+
+    def _show_scene(self, scene: Scene) -> None:
+        self._show(scene, cost_of_edit(self.scene, scene) or Tier.NOTHING)
 
     def _show(self, scene: Scene, costs: Tier, moving: bool = False) -> None:
         """Recompute and send what an edit changed. If that raises an error, the session is unchanged."""
         before, rendered, block = self._shown, self._rendering, self._shown.block
         begun = perf_counter()
         if costs >= Tier.MIX:
-            block = self._block_of(costs, moving)
+            if not moving:
+                block = 1
+            elif costs == Tier.FRAME:
+                block = block_for(blocks_of(*self._size), *self._pace)
+            # Else what is visible stays: what was computed for it is used again.
             lines, elements = (size // block for size in self._size)
             rendered = rendering(scene, lines, elements, rendered)
-        if costs >= Tier.LEVELS:
-            now = display_image(scene, rendered.picture, before, block)
-        else:
-            now = DisplayImage(scene, before.picture, before.ranges, before.words, block)
+        now = display_image(scene, rendered.picture, before, block)
         if self.sends:
             send_image(self._display, now, before)
         self._rendering, self._shown = rendered, now
         if costs == Tier.FRAME:
             self._pace = block, perf_counter() - begun
-
-    def _block_of(self, costs: Tier, moving: bool) -> int:
-        """The block of the next picture: while a picture moves, such that it is fast enough."""
-        if not moving:
-            return 1
-        # What is visible stays: what was computed for it is used again.
-        return block_for(blocks_of(*self._size), *self._pace) if costs == Tier.FRAME else self._shown.block
 
     def _repr_png_(self) -> bytes:
         from ramtek_emu.png import png_bytes

@@ -6,6 +6,7 @@ from typing import Final
 
 from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.help_screen import HelpScreen
+from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
 from autocolor.screens.mixing_screen import MixingScreen
@@ -15,6 +16,7 @@ from autocolor.screens.screen import Screen
 
 SCREENS: Final[tuple[type[Screen], ...]] = (
     PictureScreen,
+    LightAndViewScreen,
     LightsScreen,
     ReflectanceScreen,
     MixingScreen,

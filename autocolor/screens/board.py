@@ -17,9 +17,10 @@ from autocolor.screens.gestures import Gesture
 from autocolor.screens.screen import Handle, Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.typing_line import TypingLine
+from autocolor.widgets.areas import Area
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.colors import BLACK, HEIGHT, ORANGE, WHITE, WIDTH, YELLOW
-from autocolor.widgets.items import CHARACTER, Area, Item, filled, fitted, text
+from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
 from autocolor.widgets.menu import (
     MENU,
     MESSAGE_LINES,
@@ -156,6 +157,7 @@ class Board:
     def release(self) -> None:
         """Let go of what is grabbed or held."""
         self._grabbed = self.held = None
+        self.screens[self._shown].release()
 
     def _hover(self, gesture: Gesture) -> None:
         element, line = self._pointer
@@ -180,6 +182,7 @@ class Board:
             return
         elif held is not None:
             self.screen.place(held, element, line)
+            self.screen.release()
         else:
             handle = self.handle_at(element, line)
             if handle is None:
@@ -229,7 +232,7 @@ class Board:
             grabbed.drag(self._start, self._last, gesture)
 
     def _drop(self, gesture: Gesture) -> None:
-        self._grabbed = None
+        self.release()
 
     def _wheel(self, gesture: Gesture) -> None:
         widget = self.widget_at(*self._pointer)

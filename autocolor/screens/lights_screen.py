@@ -127,7 +127,11 @@ class LightsScreen(OverPicture):
         self._append(self.session.scene.with_copied_light(self.session.light_name).lights, "copied")
 
     def _mirror(self) -> None:
-        self._append(self.session.scene.with_mirrored_light(self.session.light_name).lights, "mirrored")
+        # The sides of a product are those of its shorter horizontal extent.
+        (x, y, _), (to_x, to_y, _) = self.session.scene.object_bounds
+        axis = "x" if to_x - x <= to_y - y else "y"
+        lights = self.session.scene.with_mirrored_light(self.session.light_name, axis).lights
+        self._append(lights, f"mirrored along {axis}")
 
     def _append(self, lights: tuple[Light, ...], done: str) -> None:
         before = self.session.light_name

@@ -186,7 +186,7 @@ class Viewer:
         if rests and self.studio.is_coarse:
             self._refine()
             self._update()
-        elif self._had_news != self.session.has_news:
+        elif (rests and self.board.screen.idle()) or self._had_news != self.session.has_news:
             self._update()
 
     def tell(self, message: str) -> None:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from autocolor.errors import UsageError
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
-from autocolor.widgets.items import CHARACTER, Area, Item, filled, fitted, text
+from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
 from autocolor.widgets.widget import BOX, MARGIN, ROW_LINES, TEXT_DOWN, Place, Typed, Widget, box_items
 
 THIN: Final = 2

@@ -13,75 +13,15 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Numbers, Words
-from autocolor.widgets.colors import HEIGHT, NIGHT, WHITE, WIDTH
+from autocolor.widgets.areas import SCREEN, Area
+from autocolor.widgets.colors import NIGHT, WHITE
+from autocolor.widgets.strokes import clipped, joined, together
 from ramtek_emu import instructions
 
 CHARACTER: Final = 7
 """Elements from one character of a text to the next."""
 
 CHARACTER_LINES: Final = 9
-
-
-class Area(NamedTuple):
-    """A rectangle of pixels, its edges included."""
-
-    left: int
-    top: int
-    right: int
-    bottom: int
-
-    @property
-    def width(self) -> int:
-        """The number of elements."""
-        return self.right - self.left + 1
-
-    @property
-    def height(self) -> int:
-        """The number of lines."""
-        return self.bottom - self.top + 1
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether it has no pixels."""
-        return self.right < self.left or self.bottom < self.top
-
-    def has(self, element: int, line: int) -> bool:
-        """Whether a pixel is inside."""
-        return self.left <= element <= self.right and self.top <= line <= self.bottom
-
-    def overlaps(self, other: Area) -> bool:
-        """Whether the two have a pixel in common."""
-        return (
-            self.left <= other.right
-            and other.left <= self.right
-            and self.top <= other.bottom
-            and other.top <= self.bottom
-        )
-
-    def covers(self, other: Area) -> bool:
-        """Whether all pixels of another area are inside."""
-        return (
-            self.left <= other.left
-            and other.right <= self.right
-            and self.top <= other.top
-            and other.bottom <= self.bottom
-        )
-
-    def within(self, other: Area) -> Area:
-        """The pixels that both have."""
-        return Area(
-            max(self.left, other.left),
-            max(self.top, other.top),
-            min(self.right, other.right),
-            min(self.bottom, other.bottom),
-        )
-
-    def inset(self, margin: int) -> Area:
-        """The area without a margin on all sides."""
-        return Area(self.left + margin, self.top + margin, self.right - margin, self.bottom - margin)
-
-
-SCREEN: Final = Area(0, 0, WIDTH - 1, HEIGHT - 1)
 
 
 class Item(NamedTuple):
@@ -113,18 +53,22 @@ def text(line: str, left: int, top: int, word: int = WHITE, background: int = NI
 def outline(area: Area, word: int) -> Item:
     """The edges of an area, one pixel wide."""
     left, top, right, bottom = area
-    corners = ((left, top), (right, top), (right, bottom), (left, bottom), (left, top))
-    return lines([corners], word, area)
+    return lines([[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)]], word, area)
 
 
-def lines(polylines: Iterable[Sequence[Sequence[float]] | Floats], word: int, area: Area) -> Item:
+def lines(polylines: Iterable[Sequence[tuple[float, float]] | Floats], word: int, area: Area) -> Item:
     """Polylines, each of (n, 2) elements and lines, clipped at an area."""
-    parts = [instructions.set_parameters(window=tuple(area), foreground=word)]
-    for each in polylines:
-        vertices = rounded(np.asarray(each, np.float64))
-        if len(vertices):
-            parts.append(instructions.write_vectors(vertices))
-    return Item(area, np.concatenate(parts).tobytes())
+    return segments(together([joined(each) for each in polylines]), word, area)
+
+
+def segments(strokes: Floats, word: int, area: Area) -> Item:
+    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area.
+
+    Hardware: the 9300 clips lines at its memory alone; the write window is of later models.
+    """
+    inside = clipped(strokes, area)
+    stream = instructions.write_segments(rounded(inside), word) if len(inside) else np.empty(0, np.uint16)
+    return Item(area, stream.tobytes())
 
 
 def image(words: Words, left: int, top: int) -> Item:

@@ -15,7 +15,8 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Words
 from autocolor.sending import encoder_of_entries
-from autocolor.widgets.items import SCREEN, Area, Item
+from autocolor.widgets.areas import SCREEN, Area
+from autocolor.widgets.items import Item
 from ramtek_emu import HostPort, instructions
 
 

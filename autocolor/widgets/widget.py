@@ -10,8 +10,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final, NamedTuple, TypeVar
 
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLACK, GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
-from autocolor.widgets.items import CHARACTER, Area, Item, filled, fitted, text
+from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
 
 ROW_LINES: Final = 16
 """The height of a row of a menu."""

@@ -121,6 +121,18 @@ def test_a_bare_command_shows_the_demo(folder: Path, run: Run, monitors: list[An
     assert monitors[1].caption.startswith("autocolor - coupe - ")
 
 
+def test_the_demo_is_saved_to_new_files_and_a_scene_that_was_named_to_its_own(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from autocolor.commands import view
+
+    shown: list[Any] = []
+    monkeypatch.setattr(view, "show", lambda history, *_: shown.append(history.first_place))
+    assert run().code == run("view", "scene").code == run("view", "two.obj").code == 0
+    assert [place.stamp is None for place in shown] == [True, False, True]
+    assert [Path(place.source.path).name for place in shown[1:]] == ["scene", "two.obj"]
+
+
 def test_bad_input_opens_no_window(folder: Path, run: Run, monitors: list[Any]) -> None:
     assert run("view", "none.obj").code == 66
     assert len(monitors) == 1

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
 import numpy as np
+from autocolor.screens.drawing import NIGHT, WHITE, clear, text
 
 from autocolor.mapping.level_ranges import SCREENS
 from autocolor.screens import drawing
-from autocolor.screens.drawing import NIGHT, WHITE, clear, text
 from ramtek_emu import Ramtek9300
 
 

@@ -2,11 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from autocolor.screens.drawing import BLACK, CHARACTER, WHITE, YELLOW, text
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.mapping.level_ranges import BACKGROUND, SCREENS, LevelRange
-from autocolor.screens.drawing import BLACK, CHARACTER, WHITE, YELLOW, text
 from autocolor.screens.entries_screen import (
     CELL_HEIGHT,
     CELL_WIDTH,

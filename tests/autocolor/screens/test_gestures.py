@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import pytest
-
 from autocolor.screens.pointing import Drag, wheel_ratio
 
 

@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from autocolor.screens.drawing import HEIGHT, NIGHT, ORANGE, WHITE, WIDTH
 
 from autocolor.screens import help_screen
 from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS
-from autocolor.screens.drawing import HEIGHT, NIGHT, ORANGE, WHITE, WIDTH
 from autocolor.screens.help_screen import LIMITS, MIDDLE, STEP, TOP, draw_help
 from ramtek_emu import HostPort, Ramtek9300
 from ramtek_emu.memory.character_rom import CELL_ELEMENTS, CELL_LINES

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from autocolor.screens.message_line import MOST_CHARACTERS, TOP, MessageLine, draw_message
+
 from ramtek_emu import Ramtek9300, instructions
 
 PICTURE = np.arange(480 * 640, dtype=np.uint16).reshape(480, 640) % 1000
