@@ -98,4 +98,4 @@ def fitted(line: str, most: int) -> str:
     >>> fitted("windscreen", 10), fitted("windscreen", 6), fitted("windscreen", 1)
     ('windscreen', 'wind..', '.')
     """
-    return line if len(line) <= most else f"{line[: max(0, most - 2)]}.."[:most]
+    return line if len(line) <= most else f"{line[: max(0, most - 2)]}.."[: max(0, most)]
