@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from autocolor.screens.blending_screen import BlendingScreen
 from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.help_screen import HelpScreen
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
@@ -20,6 +21,7 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     LightsScreen,
     ReflectanceScreen,
     MixingScreen,
+    BlendingScreen,
     MappingScreen,
     EntriesScreen,
     HelpScreen,

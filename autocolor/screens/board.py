@@ -309,6 +309,7 @@ class Board:
     def page(self) -> Page:
         """The page to show now."""
         session, screen = self.session, self.screen
+        screen.is_under_menu = self.has_menu and not screen.has_menu
         items = [*self._message_items(), *screen.items()]
         for widget in screen.widgets():
             items += widget.items(widget.key == self._lit and not widget.why_not)

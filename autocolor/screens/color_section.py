@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -18,10 +18,11 @@ from autocolor.errors import UsageError
 from autocolor.mapping.tints import FULL, white_of, with_white
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.columns.color_kinds import in_digits
-from autocolor.scene.surfaces import Paint
+from autocolor.scene.surfaces import Paint, Surface
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLUE, GREEN, RED, WHITE
 from autocolor.widgets.component_bars import ComponentBar
-from autocolor.widgets.items import Area, Item, image
+from autocolor.widgets.items import Item, image
 from autocolor.widgets.widget import ROW_LINES, Button, Entry, Widget
 
 LEFT: Final = 8
@@ -42,6 +43,14 @@ LIGHT_SOURCE: Final = "light source"
 """What the two colors are called for users."""
 
 
+class Raised(NamedTuple):
+    """What the white bar made last: the color of a surface that it began with, and the one that it gave."""
+
+    surface: str
+    start: Color
+    to: Color
+
+
 class ColorSection:
     """One color of a paint, by its title, and where it stands from a line on.
 
@@ -57,6 +66,7 @@ class ColorSection:
     ) -> None:
         self.title = title
         self._give, self._choose = partial(give, self), partial(choose, self)
+        self._raised = Raised("", (0, 0, 0), (0, 0, 0))
         self._heading = Area(LEFT, top, LEFT_END, top + ROW_LINES - 1)
         self.ramp = Area(LEFT, top + ROW_LINES, LEFT_END, top + ROW_LINES + 4 * BAR_LINES - 1)
 
@@ -74,9 +84,9 @@ class ColorSection:
         words = np.broadcast_to(ramp[steps], (self.ramp.height, self.ramp.width))
         return [image(words, self.ramp.left, self.ramp.top)]
 
-    def widgets(self, paint: Paint, is_chosen: bool) -> list[Widget]:
+    def widgets(self, surface: Surface, is_chosen: bool) -> list[Widget]:
         """The heading, and the bars."""
-        color = self.color_of(paint)
+        color = self.color_of(surface.paint)
         told = f"The {self.title} color: click to pick swatches for it."
         heading = SectionHeading(
             self.title, told, run=self._choose, value=in_digits(color), is_chosen=is_chosen
@@ -96,7 +106,7 @@ class ColorSection:
             f"{self.title}, white",
             "Tints and shades: adds the same to red, green and blue; each stops at its ends.",
             value=white_of(color),
-            put=partial(self._put_white, color),
+            put=partial(self._put_white, surface.name, color),
             word=WHITE,
             letter="W",
         )
@@ -118,9 +128,16 @@ class ColorSection:
         component = whole(COMPONENTS[number][0], value)
         self._give((*color[:number], component, *color[number + 1 :]))
 
-    def _put_white(self, color: Color, value: float) -> None:
-        """Raise or lower the color that it was when the bar was grabbed, so that a drag can come back."""
-        self._give(with_white(color, whole("white", value)))
+    def _put_white(self, surface: str, color: Color, value: float) -> None:
+        """Raise or lower a color; one that was raised or lowered before, from what it was before that.
+
+        Assumed: so the bar comes back to a color, whose components may have been at their ends meanwhile.
+        """
+        if (surface, color) != (self._raised.surface, self._raised.to):
+            self._raised = Raised(surface, color, color)
+        to = with_white(self._raised.start, whole("white", value))
+        self._raised = self._raised._replace(to=to)
+        self._give(to)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ import numpy as np
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
 from autocolor.files.recent import note_color, recent_colors
-from autocolor.mapping.color_blending import blend_level
+from autocolor.mapping.color_blending import blend_from, blend_level
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.scene.columns.color_kinds import in_digits
 from autocolor.scene.finishes import FINISHES, finished
@@ -29,9 +29,10 @@ from autocolor.screens.gestures import Gesture
 from autocolor.screens.mixing_palette import Palette, palette_of
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import Session
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import HEIGHT, LIGHT_GRAY, WIDTH
 from autocolor.widgets.column_rows import rows_of
-from autocolor.widgets.items import CHARACTER, Area, Item, fitted, image, text
+from autocolor.widgets.items import CHARACTER, Item, fitted, image, text
 from autocolor.widgets.level_bars import LevelBar
 from autocolor.widgets.swatch_fields import SwatchField
 from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Choice, Gap, Widget
@@ -117,9 +118,9 @@ class MixingScreen(Screen):
             put=self._put_level,
         )
         return [
-            *self.light.widgets(surface.paint, self._chosen is self.light),
+            *self.light.widgets(surface, self._chosen is self.light),
             blend_bar.at(BLEND),
-            *self.object.widgets(surface.paint, self._chosen is self.object),
+            *self.object.widgets(surface, self._chosen is self.object),
             *self._tabs(),
             *(self._swatches() if self._has_swatches else self._presets(surface)),
         ]
@@ -270,7 +271,7 @@ class MixingScreen(Screen):
         self.session.edit(self.session.scene.with_paint(self.session.surface_name, **changes))
 
     def _put_level(self, level: int) -> None:
-        self.session.paint(blend=round(level / (self._levels.levels - 1), 4))
+        self.session.paint(blend=blend_from(level, self._levels.levels))
 
     def _take(self, number: int) -> None:
         red, green, blue = self._colors[number].tolist()

@@ -8,9 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
+from autocolor.widgets.areas import Area
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.colors import SLATE, WHITE, YELLOW
-from autocolor.widgets.items import CHARACTER, CHARACTER_LINES, Area, Item, filled, fitted, text
+from autocolor.widgets.items import CHARACTER, CHARACTER_LINES, Item, filled, fitted, text
 
 STEPS: Final = 256
 """The values of a component; the track has as many elements, so that each can be pointed at."""

@@ -15,8 +15,9 @@ import numpy as np
 
 from autocolor.arrays import Booleans, Numbers, Words
 from autocolor.mapping.rounding import half_up
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLACK, NIGHT, WHITE, YELLOW
-from autocolor.widgets.items import CHARACTER, Area, Item, filled, image, text
+from autocolor.widgets.items import CHARACTER, Item, filled, image, text
 from autocolor.widgets.widget import Place, Widget
 
 LANE: Final = 8

@@ -10,8 +10,9 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Words
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import NIGHT
-from autocolor.widgets.items import Area, Item, image
+from autocolor.widgets.items import Item, image
 from autocolor.widgets.widget import Place, Widget
 
 GROUT: Final = 1
