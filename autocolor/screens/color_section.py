@@ -18,7 +18,8 @@ from autocolor.errors import UsageError
 from autocolor.mapping.tints import FULL, white_of, with_white
 from autocolor.scene.changes import PaintChanges
 from autocolor.scene.columns.color_kinds import in_digits
-from autocolor.scene.surfaces import Paint, Surface
+from autocolor.scene.surfaces import Paint
+from autocolor.screens.session import Session
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLUE, GREEN, RED, WHITE
 from autocolor.widgets.component_bars import ComponentBar
@@ -59,12 +60,13 @@ class ColorSection:
 
     def __init__(
         self,
+        session: Session,
         title: str,
         top: int,
         give: Callable[[ColorSection, Sequence[int] | str], object],
         choose: Callable[[ColorSection], object],
     ) -> None:
-        self.title = title
+        self.session, self.title = session, title
         self._give, self._choose = partial(give, self), partial(choose, self)
         self._raised = Raised("", (0, 0, 0), (0, 0, 0))
         self._heading = Area(LEFT, top, LEFT_END, top + ROW_LINES - 1)
@@ -84,9 +86,9 @@ class ColorSection:
         words = np.broadcast_to(ramp[steps], (self.ramp.height, self.ramp.width))
         return [image(words, self.ramp.left, self.ramp.top)]
 
-    def widgets(self, surface: Surface, is_chosen: bool) -> list[Widget]:
+    def widgets(self, paint: Paint, is_chosen: bool) -> list[Widget]:
         """The heading, and the bars."""
-        color = self.color_of(surface.paint)
+        color = self.color_of(paint)
         told = f"The {self.title} color: click to pick swatches for it."
         heading = SectionHeading(
             self.title, told, run=self._choose, value=in_digits(color), is_chosen=is_chosen
@@ -96,7 +98,7 @@ class ColorSection:
                 f"{self.title}, {name}",
                 f"{name.capitalize()} of the {self.title} color, 0 to {FULL}.",
                 value=color[number],
-                put=partial(self._put_component, color, number),
+                put=partial(self._put_component, number),
                 word=word,
                 letter=name[0].upper(),
             )
@@ -106,7 +108,7 @@ class ColorSection:
             f"{self.title}, white",
             "Tints and shades: adds the same to red, green and blue; each stops at its ends.",
             value=white_of(color),
-            put=partial(self._put_white, surface.name, color),
+            put=self._put_white,
             word=WHITE,
             letter="W",
         )
@@ -124,20 +126,26 @@ class ColorSection:
         top = self.ramp.top + number * BAR_LINES
         return Area(RIGHT, top, RIGHT_END, top + BAR_LINES - 1)
 
-    def _put_component(self, color: Color, number: int, value: float) -> None:
-        component = whole(COMPONENTS[number][0], value)
+    def _put_component(self, number: int, value: float) -> None:
+        component, color = whole(COMPONENTS[number][0], value), self._present
         self._give((*color[:number], component, *color[number + 1 :]))
 
-    def _put_white(self, surface: str, color: Color, value: float) -> None:
-        """Raise or lower a color; one that was raised or lowered before, from what it was before that.
+    def _put_white(self, value: float) -> None:
+        """Raise or lower the color; one that was raised or lowered before, from what it was before that.
 
-        Assumed: so the bar comes back to a color, whose components may have been at their ends meanwhile.
+        Assumed: so the bar comes back to a color whose components were at their ends meanwhile.
         """
+        surface, color = self.session.surface_name, self._present
         if (surface, color) != (self._raised.surface, self._raised.to):
             self._raised = Raised(surface, color, color)
         to = with_white(self._raised.start, whole("white", value))
         self._raised = self._raised._replace(to=to)
         self._give(to)
+
+    @property
+    def _present(self) -> Color:
+        """The color that the chosen surface has now."""
+        return self.color_of(self.session.scene.surface(self.session.surface_name).paint)
 
 
 @dataclass(frozen=True)

@@ -66,8 +66,8 @@ class MixingScreen(Screen):
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
-        self.light = ColorSection(LIGHT_SOURCE, LIGHT_TOP, self._paint, self._choose)
-        self.object = ColorSection(OBJECT, OBJECT_TOP, self._paint, self._choose)
+        self.light = ColorSection(session, LIGHT_SOURCE, LIGHT_TOP, self._paint, self._choose)
+        self.object = ColorSection(session, OBJECT, OBJECT_TOP, self._paint, self._choose)
         self._chosen = self.object
         """The section of the color that swatches are for."""
         self._has_swatches = False
@@ -118,9 +118,9 @@ class MixingScreen(Screen):
             put=self._put_level,
         )
         return [
-            *self.light.widgets(surface, self._chosen is self.light),
+            *self.light.widgets(surface.paint, self._chosen is self.light),
             blend_bar.at(BLEND),
-            *self.object.widgets(surface, self._chosen is self.object),
+            *self.object.widgets(surface.paint, self._chosen is self.object),
             *self._tabs(),
             *(self._swatches() if self._has_swatches else self._presets(surface)),
         ]

@@ -9,7 +9,7 @@
 |---|---|---|
 | picture, lights, reflectance, mapping | all, `SCREENS` over the picture | none |
 | light and view | `SCREENS`; all in its small picture | none |
-| color mixing | `SCREENS`; the chosen surface's, in a small picture and a bar | ramps, swatches, recent colors |
+| color mixing | `SCREENS`; the chosen surface's, in a small picture and a bar | ramps and swatches |
 | light blending | all, and the chosen surface's again in a bar, and `SCREENS` | none |
 | entries | all, each in its cell | none |
 | help | `SCREENS` | none |
