@@ -6,7 +6,9 @@ from typing import Final
 
 from autocolor.screens.blending_screen import BlendingScreen
 from autocolor.screens.entries_screen import EntriesScreen
+from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
+from autocolor.screens.kept_screen import KeptScreen
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
@@ -23,6 +25,8 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     MixingScreen,
     BlendingScreen,
     MappingScreen,
+    KeptScreen,
+    FileScreen,
     EntriesScreen,
     HelpScreen,
 )

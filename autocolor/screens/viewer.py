@@ -6,15 +6,12 @@ without. While something moves, the picture may be coarse; `on_tick` refines it 
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
 from autocolor.errors import AutocolorError
-from autocolor.files.file_stem import file_stem
-from autocolor.files.scene_sources import read_scene
 from autocolor.journal.history import History
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import Scene, cost_of_edit
@@ -60,7 +57,6 @@ class Viewer:
         self.board = Board(self.session, self.screens)
         self.edits = PictureEdits(self.session)
         self._watching = Watching(self.display)
-        self.saved: Path | None = None
         self._edited_by: object = None
         """The key or the movement of the pointer by which the last edit was made, if any."""
         self._warned = False
@@ -248,15 +244,9 @@ class Viewer:
         return taken
 
     def on_drop(self, path: Path) -> None:
-        """Open a file that was dropped on the window."""
-        if self._unsaved("drop it again to discard the changes"):
-            self._update()
-            return
-        try:
-            self._open(read_scene(path))
-        except (AutocolorError, RamtekError) as error:
-            self.session.warn(error)
-            self._update()
+        """Open a file that was dropped on the window, as one step to undo."""
+        self._do(None, lambda: self.session.open(path))
+        self._update()
 
     def on_close(self) -> bool:
         """Whether the window may close: nothing is unsaved, or this is the second attempt in a row."""
@@ -328,15 +318,5 @@ class Viewer:
             self.session.turn_to(PICTURE)
 
     def save(self) -> None:
-        """Save the picture with its scene: to a new file the first time, then to the same file."""
-        if self.saved is None:
-            stem, number = file_stem(self.studio.scene.name), 1
-            path = self.folder / f"{stem}.npz"
-            while os.path.lexists(path):
-                number += 1
-                path = self.folder / f"{stem}-{number}.npz"
-            self.studio.save(path)
-            self.saved = path
-        else:
-            self.studio.save(self.saved, overwrite=True)
-        self.session.tell(f"saved {self.saved.resolve()}")
+        """Save the scene and the picture."""
+        self.session.save()

@@ -11,12 +11,13 @@
 | light and view | `SCREENS`; all in its small picture | none |
 | color mixing | `SCREENS`; the chosen surface's, in a small picture and a bar | ramps and swatches |
 | light blending | all, and the chosen surface's again in a bar, and `SCREENS` | none |
+| kept | `SCREENS` | small pictures, in the words of all surfaces |
 | entries | all, each in its cell | none |
-| help | `SCREENS` | none |
+| file, help | `SCREENS` | none |
 
-Color mixing borrows the words of surfaces that it does not show. Where these are too few, it borrows some of
-the chosen surface's, too, spread over its levels; each of these is then shown by its neighbor. Which ones, is
-told by `mixing_palette`. Words are borrowed by `Screen.loads` alone.
+A screen borrows words by `Screen.loads` alone. Color mixing borrows those of surfaces that it does not show;
+where these are too few, it borrows some of the chosen surface's, too, spread over its levels, each of which
+is then shown by its neighbor. `mixing_palette` tells which ones.
 
 A page tells its base and all 1024 entries, and a sheet loads the entries that differ from those of the page
 before, and writes the words of another base whole: so whatever a screen borrows or covers is restored by the

@@ -13,7 +13,7 @@ from autocolor.widgets.colors import BLUE, GREEN, RED, WHITE
 from autocolor.widgets.component_bars import ComponentBar
 from autocolor.widgets.widget import Place
 from ramtek_emu import Ramtek9300
-from tests.autocolor.screens.hand import boxes_scene
+from tests.autocolor.screens.painting_hand import boxes_scene
 
 PAINT = Paint((10, 20, 31), (255, 0, 0))
 

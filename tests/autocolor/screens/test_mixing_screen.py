@@ -16,7 +16,7 @@ from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import NIGHT
 from autocolor.widgets.level_bars import LANE
 from ramtek_emu import Ramtek9300
-from tests.autocolor.screens.hand import Hand, boxes_scene
+from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
 
 STRIP = Area(BLEND.left, BLEND.top + LANE, BLEND.right, BLEND.bottom - LANE)
 RAMPS = {"light source": Area(8, 24, 167, 119), "object": Area(8, 192, 167, 287)}
@@ -32,32 +32,28 @@ ZERO = 192
 """The element of a bar at which a component is 0; each of the next is one more."""
 
 
-def mixing(scene: Scene, folder: Path) -> Hand:
+def mixing(scene: Scene, folder: Path) -> PaintingHand:
     """A hand at the color mixing screen of a scene."""
-    hand = Hand(Viewer(scene, Ramtek9300(), folder))
+    hand = PaintingHand(Viewer(scene, Ramtek9300(), folder))
     hand.turn_to("color mixing")
     assert hand.viewer.page == "mixing"
     return hand
 
 
 @pytest.fixture
-def hand(tmp_path: Path) -> Hand:
+def hand(tmp_path: Path) -> PaintingHand:
     return mixing(boxes_scene(), tmp_path)
 
 
-def paint_of(hand: Hand) -> Paint:
-    return hand.viewer.studio.scene.surface(hand.viewer.session.surface_name).paint
-
-
-def line_of(hand: Hand, bar: str) -> int:
+def line_of(hand: PaintingHand, bar: str) -> int:
     area = hand.widget(bar).area
     return (area.top + area.bottom) // 2
 
 
-def ramps_are_right(hand: Hand) -> bool:
+def ramps_are_right(hand: PaintingHand) -> bool:
     """Whether step k of the 64 of each ramp is k / 63 of its color, rounded half up."""
     steps = np.arange(160) * 64 // 160
-    paint = paint_of(hand)
+    paint = hand.paint
     return all(
         np.array_equal(
             hand.colors(RAMPS[title]),
@@ -67,7 +63,7 @@ def ramps_are_right(hand: Hand) -> bool:
     )
 
 
-def bar_is_right(hand: Hand, most_off: int = 0) -> bool:
+def bar_is_right(hand: PaintingHand, most_off: int = 0) -> bool:
     """Whether the blend bar has the entries of the surface's levels, rising to the right."""
     first, levels = hand.viewer.studio.level_ranges[hand.viewer.session.surface_name]
     entries = hand.viewer.studio.entries[first : first + levels]
@@ -83,25 +79,25 @@ def bar_is_right(hand: Hand, most_off: int = 0) -> bool:
     )
 
 
-def test_the_ramps_show_all_intensities_of_both_colors(hand: Hand) -> None:
+def test_the_ramps_show_all_intensities_of_both_colors(hand: PaintingHand) -> None:
     assert ramps_are_right(hand)
-    hand.pick(ZERO + 200, line_of(hand, "object, green"))
+    hand.click(ZERO + 200, line_of(hand, "object, green"))
     hand.drag((ZERO + 255, line_of(hand, "light source, blue")), (ZERO + 31, 100))
-    assert paint_of(hand) == Paint((176, 200, 32), (255, 250, 31), 0.4)
+    assert hand.paint == Paint((176, 200, 32), (255, 250, 31), 0.4)
     assert ramps_are_right(hand)
 
 
-def test_the_bar_between_shows_the_entries_of_the_surface(hand: Hand) -> None:
+def test_the_bar_between_shows_the_entries_of_the_surface(hand: PaintingHand) -> None:
     assert bar_is_right(hand)
     first, levels = hand.viewer.studio.level_ranges["box 0"]
     assert hand.words(STRIP).min() == first
     assert hand.words(STRIP).max() == first + levels - 1
-    hand.pick(ZERO + 99, line_of(hand, "light source, red"))
+    hand.click(ZERO + 99, line_of(hand, "light source, red"))
     assert bar_is_right(hand)
 
 
-def test_the_small_picture_shows_the_chosen_surface_alone_in_its_words(hand: Hand) -> None:
-    hand.pick_row("surface")
+def test_the_small_picture_shows_the_chosen_surface_alone_in_its_words(hand: PaintingHand) -> None:
+    hand.pick("surface")
     assert hand.viewer.session.surface_name == "box 1"
     first, levels = hand.viewer.studio.level_ranges["box 1"]
     words = hand.viewer.studio.words[::SCALE, ::SCALE]
@@ -111,11 +107,11 @@ def test_the_small_picture_shows_the_chosen_surface_alone_in_its_words(hand: Han
 
 
 @pytest.mark.parametrize("bar", BARS)
-def test_each_bar_sets_its_component_by_one_an_element(hand: Hand, bar: str) -> None:
+def test_each_bar_sets_its_component_by_one_an_element(hand: PaintingHand, bar: str) -> None:
     field, number = BARS[bar]
     for value in (0, 1, 143, 254, 255):
-        hand.pick(ZERO + value, line_of(hand, bar))
-        color = getattr(paint_of(hand), field)
+        hand.click(ZERO + value, line_of(hand, bar))
+        color = getattr(hand.paint, field)
         assert color[number] == value
     before = getattr(boxes_scene().surface("box 0").paint, field)
     assert [color[other] for other in range(3) if other != number] == [
@@ -123,16 +119,16 @@ def test_each_bar_sets_its_component_by_one_an_element(hand: Hand, bar: str) -> 
     ]
 
 
-def test_a_drag_is_seen_at_once_and_writes_no_word_of_the_small_picture(hand: Hand) -> None:
+def test_a_drag_is_seen_at_once_and_writes_no_word_of_the_small_picture(hand: PaintingHand) -> None:
     line = line_of(hand, "object, red")
     hand.spoil(SMALL)
-    hand.point(ZERO + 176, line)
-    hand.stick.track = True
+    hand.move(ZERO + 176, line)
+    hand.joystick.track = True
     hand.viewer.poll()
     for value in (170, 90, 20):
         before = hand.display.frame_buffer.written
-        hand.point(ZERO + value, line)
-        assert paint_of(hand).object_color == (value, 16, 32)
+        hand.move(ZERO + value, line)
+        assert hand.paint.object_color == (value, 16, 32)
         assert ramps_are_right(hand)
         assert bar_is_right(hand)
         # The bar, the white one, their numbers, and the color's number twice.
@@ -140,7 +136,7 @@ def test_a_drag_is_seen_at_once_and_writes_no_word_of_the_small_picture(hand: Ha
     assert (hand.words(SMALL) == 5).all()
 
 
-def test_a_drag_is_one_step_to_undo(hand: Hand) -> None:
+def test_a_drag_is_one_step_to_undo(hand: PaintingHand) -> None:
     scene = hand.viewer.studio.scene
     drags = {
         "object, red": ((ZERO + 176, 0), (ZERO + 90, 0), (ZERO + 20, 0)),
@@ -153,62 +149,62 @@ def test_a_drag_is_one_step_to_undo(hand: Hand) -> None:
         assert hand.viewer.studio.scene is not scene
         # The left half of the row undoes.
         area = hand.widget(" ").area
-        hand.pick(area.left + 16, area.top + 4)
+        hand.click(area.left + 16, area.top + 4)
         assert hand.viewer.studio.scene is scene
         assert hand.viewer.message == "undone"
-        hand.pick(area.left + 16, area.top + 4)
+        hand.click(area.left + 16, area.top + 4)
         assert hand.viewer.message == "nothing to undo"
         assert ramps_are_right(hand)
         assert bar_is_right(hand)
 
 
-def test_the_white_bar_makes_tints_and_shades_and_comes_back(hand: Hand) -> None:
+def test_the_white_bar_makes_tints_and_shades_and_comes_back(hand: PaintingHand) -> None:
     line = line_of(hand, "object, white")
-    hand.pick(ZERO + 135, line)
-    red, green, blue = paint_of(hand).object_color
+    hand.click(ZERO + 135, line)
+    red, green, blue = hand.paint.object_color
     assert red - 176 == green - 16 == blue - 32
     # All the way to white and to black, and back to what it was.
     hand.drag((ZERO + 135, line), (ZERO + 255, line))
-    assert paint_of(hand).object_color == (255, 255, 255)
+    assert hand.paint.object_color == (255, 255, 255)
     hand.drag((ZERO + 255, line), (ZERO, line), (ZERO + 135, line))
-    assert paint_of(hand).object_color == (red, green, blue)
+    assert hand.paint.object_color == (red, green, blue)
     # What else is changed meanwhile is where it begins anew.
-    hand.pick(ZERO + 255, line)
-    hand.pick(ZERO + 100, line_of(hand, "object, blue"))
-    hand.pick(ZERO + 200, line)
-    red, green, blue = paint_of(hand).object_color
+    hand.click(ZERO + 255, line)
+    hand.click(ZERO + 100, line_of(hand, "object, blue"))
+    hand.click(ZERO + 200, line)
+    red, green, blue = hand.paint.object_color
     assert red == green == blue + 155
 
 
-def test_the_bar_between_sets_the_blend(hand: Hand) -> None:
+def test_the_bar_between_sets_the_blend(hand: PaintingHand) -> None:
     levels = hand.viewer.studio.level_ranges["box 0"].levels
     for element in (STRIP.left, 100, 321, STRIP.right):
-        hand.pick(element, STRIP.top + 5)
+        hand.click(element, STRIP.top + 5)
         wanted = int((element - STRIP.left) * (levels - 1) / (STRIP.width - 1) + 0.5)
-        assert blend_level(paint_of(hand).blend, levels) == wanted
+        assert blend_level(hand.paint.blend, levels) == wanted
         assert bar_is_right(hand)
-    assert paint_of(hand).blend == 1
+    assert hand.paint.blend == 1
     # A drag that leaves the bar stays at its end.
     hand.drag((300, STRIP.top), (300, 20), (0, 20))
-    assert paint_of(hand).blend == 0
+    assert hand.paint.blend == 0
 
 
-def test_a_swatch_is_a_paint_for_the_chosen_color(hand: Hand) -> None:
-    hand.pick_row("swatches")
-    hand.pick(SWATCHES.left + 16 * 3 + 4, SWATCHES.top + SWATCH_LINES * 4 + 4)
-    assert paint_of(hand).object_color == tuple(swatches()[4 * COLUMNS + 3])
-    hand.pick_row("light source heading")
-    hand.pick(SWATCHES.left + 16 * 19 + 4, SWATCHES.top + 4)
-    assert paint_of(hand).light_color == tuple(swatches()[COLUMNS - 1])
+def test_a_swatch_is_a_paint_for_the_chosen_color(hand: PaintingHand) -> None:
+    hand.pick("swatches")
+    hand.click(SWATCHES.left + 16 * 3 + 4, SWATCHES.top + SWATCH_LINES * 4 + 4)
+    assert hand.paint.object_color == tuple(swatches()[4 * COLUMNS + 3])
+    hand.pick("light source heading")
+    hand.click(SWATCHES.left + 16 * 19 + 4, SWATCHES.top + 4)
+    assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
     # A click on the ramp chooses, too.
-    hand.pick(30, 220)
+    hand.click(30, 220)
     hand.drag((SWATCHES.left + 4, SWATCHES.top + 4), (SWATCHES.left + 40, SWATCHES.top + 20))
-    assert paint_of(hand).object_color == tuple(swatches()[COLUMNS + 2])
-    assert paint_of(hand).light_color == tuple(swatches()[COLUMNS - 1])
+    assert hand.paint.object_color == tuple(swatches()[COLUMNS + 2])
+    assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
 
 
-def test_every_swatch_is_shown_in_its_color(hand: Hand) -> None:
-    hand.pick_row("swatches")
+def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
+    hand.pick("swatches")
     for number, color in enumerate(swatches()):
         row, column = divmod(number, COLUMNS)
         left, top = SWATCHES.left + 16 * column, SWATCHES.top + SWATCH_LINES * row
@@ -219,29 +215,29 @@ def test_every_swatch_is_shown_in_its_color(hand: Hand) -> None:
 
 
 @pytest.mark.parametrize("name", FINISHES)
-def test_a_finish_keeps_the_object_color(hand: Hand, name: str) -> None:
+def test_a_finish_keeps_the_object_color(hand: PaintingHand, name: str) -> None:
     before = hand.viewer.studio.scene.surface("box 0")
-    hand.pick_row(name)
+    hand.pick(name)
     after = hand.viewer.studio.scene.surface("box 0")
     assert after == before.replace(**finished(before, name))
     assert ramps_are_right(hand)
     assert bar_is_right(hand)
 
 
-def test_what_was_mixed_is_among_the_recent_colors_when_the_mixing_ends(hand: Hand) -> None:
-    hand.pick(ZERO + 99, line_of(hand, "object, green"))
-    hand.pick(ZERO + 100, line_of(hand, "object, green"))
+def test_what_was_mixed_is_among_the_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
+    hand.click(ZERO + 99, line_of(hand, "object, green"))
+    hand.click(ZERO + 100, line_of(hand, "object, green"))
     assert recent_colors() == ()
-    hand.turn_to_picture()
+    hand.leave()
     assert recent_colors() == ((176, 100, 32),)
     hand.turn_to("color mixing")
     # Another surface takes it over.
-    hand.pick_row("surface")
+    hand.pick("surface")
     assert (
         hand.colors(Area(RECENT.left, RECENT.top, RECENT.left + 20, RECENT.top + 20)) == [176, 100, 32]
     ).all()
-    hand.pick(RECENT.left + 5, RECENT.top + 5)
-    assert paint_of(hand).object_color == (176, 100, 32)
+    hand.click(RECENT.left + 5, RECENT.top + 5)
+    assert hand.paint.object_color == (176, 100, 32)
 
 
 @pytest.mark.parametrize(("count", "levels"), [(1, None), (2, None), (60, None), (2, 1005)])
@@ -253,8 +249,8 @@ def test_leaving_restores_words_and_entries_byte_for_byte(
     hand.leave()
     assert hand.is_as_sent(before)
     hand.turn_to("color mixing")
-    hand.pick_row("swatches")
-    hand.pick(SWATCHES.left + 60, SWATCHES.top + 60)
+    hand.pick("swatches")
+    hand.click(SWATCHES.left + 60, SWATCHES.top + 60)
     hand.drag((100, STRIP.top), (200, STRIP.top), (250, STRIP.top))
     assert hand.viewer.studio.scene is not before
     hand.leave()
@@ -271,7 +267,7 @@ def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
     words = hand.viewer.studio.words[::SCALE, ::SCALE].astype(int)
     is_own = (first <= words) & (words < first + owned)
     for label in ("finishes", "swatches"):
-        hand.pick_row(label)
+        hand.pick(label)
         seen = hand.words(SMALL).astype(int)
         assert np.abs(seen - words)[is_own].max() <= 1
         assert (seen[~is_own] == NIGHT).all()
@@ -285,26 +281,26 @@ def test_a_surface_that_owns_nearly_all_words_is_at_most_a_level_off(
 def test_sixty_surfaces_are_chosen_one_after_the_other(tmp_path: Path) -> None:
     hand = mixing(boxes_scene(60), tmp_path)
     for number in range(1, 61):
-        hand.pick_row("surface")
+        hand.pick("surface")
         assert hand.viewer.session.surface_name == f"box {number % 60}"
     assert ramps_are_right(hand)
     assert bar_is_right(hand)
-    hand.pick(ZERO + 77, line_of(hand, "object, red"))
-    assert paint_of(hand).object_color == (77, 16, 32)
+    hand.click(ZERO + 77, line_of(hand, "object, red"))
+    assert hand.paint.object_color == (77, 16, 32)
 
 
-def test_a_color_is_typed_by_name_or_number_where_there_is_a_keyboard(hand: Hand) -> None:
-    hand.pick_row("object")
+def test_a_color_is_typed_by_name_or_number_where_there_is_a_keyboard(hand: PaintingHand) -> None:
+    hand.pick("object")
     assert hand.viewer.message == "object: typing needs a keyboard"
     for typed, color in (("teal", (0, 128, 128)), ("#102030", (16, 32, 48))):
         hand.viewer.on_key("left")
         hand.viewer.on_key("right")
-        hand.pick_row("object")
+        hand.pick("object")
         for letter in typed:
             hand.viewer.on_key(letter, typed=letter)
         hand.viewer.on_key("return")
-        assert paint_of(hand).object_color == color
-    hand.pick_row("light")
+        assert hand.paint.object_color == color
+    hand.pick("light")
     for letter in "tael":
         hand.viewer.on_key(letter, typed=letter)
     scene = hand.viewer.studio.scene
@@ -316,10 +312,10 @@ def test_a_color_is_typed_by_name_or_number_where_there_is_a_keyboard(hand: Hand
 @pytest.mark.parametrize(("bar", "name"), [("object, red", "red"), ("light source, white", "white")])
 @pytest.mark.parametrize("typed", ["256", "-1", "12.5"])
 def test_a_component_that_is_typed_must_be_a_whole_number(
-    hand: Hand, bar: str, name: str, typed: str
+    hand: PaintingHand, bar: str, name: str, typed: str
 ) -> None:
     scene = hand.viewer.studio.scene
-    hand.point(ZERO + 100, line_of(hand, bar))
+    hand.move(ZERO + 100, line_of(hand, bar))
     for letter in typed:
         hand.viewer.on_key(letter, typed=letter)
     hand.viewer.on_key("return")
@@ -327,7 +323,7 @@ def test_a_component_that_is_typed_must_be_a_whole_number(
     assert hand.viewer.studio.scene is scene
 
 
-def test_pointing_at_the_small_picture_tells_the_level(hand: Hand) -> None:
+def test_pointing_at_the_small_picture_tells_the_level(hand: PaintingHand) -> None:
     first, levels = hand.viewer.studio.level_ranges["box 0"]
     screen = hand.viewer.board.screen
     assert isinstance(screen, MixingScreen)
@@ -344,8 +340,8 @@ def test_a_scene_without_surfaces_in_use_says_so(tmp_path: Path) -> None:
     hand = mixing(empty, tmp_path)
     assert [row.label for row in hand.viewer.board.screen.rows()] == []
     assert hand.viewer.board.screen.hint(SMALL.left, SMALL.top) == hand.viewer.board.screen.help
-    hand.pick(30, 60)
+    hand.click(30, 60)
     hand.turn_to("light blending")
-    hand.point(20, 20)
+    hand.move(20, 20)
     hand.leave()
     assert hand.is_as_sent(empty)
