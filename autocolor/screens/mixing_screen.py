@@ -10,23 +10,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any, Final
-
-import numpy as np
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
-from autocolor.files.recent import note_color, recent_colors
 from autocolor.mapping.color_blending import blend_from, blend_level
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.scene.columns.color_kinds import in_digits
-from autocolor.scene.finishes import FINISHES, finished
-from autocolor.scene.surfaces import Paint, Surface
-from autocolor.scene.swatches import COLUMNS, swatches
-from autocolor.screens.color_section import LEFT, LIGHT_SOURCE, OBJECT, RIGHT, RIGHT_END, ColorSection
+from autocolor.scene.surfaces import Paint
+from autocolor.screens.color_section import LEFT, LIGHT_SOURCE, OBJECT, RIGHT_END, ColorSection
 from autocolor.screens.gestures import Gesture
 from autocolor.screens.mixing_palette import Palette, palette_of
+from autocolor.screens.paint_choices import TOP as CHOICES_TOP
+from autocolor.screens.paint_choices import PaintChoices
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.areas import Area
@@ -34,27 +30,20 @@ from autocolor.widgets.colors import HEIGHT, LIGHT_GRAY, WIDTH
 from autocolor.widgets.column_rows import rows_of
 from autocolor.widgets.items import CHARACTER, Item, fitted, image, text
 from autocolor.widgets.level_bars import LevelBar
-from autocolor.widgets.swatch_fields import SwatchField
-from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Choice, Gap, Widget
+from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Choice, Gap, Widget
 
 LIGHT_TOP: Final = 8
 BLEND_TOP: Final = 120
 OBJECT_TOP: Final = 176
-BELOW: Final = 296
-"""The first lines of the parts of the screen, each with a heading of ROW_LINES."""
+"""The first lines of the sections and of the bar, each with a heading of ROW_LINES."""
 
 BLEND: Final = Area(LEFT, BLEND_TOP + ROW_LINES, RIGHT_END, OBJECT_TOP - 1)
 
 SCALE: Final = 4
 """Lines and elements of the picture for one of the small picture."""
 SMALL: Final = Area(
-    LEFT, BELOW + ROW_LINES, LEFT + WIDTH // SCALE - 1, BELOW + ROW_LINES + HEIGHT // SCALE - 1
+    LEFT, CHOICES_TOP + ROW_LINES, LEFT + WIDTH // SCALE - 1, CHOICES_TOP + ROW_LINES + HEIGHT // SCALE - 1
 )
-
-SWATCHES: Final = Area(RIGHT, BELOW + ROW_LINES, RIGHT_END, BELOW + ROW_LINES + 139)
-SWATCH_LINES: Final = 14
-RECENT: Final = Area(RIGHT, 392, RIGHT_END, 415)
-RECENT_ELEMENTS: Final = 26
 
 
 class MixingScreen(Screen):
@@ -70,18 +59,14 @@ class MixingScreen(Screen):
         self.object = ColorSection(session, OBJECT, OBJECT_TOP, self._paint, self._choose)
         self._chosen = self.object
         """The section of the color that swatches are for."""
-        self._has_swatches = False
-        """Whether the field of swatches is shown, instead of finishes and recent colors."""
-        self._recent: tuple[Color, ...] = ()
-        self._paints: dict[str, Paint] = {}
-        """The paints of all surfaces before they were mixed."""
+        self.choices = PaintChoices(session, self._take)
         self._small: tuple[Words, Words, Item] | None = None
 
     def enter(self) -> None:
-        self._begin()
+        self.choices.begin()
 
     def leave(self) -> None:
-        self._note_mixed()
+        self.choices.end()
 
     # What is seen.
 
@@ -121,66 +106,15 @@ class MixingScreen(Screen):
             *self.light.widgets(surface.paint, self._chosen is self.light),
             blend_bar.at(BLEND),
             *self.object.widgets(surface.paint, self._chosen is self.object),
-            *self._tabs(),
-            *(self._swatches() if self._has_swatches else self._presets(surface)),
+            *self.choices.widgets(surface, self._palette.swatches, self._chosen.title),
         ]
-
-    def _tabs(self) -> list[Widget]:
-        """The headings of what is shown below the bars, one of which is chosen."""
-        middle = (RIGHT + RIGHT_END) // 2
-        area = Area(RIGHT, BELOW, middle, BELOW + ROW_LINES - 1)
-        presets = Button(
-            "finishes",
-            "Kinds of surfaces, and the colors that were mixed last.",
-            run=partial(self._show_swatches, False),
-            is_chosen=not self._has_swatches,
-        )
-        field = Button(
-            "swatches",
-            f"A field of {len(swatches())} paints to pick from.",
-            run=partial(self._show_swatches, True),
-            is_chosen=self._has_swatches,
-        )
-        return [presets.at(area), field.at(area._replace(left=middle + 1, right=RIGHT_END))]
-
-    def _swatches(self) -> list[Widget]:
-        return [
-            SwatchField(
-                "paints",
-                f"Paints for the {self._chosen.title}: click one, or drag over them.",
-                words=self._palette.swatches,
-                across=COLUMNS,
-                height=SWATCH_LINES,
-                take=self._take,
-            ).at(SWATCHES)
-        ]
-
-    def _presets(self, surface: Surface) -> list[Widget]:
-        """The finishes in two columns, and the recent colors."""
-        found: list[Widget] = []
-        for number, name in enumerate(FINISHES):
-            row, column = divmod(number, 2)
-            left, top = RIGHT + column * SWATCHES.width // 2, SWATCHES.top + row * ROW_LINES
-            area = Area(left, top, left + SWATCHES.width // 2 - 1, top + ROW_LINES - 1)
-            told = f"Let the surface look like {name}, in its object color."
-            found.append(Button(name, told, run=partial(self._finish, surface, name)).at(area))
-        recent = SwatchField(
-            "recent colors",
-            f"The colors that were mixed last; click one for the {self._chosen.title}.",
-            words=self._palette.swatches,
-            across=len(self._recent),
-            width=RECENT_ELEMENTS,
-            height=RECENT.height,
-            take=self._take,
-        )
-        return [*found, recent.at(RECENT)] if self._recent else found
 
     def items(self) -> Sequence[Item]:
         surface = self.session.chosen_surface
         if surface is None:
             return [text("The scene has no surface in use.", LEFT, LIGHT_TOP + TEXT_DOWN, LIGHT_GRAY)]
         palette, told = self._palette, self._blend_told(surface.paint)
-        found = [
+        return [
             *self.light.items(palette.light_ramp),
             *self.object.items(palette.object_ramp),
             text("blend", LEFT + MARGIN, BLEND_TOP + TEXT_DOWN, LIGHT_GRAY),
@@ -188,20 +122,18 @@ class MixingScreen(Screen):
             text(
                 fitted(surface.name, SMALL.width // CHARACTER - 1),
                 LEFT + MARGIN,
-                BELOW + TEXT_DOWN,
+                CHOICES_TOP + TEXT_DOWN,
                 LIGHT_GRAY,
             ),
             self._small_picture(),
+            *self.choices.items(),
         ]
-        if self._recent and not self._has_swatches:
-            found.append(text("recent colors", RIGHT + MARGIN, RECENT.top - 12, LIGHT_GRAY))
-        return found
 
     def loads(self) -> Sequence[tuple[int, Bytes]]:
         surface = self.session.chosen_surface
         if surface is None:
             return []
-        return self._palette.loads(surface.paint.light_color, surface.paint.object_color, self._colors)
+        return self._palette.loads(surface.paint.light_color, surface.paint.object_color, self.choices.colors)
 
     def hint(self, element: int, line: int) -> str:
         if self.session.chosen_surface is None or not SMALL.has(element, line):
@@ -220,16 +152,9 @@ class MixingScreen(Screen):
         return self.session.studio.level_ranges[self.session.surface_name]
 
     @property
-    def _colors(self) -> Bytes:
-        """The colors that can be picked."""
-        if self._has_swatches:
-            return swatches()
-        return np.array(self._recent, np.uint8).reshape(-1, 3)
-
-    @property
     def _palette(self) -> Palette:
         ranges = tuple(self.session.studio.level_ranges.items())
-        return palette_of(ranges, self.session.surface_name, len(self._colors))
+        return palette_of(ranges, self.session.surface_name, len(self.choices.colors))
 
     def _small_picture(self) -> Item:
         """The chosen surface in the picture, at a quarter of its size; the same item until it changes."""
@@ -255,12 +180,9 @@ class MixingScreen(Screen):
         self.session.tell(f"swatches are for the {section.title}")
 
     def _choose_surface(self, name: str) -> None:
-        self._note_mixed()
+        self.choices.end()
         self.session.choose_surface(name)
-        self._begin()
-
-    def _show_swatches(self, is_shown: bool) -> None:
-        self._has_swatches = is_shown
+        self.choices.begin()
 
     def _paint(self, section: ColorSection, color: Sequence[int] | str) -> None:
         """Give the chosen surface a color."""
@@ -273,25 +195,6 @@ class MixingScreen(Screen):
     def _put_level(self, level: int) -> None:
         self.session.paint(blend=blend_from(level, self._levels.levels))
 
-    def _take(self, number: int) -> None:
-        red, green, blue = self._colors[number].tolist()
-        self._paint(self._chosen, (red, green, blue))
-        self.session.tell(f"{self._chosen.title}: {in_digits((red, green, blue))}")
-
-    def _finish(self, surface: Surface, name: str) -> None:
-        self.session.change_surface(surface.name, **finished(surface, name))
-        self.session.tell(f"{surface.name}: {name}")
-
-    # The recent colors.
-
-    def _begin(self) -> None:
-        self._paints = {each.name: each.paint for each in self.session.scene.surfaces}
-        self._recent = recent_colors()
-
-    def _note_mixed(self) -> None:
-        """Note the colors that surfaces were given."""
-        for surface in self.session.scene.surfaces:
-            before = self._paints.get(surface.name, surface.paint)
-            for section in (self.light, self.object):
-                if section.color_of(before) != section.color_of(surface.paint):
-                    note_color(section.color_of(surface.paint))
+    def _take(self, color: Color) -> None:
+        self._paint(self._chosen, color)
+        self.session.tell(f"{self._chosen.title}: {in_digits(color)}")

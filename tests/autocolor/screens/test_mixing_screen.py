@@ -5,21 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import Mesh, Paint, Scene, scene_of
-from autocolor.files.recent import recent_colors
+from autocolor import Mesh, Paint, scene_of
 from autocolor.mapping.color_blending import blend_level
-from autocolor.scene.finishes import FINISHES, finished
-from autocolor.scene.swatches import COLUMNS, swatches
-from autocolor.screens.mixing_screen import BLEND, RECENT, SCALE, SMALL, SWATCH_LINES, SWATCHES, MixingScreen
-from autocolor.screens.viewer import Viewer
-from autocolor.widgets.areas import Area
+from autocolor.screens.mixing_screen import SCALE, SMALL, MixingScreen
+from autocolor.screens.paint_choices import SWATCHES
 from autocolor.widgets.colors import NIGHT
-from autocolor.widgets.level_bars import LANE
-from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.mixing import STRIP, ZERO, bar_is_right, line_of, mixing, ramps_are_right
 from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
 
-STRIP = Area(BLEND.left, BLEND.top + LANE, BLEND.right, BLEND.bottom - LANE)
-RAMPS = {"light source": Area(8, 24, 167, 119), "object": Area(8, 192, 167, 287)}
 BARS = {
     "light source, red": ("light_color", 0),
     "light source, green": ("light_color", 1),
@@ -28,55 +21,11 @@ BARS = {
     "object, green": ("object_color", 1),
     "object, blue": ("object_color", 2),
 }
-ZERO = 192
-"""The element of a bar at which a component is 0; each of the next is one more."""
-
-
-def mixing(scene: Scene, folder: Path) -> PaintingHand:
-    """A hand at the color mixing screen of a scene."""
-    hand = PaintingHand(Viewer(scene, Ramtek9300(), folder))
-    hand.turn_to("color mixing")
-    assert hand.viewer.page == "mixing"
-    return hand
 
 
 @pytest.fixture
 def hand(tmp_path: Path) -> PaintingHand:
     return mixing(boxes_scene(), tmp_path)
-
-
-def line_of(hand: PaintingHand, bar: str) -> int:
-    area = hand.widget(bar).area
-    return (area.top + area.bottom) // 2
-
-
-def ramps_are_right(hand: PaintingHand) -> bool:
-    """Whether step k of the 64 of each ramp is k / 63 of its color, rounded half up."""
-    steps = np.arange(160) * 64 // 160
-    paint = hand.paint
-    return all(
-        np.array_equal(
-            hand.colors(RAMPS[title]),
-            np.broadcast_to(np.floor(np.outer(steps, color) / 63 + 0.5), (96, 160, 3)),
-        )
-        for title, color in (("light source", paint.light_color), ("object", paint.object_color))
-    )
-
-
-def bar_is_right(hand: PaintingHand, most_off: int = 0) -> bool:
-    """Whether the blend bar has the entries of the surface's levels, rising to the right."""
-    first, levels = hand.viewer.studio.level_ranges[hand.viewer.session.surface_name]
-    entries = hand.viewer.studio.entries[first : first + levels]
-    wanted = np.floor(np.arange(STRIP.width) * (levels - 1) / (STRIP.width - 1) + 0.5).astype(int)
-    seen = hand.colors(STRIP)
-    return all(
-        any(
-            np.array_equal(seen[line, element], entries[np.clip(level + off, 0, levels - 1)])
-            for off in range(-most_off, most_off + 1)
-        )
-        for line in (0, STRIP.height - 1)
-        for element, level in enumerate(wanted)
-    )
 
 
 def test_the_ramps_show_all_intensities_of_both_colors(hand: PaintingHand) -> None:
@@ -187,57 +136,6 @@ def test_the_bar_between_sets_the_blend(hand: PaintingHand) -> None:
     # A drag that leaves the bar stays at its end.
     hand.drag((300, STRIP.top), (300, 20), (0, 20))
     assert hand.paint.blend == 0
-
-
-def test_a_swatch_is_a_paint_for_the_chosen_color(hand: PaintingHand) -> None:
-    hand.pick("swatches")
-    hand.click(SWATCHES.left + 16 * 3 + 4, SWATCHES.top + SWATCH_LINES * 4 + 4)
-    assert hand.paint.object_color == tuple(swatches()[4 * COLUMNS + 3])
-    hand.pick("light source heading")
-    hand.click(SWATCHES.left + 16 * 19 + 4, SWATCHES.top + 4)
-    assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
-    # A click on the ramp chooses, too.
-    hand.click(30, 220)
-    hand.drag((SWATCHES.left + 4, SWATCHES.top + 4), (SWATCHES.left + 40, SWATCHES.top + 20))
-    assert hand.paint.object_color == tuple(swatches()[COLUMNS + 2])
-    assert hand.paint.light_color == tuple(swatches()[COLUMNS - 1])
-
-
-def test_every_swatch_is_shown_in_its_color(hand: PaintingHand) -> None:
-    hand.pick("swatches")
-    for number, color in enumerate(swatches()):
-        row, column = divmod(number, COLUMNS)
-        left, top = SWATCHES.left + 16 * column, SWATCHES.top + SWATCH_LINES * row
-        cell = Area(left, top, left + 14, top + SWATCH_LINES - 2)
-        assert (hand.colors(cell) == color).all()
-    assert ramps_are_right(hand)
-    assert bar_is_right(hand)
-
-
-@pytest.mark.parametrize("name", FINISHES)
-def test_a_finish_keeps_the_object_color(hand: PaintingHand, name: str) -> None:
-    before = hand.viewer.studio.scene.surface("box 0")
-    hand.pick(name)
-    after = hand.viewer.studio.scene.surface("box 0")
-    assert after == before.replace(**finished(before, name))
-    assert ramps_are_right(hand)
-    assert bar_is_right(hand)
-
-
-def test_what_was_mixed_is_among_the_recent_colors_when_the_mixing_ends(hand: PaintingHand) -> None:
-    hand.click(ZERO + 99, line_of(hand, "object, green"))
-    hand.click(ZERO + 100, line_of(hand, "object, green"))
-    assert recent_colors() == ()
-    hand.leave()
-    assert recent_colors() == ((176, 100, 32),)
-    hand.turn_to("color mixing")
-    # Another surface takes it over.
-    hand.pick("surface")
-    assert (
-        hand.colors(Area(RECENT.left, RECENT.top, RECENT.left + 20, RECENT.top + 20)) == [176, 100, 32]
-    ).all()
-    hand.click(RECENT.left + 5, RECENT.top + 5)
-    assert hand.paint.object_color == (176, 100, 32)
 
 
 @pytest.mark.parametrize(("count", "levels"), [(1, None), (2, None), (60, None), (2, 1005)])
