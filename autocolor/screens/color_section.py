@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Final, NamedTuple
 
-import numpy as np
-
 from autocolor.arrays import Words
 from autocolor.checks import Color
 from autocolor.errors import UsageError
@@ -23,7 +21,8 @@ from autocolor.screens.session import Session
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLUE, GREEN, RED, WHITE
 from autocolor.widgets.component_bars import ComponentBar
-from autocolor.widgets.items import Item, image
+from autocolor.widgets.items import Item
+from autocolor.widgets.level_bars import level_strip
 from autocolor.widgets.widget import ROW_LINES, Button, Entry, Widget
 
 LEFT: Final = 8
@@ -82,9 +81,7 @@ class ColorSection:
 
     def items(self, ramp: Words) -> list[Item]:
         """The ramp in its words, from the lowest intensity at the left."""
-        steps = np.arange(self.ramp.width) * len(ramp) // self.ramp.width
-        words = np.broadcast_to(ramp[steps], (self.ramp.height, self.ramp.width))
-        return [image(words, self.ramp.left, self.ramp.top)]
+        return [level_strip(ramp.tobytes(), self.ramp)]
 
     def widgets(self, paint: Paint, is_chosen: bool) -> list[Widget]:
         """The heading, and the bars."""

@@ -26,7 +26,10 @@ LANE: Final = 8
 REACH: Final = 4
 """Elements or lines from the middle of a handle to its ends."""
 
-RIGHT, DOWN, LEFT, UP = range(4)
+RIGHT: Final = 0
+DOWN: Final = 1
+LEFT: Final = 2
+UP: Final = 3
 """Where a pointer points."""
 
 
@@ -65,7 +68,7 @@ class LevelBar(Widget):
     def items(self, lit: bool) -> list[Item]:
         strip, ink = self.strip, YELLOW if lit else WHITE
         along = half_up(self.level * (self._length - 1) / (len(self.words) - 1))
-        found = [filled(strip.inset(-1), BLACK), _strip(self.words.tobytes(), strip, self.upright)]
+        found = [filled(strip.inset(-1), BLACK), level_strip(self.words.tobytes(), strip, self.upright)]
         if not self.upright:
             element = strip.left + along
             down, up = pointer(element, strip.top - 2, DOWN, ink), pointer(element, strip.bottom + 2, UP, ink)
@@ -142,11 +145,10 @@ _RIGHT: Final = _triangle()
 _POINTERS: Final = (_RIGHT, _RIGHT.T, _RIGHT[:, ::-1], _RIGHT.T[::-1])
 
 
-@lru_cache(maxsize=8)
-def _strip(data: bytes, area: Area, upright: bool) -> Item:
-    """The levels in their words, of an area whose last level is at its right or at its top."""
+@lru_cache(maxsize=16)
+def level_strip(data: bytes, area: Area, upright: bool = False) -> Item:
+    """Levels in their words, given as the bytes of `Words`: the last one is at the right, or at the top."""
     words = np.frombuffer(data, np.uint16)
     along = words[levels_along(area.height if upright else area.width, len(words))]
-    shape = area.height, area.width
-    filling = np.broadcast_to(along[::-1, None] if upright else along, shape)
+    filling = np.broadcast_to(along[::-1, None] if upright else along, (area.height, area.width))
     return image(filling, area.left, area.top)

@@ -36,7 +36,7 @@ def line_of(hand: PaintingHand, bar: str) -> int:
 
 def ramps_are_right(hand: PaintingHand) -> bool:
     """Whether step k of the 64 of each ramp is k / 63 of its color, rounded half up."""
-    steps = np.arange(160) * 64 // 160
+    steps = np.floor(np.arange(160) * 63 / 159 + 0.5)
     paint = hand.paint
     return all(
         np.array_equal(
