@@ -1,4 +1,4 @@
-"""From a movement of the pointer to its field: a color or a blend of the coupe is dragged, without a window."""
+"""From a movement of the pointer to its field, while a color or a blend of the coupe is dragged."""
 
 from __future__ import annotations
 
