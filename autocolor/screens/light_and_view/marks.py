@@ -13,6 +13,7 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
+from autocolor.scene.view import View
 from autocolor.screens.light_and_view.arrows import SHORTEST
 from autocolor.screens.light_and_view.eye_marks import LIDS, EyeMarks, eye_marks
 from autocolor.screens.light_and_view.kept import Kept
