@@ -15,14 +15,14 @@ must be recomputed and sent.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from os import fspath
 from time import perf_counter
-from typing import TYPE_CHECKING, NoReturn, Unpack
+from typing import NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.journal.history import History
+from autocolor.journal.studio_session import StudioSession
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
@@ -37,13 +37,8 @@ from autocolor.scene.surfaces import Paint
 from autocolor.sending import configuration_of, send_image
 from ramtek_emu import HostPort
 
-if TYPE_CHECKING:
-    from os import PathLike
 
-    from autocolor.scene.creation import SurfaceSource
-
-
-class Studio:
+class Studio(StudioSession):
     """A scene shown on a display, which can be edited step by step, with undo and redo.
 
     `display` is a host port: a `Ramtek9300`, a `TcpPort` to one, or a `Recorder`. It is reset and sent the
@@ -62,7 +57,6 @@ class Studio:
         self._shown = display_image(scene, self._rendering.picture)
         self._pace = 1, perf_counter() - begun
         """The block of the last picture that was computed from scratch, and the seconds it took."""
-        self._kept = self._history.start
         self.sends = True
         """Whether edits are sent to the display; programs that draw over the picture send it themselves."""
         self.send_everything()
@@ -71,11 +65,6 @@ class Studio:
     def scene(self) -> Scene:
         """The current scene."""
         return self._shown.scene
-
-    @property
-    def history(self) -> History:
-        """The steps of the session, of which `journal` makes a script."""
-        return self._history
 
     @property
     def picture(self) -> Picture:
@@ -131,12 +120,17 @@ class Studio:
         """Change fields of the view; everything is recomputed."""
         self.edit(self.scene.with_view(**changes))
 
-    def hold_exposure(self) -> None:
-        """Keep the intensity ranges of the current picture, so that less light looks darker from now on."""
-        self.refine()
-        self.edit(
-            self.scene.replace(exposure=held_exposure(self.picture, self.scene.scaling, self.scene.exposure))
-        )
+    def hold_exposure(self, ranges: Mapping[str, Sequence[float]] | None = None) -> None:
+        """Keep the intensity ranges of the current picture, so that less light looks darker from now on.
+
+        If `ranges` are given, as by a journal, these are kept: a minimum and a maximum by the surface's name.
+        """
+        if ranges is None:
+            self.refine()
+            held = held_exposure(self.picture, self.scene.scaling, self.scene.exposure)
+            self.edit(self.scene.replace(exposure=held))
+        else:
+            self.edit(self.scene.replace(exposure=ranges))
 
     def release_exposure(self) -> None:
         """Let the intensity ranges follow the picture again."""
@@ -171,30 +165,6 @@ class Studio:
         """Redo the last undone step; returns False if there is none."""
         return self._step(self._history.to_redo, self._history.redo)
 
-    @property
-    def is_changed(self) -> bool:
-        """Whether the scene differs from that with which the session began or that was saved last."""
-        return cost_of_edit(self._kept, self.scene) is not None
-
-    def keep(self) -> None:
-        """Mark the current scene as saved."""
-        self._kept = self.scene
-
-    def save(self, path: str | PathLike[str], overwrite: bool = False) -> None:
-        """Write the picture with its scene to a picture file, and mark the scene as saved."""
-        from autocolor.files.picture_file import write_picture
-
-        self.refine()
-        write_picture(path, self.picture, self.scene, overwrite=overwrite)
-        self.keep()
-
-    def save_scene(self, path: str | PathLike[str], overwrite: bool = False) -> None:
-        """Write the scene to a scene file (see `write_scene`), and mark it as saved."""
-        from autocolor.files.scene_writing import write_scene
-
-        write_scene(path, self.scene, overwrite=overwrite)
-        self.keep()
-
     def watch(self) -> Iterator[tuple[int, Words]]:
         """The lines of the picture from the top, each computed when it is asked for: its number and words.
 
@@ -208,18 +178,6 @@ class Studio:
         self.refine()
         return words_by_line(self._shown)
 
-    def journal(
-        self, path: str | PathLike[str], *, up: str = "z", surfaces: SurfaceSource = "materials"
-    ) -> str:
-        """The session as a Python script, one line a step, which `read_journal` reads without running it.
-
-        `path` is what the scene of the first step was read from, and `up` and `surfaces` are how. Raises
-        InputError if the mesh was changed since.
-        """
-        from autocolor.journal.script import Source, journal_text
-
-        return journal_text(self._history, Source(fspath(path), up, surfaces))
-
     def send_everything(self) -> None:
         """Reset the display and send all entries and all words."""
         send_image(self._display, self._shown)
@@ -232,9 +190,12 @@ class Studio:
     def _step(self, scenes: Sequence[Scene], move: Callable[[], None]) -> bool:
         if not scenes:
             return False
-        self._show(scenes[-1], cost_of_edit(self.scene, scenes[-1]) or Tier.NOTHING)
+        self._show_scene(scenes[-1])
         move()
         return True
+
+    def _show_scene(self, scene: Scene) -> None:
+        self._show(scene, cost_of_edit(self.scene, scene) or Tier.NOTHING)
 
     def _show(self, scene: Scene, costs: Tier, moving: bool = False) -> None:
         """Recompute and send what an edit changed. If that raises an error, the session is unchanged."""

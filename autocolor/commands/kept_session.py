@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -12,9 +11,9 @@ from typing import Final, NoReturn
 
 import click
 
+from autocolor.commands.left_sessions import when
 from autocolor.errors import AutocolorError
-from autocolor.journal.autosave import JOURNAL, Autosave, left_sessions
-from autocolor.journal.script import Source
+from autocolor.journal.autosave import Autosave, left_sessions
 from autocolor.screens.viewer import Viewer
 
 ENDING: Final = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
@@ -25,13 +24,13 @@ BY_SIGNAL: Final = 128
 
 
 @contextmanager
-def kept_session(viewer: Viewer, source: Source, left: Path | None = None) -> Iterator[Callable[[], None]]:
+def kept_session(viewer: Viewer, left: Path | None = None) -> Iterator[Callable[[], None]]:
     """Keep the journal of the session of a viewer; the function that is given must be called often.
 
     A journal that cannot be written is told once, and sessions that were left before on stderr. `left` is the
     folder of one that is gone on with. SIGTERM and SIGHUP end the program at once, and leave the journal.
     """
-    autosave = Autosave(source, left)
+    autosave = Autosave(left)
     _tell_left(viewer)
     told: set[str] = set()
 
@@ -66,9 +65,11 @@ def _tell_left(viewer: Viewer) -> None:
     left = left_sessions()
     if not left:
         return
-    when = time.strftime("%Y-%m-%d %H:%M", time.localtime((left[0] / JOURNAL).stat().st_mtime))
-    what = "a session" if len(left) == 1 else f"{len(left)} sessions, the last one"
+    many = len(left) > 1
+    what = f"{len(left)} sessions, the last one" if many else "a session"
     click.echo(
-        f"autocolor: {what} of {when} did not end orderly; `autocolor view --recover` opens it", err=True
+        f"autocolor: {what} of {when(left[0])}, did not end orderly; `autocolor view --recover` opens it,"
+        f" `--sessions` lists {'them' if many else 'it'}, `--forget` removes {'one' if many else 'it'}",
+        err=True,
     )
     viewer.tell("a session did not end orderly: autocolor view --recover opens it")

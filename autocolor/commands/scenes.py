@@ -28,17 +28,18 @@ class SceneSource(NamedTuple):
     strict: bool = False
 
 
-def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
+def scene_options(command: Callable[..., Any], required: bool = True) -> Callable[..., Any]:
     """A decorator that adds the argument and options of commands that read a scene.
 
-    The command gets them as one value, `source`, a SceneSource.
+    The command gets them as one value, `source`, a SceneSource; None if none is named and none `required`.
     """
 
     @wraps(command)
     def with_source(
-        *arguments: Any, scene: str, up: str, surfaces: SurfaceSource, strict: bool, **options: Any
+        *arguments: Any, scene: str | None, up: str, surfaces: SurfaceSource, strict: bool, **options: Any
     ) -> Any:
-        return command(*arguments, source=SceneSource(scene, up, surfaces, strict), **options)
+        source = None if scene is None else SceneSource(scene, up, surfaces, strict)
+        return command(*arguments, source=source, **options)
 
     decorated: Callable[..., Any] = with_source
     for decorate in (
@@ -58,7 +59,7 @@ def scene_options(command: Callable[..., Any]) -> Callable[..., Any]:
             show_default=True,
             help="Where surfaces that are not given come from: materials of the mesh, or one for each part.",
         ),
-        click.argument("scene", type=click.Path(), shell_complete=complete_scenes),
+        click.argument("scene", type=click.Path(), required=required, shell_complete=complete_scenes),
     ):
         decorated = decorate(decorated)
     return decorated

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import click
 
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.commands.settings import created_again, set_option, with_settings
+from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
     from autocolor.journal.history import History
-    from autocolor.journal.script import Source
-    from autocolor.scene.scene import Scene
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import Ramtek9300
     from ramtek_emu.monitor.window import Monitor
@@ -30,78 +30,75 @@ Examples:
 
 
 @click.command(epilog=EXAMPLES)
-@scene_options
+@partial(scene_options, required=False)
 @set_option
 @click.option(
     "--recover",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=lambda context, _, asked: recover(context) if asked else None,
-    help="Go on with the last session that did not end orderly; without SCENE.",
+    is_flag=False,
+    flag_value="newest",
+    metavar="[SESSION]",
+    help="Go on with the newest session that did not end orderly, or with another; without SCENE.",
 )
+@click.option("--sessions", is_flag=True, help="List the sessions that did not end orderly.")
+@click.option("--forget", metavar="SESSION", help="Remove a session that did not end orderly.")
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @click.pass_context
 def view(
     context: click.Context,
-    source: SceneSource,
+    source: SceneSource | None,
     settings: tuple[str, ...],
+    recover: str | None,
+    sessions: bool,
+    forget: str | None,
     full_screen: bool,
     fit: bool,
 ) -> None:
     """Show SCENE in an interactive window; press F1 there for a list of keys."""
-    from autocolor.journal.script import Source
+    asked = [source is not None, recover is not None, sessions, forget is not None]
+    if sum(asked) != 1:
+        raise UsageError(
+            f"view must have one of SCENE, --recover, --sessions and --forget, not {sum(asked)}; name a scene"
+        )
+    if settings and source is None:
+        raise UsageError("--set is for SCENE, not for sessions; leave it out")
+    if sessions or forget is not None:
+        from autocolor.commands.left_sessions import forget_session, list_sessions
 
-    report = read(source)
-    edited = created_again(report, with_settings(report.scene, settings))
-    show(edited, Source(source.path, source.up, source.surfaces), full_screen, fit)
-    context.exit(ended(report, source))
+        list_sessions() if forget is None else forget_session(forget)
+    elif recover is not None:
+        from autocolor.commands.left_sessions import chosen_session
+
+        folder, session = chosen_session(recover)
+        show(session.history, full_screen, fit, folder)
+    elif source is not None:
+        from autocolor.journal.history import History
+        from autocolor.journal.places import Source, place_of
+
+        place = place_of(Source(source.path, source.up, source.surfaces))
+        report = read(source)
+        edited = created_again(report, with_settings(report.scene, settings))
+        show(History(edited, place), full_screen, fit)
+        context.exit(ended(report, source))
 
 
 def show_demo() -> None:
     """Show the built-in demo in a window."""
     from autocolor.commands.demo import demo_folder
     from autocolor.files.scene_sources import read_scene
-    from autocolor.journal.script import Source
+    from autocolor.journal.history import History
+    from autocolor.journal.places import Place, Source
 
     folder = demo_folder()
-    show(read_scene(folder), Source(str(folder)))
+    # The demo was not named by the user: it is saved to new files, wherever it is.
+    show(History(read_scene(folder), Place(Source(str(folder)))))
 
 
-def recover(context: click.Context) -> None:
-    """Go on with the last session that did not end orderly, and exit."""
-    from autocolor.errors import InputError, MissingInputError
-    from autocolor.journal.autosave import JOURNAL, left_sessions
-    from autocolor.journal.reading import read_journal
+def show(history: History, full_screen: bool = False, fit: bool = False, left: Path | None = None) -> None:
+    """Show the scene of a session in a window until that is closed.
 
-    if context.resilient_parsing:
-        return
-    for left in left_sessions():
-        try:
-            session = read_journal(left / JOURNAL)
-        except InputError as error:
-            click.echo(f"autocolor: {left}: {error}", err=True)
-        else:
-            show(session.history, session.source, left=left)
-            context.exit()
-    raise MissingInputError(
-        "--recover: there must be a session that did not end orderly and can be read, and there is none;"
-        " name a scene"
-    )
-
-
-def show(
-    scene: Scene | History,
-    source: Source,
-    full_screen: bool = False,
-    fit: bool = False,
-    left: Path | None = None,
-) -> None:
-    """Show a scene, or the session whose folder was left, in a window until that is closed.
-
-    `source` is what the first scene was read from. The journal of the session is kept in the state folder
-    until then. Raises UnavailableError if there is no screen.
+    The journal of the session is kept in the state folder until then; `left` is its folder there if it was
+    left before. Raises UnavailableError if there is no screen.
     """
     from autocolor.commands.kept_session import kept_session
     from autocolor.errors import UnavailableError
@@ -113,8 +110,8 @@ def show(
         # Fail before rendering if there is no screen.
         open_screen()
         display = Ramtek9300()
-        viewer = Viewer(scene, display)
-        with kept_session(viewer, source, left) as update:
+        viewer = Viewer(history, display)
+        with kept_session(viewer, left) as update:
             monitor_of(viewer, display, full_screen, fit, update).run()
     except NoScreenError as error:
         raise UnavailableError(f"{error}; `autocolor render SCENE -o PNG` renders without a screen") from None

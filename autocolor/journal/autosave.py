@@ -1,6 +1,7 @@
 """The journal of a session that is kept in the state folder until the session ends orderly.
 
-Each session has a folder of its own there: the journal, a lock, and the first scene if that is in no file.
+Each session has a folder of its own there: the journal, a lock, the first scene if that is in no file, and
+the meshes that were changed.
 The journal is written anew in one piece, so that whatever ends the program leaves a whole one. The lock goes
 with the program: a session whose lock is free is one that did not end orderly.
 """
@@ -21,8 +22,9 @@ from autocolor.files.scene_writing import write_scene
 from autocolor.files.state_folder import state_folder
 from autocolor.files.writing import write_atomically
 from autocolor.journal.history import History, Step
-from autocolor.journal.script import Source, first_lines, step_line
-from autocolor.scene.scene import Scene
+from autocolor.journal.meshes_beside import MeshesBeside
+from autocolor.journal.places import Source
+from autocolor.journal.script import first_lines, step_line
 
 SESSIONS: Final = "sessions"
 JOURNAL: Final = "session.py"
@@ -36,17 +38,16 @@ SECONDS_BETWEEN: Final = 1.0
 class Autosave:
     """Keeps the journal of one running session; nothing is written before its first step.
 
-    `source` is what the first scene was read from, None for a scene that is in no file. `folder` is that of a
-    session that was left, which is gone on with.
+    `folder` is that of a session that was left, which is gone on with.
     """
 
-    def __init__(self, source: Source | None, folder: Path | None = None) -> None:
-        self._source = source
+    def __init__(self, folder: Path | None = None) -> None:
         self._folder = folder
         self._lock = None if folder is None else _locked(folder)
         self._history: History | None = None
         self._first_lines: list[str] = []
         self._lines: list[tuple[Step, str]] = []
+        self._beside = MeshesBeside(folder)
         self._written: tuple[int, Step | None] = 0, None
         self._written_at = -SECONDS_BETWEEN
 
@@ -66,8 +67,8 @@ class Autosave:
         with _told():
             folder = self._own_folder()
             if not self._first_lines:
-                self._first_lines = first_lines(history.start, self._source_of(history.start, folder))
-            text = "\n".join([*self._first_lines, *self._step_lines(steps), ""])
+                self._first_lines = first_lines(history.start, _source_of(history, folder))
+            text = "\n".join([*self._first_lines, *self._step_lines(history), ""])
             write_atomically(folder / JOURNAL, text.encode(), overwrite=True)
         self._written = now
 
@@ -84,9 +85,7 @@ class Autosave:
     def _begin(self, history: History) -> None:
         """Begin with another session, such as that of a scene that was opened."""
         if self._history is not None:
-            # It is in the file that was opened, which is not told here: its scene is saved beside.
             self.end()
-            self._source = None
         self._history, self._first_lines, self._lines, self._written = history, [], [], (0, None)
 
     def _own_folder(self) -> Path:
@@ -97,23 +96,27 @@ class Autosave:
             folder = sessions / f"{time.strftime('%Y-%m-%d-%H%M%S')}-{os.getpid()}-{time.time_ns():x}"
             folder.mkdir(mode=0o700)
             self._folder, self._lock = folder, lock_file(folder / LOCK)
+            self._beside = MeshesBeside(folder)
         return self._folder
 
-    def _source_of(self, start: Scene, folder: Path) -> Source:
-        """What the first scene can be read from; it is saved beside the journal if it is in no file."""
-        if self._source is None:
-            path = folder / FIRST_SCENE
-            write_scene(path, start, overwrite=True)
-            self._source = Source(str(path))
-        return self._source
-
-    def _step_lines(self, steps: list[Step]) -> list[str]:
+    def _step_lines(self, history: History) -> list[str]:
         """The lines of the steps; only those of steps that are new are made."""
-        kept = self._lines
+        kept, steps = self._lines, history.steps
         while kept and (len(kept) > len(steps) or kept[-1][0] is not steps[len(kept) - 1]):
             kept.pop()
-        kept.extend((step, step_line(step)) for step in steps[len(kept) :])
+        # One by one: if a mesh cannot be saved, the lines before are not made again.
+        for step in steps[len(kept) :]:
+            kept.append((step, step_line(step, history.start, self._beside)))
         return [line for _, line in kept]
+
+
+def _source_of(history: History, folder: Path) -> Source:
+    """What the first scene can be read from; it is saved beside the journal if it is in no file."""
+    source = history.first_place.source
+    if source is None:
+        source = Source(str(folder / FIRST_SCENE))
+        write_scene(source.path, history.start, overwrite=True)
+    return source
 
 
 def left_sessions() -> list[Path]:
@@ -124,6 +127,11 @@ def left_sessions() -> list[Path]:
         return [folder for folder in folders if _is_left(folder)]
     except (OSError, AutocolorError):
         return []
+
+
+def forget(folder: Path) -> None:
+    """Remove a session that was left. Raises WriteError if another program goes on with it."""
+    Autosave(folder).end()
 
 
 def _is_left(folder: Path) -> bool:

@@ -6,28 +6,28 @@
     studio = autocolor.Studio(scene, Ramtek9300())
     studio.recolor('body', blend=0.5)
     studio.edit(studio.scene.with_light('key', on=False), same_step=True)
+    studio.open('/home/ann/car.obj', up='y', surfaces='parts', tables={...}, checksum='03ab...')
+    studio.edit(studio.scene.replace(mesh=autocolor.read_scene('/home/ann/scene-2').mesh, parts=[...]))
+    studio.keep_variant('A')
+    studio.mark_saved({'/home/ann/car/scene.toml': '77d0...', '/home/ann/car.npz': 'c1e9...'})
     studio.undo()
 
-What a step changed is told by the columns (see `difference`).
+What a step changed is told by the columns (see `difference`); a changed mesh is saved beside the journal.
 """
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
-import numpy as np
-
-from autocolor.errors import InputError
-from autocolor.files.plain_scene import plain_scene
-from autocolor.journal.history import Edit, History, Step
-from autocolor.scene.columns.column import Row, fields_of
+from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
+from autocolor.journal.meshes_beside import MeshesBeside
+from autocolor.journal.opening import checksum_of
+from autocolor.journal.places import Source
+from autocolor.scene.columns.column import fields_of
 from autocolor.scene.columns.rows import difference, plain
-from autocolor.scene.creation import SurfaceSource
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import AUTO, Scene
 from autocolor.scene.surfaces import Paint
 
 HEADER: Final = (
@@ -36,6 +36,9 @@ HEADER: Final = (
     "from ramtek_emu import Ramtek9300",
 )
 STUDIO: Final = "studio = autocolor.Studio(scene, Ramtek9300())"
+
+FIRST_MESH: Final = "scene.mesh"
+"""The mesh of the first scene."""
 
 ROW_METHODS: Final = {"parts": "with_part", "surfaces": "with_surface", "lights": "with_light"}
 """The methods of a scene that change one row of a table."""
@@ -50,14 +53,6 @@ SHORT: Final = {
 """The methods of a studio that edit its scene by one of a scene."""
 
 
-class Source(NamedTuple):
-    """What the first scene of a session is read from, and how (see `read_scene`)."""
-
-    path: str
-    up: str = "z"
-    surfaces: SurfaceSource = "materials"
-
-
 class Call(NamedTuple):
     """A call of a method of a scene, by which an edit makes another."""
 
@@ -66,12 +61,13 @@ class Call(NamedTuple):
     changes: Mapping[str, object]
 
 
-def journal_text(history: History, source: Source) -> str:
-    """The journal of a session as a script.
+def journal_text(history: History, source: Source, beside: MeshesBeside) -> str:
+    """The journal of a session as a script; meshes that were changed are saved `beside` it.
 
-    Raises InputError if the mesh was changed, which no line tells: save the scene, and begin with that.
+    Raises InputError if one was changed and there is no folder for it; OutputError or WriteError.
     """
-    return "\n".join([*first_lines(history.start, source), *map(step_line, history.steps), ""])
+    steps = (step_line(step, history.start, beside) for step in history.steps)
+    return "\n".join([*first_lines(history.start, source), *steps, ""])
 
 
 def first_lines(start: Scene, source: Source) -> list[str]:
@@ -91,26 +87,58 @@ def first_lines(start: Scene, source: Source) -> list[str]:
     ]
 
 
-def step_line(step: Step) -> str:
-    """The line of a journal that takes a step. Raises InputError if the mesh was changed."""
-    if not isinstance(step, Edit):
-        return f"studio.{step}()"
-    _refuse_another_mesh(step.before, step.after)
+def step_line(step: Step, start: Scene, beside: MeshesBeside) -> str:
+    """The line of a journal that takes a step; `start` is the first scene. Raises as `journal_text`."""
+    match step:
+        case Edit():
+            return _edit_line(step, start, beside)
+        case Open(scene, source):
+            options = {**_options(source), "tables": plain(scene), "checksum": checksum_of(scene)}
+            return f"studio.open({_arguments((os.path.abspath(source.path),), options)})"
+        case Keep(name):
+            return f"studio.keep_variant({literal(name)})"
+        case Show(name):
+            return f"studio.show_variant({literal(name)})"
+        case Drop(name):
+            return f"studio.drop_variant({literal(name)})"
+        case Saved():
+            return f"studio.mark_saved({literal(step.files)})"
+        case _:
+            return f"studio.{step}()"
+
+
+def _edit_line(step: Edit, start: Scene, beside: MeshesBeside) -> str:
     method, names, changes = call_between(step.before, step.after)
     arguments = _arguments(names, changes)
-    if step.joins:
-        return f"studio.edit(studio.scene.{method}({arguments}), same_step=True)"
-    if method == "with_surface" and changes.keys() <= fields_of(Paint).keys():
+    if step.before.mesh is not step.after.mesh:
+        mesh = _mesh_expression(step.after, start, beside)
+        arguments = ", ".join([f"mesh={mesh}", *([arguments] if arguments else [])])
+    elif step.joins:
+        pass
+    elif method == "with_surface" and changes.keys() <= fields_of(Paint).keys():
         return f"studio.recolor({arguments})"
-    if method in SHORT:
+    elif method in SHORT:
         return f"studio.{SHORT[method]}({arguments})"
-    return f"studio.edit(studio.scene.{method}({arguments}))"
+    elif changes == {"exposure": AUTO}:
+        return "studio.release_exposure()"
+    elif changes.keys() == {"exposure"}:
+        return f"studio.hold_exposure({literal(changes['exposure'])})"
+    same_step = ", same_step=True" if step.joins else ""
+    return f"studio.edit(studio.scene.{method}({arguments}){same_step})"
+
+
+def _mesh_expression(scene: Scene, start: Scene, beside: MeshesBeside) -> str:
+    """The expression that gives the mesh of a scene, of which no column tells."""
+    if scene.mesh is start.mesh:
+        return FIRST_MESH
+    path = os.path.abspath(beside.path_of(scene))
+    return f"autocolor.read_scene({literal(path)}).mesh"
 
 
 def call_between(before: Scene, after: Scene) -> Call:
     """The narrowest call of a method of a scene that makes another of it."""
     changes = difference(before, after)
-    if len(changes) == 1:
+    if len(changes) == 1 and before.mesh is after.mesh:
         (table,) = changes
         if table == "view":
             return Call("with_view", (), difference(before.view, after.view))
@@ -143,15 +171,6 @@ def _light_call(lights: tuple[Any, ...], others: tuple[Any, ...]) -> Call | None
     return None
 
 
-def checksum_of(scene: Scene) -> str:
-    """The SHA-256 of all values of a scene, its mesh included, in hexadecimal digits."""
-    digest = hashlib.sha256(json.dumps(plain_scene(scene), sort_keys=True).encode())
-    mesh = scene.mesh
-    for array, kind in ((mesh.coordinates, "<f8"), (mesh.node_numbers, "<i8"), (mesh.part_numbers, "<i8")):
-        digest.update(np.ascontiguousarray(array, kind).tobytes())
-    return digest.hexdigest()
-
-
 def literal(value: object) -> str:
     """A plain value as Python writes it, and `ast.literal_eval` reads it; infinity is 1e999.
 
@@ -174,10 +193,3 @@ def _arguments(names: tuple[str, ...], changes: Mapping[str, object]) -> str:
 
 def _options(source: Source) -> dict[str, object]:
     return {"up": source.up, "surfaces": source.surfaces}
-
-
-def _refuse_another_mesh(before: Row, after: Row) -> None:
-    if vars(before)["mesh"] is not vars(after)["mesh"]:
-        raise InputError(
-            "a journal must keep to one mesh, and this session changed it; save the scene, and begin with it"
-        )

@@ -519,7 +519,7 @@ def test_a_studio_knows_whether_its_scene_is_saved() -> None:
     assert not studio.is_changed
     studio.recolor("body", blend=0.1)
     assert studio.is_changed
-    studio.keep()
+    studio.mark_saved()
     assert not studio.is_changed
     studio.undo()
     assert studio.is_changed

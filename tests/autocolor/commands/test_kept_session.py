@@ -15,7 +15,6 @@ import pytest
 from autocolor import read_journal
 from autocolor.commands.kept_session import kept_session
 from autocolor.journal.autosave import JOURNAL
-from autocolor.journal.script import Source
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.commands.conftest import Run
@@ -112,7 +111,10 @@ def test_a_program_that_is_ended_from_outside_leaves_every_step_to_be_recovered(
     _, err = process.communicate(timeout=30)
     assert process.returncode == 0
     assert err.startswith("autocolor: a session of 2")
-    assert err.endswith(" did not end orderly; `autocolor view --recover` opens it\n")
+    assert err.endswith(
+        ", did not end orderly; `autocolor view --recover` opens it, `--sessions` lists it, `--forget`"
+        " removes it\n"
+    )
 
     process = start("close", "view", "--recover", folder=folder)
     out, err = process.communicate(timeout=30)
@@ -153,7 +155,7 @@ def test_a_journal_that_cannot_be_written_is_told_once_and_the_session_goes_on(s
     state.parent.mkdir(parents=True)
     state.write_text("no folder")
     viewer = Viewer(car(), Ramtek9300(SMALL))
-    with kept_session(viewer, Source("car")) as update:
+    with kept_session(viewer) as update:
         viewer.on_key("c", typed="c")
         update()
         assert viewer.message.startswith("the journal of the session must be kept in the state folder, and")
@@ -170,7 +172,7 @@ def test_an_error_leaves_the_journal(state: Path) -> None:
     before = signal.getsignal(signal.SIGTERM)
 
     def fail() -> None:
-        with kept_session(viewer, Source("car")):
+        with kept_session(viewer):
             viewer.on_key("c", typed="c")
             raise ZeroDivisionError
 

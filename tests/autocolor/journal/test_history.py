@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.journal.history import Edit, History
+from autocolor.journal.places import Place, Source
+from autocolor.journal.variants import Opened
 from tests.autocolor.sessions import car
 
 CAR = car()
@@ -73,3 +76,40 @@ def test_an_edit_after_an_undo_begins_a_step_and_forgets_what_was_undone() -> No
     history.take(SCENES[2], same_step=True)
     assert history.to_redo == ()
     assert history.steps == [Edit(SCENES[0], SCENES[1]), "undo", Edit(SCENES[0], SCENES[2])]
+
+
+def test_each_place_knows_what_was_saved_of_it() -> None:
+    history = History(SCENES[0])
+    first = history.place
+    history.take(SCENES[1])
+    source = Source("other.obj")
+    history.open(Opened(SCENES[2], Place(source)), source)
+    assert (history.place.source, history.is_changed, history.left_unsaved) == (source, False, ("scene",))
+    history.mark_saved({"other.npz": "9f"})
+    history.undo()
+    assert history.place is first
+    assert (history.is_changed, history.saved.files, history.left_unsaved) == (True, {}, ())
+    history.mark_saved({"first.npz": "77"})
+    history.redo()
+    assert (history.saved.files, history.left_unsaved) == ({"other.npz": "9f"}, ())
+
+
+def test_what_is_nothing_to_undo_leaves_a_drag_one_step() -> None:
+    history = History(SCENES[0])
+    history.take(SCENES[1])
+    history.keep("A")
+    history.mark_saved()
+    history.take(SCENES[2], same_step=True)
+    assert history.to_undo == (SCENES[0],)
+    history.show("A")
+    assert history.scene is SCENES[1]
+    history.undo()
+    assert history.scene is SCENES[2]
+
+
+def test_there_is_nothing_to_undo_at_the_beginning() -> None:
+    history = History(SCENES[0])
+    for move in (history.undo, history.redo):
+        with pytest.raises(IndexError):
+            move()
+    assert (history.to_undo, history.to_redo, history.steps) == ((), (), [])

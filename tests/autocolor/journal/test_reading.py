@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import autocolor
 from autocolor import InputError, MissingInputError, Studio, read_journal, read_scene
-from autocolor.journal import reading
+from autocolor.journal import lines, reading
 from autocolor.journal.reading import session_of
 from autocolor.journal.script import HEADER, STUDIO
 from ramtek_emu import Ramtek9300
@@ -151,8 +151,8 @@ def test_a_mesh_that_was_changed_since_or_is_gone_is_told(text: str, folder: Pat
     try:
         path.write_text(before.replace("v ", "v 1", 1))
         assert refusal(text) == (
-            f"journal, line 7: {folder / 'car'} must hold the mesh with which the session began, and it was"
-            " changed since; bring the old file back"
+            f"journal, line 7: {folder / 'car'} must hold the mesh that it held when it was opened, and it"
+            " was changed since; bring the old file back"
         )
     finally:
         path.write_text(before)
@@ -161,7 +161,7 @@ def test_a_mesh_that_was_changed_since_or_is_gone_is_told(text: str, folder: Pat
 
 
 def test_long_lines_and_many_are_refused(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(reading, "LONGEST_LINE", 5000)
+    monkeypatch.setattr(lines, "LONGEST_LINE", 5000)
     problem = refusal(f"{text}studio.undo({'1,' * 5000})\n")
     assert problem == "journal, line 10: it must be at most 5,000 characters, not 10,013; remove it"
     monkeypatch.setattr(reading, "MOST_STEPS", 20)

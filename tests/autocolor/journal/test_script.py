@@ -7,20 +7,24 @@ import contextlib
 import math
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import autocolor
-from autocolor import InputError, Mesh, Scene, Studio, UsageError, View, read_journal, read_scene
-from autocolor.journal.history import Edit
+from autocolor import InputError, Mesh, Scene, Studio, UsageError, View, read_journal, read_scene, scene_of
+from autocolor.journal.history import Drop, Edit, Keep, Open, Saved, Show, Step
+from autocolor.journal.meshes_beside import MeshesBeside
+from autocolor.journal.opening import checksum_of
+from autocolor.journal.places import Source
 from autocolor.journal.reading import session_of
-from autocolor.journal.script import call_between, checksum_of, literal, step_line
+from autocolor.journal.script import call_between, literal, step_line
 from autocolor.scene.new_lights import new_light_of
 from autocolor.scene.scene import AUTO
 from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import cube
 from tests.autocolor.sessions import SMALL, car, held
 from tests.autocolor.strategies import MAPPINGS, colors, exposures, lights, numbers, surfaces, views
 from tests.autocolor.test_studio import any_edits, apply, recolorings
@@ -53,6 +57,11 @@ columns_of_scenes = st.fixed_dictionaries(
         "name": st.sampled_from(["scene", "a 'name'\n", "\N{SNOWMAN}"]),
     },
 )
+OTHER = scene_of(cube(), name="other")
+LARGER = CAR.replace(
+    mesh=Mesh(CAR.mesh.coordinates * 2, CAR.mesh.node_numbers, CAR.mesh.part_numbers, CAR.mesh.part_names, 17)
+)
+
 moves = (
     any_edits
     | recolorings
@@ -60,11 +69,15 @@ moves = (
     | st.tuples(st.sampled_from(["undo", "redo"]), st.none(), st.none())
     | st.tuples(st.just("add_light"), st.sampled_from(NAMES), lights())
     | st.tuples(st.just("remove_light"), st.sampled_from(NAMES), st.none())
+    | st.tuples(st.just("open"), st.sampled_from(["car", "box.obj"]), st.sampled_from(["materials", "parts"]))
+    | st.tuples(st.just("mesh"), st.booleans(), st.sampled_from([CAR, LARGER, OTHER]))
+    | st.tuples(st.sampled_from(["keep", "show", "drop"]), st.sampled_from("AB"), st.none())
+    | st.tuples(st.sampled_from(["hold", "release", "saved"]), st.none(), st.none())
 )
 
 
-def do(studio: Studio, move: tuple[str, Any, Any]) -> None:
-    """Make a move of a session, unless it is refused."""
+def do(studio: Studio, move: tuple[str, Any, Any], folder: Path) -> None:
+    """Make a move of a session, unless it is refused. Files to open are in a folder."""
     kind, what, value = move
     with contextlib.suppress(InputError, UsageError):
         if kind == "columns":
@@ -75,6 +88,16 @@ def do(studio: Studio, move: tuple[str, Any, Any]) -> None:
             studio.edit(studio.scene.replace(lights=(*studio.scene.lights, value.replace(name=what))))
         elif kind == "remove_light":
             studio.remove_light(what)
+        elif kind == "open":
+            studio.open(folder / what, surfaces=value)
+        elif kind == "mesh":
+            studio.edit(value, same_step=what)
+        elif kind in ("keep", "show", "drop"):
+            getattr(studio, f"{kind}_variant")(what)
+        elif kind in ("hold", "release"):
+            getattr(studio, f"{kind}_exposure")()
+        elif kind == "saved":
+            studio.mark_saved({"/car/scene.toml": "9f"})
         else:
             apply(studio, move)
 
@@ -83,6 +106,7 @@ def do(studio: Studio, move: tuple[str, Any, Any]) -> None:
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("journal") / "car"
     autocolor.write_scene(folder, CAR)
+    (folder.parent / "box.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 1 1\ng a\nf 1 2 3\ng b\nf 1 3 4\n")
     return folder
 
 
@@ -97,35 +121,55 @@ def run_script(text: str) -> tuple[Studio, Ramtek9300]:
     return studio, display
 
 
-def states(studio: Studio, display: Ramtek9300) -> list[tuple[bytes, bytes]]:
-    """What the display holds after each step back to the beginning, and forth to the end."""
+class State(NamedTuple):
+    """What a display holds, and what is known of the scene it shows."""
+
+    words: bytes
+    entries: bytes
+    ranges: dict[str, Any]
+    is_changed: bool
+
+
+def state(studio: Studio, display: Ramtek9300) -> State:
+    return State(*held(display), dict(studio.level_ranges), studio.is_changed)
+
+
+def states(studio: Studio, display: Ramtek9300) -> list[State]:
+    """What there is after each step back to the beginning, and forth to the end."""
     studio.refine()
-    found = [held(display)]
+    found = [state(studio, display)]
     while studio.redo():
-        found.append(held(display))
+        found.append(state(studio, display))
     while studio.undo():
-        found.append(held(display))
+        found.append(state(studio, display))
     return found
 
 
-@settings(max_examples=30)
+@settings(max_examples=40)
 @given(st.lists(moves, max_size=8))
 def test_any_session_is_given_by_its_script_run_or_read_byte_for_byte(
     written: Path, made: list[tuple[str, Any, Any]]
 ) -> None:
     display = Ramtek9300(SMALL)
     studio = Studio(read_scene(written), display)
+    first = state(studio, display)
     for move in made:
-        do(studio, move)
-    text = studio.journal(written)
+        do(studio, move, written.parent)
     path = written.parent / "session.py"
+    beside = written.parent / "beside"
+    text = studio.journal(written, beside=beside)
     path.write_text(text, "utf-8")
     session = read_journal(path)
-    assert Studio(session.history, Ramtek9300(SMALL)).journal(written) == text
-    other = Ramtek9300(SMALL)
+    read, other = Ramtek9300(SMALL), Ramtek9300(SMALL)
+    again = Studio(session.history, read)
+    assert again.journal(beside=beside) == text
+    assert again.variants.keys() == studio.variants.keys()
+    assert again.history.left_unsaved == studio.history.left_unsaved
     expected = states(studio, display)
-    assert states(*run_script(text)) == expected
-    assert states(Studio(session.history, other), other) == expected
+    ran, other = run_script(text)
+    assert states(ran, other) == expected
+    assert states(again, read) == expected
+    assert expected[-1]._replace(is_changed=False) == first
 
 
 def test_a_drag_after_a_redo_and_one_that_came_back_are_given_by_the_script(written: Path) -> None:
@@ -149,7 +193,7 @@ def test_a_drag_after_a_redo_and_one_that_came_back_are_given_by_the_script(writ
 
 
 def lines_of(*scenes: Scene) -> list[str]:
-    return [step_line(Edit(before, after)) for before, after in pairwise(scenes)]
+    return [step_line(Edit(before, after), CAR, MeshesBeside()) for before, after in pairwise(scenes)]
 
 
 def test_each_kind_of_step_has_the_narrowest_line() -> None:
@@ -161,7 +205,9 @@ def test_each_kind_of_step_has_the_narrowest_line() -> None:
     fewer = more.without_light("key")
     stage = fewer.with_part("pane", stage=True)
     many = stage.replace(ambient=0.5, background="navy")
-    assert lines_of(CAR, painted, matt, off, turned, more, fewer, stage, many) == [
+    held_on = many.replace(exposure={"object": (0.1, 1.5)})
+    free = held_on.replace(exposure="auto")
+    assert lines_of(CAR, painted, matt, off, turned, more, fewer, stage, many, held_on, free) == [
         "studio.recolor('body', object_color='#ff0000', blend=0.25)",
         "studio.surface('body', model='blinn', exponent=20.0)",
         "studio.light('key', on=False, cone_angle=None)",
@@ -171,11 +217,13 @@ def test_each_kind_of_step_has_the_narrowest_line() -> None:
         "studio.remove_light('key')",
         "studio.edit(studio.scene.with_part('pane', stage=True))",
         "studio.edit(studio.scene.replace(ambient=0.5, background='#000080'))",
+        "studio.hold_exposure({'object': [0.1, 1.5]})",
+        "studio.release_exposure()",
     ]
 
 
 def test_what_is_undone_with_the_step_before_says_so() -> None:
-    line = step_line(Edit(CAR, CAR.with_light("key", on=False), joins=True))
+    line = step_line(Edit(CAR, CAR.with_light("key", on=False), joins=True), CAR, MeshesBeside())
     assert line == "studio.edit(studio.scene.with_light('key', on=False), same_step=True)"
 
 
@@ -221,15 +269,6 @@ def test_only_the_mesh_must_still_be_in_the_files(tmp_path: Path) -> None:
     assert session_of(text).history.scene.lights == studio.scene.lights
 
 
-def test_another_mesh_is_refused() -> None:
-    mesh = Mesh(CAR.mesh.coordinates * 2, CAR.mesh.node_numbers, CAR.mesh.part_numbers, CAR.mesh.part_names)
-    with pytest.raises(InputError) as refusal:
-        step_line(Edit(CAR, CAR.replace(mesh=mesh)))
-    assert str(refusal.value) == (
-        "a journal must keep to one mesh, and this session changed it; save the scene, and begin with it"
-    )
-
-
 def test_the_checksum_is_that_of_all_values(written: Path) -> None:
     scene = read_scene(written)
     assert checksum_of(scene) == checksum_of(read_scene(written))
@@ -237,6 +276,37 @@ def test_the_checksum_is_that_of_all_values(written: Path) -> None:
     other = Mesh(mesh.coordinates * 2, mesh.node_numbers, mesh.part_numbers, mesh.part_names)
     different = [scene.replace(mesh=other), scene.replace(ambient=0.2), scene.replace(exposure=AUTO)]
     assert [checksum_of(each) == checksum_of(scene) for each in different] == [False, False, True]
+
+
+def test_steps_of_files_and_variants_have_lines_of_their_own(tmp_path: Path) -> None:
+    opened = Open(CAR, Source(str(tmp_path / "car.obj"), "y", "parts"))
+    beside = MeshesBeside(tmp_path)
+    line = step_line(opened, CAR, beside)
+    begin = (
+        f"studio.open('{tmp_path / 'car.obj'}', up='y', surfaces='parts', tables={{'parts': [{{'name': 'hood'"
+    )
+    assert line.startswith(begin)
+    assert line.endswith(f", checksum='{checksum_of(CAR)}')")
+    steps: list[Step] = [Keep("A"), Show("it's"), Drop("A"), Saved(CAR, {"/car.npz": "9f"}), "undo"]
+    assert [step_line(step, CAR, beside) for step in steps] == [
+        "studio.keep_variant('A')",
+        'studio.show_variant("it\'s")',
+        "studio.drop_variant('A')",
+        "studio.mark_saved({'/car.npz': '9f'})",
+        "studio.undo()",
+    ]
+
+
+def test_another_mesh_is_named_with_what_else_was_changed(tmp_path: Path) -> None:
+    beside = MeshesBeside(tmp_path)
+    line = step_line(Edit(CAR, LARGER.replace(ambient=0.75)), CAR, beside)
+    path = tmp_path / "scene-2"
+    assert line == (
+        f"studio.edit(studio.scene.replace(mesh=autocolor.read_scene('{path}').mesh, ambient=0.75))"
+    )
+    assert step_line(Edit(LARGER, CAR, joins=True), CAR, beside) == (
+        "studio.edit(studio.scene.replace(mesh=scene.mesh), same_step=True)"
+    )
 
 
 def test_literals_are_read_as_they_were() -> None:

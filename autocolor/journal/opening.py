@@ -1,0 +1,54 @@
+"""Opening a scene in a session, and opening it again as it was then."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from autocolor.errors import InputError
+from autocolor.files.plain_scene import plain_scene
+from autocolor.files.scene_sources import read_scene
+from autocolor.journal.places import Place, Source, place_of
+from autocolor.journal.variants import Opened
+from autocolor.scene.scene import Scene
+
+
+def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: str | None = None) -> Opened:
+    """The scene of a source, with the tables that it had then, and its place.
+
+    Only the mesh must still be in the files: the tables may have been saved over since. Raises InputError if
+    the scene is not that of the checksum, and as `read_scene`.
+    """
+    place = place_of(source)
+    read = read_scene(source.path, up=source.up, surfaces=source.surfaces)
+    scene = read if tables is None else read.replace(**tables)
+    if checksum is not None:
+        check_sum(scene, checksum, source)
+    return Opened(scene, place_again(place, scene, read))
+
+
+def place_again(place: Place, then: Scene, now: Scene) -> Place:
+    """The place of a scene that was opened again: a file that holds another one now is not saved to."""
+    return place if then.equals(now) else Place(place.source)
+
+
+def check_sum(scene: Scene, checksum: object, source: Source) -> None:
+    """Raise InputError if the checksum of a scene that was opened again is not that of then."""
+    if checksum != checksum_of(scene):
+        raise InputError(
+            f"{source.path} must hold the mesh that it held when it was opened, and it was changed since;"
+            " bring the old file back"
+        )
+
+
+def checksum_of(scene: Scene) -> str:
+    """The SHA-256 of all values of a scene, its mesh included, in hexadecimal digits."""
+    digest = hashlib.sha256(json.dumps(plain_scene(scene), sort_keys=True).encode())
+    mesh = scene.mesh
+    for array, kind in ((mesh.coordinates, "<f8"), (mesh.node_numbers, "<i8"), (mesh.part_numbers, "<i8")):
+        digest.update(np.ascontiguousarray(array, kind).tobytes())
+    return digest.hexdigest()

@@ -1,0 +1,168 @@
+"""Saving scene and picture under names that are told; nothing that was there is lost."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+import autocolor
+from autocolor import OutputError, Studio, read_picture, read_scene
+from autocolor.journal.history import History
+from autocolor.journal.opening import opened
+from autocolor.journal.places import PACKAGE, Place, Source
+from autocolor.journal.saving import SavedFiles
+from ramtek_emu import Ramtek9300
+from tests.autocolor.sessions import SMALL, car
+
+COMMENT = "# The car of the fair.\n"
+
+
+@pytest.fixture
+def scene_file(tmp_path: Path) -> Path:
+    """A scene file with a comment, in a folder beside the one in which is saved."""
+    path = tmp_path / "scenes" / "car" / "scene.toml"
+    path.parent.parent.mkdir()
+    autocolor.write_scene(path, car())
+    path.write_text(COMMENT + path.read_text())
+    return path
+
+
+@pytest.fixture
+def work(tmp_path: Path) -> Path:
+    (tmp_path / "work").mkdir()
+    return tmp_path / "work"
+
+
+def studio_of(path: Path) -> Studio:
+    scene, place = opened(Source(str(path)))
+    return Studio(History(scene, place), Ramtek9300(SMALL))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_a_scene_of_no_file_is_saved_to_new_names_and_then_to_the_same(work: Path) -> None:
+    studio = Studio(car().replace(name="coupe"), Ramtek9300(SMALL))
+    studio.recolor("body", blend=0.25)
+    saved = studio.save_session(work)
+    assert saved == SavedFiles(work / "coupe" / "scene.toml", work / "coupe.npz")
+    assert saved.told(work) == "saved coupe/scene.toml and coupe.npz".replace("/", os.sep)
+    assert not studio.is_changed
+    studio.recolor("body", blend=0.5)
+    assert studio.save_session(work) == saved
+    assert read_scene(work / "coupe").surface("body").paint.blend == 0.5
+    assert read_picture(work / "coupe.npz").scene.surface("body").paint.blend == 0.5
+    assert sorted(path.name for path in work.iterdir()) == ["coupe", "coupe.npz"]
+
+
+@pytest.mark.parametrize("there", ["car", "car.npz"])
+def test_new_names_are_those_that_neither_file_has(work: Path, there: str) -> None:
+    (work / there).write_text("mine")
+    studio = Studio(car().replace(name="car"), Ramtek9300(SMALL))
+    saved = studio.save_session(work)
+    assert saved == SavedFiles(work / "car-2" / "scene.toml", work / "car-2.npz")
+    assert (work / there).read_text() == "mine"
+
+
+def test_a_scene_file_keeps_its_comments_and_what_it_held_is_kept_beside_once(
+    scene_file: Path, work: Path
+) -> None:
+    before = scene_file.read_text()
+    studio = studio_of(scene_file.parent)
+    studio.recolor("body", blend=0.25)
+    saved = studio.save_session(work)
+    kept = scene_file.with_name("scene-1.toml")
+    assert saved == SavedFiles(scene_file, work / "car.npz", (kept,))
+    assert saved.told(work) == f"saved {scene_file} and car.npz; what was there is in {kept}"
+    assert kept.read_text() == before
+    assert scene_file.read_text().startswith(COMMENT)
+    assert read_scene(scene_file).surface("body").paint.blend == 0.25
+    studio.recolor("body", blend=0.5)
+    assert studio.save_session(work) == SavedFiles(scene_file, work / "car.npz")
+    assert [path.name for path in scene_file.parent.glob("scene*")].count("scene-2.toml") == 0
+    assert read_scene(scene_file).surface("body").paint.blend == 0.5
+
+
+def test_a_picture_file_that_was_opened_is_saved_to_and_kept(work: Path) -> None:
+    Studio(car(), Ramtek9300(SMALL)).save(work / "old.npz")
+    before = (work / "old.npz").read_bytes()
+    studio = studio_of(work / "old.npz")
+    studio.recolor("body", blend=0.25)
+    saved = studio.save_session(work)
+    assert saved == SavedFiles(work / "scene" / "scene.toml", work / "old.npz", (work / "old-1.npz",))
+    assert (work / "old-1.npz").read_bytes() == before
+    assert read_picture(work / "old.npz").scene.surface("body").paint.blend == 0.25
+
+
+def test_a_file_that_another_program_changed_is_left_alone_and_told(scene_file: Path, work: Path) -> None:
+    studio = studio_of(scene_file.parent)
+    scene_file.write_text(scene_file.read_text() + "# mine\n")
+    before = contents(scene_file.parent)
+    saved = studio.save_session(work)
+    assert saved == SavedFiles(work / "car" / "scene.toml", work / "car.npz", (), (scene_file,))
+    assert saved.told(work).endswith(f"; another program changed {scene_file}")
+    assert contents(scene_file.parent) == before
+    # Nor is what this session saved, when another program changed it since.
+    (work / "car.npz").write_bytes(b"theirs")
+    saved = studio.save_session(work)
+    assert (saved.scene, saved.picture) == (work / "car" / "scene.toml", work / "car-2.npz")
+    assert (work / "car.npz").read_bytes() == b"theirs"
+
+
+def test_a_file_that_was_removed_is_no_loss(work: Path) -> None:
+    studio = Studio(car().replace(name="car"), Ramtek9300(SMALL))
+    saved = studio.save_session(work)
+    saved.picture.unlink()
+    assert studio.save_session(work) == saved
+    assert read_picture(saved.picture).scene.name == "car"
+
+
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="needs a folder that cannot be written")
+def test_a_folder_that_cannot_be_written_is_left_for_the_own_one(scene_file: Path, work: Path) -> None:
+    studio = studio_of(scene_file)
+    scene_file.parent.chmod(0o555)
+    try:
+        assert studio.save_session(work).scene == work / "car" / "scene.toml"
+    finally:
+        scene_file.parent.chmod(0o755)
+
+
+def test_the_demo_is_never_saved_to(work: Path, monkeypatch: pytest.MonkeyPatch, scene_file: Path) -> None:
+    from autocolor.journal import places
+
+    monkeypatch.setattr(places, "PACKAGE", scene_file.parent.parent.resolve())
+    before = contents(scene_file.parent)
+    studio = studio_of(scene_file.parent)
+    assert studio.save_session(work).scene == work / "car" / "scene.toml"
+    assert contents(scene_file.parent) == before
+    assert PACKAGE.name == "autocolor"
+
+
+def test_each_opened_scene_has_its_own_names(scene_file: Path, work: Path) -> None:
+    studio = Studio(car().replace(name="first"), Ramtek9300(SMALL))
+    first = studio.save_session(work)
+    studio.open(scene_file)
+    assert studio.save_session(work).scene == scene_file
+    studio.undo()
+    assert studio.save_session(work) == first
+    studio.redo()
+    assert studio.save_session(work).scene == scene_file
+
+
+def test_a_save_that_fails_changes_no_file(scene_file: Path, tmp_path: Path) -> None:
+    studio = studio_of(scene_file)
+    studio.recolor("body", blend=0.25)
+    before = contents(scene_file.parent)
+    with pytest.raises(OutputError):
+        studio.save_session(tmp_path / "none")
+    assert contents(scene_file.parent) == before
+    assert studio.is_changed
+
+
+def test_a_place_without_a_stamp_is_not_saved_to(scene_file: Path, work: Path) -> None:
+    history = History(read_scene(scene_file), Place(Source(str(scene_file))))
+    saved = Studio(history, Ramtek9300(SMALL)).save_session(work)
+    assert saved.scene == work / "car" / "scene.toml"
