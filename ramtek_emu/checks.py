@@ -18,7 +18,8 @@ BYTE: Final = np.dtype(np.uint8)
 
 def is_whole(value: object) -> bool:
     """Whether a value is one whole number, of Python or of numpy; True and False are not."""
-    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+    # Most are plain; of the others the types are looked at.
+    return type(value) is int or (isinstance(value, int | np.integer) and not isinstance(value, bool))
 
 
 def checked_number(

@@ -34,10 +34,15 @@ class TextStyle:
     transparent: bool
 
     @property
+    def dots_each(self) -> tuple[int, int]:
+        """The size of a cell along the scan and across it, in dots."""
+        along, across = self.dimensions
+        return max(1, min(along, LARGEST_CELL)), max(1, min(across, LARGEST_CELL))
+
+    @property
     def cell(self) -> tuple[int, int]:
         """The size of a cell along the scan and across it, in pixels."""
-        along, across = (max(1, min(each, LARGEST_CELL)) for each in self.dimensions)
-        return along * self.size[0], across * self.size[1]
+        return self.dots_each[0] * self.size[0], self.dots_each[1] * self.size[1]
 
     @property
     def step(self) -> tuple[int, int]:
@@ -46,11 +51,13 @@ class TextStyle:
 
     def dots(self, shapes: Dots) -> Dots:
         """The shapes of characters, (n, lines, elements), scaled and side by side as [outer, inner] dots."""
-        along, across = self.cell[0] // self.size[0], self.cell[1] // self.size[1]
-        cells = np.zeros((len(shapes), across, along), np.bool_)
-        part = shapes[:, :across, :along]
-        cells[:, : part.shape[1], : part.shape[2]] = part
-        cells = np.repeat(np.repeat(cells, self.size[1], axis=1), self.size[0], axis=2)
+        along, across = self.dots_each
+        cells = shapes[:, :across, :along]
+        if cells.shape[1:] != (across, along):
+            part, cells = cells, np.zeros((len(shapes), across, along), np.bool_)
+            cells[:, : part.shape[1], : part.shape[2]] = part
+        if self.size != (1, 1):
+            cells = np.repeat(np.repeat(cells, self.size[1], axis=1), self.size[0], axis=2)
         return beside(cells, self.step[0])
 
 
@@ -60,6 +67,9 @@ def beside(cells: Dots, step: int) -> Dots:
     if count == 1:
         single: Dots = cells[0]
         return single
+    if step == along:
+        close: Dots = cells.transpose(1, 0, 2).reshape(across, count * along)
+        return close
     spaced = np.zeros((across, count, step), np.bool_)
     spaced[:, :, :along] = cells.transpose(1, 0, 2)
     side_by_side: Dots = spaced.reshape(across, count * step)
@@ -99,12 +109,15 @@ def write_text(
     line_cells = cells_from(0, width, along, step)
     lines = max(1, cells_from(outer, height, across, line_step))
     numbers = np.frombuffer(codes, np.uint8)[: first_cells + (lines - 1) * line_cells]
+    more = len(numbers) - first_cells
+    last = -(-more // line_cells) if more > 0 else 0
     # Draw those cells of each line that reach into the memory.
     memory = frame_buffer.window.intersection(enable.window)
     low, low_line = order.steps(window, order.corner(memory))
     room, room_across = order.inner_and_outer(memory)
     words = np.array((style.background, style.foreground), np.uint16)
-    for line in reaching(outer, across, line_step, low_line, room_across):
+    seen_lines = reaching(outer, across, line_step, low_line, room_across)
+    for line in range(seen_lines.start, min(seen_lines.stop, last + 1)):
         end = first_cells + line * line_cells
         first, cells = (inner, numbers[:end]) if line == 0 else (0, numbers[end - line_cells : end])
         seen = reaching(first, along, step, low, room)
@@ -114,12 +127,10 @@ def write_text(
             whole = beside(np.ones((len(cells), across, along), np.bool_), step) if step != along else None
             written = dots if style.transparent else whole
             place = order.stepped(corner, first + seen.start * step, outer + line * line_step)
-            frame_buffer.write_block(place, order, words[dots.view(np.uint8)], enable, written)
-    more = len(numbers) - first_cells
-    if more <= 0:
+            frame_buffer.write_block(place, order, words.take(dots.view(np.uint8)), enable, written)
+    if not last:
         return order.stepped(corner, inner + len(numbers) * step, outer)
-    line = -(-more // line_cells)
-    return order.stepped(corner, (more - (line - 1) * line_cells) * step, outer + line * line_step)
+    return order.stepped(corner, (more - (last - 1) * line_cells) * step, outer + last * line_step)
 
 
 def cells_from(first: int, extent: int, size: int, step: int) -> int:

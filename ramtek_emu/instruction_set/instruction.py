@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -21,11 +21,11 @@ from ramtek_emu.instruction_set.table import (
     FLAG_NAMES,
     FORMAT_OF_NAME,
     ILLEGAL,
+    OPERAND_BITS,
     OPERANDS,
-    OPERANDS_1,
-    OPERANDS_2,
     Flags,
     InstructionFormat,
+    operands_named,
 )
 
 OperandValue = int | Sequence[int]
@@ -78,22 +78,29 @@ def encode(instruction: Instruction) -> Words:
         return np.concatenate((np.array(instruction.operands.get("word", ()), np.uint16), instruction.data))
     head = [format.opcode << 8 | instruction.low_byte]
     if format.is_normal:
-        flag_words = [
-            sum(1 << bit for bit, operand in enumerate(operands) if operand.name in instruction.operands)
-            for operands in (OPERANDS_1, OPERANDS_2)
-        ]
+        first, second = flag_words_of(instruction.operands)
         # A flag that is set has its flag word, even if that word names no operand.
-        for flag, word in zip((Flags.OPERANDS_1, Flags.OPERANDS_2), flag_words, strict=True):
-            if instruction.low_byte & flag:
-                head.append(word)
-        for operand in OPERANDS_1 + OPERANDS_2:
-            head.extend(instruction.operands.get(operand.name, ()))
+        if instruction.low_byte & Flags.OPERANDS_1:
+            head.append(first)
+        if instruction.low_byte & Flags.OPERANDS_2:
+            head.append(second)
+        for operand in operands_named(first, second):
+            head.extend(instruction.operands[operand.name])
         if instruction.length is not None:
             head.append(instruction.length)
     else:
         for name in format.fixed or ():
             head.extend((instruction.length or 0,) if name == "length" else instruction.operands[name])
-    return np.concatenate((np.array(head, np.uint16), instruction.data))
+    words = np.array(head, np.uint16)
+    return np.concatenate((words, instruction.data)) if len(instruction.data) else words
+
+
+def flag_words_of(operands: Iterable[str]) -> tuple[int, int]:
+    """The two operand flag words that name these operands."""
+    bits = 0
+    for name in operands:
+        bits |= OPERAND_BITS[name]
+    return bits & 0xFFFF, bits >> 16
 
 
 def normal(
@@ -105,9 +112,10 @@ def normal(
 ) -> Instruction:
     """A normal instruction with these operands; numbers from -32768 to 65535 become words of 16 bits."""
     named = {key: operand_words(key, value) for key, value in operands.items() if value is not None}
-    if any(operand.name in named for operand in OPERANDS_1):
+    first, second = flag_words_of(named)
+    if first:
         flags |= Flags.OPERANDS_1
-    if any(operand.name in named for operand in OPERANDS_2):
+    if second:
         flags |= Flags.OPERANDS_2
     if length is None and len(data):
         length = 2 * len(data)
@@ -129,7 +137,7 @@ def operand_words(name: str, value: OperandValue) -> tuple[int, ...]:
         raise InstructionError(f"an operand must be one of {', '.join(OPERANDS)}, not {name!r}; {advice}")
     if isinstance(value, np.ndarray):
         value = value.tolist()
-    numbers = tuple(value) if isinstance(value, Sequence) else (value,)
+    numbers = (value,) if type(value) is int else tuple(value) if isinstance(value, Sequence) else (value,)
     if len(numbers) != OPERANDS[name].words:
         raise InstructionError(
             f"{name} must be {OPERANDS[name].words} numbers, not {len(numbers)}; give all of them"
@@ -139,4 +147,4 @@ def operand_words(name: str, value: OperandValue) -> tuple[int, ...]:
             raise InstructionError(
                 f"{name} must be whole numbers from -32768 to 65535, not {number!r}; round or clip it"
             )
-    return tuple(int(number) & 0xFFFF for number in numbers)
+    return tuple([int(number) & 0xFFFF for number in numbers])

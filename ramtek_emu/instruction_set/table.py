@@ -74,6 +74,12 @@ OPERANDS_2: Final = (
     Operand("image_mode", "IMG", 1),
 )
 OPERANDS: Final = {operand.name: operand for operand in OPERANDS_1 + OPERANDS_2}
+OPERAND_BITS: Final = {
+    operand.name: 1 << 16 * word + bit
+    for word, operands in enumerate((OPERANDS_1, OPERANDS_2))
+    for bit, operand in enumerate(operands)
+}
+"""The bit of each operand in the two flag words, of which the second is the upper half."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -117,11 +117,6 @@ class Cursors:
         self.all[number].shape[: len(dots)] = dots
         self.changed += 1
 
-    @property
-    def seen(self) -> tuple[tuple[int, int, int], ...]:
-        """Element, line and state of every cursor that is visible."""
-        return tuple([(each.element, each.line, each.state) for each in self.all if each.state & VISIBLE])
-
     def forget_enter(self) -> None:
         """Clear the ENTER of every cursor, so that no read reports it."""
         for cursor in self.all:

@@ -1,4 +1,4 @@
 """The monitor: the window that shows fields, its keys and mouse, and a test pattern.
 
-Only `window` knows pygame. Uses the basic modules, video, instructions and display.
+Only `glass` knows pygame. Uses the basic modules, video, instructions and display.
 """

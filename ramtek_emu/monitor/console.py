@@ -19,7 +19,7 @@ from typing import Final
 
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import OutputExistsError, RamtekError
-from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Pointer
+from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Pointer, Release
 from ramtek_emu.monitor.overlay import PAGES, Overlay
 
 LEFT: Final = 1
@@ -40,6 +40,7 @@ class Console(ABC):
         screenshots: str | os.PathLike[str] = ".",
         screenshot_name: str = "ramtek",
         on_key: Callable[[Key], object] | None = None,
+        on_release: Callable[[str], object] | None = None,
         on_pointer: Callable[[Pointer], object] | None = None,
         on_drop: Callable[[Path], object] | None = None,
         on_close: Callable[[], bool] | None = None,
@@ -52,6 +53,7 @@ class Console(ABC):
         self.screenshots = Path(screenshots)
         self.screenshot_name = screenshot_name
         self.on_key = on_key
+        self.on_release = on_release
         self.on_pointer = on_pointer
         self.on_drop = on_drop
         self.on_close = on_close
@@ -110,6 +112,8 @@ class Console(ABC):
             self.handle_key(user_input)
         elif isinstance(user_input, Pointer):
             self.handle_pointer(user_input)
+        elif isinstance(user_input, Release):
+            self.handle_release(user_input)
         elif isinstance(user_input, Close):
             self.ask_to_close()
         elif self.on_drop is not None:
@@ -144,6 +148,11 @@ class Console(ABC):
                 self.overlay.page = ""
             else:
                 self.ask_to_close()
+
+    def handle_release(self, release: Release) -> None:
+        """Tell the name of a key that was let go; a modifier is told neither then nor when it is pressed."""
+        if self.on_release is not None and release.name not in MODIFIERS:
+            self.on_release(release.name)
 
     def _tell_of_screenshot(self) -> None:
         """Take a screenshot, without a message on it, and tell the path."""

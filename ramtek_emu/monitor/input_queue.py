@@ -3,7 +3,7 @@
 A program may take longer for a key than the keyboard takes to repeat it. Of the repeats of a key that wait,
 only the last is kept, and none when the key is released; of successive places of the mouse, only the last.
 So however long the program takes, one repeat of a key and one movement of the mouse wait at most, and nothing
-goes on after a key is released.
+goes on after a key is released. The release itself waits in its place behind the press.
 """
 
 from __future__ import annotations
@@ -31,6 +31,12 @@ class Key(NamedTuple):
         return self._replace(control=False, alt=False) if types_a_sign else self
 
 
+class Release(NamedTuple):
+    """A key that was pressed is not down any more."""
+
+    name: str
+
+
 class Pointer(NamedTuple):
     """Something the mouse did over an element and a line of the display."""
 
@@ -44,13 +50,16 @@ class Pointer(NamedTuple):
     """0: none, 1: left, 2: middle, 3: right."""
     steps: int = 1
     """The steps of the wheel."""
+    shift: bool = False
+    control: bool = False
+    """Whether Shift and Ctrl are held on the keyboard."""
 
 
 class Close(NamedTuple):
     """The window was asked to close."""
 
 
-Input: TypeAlias = Key | Pointer | Path | Close
+Input: TypeAlias = Key | Release | Pointer | Path | Close
 """One input; a path is that of a file that was dropped on the window."""
 
 MOVEMENTS: Final = frozenset(("move", "wheel up", "wheel down"))
@@ -84,13 +93,15 @@ class InputQueue:
         self._waiting.append(added)
 
     def release(self, name: str) -> None:
-        """Take a key for released: its repeats wait no longer."""
-        self._down.discard(name)
+        """Take a key for released: its repeats wait no longer, and the release waits if the key was down."""
         self._drop_repeats(name)
+        if name in self._down:
+            self._down.discard(name)
+            self._waiting.append(Release(name))
 
     def release_everything(self) -> None:
         """Take all keys and buttons for released, as when another window gets the keyboard."""
-        for name in [down for down in self._down if isinstance(down, str)]:
+        for name in sorted(down for down in self._down if isinstance(down, str)):
             self.release(name)
         self._down.clear()
 
@@ -113,7 +124,14 @@ class InputQueue:
         elif added.action == "release":
             self._down.discard(added.button)
         last = self._waiting[-1] if self._waiting else None
-        if not isinstance(last, Pointer) or last.action != added.action or added.action not in MOVEMENTS:
+        if not isinstance(last, Pointer) or movement(last) != movement(added) or movement(added) is None:
             return added
         self._waiting.pop()
         return added if added.action == "move" else added._replace(steps=last.steps + added.steps)
+
+
+def movement(pointer: Pointer) -> tuple[str, bool, bool] | None:
+    """Of which kind a movement is, with the modifiers held; None if the mouse did anything else."""
+    if pointer.action not in MOVEMENTS:
+        return None
+    return pointer.action, pointer.shift, pointer.control

@@ -7,34 +7,38 @@ the memories were when the beam passed it. What is **not**: interlace, the level
 
 Hardware: GM (one word selects all three components); LIN, JPL, BTL (parking the address counter); PRG cmap.c,
 introdoc (a black-and-white monitor sees the low eight bits of an entry).
-Assumed: a cursor is white where the picture is dark and black where it is light, so that it is always
-visible; how the 9300 mixed it into the video is in no source.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from ramtek_emu.arrays import Colors, PackedColors
 from ramtek_emu.configuration import Configuration, EntryFormat
-from ramtek_emu.memory.cursors import BLINK, SHAPE_CENTER, VISIBLE, Cursor, Cursors
+from ramtek_emu.memory.cursors import Cursors
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.video.beam import Beam
-from ramtek_emu.video.dirty_lines import lines_with
+from ramtek_emu.video.cursor_marks import Mark, draw, marks
+from ramtek_emu.video.dirty_lines import Run, lines_with, united
 from ramtek_emu.video.view import PLAIN_VIEW, View, copy_shown, pixel_at, view_of
 
-WHITE: Final = np.uint32(0xFFFFFF)
-Stamp = tuple[int, tuple[object, ...]]
-"""Identifies a field: the count of words of entries written, and all else that a field depends on.
 
-Fields with equal stamps are equal.
-"""
+class Stamp(NamedTuple):
+    """Identifies a field. Fields with equal stamps are equal."""
+
+    entries: int
+    """The count of words of entries written."""
+    marks: tuple[Mark, ...]
+    """The cursors that are drawn."""
+    rest: tuple[object, ...]
+    """All else that a field depends on."""
+
 
 FORGOTTEN: Final = ("_indices", "_indices_of", "_lines_with", "_gray")
 """The attributes that are computed from the memories; a copy computes its own."""
@@ -93,15 +97,14 @@ class ScanOut:
     @property
     def stamp(self) -> Stamp:
         """A value that changes whenever the field may have changed."""
-        seen, beam = self._cursors.seen, self._beam
-        return self._lookup_table.written, (
+        beam = self._beam
+        rest = (
             self._frame_buffer.written,
             view_of(self._parameters()),
             self._is_parted and self._partition(),
-            seen,
-            seen and (self._cursors.changed, any(state & BLINK for _, _, state in seen) and self._blink()),
             beam and beam.lines_done,
         )
+        return Stamp(self._lookup_table.written, self._marks(), rest)
 
     @property
     def monitor_image(self) -> tuple[int, PackedColors]:
@@ -120,23 +123,37 @@ class ScanOut:
         else:
             self._renew_indices()
             self.table().take(self._indices, out=pixels, mode="wrap")
-        self._mark_cursors(pixels)
+        self._draw_cursors(pixels)
+
+    def lines_changed_since(self, held: Stamp | None) -> tuple[Run, ...]:
+        """The lines that may differ from those of the field with a stamp, as runs from the top.
+
+        After a load of entries, the lines that show some of them; where a cursor moved, the lines of its old
+        place and of its new one; otherwise all lines, as with None.
+        """
+        stamp = self.stamp
+        if held is None or held.rest != stamp.rest or self._beam is not None:
+            return ((0, self.lines),)
+        self._renew_indices()
+        runs = [mark.lines for mark in set(held.marks) ^ set(stamp.marks)]
+        if held.entries != stamp.entries:
+            runs.append(self._lines_showing(self._lookup_table.entries_written_since(held.entries)))
+        return united(runs, self.lines)
 
     def scan_out_changes_into(self, pixels: PackedColors, held: Stamp | None) -> Stamp:
         """Bring an array up to date with the current field, and return the stamp of that field.
 
         `held` is the stamp of the field that the array holds, or None if it holds anything else, such as a
-        field that was drawn on. After a load of entries, only lines that show some of them are written.
+        field that was drawn on. Only the lines that changed are written.
         """
         stamp = self.stamp
-        held_entries, held_rest = held or (0, None)
-        if held_rest != stamp[1] or self._beam is not None:
+        runs = self.lines_changed_since(held)
+        if runs == ((0, self.lines),):
             self.scan_out_into(pixels)
             return stamp
-        self._renew_indices()
-        first, end = self._lines_showing(self._lookup_table.entries_written_since(held_entries))
-        self.table().take(self._indices[first:end], out=pixels[first:end], mode="wrap")
-        self._mark_cursors(pixels[first:end], first)
+        for first, end in runs:
+            self.table().take(self._indices[first:end], out=pixels[first:end], mode="wrap")
+            self._draw_cursors(pixels[first:end], first)
         return stamp
 
     def field(self) -> Colors:
@@ -174,12 +191,14 @@ class ScanOut:
         words = self._frame_buffer.words[np.ix_(lines, elements)]
         self.table().take(words, out=pixels[first:last], mode="wrap")
 
-    def _mark_cursors(self, pixels: PackedColors, first_line: int = 0) -> None:
-        for cursor in self._cursors.all:
-            if cursor.state & VISIBLE and (self._blink() or not cursor.blinks):
-                mark(pixels, cursor, first_line)
+    def _marks(self) -> tuple[Mark, ...]:
+        return marks(self._cursors, self._blink())
 
-    def _lines_showing(self, run: tuple[int, int] | None) -> tuple[int, int]:
+    def _draw_cursors(self, pixels: PackedColors, first_line: int = 0) -> None:
+        for mark in self._marks():
+            draw(pixels, mark, self._cursors[mark.number].shape, first_line)
+
+    def _lines_showing(self, run: Run | None) -> Run:
         """The first line that shows an entry of a range, and the one after the last; all lines if unknown."""
         is_plain = self._words == self._lookup_table.size and self._indices_of[1] == PLAIN_VIEW
         return self._lines_with(*run) if run and is_plain else (0, self.lines)
@@ -212,16 +231,3 @@ class ScanOut:
 
     def _partition(self) -> int:
         return self._lookup_table.addressed_entry // self._words * self._words if self._is_parted else 0
-
-
-def mark(pixels: PackedColors, cursor: Cursor, first_line: int = 0) -> None:
-    """Draw a cursor, clipped at the edges, on lines of a field of which the first is `first_line`."""
-    size = cursor.shape.shape[0]
-    top, left = cursor.line - first_line - SHAPE_CENTER, cursor.element - SHAPE_CENTER
-    up, across = max(0, -top), max(0, -left)
-    part = pixels[max(0, top) : max(0, top + size), max(0, left) : max(0, left + size)]
-    shape = cursor.shape[up : up + part.shape[0], across : across + part.shape[1]]
-    if part.size:
-        # The highest bit of green tells light from dark well enough, and is quick to test.
-        light = (part >> 15 & 1).astype(np.bool_)
-        part[shape] = np.where(light[shape], np.uint32(0), WHITE)

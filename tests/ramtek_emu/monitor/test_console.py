@@ -9,7 +9,7 @@ from PIL import Image
 
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.monitor.console import Console
-from ramtek_emu.monitor.input_queue import Close, Key, Pointer
+from ramtek_emu.monitor.input_queue import Close, Key, Pointer, Release
 
 
 class PlainConsole(Console):
@@ -65,6 +65,15 @@ def test_a_modifier_alone_is_told_to_nobody(console: PlainConsole, key: Key) -> 
     console.on_key = taken.append
     console.handle_key(key)
     assert taken == []
+
+
+def test_a_key_that_is_let_go_is_told_by_its_name_unless_it_is_a_modifier(console: PlainConsole) -> None:
+    console.handle(Release("a"))
+    told: list[str] = []
+    console.on_release = told.append
+    for name in ("a", "left shift", "f1"):
+        console.handle(Release(name))
+    assert told == ["a", "f1"]
 
 
 def test_a_window_stays_when_its_owner_wants_it_to(console: PlainConsole) -> None:
@@ -176,6 +185,9 @@ def test_a_console_is_at_rest_when_nothing_is_held_and_nothing_waits(console: Pl
         console.handle(console.input.take())
         assert not console.is_at_rest
         console.input.release_everything()
+        while console.input:
+            assert not console.is_at_rest
+            console.handle(console.input.take())
         assert console.is_at_rest
     console.input.add(Key("left shift"))
     console.input.take()

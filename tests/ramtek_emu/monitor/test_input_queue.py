@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Pointer
+from ramtek_emu.monitor.input_queue import Close, Input, InputQueue, Key, Pointer, Release
 
 
 def taken(queue: InputQueue) -> list[Input]:
@@ -30,14 +30,17 @@ def test_of_the_repeats_of_a_key_only_the_last_waits() -> None:
     assert taken(queue) == [Key("left"), Key("up"), Key("left", repeated=True), Key("up", repeated=True)]
 
 
-def test_a_released_key_leaves_its_first_press_and_no_repeat() -> None:
+def test_a_released_key_leaves_its_first_press_and_the_release_and_no_repeat() -> None:
     queue = InputQueue()
     queue.add(Key("left"))
     queue.add(Key("left"))
     queue.add(Key("up"))
     queue.release("left")
-    assert taken(queue) == [Key("left"), Key("up")]
+    assert taken(queue) == [Key("left"), Key("up"), Release("left")]
     assert queue.down == {"up"}
+    # Released again, as when the keyboard comes back, it was not down.
+    queue.release("left")
+    assert taken(queue) == []
     # Pressed again, it is no repeat.
     queue.add(Key("left"))
     assert taken(queue) == [Key("left")]
@@ -71,14 +74,31 @@ def test_steps_of_the_wheel_are_added_up() -> None:
     assert taken(queue) == [Pointer(0, 0, False, "wheel up", steps=3), Pointer(0, 0, False, "wheel down")]
 
 
+def test_movements_with_other_modifiers_are_not_one() -> None:
+    queue = InputQueue()
+    for shift in (False, False, True, True, False):
+        queue.add(Pointer(0, 0, False, "wheel up", shift=shift))
+    assert [(each.steps, each.shift) for each in taken(queue) if isinstance(each, Pointer)] == [
+        (2, False),
+        (2, True),
+        (1, False),
+    ]
+
+
 def test_when_the_keyboard_goes_elsewhere_nothing_is_down() -> None:
     queue = InputQueue()
-    for each in (Key("left"), Key("left"), Pointer(0, 0, False, "press", 3)):
+    for each in (Key("left"), Key("left"), Pointer(0, 0, False, "press", 3), Key("right"), Key("right")):
         queue.add(each)
-    assert queue.down == {"left", 3}
+    assert queue.down == {"left", "right", 3}
     queue.release_everything()
     assert queue.down == frozenset()
-    assert taken(queue) == [Key("left"), Pointer(0, 0, False, "press", 3)]
+    assert taken(queue) == [
+        Key("left"),
+        Pointer(0, 0, False, "press", 3),
+        Key("right"),
+        Release("left"),
+        Release("right"),
+    ]
 
 
 def test_a_sign_typed_with_altgr_is_that_sign_where_altgr_is_ctrl_and_alt() -> None:
@@ -108,9 +128,11 @@ def test_what_waits_is_bounded_by_what_was_pressed(events: list[tuple[str, str]]
             queue.release(name)
         else:
             queue.add(Pointer(0, 0, False, "move" if kind == "move" else "wheel up"))
-    # Each press is kept; at most one repeat of each key.
+    # Each press is kept, and the release of each key that is up; at most one repeat of each key.
     waiting = taken(queue)
     keys = [each for each in waiting if isinstance(each, Key)]
+    releases = [each for each in waiting if isinstance(each, Release)]
+    assert len(releases) == presses - len(queue.down)
     assert sum(not key.repeated for key in keys) == presses
     repeats = [key.name for key in keys if key.repeated]
     assert len(repeats) == len(set(repeats))

@@ -3,7 +3,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu.monitor.window import placement
+from ramtek_emu.monitor.placement import placement
 from tests.ramtek_emu.strategies import quick
 
 

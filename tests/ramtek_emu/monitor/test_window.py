@@ -13,7 +13,8 @@ import pytest
 
 from ramtek_emu import NoScreenError, Ramtek9300, instructions
 from ramtek_emu.monitor.pattern import pattern
-from ramtek_emu.monitor.window import Key, Monitor, Pointer, placement
+from ramtek_emu.monitor.placement import placement
+from ramtek_emu.monitor.window import Key, Monitor, Pointer
 from tests.ramtek_emu.screens import shown
 
 pygame = pytest.importorskip("pygame")
@@ -45,6 +46,12 @@ def settle(monitor: Monitor) -> None:
         monitor.step(5)
 
 
+def resize(monitor: Monitor, size: tuple[int, int]) -> None:
+    pygame.display.set_mode(size, pygame.RESIZABLE)
+    pygame.event.post(pygame.event.Event(pygame.WINDOWEXPOSED))
+    settle(monitor)
+
+
 def press(monitor: Monitor, key: int, text: str = "", mod: int = 0) -> None:
     pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=key, unicode=text, mod=mod))
     pygame.event.post(pygame.event.Event(pygame.KEYUP, key=key, mod=mod))
@@ -58,8 +65,7 @@ def press(monitor: Monitor, key: int, text: str = "", mod: int = 0) -> None:
 def test_every_pixel_is_a_block_at_every_window_size(
     monitor: Monitor, size: tuple[int, int], multiple: int
 ) -> None:
-    pygame.display.set_mode(size, pygame.RESIZABLE)
-    settle(monitor)
+    resize(monitor, size)
     field = monitor.display.field()
     blocks = np.repeat(np.repeat(field, multiple, axis=0), multiple, axis=1)
     left, top, *_ = placement((640, 480), size)
@@ -85,8 +91,7 @@ def test_the_window_refreshes_only_when_something_was_written(monitor: Monitor) 
 
 @pytest.mark.parametrize("scale", [1, 2])
 def test_a_field_that_is_recolored_again_and_again_is_shown(monitor: Monitor, scale: int) -> None:
-    pygame.display.set_mode((640 * scale, 480 * scale), pygame.RESIZABLE)
-    settle(monitor)
+    resize(monitor, (640 * scale, 480 * scale))
     for number in range(4):
         if number == 2:
             monitor.display.send(instructions.erase((100, 400, 200, 450), 9))
@@ -135,6 +140,39 @@ def test_keys_are_handed_over_as_plain_values(monitor: Monitor) -> None:
     assert monitor.is_open
 
 
+def test_a_release_is_told_after_its_press_and_when_the_keyboard_goes_elsewhere(monitor: Monitor) -> None:
+    told: list[str] = []
+    monitor.on_key = lambda key: told.append(f"{key.name} down")
+    monitor.on_release = lambda name: told.append(f"{name} up")
+    press(monitor, pygame.K_b, "b")
+    press(monitor, pygame.K_LSHIFT)
+    assert told == ["b down", "b up"]
+    told.clear()
+    pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_b, unicode="b", mod=0))
+    pygame.event.post(pygame.event.Event(pygame.WINDOWFOCUSLOST))
+    pygame.event.post(pygame.event.Event(pygame.KEYUP, key=pygame.K_b, mod=0))
+    monitor.step()
+    assert told == ["b down", "b up"]
+    assert monitor.is_at_rest
+
+
+def test_what_a_key_shows_while_it_is_held_is_seen_before_it_is_let_go(monitor: Monitor) -> None:
+    resize(monitor, (640, 480))
+    before = shown().copy()
+    compare = (
+        instructions.erase((100, 100, 300, 300), 9),
+        instructions.write_image(monitor.display.words.copy()),
+    )
+    monitor.on_key = lambda key: monitor.display.send(compare[0])
+    monitor.on_release = lambda name: monitor.display.send(compare[1])
+    for kind in (pygame.KEYDOWN, pygame.KEYUP):
+        pygame.event.post(pygame.event.Event(kind, key=pygame.K_c, unicode="c", mod=0))
+    monitor.step()
+    assert not np.array_equal(shown(), before)
+    monitor.step()
+    assert np.array_equal(shown(), before)
+
+
 def test_closing_asks_whoever_drives_the_display(monitor: Monitor) -> None:
     answers = [False, False, True]
     monitor.on_close = lambda: answers.pop(0)
@@ -171,8 +209,7 @@ def test_a_screenshot_that_cannot_be_saved_is_a_message(monitor: Monitor, tmp_pa
 def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
     told: list[Pointer] = []
     monitor.on_pointer = told.append
-    pygame.display.set_mode((1380, 960), pygame.RESIZABLE)
-    settle(monitor)
+    resize(monitor, (1380, 960))
     told.clear()
     for place, kind in (
         ((50, 0), pygame.MOUSEBUTTONDOWN),
@@ -188,11 +225,44 @@ def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
     ]
 
 
+def test_the_mouse_tells_the_modifiers_that_are_held(monitor: Monitor) -> None:
+    told: list[Pointer] = []
+    monitor.on_pointer = told.append
+    resize(monitor, (640, 480))
+    told.clear()
+    for mods in (0, pygame.KMOD_LSHIFT, pygame.KMOD_RCTRL, pygame.KMOD_RSHIFT | pygame.KMOD_LMETA):
+        pygame.key.set_mods(mods)
+        pygame.event.post(pygame.event.Event(pygame.MOUSEBUTTONDOWN, pos=(5, 6), button=2))
+        monitor.step()
+    pygame.key.set_mods(0)
+    assert [(each.shift, each.control) for each in told] == [
+        (False, False),
+        (True, False),
+        (False, True),
+        (True, True),
+    ]
+
+
+@pytest.mark.parametrize("size", [(640, 480), (1280, 960), (1399, 1001), (500, 300)])
+def test_a_cursor_that_moves_leaves_nothing_behind(monitor: Monitor, size: tuple[int, int]) -> None:
+    display = monitor.display
+    display.send(instructions.write_cursor(0, 300, 200))
+    resize(monitor, size)
+    left, top, width, _ = placement((640, 480), size)
+    for number, place in enumerate(((300, 200), (310, 210), (0, 0), (250, 299), (620, 470), (80, 150))):
+        display.joystick.move_to(*place)
+        if number == 3:
+            display.send(instructions.load_entries(9, [[200, 100, 50]]))
+        monitor.step()
+        blocks = display.field().repeat(width // 640, axis=0).repeat(width // 640, axis=1)
+        seen = blocks[max(0, -top) : size[1] - top, max(0, -left) : size[0] - left]
+        assert np.array_equal(shown()[max(0, top) :, max(0, left) :][: seen.shape[0], : seen.shape[1]], seen)
+
+
 def test_the_mouse_is_the_joystick_of_the_cursors(monitor: Monitor) -> None:
     display = monitor.display
     display.send(np.array([0x1600, 5, 0x400 | 6], np.uint16))
-    pygame.display.set_mode((640, 480), pygame.RESIZABLE)
-    settle(monitor)
+    resize(monitor, (640, 480))
     for kind, button in ((pygame.MOUSEBUTTONDOWN, 1), (pygame.MOUSEBUTTONUP, 1), (pygame.MOUSEBUTTONDOWN, 3)):
         pygame.event.post(pygame.event.Event(kind, pos=(300, 200), button=button))
     settle(monitor)
@@ -207,8 +277,7 @@ def test_the_mouse_is_the_joystick_of_the_cursors(monitor: Monitor) -> None:
 
 def test_a_blinking_cursor_comes_and_goes(monitor: Monitor, monkeypatch: pytest.MonkeyPatch) -> None:
     monitor.display.send(np.array([0x1600, 50, 0xC00 | 60], np.uint16))
-    pygame.display.set_mode((640, 480), pygame.RESIZABLE)
-    settle(monitor)
+    resize(monitor, (640, 480))
     seen = []
     for seconds in (10.1, 10.6):
         monkeypatch.setattr("time.monotonic", lambda now=seconds: now)
@@ -249,8 +318,7 @@ def test_of_repeats_and_motions_that_wait_only_the_last_is_handled(monitor: Moni
     places: list[tuple[int, int]] = []
     monitor.on_key = keys.append
     monitor.on_pointer = lambda pointer: places.append((pointer.element, pointer.line))
-    pygame.display.set_mode((640, 480), pygame.RESIZABLE)
-    settle(monitor)
+    resize(monitor, (640, 480))
     places.clear()
     for step in range(20):
         pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_LEFT, unicode="", mod=0))
@@ -270,8 +338,7 @@ def test_of_repeats_and_motions_that_wait_only_the_last_is_handled(monitor: Moni
 
 def test_help_and_entries_stand_over_the_field_and_touch_no_word(monitor: Monitor) -> None:
     display = monitor.display
-    pygame.display.set_mode((640, 480), pygame.RESIZABLE)
-    settle(monitor)
+    resize(monitor, (640, 480))
     written, field = display.frame_buffer.written, display.field()
     press(monitor, pygame.K_F1)
     help_shown = shown().copy()

@@ -220,6 +220,61 @@ def test_after_a_load_only_lines_that_may_show_its_entries_are_written() -> None
     assert set(pixels[:, 0].tolist()) == {0, 2}
 
 
+TALL = replace(SMALL, elements=40, lines=150)
+
+
+@quick
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 1), st.integers(0, 60), st.integers(0, 170), st.integers(0, 3)),
+        min_size=1,
+        max_size=12,
+    ),
+    st.sampled_from([0, 0, 1, 7]),
+)
+def test_where_cursors_moved_the_lines_of_old_and_new_places_are_those_that_change(
+    moves: list[tuple[int, int, int, int]], seed: int
+) -> None:
+    display = Ramtek9300(TALL)
+    display.send(instructions.write_image(np.arange(6000).reshape(150, 40) % 1024))
+    display.send(instructions.load_entries(0, np.random.default_rng(seed).integers(0, 256, (1024, 3))))
+    kept, fresh = np.zeros((150, 40), np.uint32), np.zeros((150, 40), np.uint32)
+    held = display.scan_out.scan_out_changes_into(kept, None)
+    for number, element, line, look in moves:
+        if look == 3:
+            display.send(instructions.load_entries(line, [[element, 255, 0]]))
+        display.send(instructions.write_cursor(number, element, line, visible=look != 0, blinking=look == 2))
+        display.scan_out.blink_is_on = element % 2 == 0
+        before = kept.copy()
+        runs = display.scan_out.lines_changed_since(held)
+        held = display.scan_out.scan_out_changes_into(kept, held)
+        display.scan_out.scan_out_into(fresh)
+        assert (kept == fresh).all()
+        outside = np.ones(150, np.bool_)
+        for first, end in runs:
+            outside[first:end] = False
+        assert (kept[outside] == before[outside]).all()
+        assert look == 3 or outside.sum() >= 150 - 4 * 32
+
+
+def test_of_a_cursor_that_moves_only_its_old_and_new_lines_are_scanned_out() -> None:
+    display = Ramtek9300()
+    display.send(instructions.write_cursor(0, 100, 100))
+    pixels = np.zeros((480, 640), np.uint32)
+    held = display.scan_out.scan_out_changes_into(pixels, None)
+    display.joystick.move_to(300, 200)
+    assert display.scan_out.lines_changed_since(held) == ((85, 117), (185, 217))
+    pixels[...] = 7
+    held = display.scan_out.scan_out_changes_into(pixels, held)
+    written = (pixels != 7).any(axis=1)
+    assert np.flatnonzero(written).tolist() == [*range(85, 117), *range(185, 217)]
+    assert display.scan_out.lines_changed_since(held) == ()
+    display.send(instructions.write_cursor(0, 300, 200, visible=False))
+    assert display.scan_out.lines_changed_since(held) == ((185, 217),)
+    display.send(instructions.erase((0, 0, 0, 0), 5))
+    assert display.scan_out.lines_changed_since(held) == ((0, 480),)
+
+
 class KeptField:
     """A field that is brought up to date, and compared with a whole one each time."""
 

@@ -1,0 +1,222 @@
+"""Glass: the pixels of a window, and what the user does there. The only module that uses pygame.
+
+What is modeled: the field at the largest whole multiple that fits, centered, each pixel a k x k block. What
+is **not**: the phosphor, the beam.
+
+Only lines that changed are enlarged and sent to the screen, and an X server is sent them directly. Measured
+with Xvfb, from an event of the mouse to the moved cursor: 0.2 ms at 640 x 480 and 0.3 ms at 1280 x 960; with
+whole fields 0.4 and 2.7 ms; with whole fields through OpenGL, as the library would choose, 2.4 and 8.7 ms.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+# Set before pygame is imported: its greeting would mix with data on stdout, and Windows enlarges and blurs
+# the windows of a process that does not declare itself aware of the screen's resolution.
+os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
+os.environ["SDL_WINDOWS_DPI_AWARENESS"] = os.environ.get("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
+import pygame
+
+from ramtek_emu.errors import NoScreenError
+from ramtek_emu.monitor.input_queue import Close, InputQueue, Key, Pointer
+from ramtek_emu.monitor.overlay import Overlay
+from ramtek_emu.monitor.placement import Placement, pixel_under, placement
+from ramtek_emu.video.dirty_lines import Run
+from ramtek_emu.video.scan_out import ScanOut, Stamp
+
+KEY_DELAY: Final = 400
+KEY_INTERVAL: Final = 33
+"""Milliseconds until a key that is held down repeats, and between its repeats."""
+FIELD_MASKS: Final = (0xFF0000, 0x00FF00, 0x0000FF, 0)
+REDRAWN_ON: Final = frozenset(
+    (pygame.WINDOWEXPOSED, pygame.WINDOWSIZECHANGED, pygame.WINDOWRESTORED, pygame.WINDOWSHOWN)
+)
+CONTROL: Final = pygame.KMOD_CTRL | pygame.KMOD_META
+
+
+def open_screen() -> None:
+    """Start the video system; NoScreenError if there is no screen, or only a dummy that nobody asked for."""
+    asked = os.environ.get("SDL_VIDEODRIVER", "")
+    advice = "run it on a desktop, or ask for a picture file instead"
+    served_by_x = sys.platform.startswith(("linux", "freebsd", "openbsd", "netbsd"))
+    if served_by_x and not (asked or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise NoScreenError(
+            f"a window must have a screen, and neither DISPLAY nor WAYLAND_DISPLAY names one; {advice}"
+        )
+    try:
+        pygame.display.init()
+    except pygame.error as cause:
+        raise NoScreenError(
+            f"a window must have a screen, and none could be opened ({cause}); {advice}"
+        ) from cause
+    driver = pygame.display.get_driver()
+    if driver == "x11":
+        # Read when the window gets its surface. Without it, each part is sent as a whole window by OpenGL.
+        os.environ.setdefault("SDL_FRAMEBUFFER_ACCELERATION", "0")
+    if driver in ("offscreen", "dummy") and driver not in asked.split(","):
+        pygame.display.quit()
+        raise NoScreenError(
+            f"a window must have a screen, and that of DISPLAY or WAYLAND_DISPLAY does not answer; {advice}"
+        )
+
+
+class Glass:
+    """The window of one display, closed at first. `size` is that of the field, (elements, lines)."""
+
+    def __init__(self, size: tuple[int, int], fit: bool = False) -> None:
+        self.fit = fit
+        """Whether the field fills the window, blurred, instead of having whole multiples."""
+        self.is_open = False
+        self._size = size
+        self._window_size = size
+        self._redrawn = 0
+        """How often the window lost what was shown."""
+        self._held: tuple[pygame.Surface, Placement, Stamp] | None = None
+        """The surface that was scanned out to last, where the window shows it, and the field it holds."""
+
+    @property
+    def stamp(self) -> object:
+        """A value that changes whenever the field must be shown again, even if it is the same."""
+        return pygame.display.get_window_size(), self.fit, self._redrawn
+
+    def open(self, full_screen: bool) -> None:
+        """Open the window; NoScreenError if there is no screen."""
+        open_screen()
+        desktop = pygame.display.get_desktop_sizes()[0]
+        room = int(desktop[0] * 0.95), int(desktop[1] * 0.9)
+        self._window_size = placement(self._size, room)[2:]
+        self._field = pygame.Surface(self._size, 0, 32, FIELD_MASKS)
+        self.is_open = True
+        pygame.key.set_repeat(KEY_DELAY, KEY_INTERVAL)
+        self._set_mode(full_screen)
+
+    def close(self) -> None:
+        """Close the window if it is open."""
+        if self.is_open:
+            self.is_open = False
+            pygame.display.quit()
+
+    def set_title(self, title: str) -> None:
+        """Change the text of the window's title bar."""
+        if self.is_open:
+            pygame.display.set_caption(title)
+
+    def set_full_screen(self, full_screen: bool) -> None:
+        """Fill the screen, or go back to a window of the previous size; NoScreenError if that fails."""
+        if full_screen:
+            self._window_size = pygame.display.get_window_size()
+        else:
+            # Without a window manager this one only leaves full screen, and the next one sets the size.
+            self._set_mode(full_screen)
+        self._set_mode(full_screen)
+
+    def _set_mode(self, full_screen: bool) -> None:
+        try:
+            if full_screen:
+                pygame.display.set_mode((0, 0), pygame.FULLSCREEN)
+            else:
+                pygame.display.set_mode(self._window_size, pygame.RESIZABLE)
+        except pygame.error as cause:
+            self.close()
+            raise NoScreenError(
+                f"a window must have a screen that takes it, not this one ({cause}); "
+                "ask for a picture file instead"
+            ) from cause
+        self._lose()
+
+    def _lose(self) -> None:
+        """Note that the window does not show any more what was shown."""
+        self._redrawn += 1
+        self._held = None
+
+    def show(self, scan_out: ScanOut, overlay: Overlay, title: str, hides_mouse: bool) -> None:
+        """Show the current field with its overlay, and the pointer of the mouse unless it is hidden."""
+        pygame.mouse.set_visible(not hides_mouse)
+        screen = pygame.display.get_surface()
+        place = placement(self._size, screen.get_size(), self.fit)
+        is_direct = screen.get_size() == self._size and screen.get_masks() == FIELD_MASKS
+        surface = screen if is_direct else self._field
+        held = self._held[2] if self._held is not None and self._held[:2] == (surface, place) else None
+        has_overlay = any(overlay.stamp)
+        changed = scan_out.lines_changed_since(None if has_overlay else held)
+        # The surface is locked while the array exists.
+        pixels = np.asarray(surface.get_view("2")).T
+        stamp = scan_out.scan_out_changes_into(pixels, held)
+        if has_overlay:
+            overlay.draw(pixels, scan_out.table(), title)
+        del pixels
+        self._held = None if has_overlay else (surface, place, stamp)
+        is_blurred = self.fit and place[2:] != self._size
+        if held is None or has_overlay or is_blurred:
+            if not is_direct:
+                screen.fill((0, 0, 0))
+                self._enlarge(screen, place, (0, self._size[1]))
+            pygame.display.flip()
+        elif changed:
+            if not is_direct:
+                for run in changed:
+                    self._enlarge(screen, place, run)
+            pygame.display.update(
+                [enlarged(run, place, self._size).clip(screen.get_rect()) for run in changed]
+            )
+
+    def _enlarge(self, screen: pygame.Surface, place: Placement, run: Run) -> None:
+        """Copy some lines of the field to where the window shows them."""
+        lines = self._field.subsurface((0, run[0], self._size[0], run[1] - run[0]))
+        target = enlarged(run, place, self._size)
+        if target.size == lines.get_size():
+            screen.blit(lines, target)
+        else:
+            enlarge = pygame.transform.smoothscale if self.fit else pygame.transform.scale
+            screen.blit(enlarge(lines, target.size), target)
+
+    def collect(self, queue: InputQueue, wait: int = 0) -> None:
+        """Let what the user did wait in a queue; wait up to so many milliseconds for something."""
+        if wait:
+            self._note(pygame.event.wait(wait), queue)
+        for event in pygame.event.get():
+            self._note(event, queue)
+
+    def _note(self, event: pygame.event.Event, queue: InputQueue) -> None:
+        """Let the input of an event wait, or note what it tells of the window."""
+        if event.type in REDRAWN_ON:
+            self._lose()
+        elif event.type == pygame.QUIT:
+            queue.add(Close())
+        elif event.type == pygame.KEYDOWN:
+            control, alt = event.mod & CONTROL, event.mod & pygame.KMOD_ALT
+            name, shift = pygame.key.name(event.key), event.mod & pygame.KMOD_SHIFT
+            queue.add(Key(name, event.unicode, bool(control), bool(shift), bool(alt)))
+        elif event.type == pygame.KEYUP:
+            queue.release(pygame.key.name(event.key))
+        elif event.type == pygame.WINDOWFOCUSLOST:
+            queue.release_everything()
+        elif event.type == pygame.DROPFILE:
+            queue.add(Path(event.file))
+        elif event.type == pygame.MOUSEMOTION:
+            queue.add(self._pointer(event.pos, "move"))
+        elif event.type in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP) and event.button <= 3:
+            action = "press" if event.type == pygame.MOUSEBUTTONDOWN else "release"
+            queue.add(self._pointer(event.pos, action, event.button))
+        elif event.type == pygame.MOUSEWHEEL and event.y:
+            action = "wheel up" if event.y > 0 else "wheel down"
+            queue.add(self._pointer(pygame.mouse.get_pos(), action, steps=abs(event.y)))
+
+    def _pointer(self, place: tuple[int, int], action: str, button: int = 0, steps: int = 1) -> Pointer:
+        """What the mouse did at a place of the window, with the modifiers that are held now."""
+        element, line = pixel_under(place, self._size, pygame.display.get_window_size(), self.fit)
+        held = pygame.key.get_mods()
+        shift, control = bool(held & pygame.KMOD_SHIFT), bool(held & CONTROL)
+        return Pointer(element, line, False, action, button, steps, shift, control)
+
+
+def enlarged(run: Run, place: Placement, size: tuple[int, int]) -> pygame.Rect:
+    """The rectangle of a window that shows some lines of a field of (elements, lines)."""
+    top, end = (place.top + line * place.height // size[1] for line in run)
+    return pygame.Rect(place.left, top, place.width, end - top)

@@ -1,0 +1,66 @@
+"""Which part of a window shows which lines, and how often the screen is sent a part or the whole."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from ramtek_emu import Ramtek9300, instructions
+from ramtek_emu.monitor.glass import Glass, enlarged
+from ramtek_emu.monitor.overlay import Overlay
+from ramtek_emu.monitor.placement import placement
+
+pygame = pytest.importorskip("pygame")
+
+
+@pytest.mark.parametrize("window", [(640, 480), (1399, 1001), (500, 300), (1920, 1440)])
+@pytest.mark.parametrize("fit", [False, True])
+def test_runs_of_lines_that_touch_are_rectangles_that_touch(window: tuple[int, int], fit: bool) -> None:
+    place = placement((640, 480), window, fit)
+    edges = [0, 1, 31, 32, 200, 479, 480]
+    parts = [enlarged(run, place, (640, 480)) for run in itertools.pairwise(edges)]
+    assert parts[0].top == place.top
+    assert parts[-1].bottom == place.top + place.height
+    assert all(above.bottom == below.top for above, below in itertools.pairwise(parts))
+    assert {(part.left, part.width) for part in parts} == {(place.left, place.width)}
+
+
+@pytest.fixture
+def glass(monkeypatch: pytest.MonkeyPatch) -> Iterator[Glass]:
+    """An open window on a screen that nobody sees."""
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    opened = Glass((640, 480))
+    opened.open(full_screen=False)
+    yield opened
+    opened.close()
+
+
+@pytest.mark.parametrize("scale", [1, 2])
+def test_after_a_cursor_moved_only_the_lines_of_its_places_are_sent_to_the_screen(
+    glass: Glass, monkeypatch: pytest.MonkeyPatch, scale: int
+) -> None:
+    pygame.display.set_mode((640 * scale, 480 * scale), pygame.RESIZABLE)
+    display, sent = Ramtek9300(), list[Any]()
+    display.send(instructions.write_cursor(0, 100, 100))
+    monkeypatch.setattr(pygame.display, "flip", lambda: sent.append("all"))
+    monkeypatch.setattr(pygame.display, "update", lambda parts: sent.extend(map(tuple, parts)))
+
+    def show() -> list[Any]:
+        sent.clear()
+        glass.show(display.scan_out, Overlay(), "", hides_mouse=True)
+        return sent
+
+    assert show() == ["all"]
+    assert show() == []
+    display.joystick.move_to(300, 200)
+    assert show() == [
+        (0, 85 * scale, 640 * scale, 32 * scale),
+        (0, 185 * scale, 640 * scale, 32 * scale),
+    ]
+    display.joystick.move_to(300, 202)
+    assert show() == [(0, 185 * scale, 640 * scale, 34 * scale)]
+    display.send(instructions.erase((0, 0, 9, 9), 5))
+    assert show() == [(0, 0, 640 * scale, 480 * scale)]
