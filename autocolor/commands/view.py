@@ -141,6 +141,8 @@ def monitor_of(
         update()
         if monitor.caption != viewer.caption:
             monitor.caption = viewer.caption
+        if viewer.session.leaves:
+            monitor.close()
 
     monitor = Monitor(
         display,

@@ -60,6 +60,14 @@ class PictureScreen(OverPicture):
                 other="surface",
                 run_other=lambda: edits.rescale(True),
             ),
+            Gap("end gap"),
+            Pair(
+                "save",
+                "Save scene and picture; or leave the program.",
+                run=session.save,
+                other="leave",
+                run_other=session.leave,
+            ),
         ]
 
     def _light_rows(self) -> list[Widget]:

@@ -6,14 +6,12 @@ without. While something moves, the picture may be coarse; `on_tick` refines it 
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final
 
 from autocolor.errors import AutocolorError
-from autocolor.files.file_stem import file_stem
 from autocolor.files.scene_sources import read_scene
 from autocolor.journal.history import History
 from autocolor.scene.columns.column import Tier
@@ -28,7 +26,7 @@ from autocolor.screens.unit import Unit
 from autocolor.screens.watching import ENDING, MESSAGE, Watching
 from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sheet
-from ramtek_emu import HostPort, RamtekError
+from ramtek_emu import HostPort, PortError, RamtekError, ReplyError
 
 REST_SECONDS: Final = 0.1
 """Assumed: the time without a change after which a movement rests that has not ended by a release: while a
@@ -60,7 +58,6 @@ class Viewer:
         self.board = Board(self.session, self.screens)
         self.edits = PictureEdits(self.session)
         self._watching = Watching(self.display)
-        self.saved: Path | None = None
         self._edited_by: object = None
         """The key or the movement of the pointer by which the last edit was made, if any."""
         self._warned = False
@@ -230,6 +227,9 @@ class Viewer:
         taken: object = True
         try:
             taken = run()
+        except (PortError, ReplyError):
+            # The display is lost, or its replies are: nothing can be shown any more.
+            raise
         except (AutocolorError, RamtekError) as error:
             session.warn(error)
         if taken is False:
@@ -328,15 +328,14 @@ class Viewer:
             self.session.turn_to(PICTURE)
 
     def save(self) -> None:
-        """Save the picture with its scene: to a new file the first time, then to the same file."""
-        if self.saved is None:
-            stem, number = file_stem(self.studio.scene.name), 1
-            path = self.folder / f"{stem}.npz"
-            while os.path.lexists(path):
-                number += 1
-                path = self.folder / f"{stem}-{number}.npz"
-            self.studio.save(path)
-            self.saved = path
-        else:
-            self.studio.save(self.saved, overwrite=True)
-        self.session.tell(f"saved {self.saved.resolve()}")
+        """Save the scene and its picture."""
+        self.session.save()
+
+    def clear(self) -> None:
+        """Leave the picture alone on the display, without menu, message and cursors."""
+        self.session.turn_to(PICTURE)
+        self.board.turn()
+        self.board.close()
+        self.session.tell("")
+        self._update()
+        self._unit.hide()
