@@ -23,8 +23,10 @@ from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.journal.history import History
 from autocolor.journal.studio_session import StudioSession
+from autocolor.lighting.highlights import highlight_of
+from autocolor.lighting.light_drags import highlight_placed
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, display_image
+from autocolor.mapping.display_image import display_image
 from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.pacing import block_for, blocks_of
@@ -35,6 +37,7 @@ from autocolor.scene.columns.column import Tier, fields_of
 from autocolor.scene.scene import AUTO, Scene, cost_of_edit
 from autocolor.scene.surfaces import Paint
 from autocolor.sending import configuration_of, send_image
+from autocolor.visibility.sight import Seen, Sight, seen_at
 from ramtek_emu import HostPort
 
 
@@ -85,6 +88,23 @@ class Studio(StudioSession):
     def entries(self) -> Bytes:
         """The entries of the lookup table, (1024, 3) uint8, read-only."""
         return self._shown.entries
+
+    @property
+    def sight(self) -> Sight:
+        """What the pixels of the display see of the scene, for `lighting.rims` and the methods below."""
+        return Sight(self.scene, self._rendering.points, self._shown.block)
+
+    def seen_at(self, line: int, element: int) -> Seen | None:
+        """What is seen at a pixel of the display; None on the background."""
+        return seen_at(self.sight, line, element)
+
+    def highlight_of(self, light: str, surface: str | None = None) -> tuple[int, int] | None:
+        """The line and element where a light's highlight is, on one surface or on all; None if nowhere."""
+        return highlight_of(self.sight, light, surface)
+
+    def place_highlight(self, light: str, line: int, element: int) -> None:
+        """Move a light so that its highlight is at a pixel; for drags, `edit` with `highlight_placed`."""
+        self.edit(highlight_placed(self.scene, self.seen_at(line, element), light))
 
     def recolor(self, surface: str, /, **changes: Unpack[PaintChanges]) -> None:
         """Change the colors of a surface; this sends entries, but no words.
@@ -166,11 +186,9 @@ class Studio(StudioSession):
         return self._step(self._history.to_redo, self._history.redo)
 
     def watch(self) -> Iterator[tuple[int, Words]]:
-        """The lines of the picture from the top, each computed when it is asked for: its number and words.
+        """The lines of the picture from the top, each computed when it is asked for (see `words_by_line`).
 
-        The words are (1, elements) uint16, as `write_image` takes them. Nothing is sent but a refined
-        picture; all lines together are the `words` of that moment. See `scan_lines` for what is
-        computed again.
+        All lines together are the `words` of that moment. Nothing is sent but a refined picture.
 
             for line, words in studio.watch():
                 display.send(instructions.write_image(words, top=line))
@@ -202,25 +220,19 @@ class Studio(StudioSession):
         before, rendered, block = self._shown, self._rendering, self._shown.block
         begun = perf_counter()
         if costs >= Tier.MIX:
-            block = self._block_of(costs, moving)
+            if not moving:
+                block = 1
+            elif costs == Tier.FRAME:
+                block = block_for(blocks_of(*self._size), *self._pace)
+            # Else what is visible stays: what was computed for it is used again.
             lines, elements = (size // block for size in self._size)
             rendered = rendering(scene, lines, elements, rendered)
-        if costs >= Tier.LEVELS:
-            now = display_image(scene, rendered.picture, before, block)
-        else:
-            now = DisplayImage(scene, before.picture, before.ranges, before.words, block)
+        now = display_image(scene, rendered.picture, before, block)
         if self.sends:
             send_image(self._display, now, before)
         self._rendering, self._shown = rendered, now
         if costs == Tier.FRAME:
             self._pace = block, perf_counter() - begun
-
-    def _block_of(self, costs: Tier, moving: bool) -> int:
-        """The block of the next picture: while a picture moves, such that it is fast enough."""
-        if not moving:
-            return 1
-        # What is visible stays: what was computed for it is used again.
-        return block_for(blocks_of(*self._size), *self._pace) if costs == Tier.FRAME else self._shown.block
 
     def _repr_png_(self) -> bytes:
         from ramtek_emu.png import png_bytes

@@ -33,7 +33,7 @@ def refuse_address(address: str) -> None:
     try:
         host_and_port(address)
     except PortError as error:
-        raise UsageError(f"--to: {error}; for a Unix socket, write its path with a slash") from None
+        raise UsageError(f"--to: {error}, or the path of a Unix socket with a slash in it") from None
 
 
 def port_to(address: str) -> TcpPort | UnixPort:

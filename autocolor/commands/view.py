@@ -111,6 +111,7 @@ def show(history: History, full_screen: bool = False, fit: bool = False, left: P
         open_screen()
         display = Ramtek9300()
         viewer = Viewer(history, display)
+        viewer.session.is_at_hand = True
         with kept_session(viewer, left) as update:
             monitor_of(viewer, display, full_screen, fit, update).run()
     except NoScreenError as error:

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import os
 from pathlib import Path, PureWindowsPath
+from typing import Final
 
 from autocolor.files.reading import shown
+
+SCENE_FILE: Final = "scene.toml"
+"""The name of the scene file in a scene's folder."""
 
 
 def path_within(problems: list[str], folder: Path, name: str, *, outside: bool = False) -> Path | None:

@@ -14,9 +14,10 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Final
 
 from autocolor.checks import shown
-from autocolor.errors import OutputError, UsageError
+from autocolor.errors import AutocolorError, OutputError, UsageError
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_writing import refuse_names
 from autocolor.files.scenes.problems import SceneProblems
@@ -28,6 +29,17 @@ from autocolor.scene.columns.rows import made
 from autocolor.scene.rigs import Rig
 from autocolor.scene.scene import Scene
 
+RIG_SUFFIX: Final = ".toml"
+
+
+def is_rig(path: Path) -> bool:
+    """Whether a TOML file is a rig and no scene: it has the size of an object, and no mesh."""
+    try:
+        document = parsed_toml(read_bytes(path, LARGEST_TEXT), path.name, "a rig file")
+    except AutocolorError:
+        return False
+    return "minimum" in document and "mesh" not in document
+
 
 def write_rig(path: str | os.PathLike[str], scene: Scene | Rig, *, overwrite: bool = False) -> None:
     """Write the lights of a scene, with the size of its object, to a rig file (.toml), atomically.
@@ -36,7 +48,7 @@ def write_rig(path: str | os.PathLike[str], scene: Scene | Rig, *, overwrite: bo
     name of a light that is no text; OutputError if the file exists and `overwrite` is false, or if it cannot
     be created; WriteError if writing fails.
     """
-    check_suffix(path, ".toml", "a rig")
+    check_suffix(path, RIG_SUFFIX, "a rig")
     rig = scene.rig if isinstance(scene, Scene) else scene
     if not isinstance(rig, Rig):
         raise UsageError(f"a rig must be of a Scene, not {shown(rig)}; give the scene with the lights")

@@ -17,6 +17,7 @@ from autocolor.errors import InputError, OutputError, UsageError, reason_of
 from autocolor.files.mesh_sources import source_of
 from autocolor.files.mesh_writing import Meshes, entries_of, meshes_there, reports_of, written_mesh
 from autocolor.files.meshes.formats import mesh_suffixes
+from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
 from autocolor.files.scenes.formats import scene_suffixes
 from autocolor.files.scenes.scene_edit import (
@@ -36,8 +37,6 @@ from autocolor.scene.node_normals import CREASE_ANGLE
 from autocolor.scene.scene import Scene, check_scene
 
 LOG: Final = logger_of(__name__)
-
-SCENE_FILE: Final = "scene.toml"
 
 
 def write_scene(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool = False) -> None:

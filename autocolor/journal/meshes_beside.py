@@ -9,7 +9,8 @@ from typing import Final
 
 from autocolor.errors import InputError
 from autocolor.files.mesh_sources import source_of
-from autocolor.files.scene_writing import SCENE_FILE, write_scene
+from autocolor.files.paths import SCENE_FILE
+from autocolor.files.scene_writing import write_scene
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from autocolor.files.scene_writing import SCENE_FILE
+from autocolor.files.paths import SCENE_FILE
 from autocolor.scene.creation import SurfaceSource
 
 PACKAGE: Final = Path(__file__).resolve().parents[1]

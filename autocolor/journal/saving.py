@@ -3,8 +3,7 @@
 A scene that was opened from a scene file, or a picture that was opened from a picture file, is saved to that
 file, if it still holds what was opened; what it held is kept beside it under a numbered name. All else is
 saved to new files in a folder: `coupe/scene.toml` and `coupe.npz`, or `coupe-2/scene.toml` and `coupe-2.npz`
-if one of those exists. After that the same names are saved to again, unless another program changed the
-files.
+if one of those exists. After that the same names are saved to again, unless the files were changed since.
 """
 
 from __future__ import annotations
@@ -14,9 +13,10 @@ from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
-from autocolor.files.file_stem import file_stem
+from autocolor.files.file_stem import file_stem, free_path
+from autocolor.files.paths import SCENE_FILE
 from autocolor.files.picture_file import write_picture
-from autocolor.files.scene_writing import SCENE_FILE, write_scene
+from autocolor.files.scene_writing import write_scene
 from autocolor.files.writing import write_atomically
 from autocolor.journal.history import History
 from autocolor.journal.places import PICTURE_SUFFIX, file_of, stamp_of
@@ -26,8 +26,8 @@ from autocolor.lighting.picture import Picture
 class SavedFiles(NamedTuple):
     """The files that were saved: the scene file and the picture file.
 
-    `kept` are those that hold what these two held before; `changed` are those that another program changed,
-    so that new names were taken.
+    `kept` are those that hold what these two held before; `changed` are those that were changed since they
+    were opened or saved, so that new names were taken.
     """
 
     scene: Path
@@ -45,7 +45,7 @@ class SavedFiles(NamedTuple):
         if self.kept:
             text += f"; what was there is in {names(self.kept)}"
         if self.changed:
-            text += f"; another program changed {names(self.changed)}"
+            text += f"; {names(self.changed)} was changed since, and is left alone"
         return text
 
 
@@ -112,10 +112,7 @@ def _new_names(name: str, folder: Path, has_scene: bool, has_picture: bool) -> t
 
 def _copied(path: Path) -> Path:
     """Copy a file to a numbered name beside it that is free; returns that."""
-    for number in count(1):
-        other = path.with_name(f"{path.stem}-{number}{path.suffix}")
-        if not os.path.lexists(other):
-            break
+    other = free_path(path)
     write_atomically(other, path.read_bytes(), overwrite=False)
     return other
 

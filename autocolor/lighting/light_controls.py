@@ -23,15 +23,21 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, NamedTuple, TypeVar
+from typing import Final, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Singles, power
-from autocolor.scene.lights import Light
+from autocolor.scene.lights import Flap, Light
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 
 ROUNDING: Final = float(np.finfo(np.float32).eps)
+
+Axis = Literal["x", "y", "z"]
+"""The object coordinate that a flap restricts."""
+
+FlapEnd = Literal["minimum", "maximum"]
+"""The fields of a flap that are coordinates."""
 
 FAR_FLAP: Final = 1e30
 """In units; farther than any point, and float32 can hold it."""
@@ -105,7 +111,7 @@ class FlapSides(LightControl):
     """The sides of all flaps that are on.
 
     Paper: "Light Flaps and Cones": a flap is a range of an object coordinate, a box and no shadow. A point on
-    a side is inside. `sides` is (sides, 4): a point is inside where each product with (P, 1) is at least 0.
+    a side is inside. `sides` is (sides, 4); see `is_inside`.
     """
 
     sides: Singles
@@ -113,30 +119,46 @@ class FlapSides(LightControl):
     @classmethod
     def of(cls, light: Light, points: VisiblePoints) -> FlapSides | None:
         """The sides that are not at infinity."""
-        sides: list[Floats] = []
-        # A surface that lies on a side is lit: allow for the rounding of its points to float32.
-        slack = 4 * ROUNDING * points.radius
-        for axis, flap in enumerate((light.flaps.x, light.flaps.y, light.flaps.z)):
-            if flap is None or not flap.on:
-                continue
-            coordinate = points.world_coordinate(axis)
-            for sign, limit in ((1.0, flap.minimum), (-1.0, flap.maximum)):
-                if math.isfinite(limit):
-                    in_units = min(max(sign * limit / points.unit, -FAR_FLAP), FAR_FLAP)
-                    sides.append(sign * coordinate - np.array([0, 0, 0, in_units - slack]))
-        return cls(np.array(sides, np.float32)) if sides else None
+        sides = flap_sides(light, points)
+        return cls(np.array(list(sides.values()), np.float32)) if sides else None
 
     def lit_points(self, rows: Singles) -> Booleans:
         """Whether each point is inside all flaps."""
-        lit = self._inside(self.sides[0], rows)
+        lit = is_inside(self.sides[0], rows)
         for side in self.sides[1:]:
-            np.logical_and(lit, self._inside(side, rows), out=lit)
+            np.logical_and(lit, is_inside(side, rows), out=lit)
         return lit
 
-    @staticmethod
-    def _inside(side: Singles, rows: Singles) -> Booleans:
-        inside: Booleans = side[:3] @ rows[POINT] >= -side[3]
-        return inside
+
+def flaps_of(light: Light) -> dict[Axis, Flap | None]:
+    """The flap of a light along each axis, on or off; None where there is none."""
+    return {"x": light.flaps.x, "y": light.flaps.y, "z": light.flaps.z}
+
+
+def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd], Floats]:
+    """The sides, (4,) each, of the flaps that are on, but for those at infinity; see `is_inside`."""
+    sides: dict[tuple[Axis, FlapEnd], Floats] = {}
+    # A surface that lies on a side is lit: allow for the rounding of its points to float32.
+    slack = 4 * ROUNDING * points.radius
+    for row, (axis, flap) in enumerate(flaps_of(light).items()):
+        if flap is None or not flap.on:
+            continue
+        coordinate = points.world_coordinate(row)
+        ends: dict[FlapEnd, tuple[float, float]] = {
+            "minimum": (1.0, flap.minimum),
+            "maximum": (-1.0, flap.maximum),
+        }
+        for end, (sign, limit) in ends.items():
+            if math.isfinite(limit):
+                in_units = min(max(sign * limit / points.unit, -FAR_FLAP), FAR_FLAP)
+                sides[axis, end] = sign * coordinate - np.array([0, 0, 0, in_units - slack])
+    return sides
+
+
+def is_inside(side: Singles, rows: Singles) -> Booleans:
+    """Whether each point is on the inner side of a plane: where its product with (P, 1) is at least 0."""
+    inside: Booleans = side[:3] @ rows[POINT] >= -side[3]
+    return inside
 
 
 @registered

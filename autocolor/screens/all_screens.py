@@ -5,7 +5,10 @@ from __future__ import annotations
 from typing import Final
 
 from autocolor.screens.entries_screen import EntriesScreen
+from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
+from autocolor.screens.kept_screen import KeptScreen
+from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
 from autocolor.screens.picture_screen import PictureScreen
@@ -14,9 +17,12 @@ from autocolor.screens.screen import Screen
 
 SCREENS: Final[tuple[type[Screen], ...]] = (
     PictureScreen,
+    LightAndViewScreen,
     LightsScreen,
     ReflectanceScreen,
     MappingScreen,
+    KeptScreen,
+    FileScreen,
     EntriesScreen,
     HelpScreen,
 )

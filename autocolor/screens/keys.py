@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -54,3 +54,21 @@ class Binding(Generic[Viewer]):
 
     def __str__(self) -> str:
         return self.label or ", ".join(map(str, self.chords))
+
+
+def bound_to(
+    bindings: Sequence[Binding[Viewer]], name: str, control: bool, shift: bool, typed: str
+) -> tuple[Binding[Viewer], int] | None:
+    """The binding of a key that was pressed, and the index of its chord; None if it has none.
+
+    Signs are matched by the typed character, as keyboards place them differently, letters by the key's name.
+    """
+    chords = [
+        (binding, number, chord)
+        for binding in bindings
+        for number, chord in enumerate(binding.chords)
+        if chord.control == control
+    ]
+    by_sign = [row for row in chords if row[2].is_sign and row[2].name == typed]
+    by_name = [row for row in chords if row[2].name == name and (row[2].is_sign or row[2].shift == shift)]
+    return next(((binding, number) for binding, number, _ in by_sign or by_name), None)

@@ -7,8 +7,6 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
-from autocolor.files.file_stem import file_stem, free_path
-from autocolor.files.rig_file import write_rig
 from autocolor.scene.columns.column import fields_of
 from autocolor.scene.lights import Light
 from autocolor.scene.new_lights import new_light_of
@@ -77,7 +75,7 @@ class LightsScreen(OverPicture):
                 other="remove",
                 run_other=self._remove,
             ),
-            Button("save the rig", "Save all lights, to put them on another scene.", run=self._save_rig),
+            Button("save the rig", "Save all lights, to put them on another scene.", run=session.save_rig),
         ]
 
     def _parameters(self, light: Light) -> list[Widget]:
@@ -127,7 +125,11 @@ class LightsScreen(OverPicture):
         self._append(self.session.scene.with_copied_light(self.session.light_name).lights, "copied")
 
     def _mirror(self) -> None:
-        self._append(self.session.scene.with_mirrored_light(self.session.light_name).lights, "mirrored")
+        # The sides of a product are those of its shorter horizontal extent.
+        (x, y, _), (to_x, to_y, _) = self.session.scene.object_bounds
+        axis = "x" if to_x - x <= to_y - y else "y"
+        lights = self.session.scene.with_mirrored_light(self.session.light_name, axis).lights
+        self._append(lights, f"mirrored along {axis}")
 
     def _append(self, lights: tuple[Light, ...], done: str) -> None:
         before = self.session.light_name
@@ -139,11 +141,6 @@ class LightsScreen(OverPicture):
         name = self.session.light_name
         self.session.edit(self.session.scene.without_light(name))
         self.session.tell(f"light {name} removed; undo brings it back")
-
-    def _save_rig(self) -> None:
-        path = free_path(self.session.folder / f"{file_stem(self.session.scene.name)}-rig.toml")
-        write_rig(path, self.session.scene)
-        self.session.tell(f"saved {path.resolve()}")
 
 
 def _default(name: str) -> object:

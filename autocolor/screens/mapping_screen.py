@@ -21,9 +21,10 @@ from autocolor.scene.scene import AUTO, Exposure
 from autocolor.screens.gestures import Gesture
 from autocolor.screens.over_picture import OverPicture
 from autocolor.screens.screen import Handle
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
 from autocolor.widgets.column_rows import rows_of
-from autocolor.widgets.items import Area, Item, filled, lines, outline, text
+from autocolor.widgets.items import Item, filled, lines, outline, text
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.pairs import Pair
 from autocolor.widgets.widget import Button, Choice, Gap, Widget
@@ -92,14 +93,14 @@ class MappingScreen(OverPicture):
 
     def handles(self) -> Sequence[Handle]:
         return [
-            Handle(str(number), *place_of(x, y), f"intensity {x:.2f}, level {y:.2f}")
+            Handle(number, *place_of(x, y), f"intensity {x:.2f}, level {y:.2f}")
             for number, (x, y) in enumerate(self._points())
         ]
 
     def place(self, handle: Handle, element: int, line: int) -> None:
         points = list(self._points())
-        number = int(handle.key)
-        if number >= len(points):
+        number = handle.key
+        if not isinstance(number, int) or number >= len(points):
             return
         x, y = fractions_of(element, line)
         # The ends stay at the ends, and the curve stays a rising one.

@@ -10,7 +10,7 @@ from autocolor.screens.orbit import SIDES
 from autocolor.screens.over_picture import OverPicture
 from autocolor.screens.session import PICTURE
 from autocolor.widgets.pairs import Pair
-from autocolor.widgets.widget import Choice, Gap, Steps, Switch, Widget
+from autocolor.widgets.widget import Button, Choice, Gap, Steps, Switch, Widget
 
 TURN: Final = 5.0
 """Degrees for each step of a menu row that turns."""
@@ -60,13 +60,9 @@ class PictureScreen(OverPicture):
                 other="surface",
                 run_other=lambda: edits.rescale(True),
             ),
-            Gap("end gap"),
-            Pair(
-                "save",
-                "Save scene and picture; or leave the program.",
-                run=session.save,
-                other="leave",
-                run_other=session.leave,
+            Gap("leave gap"),
+            Button(
+                "leave", "Leave the program; changes that are not saved are told first.", run=session.leave
             ),
         ]
 

@@ -18,9 +18,12 @@ from autocolor.widgets.widget import Widget
 
 
 class Handle(NamedTuple):
-    """A place on a screen that can be grabbed and put elsewhere; `label` is what the message line says."""
+    """A place on a screen that can be grabbed and put elsewhere; `label` is what the message line says.
 
-    key: str
+    `key` is what the screen knows it by.
+    """
+
+    key: object
     element: int
     line: int
     label: str
@@ -85,6 +88,9 @@ class Screen:
     def place(self, handle: Handle, element: int, line: int) -> None:
         """Put what was grabbed at a place: once after a pick, at each movement during a drag."""
 
+    def release(self) -> None:
+        """What was held or grabbed is let go of."""
+
     def pick(self, gesture: Gesture) -> None:
         """A click, or ENTER, where no widget and no handle is."""
 
@@ -96,6 +102,10 @@ class Screen:
 
     def key(self, name: str, typed: str) -> bool:
         """A key that nothing else takes was pressed; returns False if it does nothing here."""
+        return False
+
+    def idle(self) -> bool:
+        """Do a part of what can wait while nothing moves; returns whether something looks different now."""
         return False
 
     def enter(self) -> None:

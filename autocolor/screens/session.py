@@ -10,6 +10,10 @@ import time
 from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
+from autocolor.files.file_stem import file_stem, free_path
+from autocolor.files.paths import SCENE_FILE
+from autocolor.files.recent import note_file
+from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
@@ -51,6 +55,8 @@ class Session:
         """Whether the next edit is one of a movement, whose pictures may be coarse."""
         self.has_keyboard = False
         """Whether something can be typed."""
+        self.is_at_hand = False
+        """Whether the user sits at this machine; a pointer from elsewhere keeps to the folder."""
         self.surface = 0
         """The number of the chosen surface among those in use; see `surface_name`."""
         self.part_name = ""
@@ -166,6 +172,42 @@ class Session:
         if self.surface_name:
             self.edit(self.scene.with_paint(self.surface_name, **changes))
 
+    # Files.
+
+    def open(self, path: Path) -> None:
+        """Open a file or a folder as one step to undo: a scene, a mesh, a picture, or a rig of lights.
+
+        Raises InputError or MissingInputError.
+        """
+        if path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE and is_rig(path):
+            self.edit(self.scene.with_rig(read_rig(path)))
+            self.tell(f"the lights of {path.name}, fitted to {self.scene.name}; undo goes back")
+            return
+        self.studio.open(path)
+        note_file(path.resolve())
+        self.tell(f"opened {path.name}; undo goes back")
+
+    def save(self) -> None:
+        """Save the scene and the picture, under names that the message tells."""
+        saved = self.studio.save_session(self.folder)
+        note_file(saved.scene)
+        self.tell(saved.told(self.folder))
+
+    def save_rig(self) -> None:
+        """Save the lights, to put them on another scene."""
+        path = free_path(self.folder / f"{file_stem(self.scene.name)}-rig{RIG_SUFFIX}")
+        write_rig(path, self.scene)
+        self.tell(f"saved {path.name}")
+
+    def save_image(self) -> None:
+        """Save the picture, without menus, as a numbered image."""
+        from autocolor.images import save_image
+
+        path = free_path(self.folder / f"{file_stem(self.scene.name)}.png")
+        self.studio.refine()
+        save_image(path, self.scene, self.studio.picture)
+        self.tell(f"saved {path.name}")
+
     def undo(self) -> None:
         """Undo the last step."""
         self.tell("undone" if self.studio.undo() else "nothing to undo")
@@ -175,10 +217,6 @@ class Session:
         self.tell("redone" if self.studio.redo() else "nothing to redo")
 
     # The end.
-
-    def save(self) -> None:
-        """Save scene and picture, under names that the message tells."""
-        self.tell(self.studio.save_session(self.folder).told(self.folder))
 
     def leave(self) -> None:
         """Ask to leave the program; changes that are not saved are told first, and the next time lost."""

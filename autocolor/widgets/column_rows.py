@@ -98,7 +98,8 @@ def _nested_rows(
     if "on" in fields_of(kind.row_class):
         flip = partial(inner, {"on": not value.on})
         yield Switch(shown, told, is_on=value.on, flip=flip)
-    yield from rows_of(value, inner, world, leave_out=("on",), label=f"{label} ")
+    # In a narrow menu the name of the row itself is enough before those of its fields.
+    yield from rows_of(value, inner, world, leave_out=("on",), label=f"{name} ")
 
 
 def _bar(label: str, name: str, field: Field, value: float | None, put: Put, world: World) -> Bar:

@@ -10,8 +10,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final, NamedTuple, TypeVar
 
+from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLACK, GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
-from autocolor.widgets.items import CHARACTER, Area, Item, filled, fitted, text
+from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
 
 ROW_LINES: Final = 16
 """The height of a row of a menu."""
@@ -167,6 +168,9 @@ class Switch(Widget):
             return self.choose()
         return self.flip()
 
+    def nudge(self, steps: float) -> object:
+        return self.flip() if self.is_on != (steps > 0) else None
+
 
 def box_items(area: Area, is_on: bool, word: int, background: int) -> list[Item]:
     """A box, full or empty."""
@@ -214,8 +218,10 @@ class Choice(Widget):
         if not self.names:
             return None
         names = list(self.names)
-        start = names.index(self.present) if self.present in names else -1
-        return self.choose(names[(start + (1 if steps > 0 else -1)) % len(names)])
+        step = 1 if steps > 0 else -1
+        if self.present not in names:
+            return self.choose(names[min(step, 0)])
+        return self.choose(names[(names.index(self.present) + step) % len(names)])
 
 
 @dataclass(frozen=True)

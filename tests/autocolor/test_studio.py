@@ -25,6 +25,7 @@ from autocolor import (
     read_scene,
     scene_of,
 )
+from autocolor.lighting.light_drags import highlight_placed
 from autocolor.mapping.level_ranges import SCREENS
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube
@@ -711,3 +712,81 @@ def test_a_light_that_cannot_be_added_changes_nothing(name: str, fields: Any, me
     with pytest.raises(UsageError, match="there is no light 'kye'; did you mean 'key'"):
         studio.remove_light("kye")
     assert (studio.scene, held(display)) == (scene, before)
+
+
+ON_THE_HOOD = 7, 15
+"""A pixel at which the round body of `car` is seen, as it is on the three lines below."""
+
+
+def test_placing_a_highlight_is_a_step_and_it_is_found_there() -> None:
+    studio, display = opened()
+    scene, pixel = studio.scene, ON_THE_HOOD
+    studio.place_highlight("key", *pixel)
+    assert studio.highlight_of("key", "body") == pixel
+    assert held(display) == fresh(studio.scene)
+    seen = studio.seen_at(*pixel)
+    assert seen is not None
+    assert studio.scene.light("key").aim == seen.point
+    assert studio.undo()
+    assert studio.scene is scene
+    assert not studio.undo()
+
+
+def test_a_dragged_highlight_is_one_step() -> None:
+    studio, _ = opened()
+    line, element = ON_THE_HOOD
+    studio.surface("body", diffuse=0.6)
+    scene = studio.scene
+    for number, down in enumerate((0, 1, 2, 3)):
+        moved = highlight_placed(studio.scene, studio.seen_at(line + down, element), "key")
+        studio.edit(moved, same_step=number > 0, moving=True)
+    assert studio.highlight_of("key", "body") == (line + 3, element)
+    assert studio.undo()
+    assert studio.scene is scene
+
+
+def test_a_highlight_on_the_background_or_outside_changes_nothing() -> None:
+    studio, display = opened()
+    scene, before = studio.scene, held(display)
+    assert studio.seen_at(0, 0) is None
+    with pytest.raises(UsageError, match="a highlight must be dragged to a surface, not to the background"):
+        studio.place_highlight("key", 0, 0)
+    with pytest.raises(UsageError, match="a line must be 0 to 23, not 24; choose another"):
+        studio.place_highlight("key", 24, 0)
+    assert (studio.scene, held(display)) == (scene, before)
+
+
+def test_what_is_seen_has_the_present_name_of_its_surface() -> None:
+    studio, _ = opened()
+    line, element = ON_THE_HOOD
+    studio.edit(
+        studio.scene.replace(
+            surfaces=[
+                each.replace(name="paint") if each.name == "body" else each for each in studio.scene.surfaces
+            ],
+            parts=[
+                each.replace(surface="paint") if each.surface == "body" else each
+                for each in studio.scene.parts
+            ],
+        )
+    )
+    seen = studio.seen_at(line, element)
+    assert seen is not None
+    assert (seen.part, seen.surface) == ("hood", "paint")
+
+
+@pytest.mark.usefixtures("slow")
+def test_while_the_picture_is_coarse_the_block_of_a_pixel_counts() -> None:
+    studio, _ = opened()
+    turn(studio, 20.0)
+    assert studio.sight.block == 4
+    for line in range(0, 24, 4):
+        for element in range(0, 32, 4):
+            seen = studio.seen_at(line, element)
+            assert studio.seen_at(line + 3, element + 3) == seen
+            assert (seen is None) == (studio.words[line, element] == 0)
+    found = studio.highlight_of("key")
+    assert found is not None
+    assert (found[0] % 4, found[1] % 4) == (2, 2)
+    studio.refine()
+    assert studio.sight.block == 1

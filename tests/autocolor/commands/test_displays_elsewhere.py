@@ -163,7 +163,7 @@ def test_it_is_left_by_the_menu_and_the_picture_stays(
 ) -> None:
     seen: list[Viewer] = []
     session_elsewhere(
-        History(car()), server.address, tmp_path, None, acting(server, seen, menu, on(seen, "save", 0.9))
+        History(car()), server.address, tmp_path, None, acting(server, seen, menu, on(seen, "leave"))
     )
     assert capsys.readouterr().err.startswith(f"shown on {server.address}; pick `leave` in the menu there")
     display = server.display
@@ -175,7 +175,7 @@ def test_it_is_left_by_the_menu_and_the_picture_stays(
 def test_unsaved_changes_are_told_before_it_is_left(server: Served, tmp_path: Path) -> None:
     seen: list[Viewer] = []
     messages: list[str] = []
-    leave = on(seen, "save", 0.9)
+    leave = on(seen, "leave")
 
     def note(_: Ramtek9300) -> None:
         messages.append(seen[0].message)
@@ -188,7 +188,8 @@ def test_unsaved_changes_are_told_before_it_is_left(server: Served, tmp_path: Pa
 
 def test_a_pointer_elsewhere_saves_in_the_folder_of_the_scene(server: Served, tmp_path: Path) -> None:
     seen: list[Viewer] = []
-    prepare = acting(server, seen, menu, on(seen, "turn", 0.9), on(seen, "save", 0.1), on(seen, "save", 0.9))
+    saving = (menu, on(seen, "turn", 0.9), menu, on(seen, "file"), on(seen, "save"))
+    prepare = acting(server, seen, *saving, on(seen, "< picture"), menu, on(seen, "leave"))
     session_elsewhere(History(car().replace(name="car")), server.address, tmp_path, None, prepare)
     assert sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*.*")) == [
         "car.npz",

@@ -24,6 +24,9 @@ pytest.importorskip("pygame")
 
 ROOT = Path(__file__).parents[3]
 
+WITHOUT_SCREEN = {"SDL_VIDEODRIVER": "dummy", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
+"""Without the line that pygame prints, the first one is that of the first step."""
+
 DRIVER = """
 import sys, time, pygame
 from autocolor.commands.autocolor import autocolor
@@ -55,7 +58,7 @@ def start(how: str, *arguments: str, folder: Path) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-c", DRIVER, how, *arguments],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "SDL_VIDEODRIVER": "dummy"},
+        env={**os.environ, "PYTHONPATH": str(ROOT), **WITHOUT_SCREEN},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

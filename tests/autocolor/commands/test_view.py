@@ -75,7 +75,7 @@ def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitor
 
     def script(monitor: Any) -> None:
         assert monitor.on_key(Key("c", "c"))
-        assert not monitor.on_key(Key("tab", "\t"))
+        assert not monitor.on_key(Key("q", "q"))
         note(monitor)
         captions.append(str(monitor.on_close()))
         note(monitor)
@@ -94,9 +94,13 @@ def test_keys_drops_and_closing_reach_the_viewer(folder: Path, run: Run, monitor
     assert captions[4].endswith("saved somewhere")
 
 
-def test_the_mouse_reaches_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
+def test_the_mouse_reaches_the_viewer(
+    folder: Path, run: Run, monitors: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
     from ramtek_emu.monitor.window import Pointer
 
+    # However slow the machine is, no picture of the drag is coarse.
+    monkeypatch.setattr("autocolor.studio.perf_counter", lambda: 0.0)
     fields = []
 
     def script(monitor: Any) -> None:
@@ -119,6 +123,18 @@ def test_the_mouse_reaches_the_viewer(folder: Path, run: Run, monitors: list[Any
 def test_a_bare_command_shows_the_demo(folder: Path, run: Run, monitors: list[Any]) -> None:
     assert run() == (0, "", "")
     assert monitors[1].caption.startswith("autocolor - coupe - ")
+
+
+def test_the_demo_is_saved_to_new_files_and_a_scene_that_was_named_to_its_own(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from autocolor.commands import view
+
+    shown: list[Any] = []
+    monkeypatch.setattr(view, "show", lambda history, *_: shown.append(history.first_place))
+    assert run().code == run("view", "scene").code == run("view", "two.obj").code == 0
+    assert [place.stamp is None for place in shown] == [True, False, True]
+    assert [Path(place.source.path).name for place in shown[1:]] == ["scene", "two.obj"]
 
 
 def test_bad_input_opens_no_window(folder: Path, run: Run, monitors: list[Any]) -> None:

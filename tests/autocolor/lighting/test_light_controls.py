@@ -18,6 +18,9 @@ from autocolor.lighting.light_controls import (
     LightControl,
     LitPoints,
     controls_of,
+    flap_sides,
+    flaps_of,
+    is_inside,
 )
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
@@ -80,6 +83,24 @@ def test_a_light_has_the_controls_that_its_fields_ask_for(light: Light) -> None:
     assert (FlapSides in used) == bool(limits)
     assert (Cone in used) == (light.cone_angle is not None)
     assert (Concentration in used) == (light.concentration > 0)
+
+
+@given(lights(), st.lists(st.tuples(*[numbers(-1, 1)] * 3), min_size=1, max_size=20))
+def test_a_point_is_inside_a_side_of_a_flap_up_to_its_coordinate(
+    light: Light, world: list[tuple[float, float, float]]
+) -> None:
+    points = wall_points()
+    rows = np.array([points.camera_point(point) for point in world], np.float32).T
+    sides = flap_sides(light, points)
+    for number, (axis, flap) in enumerate(flaps_of(light).items()):
+        for end in ("minimum", "maximum"):
+            assert ((axis, end) in sides) == (flap is not None and flap.on)
+            if flap is None or not flap.on:
+                continue
+            inside = is_inside(sides[axis, end].astype(np.float32), rows)
+            for point, value in zip(world, inside.tolist(), strict=True):
+                beyond = point[number] - flap.minimum if end == "minimum" else flap.maximum - point[number]
+                assert value == (beyond >= 0) or abs(beyond) < 1e-5
 
 
 @pytest.mark.parametrize(

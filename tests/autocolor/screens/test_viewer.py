@@ -12,10 +12,12 @@ import pytest
 from autocolor import InputError, Light, Mesh, Scene, Surface, View, read_picture, scene_of
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.defaults import framed
+from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.orbit import panned
 from autocolor.screens.session import MESSAGE_SECONDS
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
+from autocolor.widgets.colors import ORANGE
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube, grid
 
@@ -474,7 +476,9 @@ def test_a_dropped_file_that_is_none_of_ours_is_told_and_changes_nothing(
         viewer.on_drop(tmp_path / name)
         assert sentence in viewer.message
         assert "\n" not in viewer.message
+        assert (display.words[MESSAGE.top :] == ORANGE).any()
     assert viewer.studio.scene is scene
+    viewer.tell("")
     assert np.array_equal(display.words, words)
 
 

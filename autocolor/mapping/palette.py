@@ -1,0 +1,51 @@
+"""Palettes: the colors of a small picture reduced to few, by median cut.
+
+P. Heckbert, 1982, "Color image quantization for frame buffer display": the box of all colors is cut in two at
+the median of its longest side, then the largest of the boxes, until there are enough of them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from autocolor.arrays import Bytes, Indices, Words
+from autocolor.mapping.rounding import halves_up
+
+
+def in_palette(colors: Bytes, most: int) -> tuple[Words, Bytes]:
+    """The place of each pixel's color in a palette, (lines, elements), and the palette, (at most `most`, 3).
+
+    `colors` are (lines, elements, 3). A picture with no more than `most` colors keeps them exactly.
+    """
+    pixels = colors.reshape(-1, 3)
+    distinct, place_of_pixel, counts = np.unique(pixels, axis=0, return_inverse=True, return_counts=True)
+    boxes = [np.arange(len(distinct))]
+    sizes = [_size(distinct[box]) for box in boxes]
+    while len(boxes) < most and max(sizes) > 0:
+        largest = sizes.index(max(sizes))
+        halves = _halves(distinct, counts, boxes[largest])
+        boxes[largest : largest + 1] = halves
+        sizes[largest : largest + 1] = [_size(distinct[half]) for half in halves]
+    palette = np.empty((len(boxes), 3), np.uint8)
+    place = np.empty(len(distinct), np.uint16)
+    for number, box in enumerate(boxes):
+        mean = np.average(distinct[box], axis=0, weights=counts[box])
+        palette[number] = halves_up(mean.astype(np.float32))
+        place[box] = number
+    return place[place_of_pixel.reshape(-1)].reshape(colors.shape[:2]), palette
+
+
+def _size(colors: Bytes) -> int:
+    """How much is gained by cutting the box of some colors: its longest side, times their number."""
+    return int(np.ptp(colors.astype(np.int64), axis=0).max()) * len(colors)
+
+
+def _halves(distinct: Bytes, counts: Indices, box: Indices) -> list[Indices]:
+    """A box cut in two at the median of its longest side; neither is empty."""
+    inside = distinct[box].astype(np.int64)
+    axis = int(np.argmax(np.ptp(inside, axis=0)))
+    order = box[np.argsort(inside[:, axis], kind="stable")]
+    passed = np.cumsum(counts[order])
+    middle = int(np.searchsorted(passed, passed[-1] / 2)) + 1
+    middle = min(max(middle, 1), len(order) - 1)
+    return [order[:middle], order[middle:]]

@@ -1,0 +1,151 @@
+"""The top, front and side view of the light and view screen: which coordinates are at which position.
+
+Paper: Figure 5, "By changing a position or direction in two of the three views, all three coordinates can be
+quickly changed without having to enter numeric coordinate values". The three views are a value with one
+scale, so that a point stands on the same column or line in two of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from autocolor.arrays import Floats, Indices, bounds_of
+from autocolor.checks import LARGEST_COORDINATE, Vector
+from autocolor.screens.light_and_view.areas import FRONT_AREA, SIDE_AREA, TOP_AREA
+from autocolor.widgets.areas import Area
+from autocolor.widgets.strokes import between, clipped
+
+FILLED: Final = 0.84
+"""Assumed: the fraction of an area that the coordinates fill, with 16 elements or more left on all sides."""
+
+POINT: Final = 1e-9
+"""Assumed: coordinates that differ by less than this fraction of the largest are one point."""
+
+FINEST: Final = 1e-11
+"""Assumed: the least size of a pixel, as a fraction of the largest coordinate; 64 bits hold a hundredth."""
+
+COARSEST: Final = 1e30
+"""Assumed: the largest size of a pixel, in units: that of the largest coordinate."""
+
+SMALLEST: Final = 1e-30
+"""Assumed: the least size of a pixel, in units."""
+
+
+class Side(NamedTuple):
+    """One of the three views: the axes that run to the right and up, and its area.
+
+    Axes are 0 to 2 for x, y and z; `toward` is the unit vector to the viewer, who looks along its reverse.
+    """
+
+    name: str
+    right: int
+    up: int
+    toward: Vector
+    area: Area
+
+
+TOP: Final = Side("top", 0, 1, (0.0, 0.0, 1.0), TOP_AREA)
+FRONT: Final = Side("front", 0, 2, (0.0, -1.0, 0.0), FRONT_AREA)
+SIDE: Final = Side("side", 1, 2, (1.0, 0.0, 0.0), SIDE_AREA)
+
+SIDES: Final = (TOP, FRONT, SIDE)
+"""The three views. Assumed: x to the right and y up, x to the right and z up, y to the right and z up."""
+
+
+@dataclass(frozen=True)
+class OrthographicViews:
+    """The coordinates in the middle of every area, and the one scale of all, in elements for each unit."""
+
+    center: Vector
+    scale: float
+
+    def positions(self, side: Side, points: Floats) -> Floats:
+        """The element and line of each point of (n, 3) in one of the views, (n, 2), also outside its area."""
+        element, line = side.area.middle
+        positions = np.empty((len(points), 2))
+        positions[:, 0] = element + (points[:, side.right] - self.center[side.right]) * self.scale
+        positions[:, 1] = line - (points[:, side.up] - self.center[side.up]) * self.scale
+        return positions
+
+    def position(self, side: Side, point: Vector) -> tuple[float, float]:
+        """The element and line of one point."""
+        element, line = side.area.middle
+        return (
+            element + (point[side.right] - self.center[side.right]) * self.scale,
+            line - (point[side.up] - self.center[side.up]) * self.scale,
+        )
+
+    def placed(self, side: Side, point: Vector, element: int, line: int) -> Vector:
+        """The point moved to a pixel of a view, which gives it the two coordinates that the view shows.
+
+        The third one is kept exactly, and so is one that is at this element or line already.
+        Assumed: the coordinates are rounded to decimals that place them within a tenth of a pixel.
+        """
+        middle = side.area.middle
+        present = self.position(side, point)
+        moved = list(point)
+        for axis, sign, picked, center, now in (
+            (side.right, 1.0, element, middle[0], present[0]),
+            (side.up, -1.0, line, middle[1], present[1]),
+        ):
+            if abs(now - picked) > 0.5:
+                moved[axis] = self._rounded(self.center[axis] + sign * (picked - center) / self.scale)
+        return (moved[0], moved[1], moved[2])
+
+    def _rounded(self, coordinate: float) -> float:
+        """The coordinate with as many decimals as tell tenths of a pixel, none too large; 0 has no sign."""
+        rounded = round(coordinate, math.ceil(math.log10(5 * self.scale))) + 0.0
+        return max(-LARGEST_COORDINATE, min(LARGEST_COORDINATE, rounded))
+
+    def strokes(self, side: Side, coordinates: Floats, edges: Indices) -> Floats:
+        """The strokes of edges in one of the views, clipped by its area, (strokes, 4).
+
+        `coordinates` is (nodes, 3), `edges` (n, 2) the nodes that each edge joins.
+        """
+        starts, ends = (self.positions(side, np.take(coordinates, nodes, axis=0)) for nodes in edges.T)
+        return clipped(between(starts, ends), side.area)
+
+    def zoomed(self, ratio: float) -> OrthographicViews:
+        """The views with a scale that is `ratio` times as large, nearer above 1, around the same center.
+
+        Paper: Figure 5, RESCALE moves closer or farther away.
+        """
+        return OrthographicViews(self.center, _scale_within(self.scale * ratio, self.center))
+
+    def centered(self, point: Sequence[float]) -> OrthographicViews:
+        """The views of the same scale with a point in the middle of every area."""
+        center = (float(point[0]), float(point[1]), float(point[2]))
+        return replace(self, center=center, scale=_scale_within(self.scale, center))
+
+
+def fitted_views(points: Floats) -> OrthographicViews:
+    """The views that show all points, (n, 3), with one scale, and space left on all sides.
+
+    The points are those of the object, or of a part, and of the eye, the lights and their aims. A single
+    point has a unit of space around it. Paper: Figure 5, RESCALE rescales the views "based on the maximum
+    coordinate values to leave a reasonable amount of space on all sides".
+    """
+    low, high = bounds_of(points)
+    center, extent = low + (high - low) / 2, high - low
+    largest = float(np.abs([low, high]).max())
+    if float(extent.max()) <= POINT * largest or not extent.any():
+        extent = np.full(3, max(1.0, 1e3 * POINT * largest))
+    scales = [
+        FILLED * (room - 1) / float(extent[axis])
+        for side in SIDES
+        for axis, room in ((side.right, side.area.width), (side.up, side.area.height))
+        if extent[axis] > 0
+    ]
+    middle = (float(center[0]), float(center[1]), float(center[2]))
+    return OrthographicViews(middle, _scale_within(min(scales), middle))
+
+
+def _scale_within(scale: float, center: Vector) -> float:
+    """The scale, but no pixel so small that coordinates can't tell it from the next, and none too large."""
+    finest = max(SMALLEST, FINEST * max(map(abs, center)))
+    return min(max(scale, 1 / COARSEST), 1 / finest)

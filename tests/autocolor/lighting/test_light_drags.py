@@ -1,0 +1,224 @@
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from autocolor import Flap, Flaps, Light, Scene, UsageError, View
+from autocolor.lighting.light_controls import Axis, FlapEnd
+from autocolor.lighting.light_drags import LEAST_CONE, cone_placed, flap_placed, highlight_placed
+from autocolor.rendering import rendering
+from autocolor.visibility.sight import Seen, Sight, seen_at
+from tests.autocolor.meshes import sphere, wall, wall_scene
+from tests.autocolor.reference import dot, minus, plus, times, unit
+from tests.autocolor.strategies import Vector, directions, numbers, outside_views, vectors
+
+LINES, ELEMENTS = 12, 16
+
+MESHES = [wall(3, 2, half=2.0), sphere(32, 16)]
+
+pixels = st.tuples(st.integers(0, LINES - 1), st.integers(0, ELEMENTS - 1))
+points = vectors(numbers(-2, 2))
+far_positions = vectors(numbers(-9, 9)).filter(lambda position: math.hypot(*position) > 4)
+
+
+def at(point: Vector, normal: Vector = (0.0, -1.0, 0.0), reflected: Vector = (0.0, -1.0, 0.0)) -> Seen:
+    return Seen("wall", "wall", 0, point, normal, reflected)
+
+
+def lit(light: Light) -> Scene:
+    return wall_scene(lights=[Light("other", (1.0, -2.0, 3.0)), light])
+
+
+@given(outside_views(), pixels, st.sampled_from(MESHES), far_positions, st.none() | directions)
+def test_the_light_is_where_the_view_is_reflected_to_and_as_far_as_before(
+    view: View, pixel: tuple[int, int], mesh: Any, position: Vector, direction: Vector | None
+) -> None:
+    scene = wall_scene(mesh, view=view, lights=[Light("light", position, direction=direction)])
+    seen = seen_at(Sight(scene, rendering(scene, LINES, ELEMENTS).points), *pixel)
+    assume(seen is not None)
+    assert seen is not None
+    assume(dot(seen.normal, minus(view.eye, seen.point)) > 1e-3)
+    light = highlight_placed(scene, seen, "light").light("light")
+    assert math.dist(light.position, seen.point) == pytest.approx(math.dist(position, seen.point))
+    # Figure 2: E is the angle between the reflected ray of light and the ray to the eye.
+    to_light = unit(minus(light.position, seen.point))
+    reflected = minus(times(2 * dot(to_light, seen.normal), seen.normal), to_light)
+    assert dot(reflected, unit(minus(view.eye, seen.point))) == pytest.approx(1.0, abs=1e-6)
+    assert dot(to_light, seen.normal) > 0
+    assert light.aim is None
+    if direction is None:
+        assert light.direction is None
+    else:
+        assert light.direction == pytest.approx(times(-1, to_light), abs=1e-9)
+
+
+@given(points, directions, far_positions)
+def test_a_light_with_an_aim_is_aimed_at_the_point_and_keeps_all_else(
+    point: Vector, normal: Vector, position: Vector
+) -> None:
+    x, y, z = unit(normal)
+    before = Light("light", position, 2.5, aim=(0.0, 0.0, 0.0), concentration=3, cone_angle=20)
+    scene = lit(before)
+    after = highlight_placed(scene, at(point, (x, y, z), (x, y, z)), "light")
+    assert after.light("other") is scene.light("other")
+    expected = plus(point, times(math.dist(position, point), (x, y, z)))
+    assert after.light("light").position == pytest.approx(expected)
+    assert after.light("light").aim == point
+    assert after.light("light").replace(position=position, aim=before.aim) == before
+
+
+def test_placing_a_highlight_again_at_the_same_point_changes_nothing() -> None:
+    seen = at((0.25, 0.0, 0.5), (0.0, -1.0, 0.0), (0.6, -0.8, 0.0))
+    once = highlight_placed(lit(Light("light", (3.0, -4.0, 0.5), aim=(0, 0, 0))), seen, "light")
+    twice = highlight_placed(once, seen, "light").light("light")
+    assert twice.position == pytest.approx(once.light("light").position, abs=1e-12)
+    assert twice.aim == once.light("light").aim
+
+
+def test_a_highlight_needs_a_surface_that_faces_the_eye_and_a_light_away_from_it() -> None:
+    scene = lit(Light("light", (0.5, 0.0, 0.5)))
+    turned = at((0.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.6, 0.8, 0.0))
+    for seen, message in (
+        (None, "a highlight must be dragged to a surface, not to the background; choose another pixel"),
+        (
+            turned,
+            "a highlight must be placed where the normal faces the eye, not where 'wall' turns away; choose"
+            " another pixel",
+        ),
+        (
+            at((0.5, 0.0, 0.5)),
+            "light 'light' must be away from the point of its highlight, not at (0.5, 0.0, 0.5); move it"
+            " first",
+        ),
+    ):
+        with pytest.raises(UsageError) as caught:
+            highlight_placed(scene, seen, "light")
+        assert str(caught.value) == message
+
+
+def test_a_one_sided_wall_seen_from_behind_gets_no_highlight_and_a_two_sided_one_does() -> None:
+    view = View((0.3, 4.0, 0.5), target=(0.0, 0.0, 0.0))
+    for two_sided in (True, False):
+        scene = wall_scene(view=view, two_sided=two_sided, lights=[Light("light", (0.0, 5.0, 0.0))])
+        seen = seen_at(Sight(scene, rendering(scene, LINES, ELEMENTS).points), LINES // 2, ELEMENTS // 2)
+        if two_sided:
+            assert highlight_placed(scene, seen, "light").light("light").position[1] > 0
+        else:
+            with pytest.raises(UsageError, match="the normal faces the eye"):
+                highlight_placed(scene, seen, "light")
+
+
+@given(points, far_positions, directions)
+def test_a_cone_ends_at_the_point(point: Vector, position: Vector, direction: Vector) -> None:
+    light = Light("light", position, direction=direction, cone_angle=30)
+    angle = cone_placed(lit(light), at(point), "light").light("light").cone_angle
+    cosine = dot(unit(direction), unit(minus(point, position)))
+    assert angle is not None
+    if math.cos(math.radians(LEAST_CONE)) > cosine > -1 + 1e-9:
+        assert math.cos(math.radians(angle)) == pytest.approx(cosine, abs=1e-12)
+
+
+def test_a_cone_has_an_angle_above_0_and_at_most_180() -> None:
+    scene = lit(Light("light", (0.0, -3.0, 0.0), direction=(0.0, 1.0, 0.0), cone_angle=30))
+    for point, angle in (
+        ((0.0, 0.0, 0.0), LEAST_CONE),
+        ((0.0, -5.0, 0.0), 180.0),
+        ((3.0, -3.0, 0.0), 90.0),
+        ((0.0, 0.0, 3.0), 45.0),
+    ):
+        assert cone_placed(scene, at(point), "light").light("light").cone_angle == pytest.approx(angle)
+
+
+def test_a_light_gets_a_cone_only_when_asked_and_a_point_source_never() -> None:
+    scene = lit(Light("light", (0.0, -3.0, 0.0), aim=(0.0, 0.0, 0.0)))
+    added = cone_placed(scene, at((3.0, 0.0, 0.0)), "light", add=True)
+    assert added.light("light").cone_angle == pytest.approx(45.0)
+    for name, seen, add, message in (
+        (
+            "light",
+            at((3.0, 0.0, 0.0)),
+            False,
+            "light 'light' must have a cone to be changed, not none; add one",
+        ),
+        (
+            "light",
+            None,
+            True,
+            "a cone must be dragged to a surface, not to the background; choose another pixel",
+        ),
+        (
+            "light",
+            at((0.0, -3.0, 0.0)),
+            True,
+            "a cone must end away from its light, not at 'light' itself; choose another pixel",
+        ),
+        (
+            "other",
+            at((3.0, 0.0, 0.0)),
+            True,
+            "a cone must have a direction or an aim, not be of the point source 'other'; add an aim",
+        ),
+    ):
+        with pytest.raises(UsageError) as caught:
+            cone_placed(scene, seen, name, add)
+        assert str(caught.value) == message
+
+
+@pytest.mark.parametrize("on", [True, False])
+@pytest.mark.parametrize(("axis", "coordinate"), [("x", 0.25), ("y", -0.5), ("z", 0.75)])
+def test_a_flap_ends_at_the_coordinate_of_the_point(axis: Axis, coordinate: float, on: bool) -> None:
+    flaps = Flaps(**{name: Flap(-1.0, 1.0, on) for name in "xyz"})
+    scene = lit(Light("light", (0.0, -3.0, 0.0), flaps=flaps))
+    for end, flap in (
+        ("minimum", Flap(coordinate, 1.0, on)),
+        ("maximum", Flap(-1.0, coordinate, on)),
+    ):
+        after = flap_placed(scene, at((0.25, -0.5, 0.75)), "light", axis, end).light("light")  # type: ignore[arg-type]
+        assert after.flaps == flaps.replace(**{axis: flap})
+
+
+@given(numbers(-2, 2), numbers(-2, 2), numbers(-2, 2))
+def test_the_minimum_never_passes_the_maximum(one: float, other: float, to: float) -> None:
+    flap = Flap(min(one, other), max(one, other))
+    scene = lit(Light("light", (0.0, -3.0, 0.0), flaps=Flaps(z=flap)))
+    after = {
+        end: flap_placed(scene, at((0.0, 0.0, to)), "light", "z", end).light("light").flaps.z
+        for end in ("minimum", "maximum")
+    }
+    assert after["minimum"] == Flap(min(to, flap.maximum), flap.maximum)
+    assert after["maximum"] == Flap(flap.minimum, max(to, flap.minimum))
+
+
+def test_a_light_gets_a_flap_only_when_asked() -> None:
+    scene = lit(Light("light", (0.0, -3.0, 0.0)))
+    added = flap_placed(scene, at((0.25, 0.0, 0.0)), "light", "x", "maximum", add=True).light("light")
+    assert added.flaps == Flaps(x=Flap(maximum=0.25))
+    with pytest.raises(UsageError) as caught:
+        flap_placed(scene, at((0.25, 0.0, 0.0)), "light", "x", "maximum")
+    assert str(caught.value) == "light 'light' must have a flap in x to be changed, not none; add one"
+
+
+@pytest.mark.parametrize(
+    ("axis", "end", "message"),
+    [
+        ("w", "minimum", "the axis of a flap must be 'x', 'y' or 'z', not 'w'; choose another"),
+        ("x", "left", "the end of a flap must be 'minimum' or 'maximum', not 'left'; choose another"),
+    ],
+)
+def test_an_unknown_axis_or_end_of_a_flap_is_refused(axis: Axis, end: FlapEnd, message: str) -> None:
+    scene = lit(Light("light", (0.0, -3.0, 0.0), flaps=Flaps(x=Flap())))
+    with pytest.raises(UsageError) as caught:
+        flap_placed(scene, at((0.25, 0.0, 0.0)), "light", axis, end)
+    assert str(caught.value) == message
+
+
+def test_a_flap_is_not_dragged_to_the_background() -> None:
+    with pytest.raises(UsageError) as caught:
+        flap_placed(lit(Light("light", (0.0, -3.0, 0.0))), None, "light", "x", "minimum", add=True)
+    assert str(caught.value) == (
+        "a flap must be dragged to a surface, not to the background; choose another pixel"
+    )

@@ -1,0 +1,185 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.checks import LARGEST_COORDINATE, Vector
+from autocolor.screens.light_and_view.orthographic_views import (
+    FILLED,
+    FRONT,
+    SIDE,
+    SIDES,
+    TOP,
+    OrthographicViews,
+    Side,
+    fitted_views,
+)
+from tests.autocolor.meshes import cube
+from tests.autocolor.strategies import vectors
+
+coordinates = st.floats(-1e6, 1e6).map(lambda value: value + 0.0)
+points = st.tuples(coordinates, coordinates, coordinates)
+sides = st.sampled_from(SIDES)
+
+UNIT = OrthographicViews((0.0, 0.0, 0.0), 10.0)
+
+
+@st.composite
+def some_views(draw: st.DrawFn) -> OrthographicViews:
+    """Views of any scale that can be zoomed to."""
+    return OrthographicViews(draw(points), 1.0).zoomed(10.0 ** draw(st.floats(-4, 4)))
+
+
+@st.composite
+def pixels(draw: st.DrawFn, side: Side) -> tuple[int, int]:
+    area = side.area
+    return draw(st.integers(area.left, area.right)), draw(st.integers(area.top, area.bottom))
+
+
+def test_each_view_shows_two_axes_as_on_an_engineering_drawing() -> None:
+    middle = TOP.area.middle
+    assert UNIT.position(TOP, (1, 2, 7)) == (middle[0] + 10, middle[1] - 20)
+    middle = FRONT.area.middle
+    assert UNIT.position(FRONT, (1, 7, 3)) == (middle[0] + 10, middle[1] - 30)
+    middle = SIDE.area.middle
+    assert UNIT.position(SIDE, (7, 2, 3)) == (middle[0] + 20, middle[1] - 30)
+
+
+@pytest.mark.parametrize("side", SIDES, ids=[side.name for side in SIDES])
+def test_the_viewer_has_right_and_up_where_the_view_has_them(side: Side) -> None:
+    right, up = np.eye(3)[side.right], np.eye(3)[side.up]
+    assert np.cross(right, up).tolist() == list(side.toward)
+
+
+@given(some_views(), points)
+def test_a_point_is_in_one_column_of_the_top_and_front_view_and_on_one_line_of_front_and_side(
+    views: OrthographicViews, point: Vector
+) -> None:
+    assert views.position(TOP, point)[0] == views.position(FRONT, point)[0]
+    assert views.position(FRONT, point)[1] == views.position(SIDE, point)[1]
+
+
+@given(some_views(), sides, st.lists(points, max_size=4))
+def test_many_points_are_where_each_of_them_is(
+    views: OrthographicViews, side: Side, many: list[Vector]
+) -> None:
+    found = views.positions(side, np.array(many, np.float64).reshape(-1, 3))
+    assert [tuple(row) for row in found.tolist()] == [views.position(side, point) for point in many]
+
+
+@given(st.data())
+def test_a_point_is_placed_to_the_pixel_and_the_third_coordinate_stays(data: st.DataObject) -> None:
+    views, side, point = data.draw(some_views()), data.draw(sides), data.draw(points)
+    element, line = data.draw(pixels(side))
+    placed = views.placed(side, point, element, line)
+    (third,) = {0, 1, 2} - {side.right, side.up}
+    assert placed[third] == point[third]
+    position = views.position(side, placed)
+    assert abs(position[0] - element) <= 0.5
+    assert abs(position[1] - line) <= 0.5
+    # Placed once more at the same pixel it stays.
+    assert views.placed(side, placed, element, line) == placed
+
+
+@given(st.data())
+def test_two_drags_in_two_views_fix_three_coordinates_to_a_pixel(data: st.DataObject) -> None:
+    views, point, wanted = data.draw(some_views()), data.draw(points), data.draw(points)
+    for one, other in ((TOP, FRONT), (FRONT, SIDE), (SIDE, TOP), (FRONT, TOP)):
+        placed = point
+        for side in (one, other):
+            element, line = (math.floor(place + 0.5) for place in views.position(side, wanted))
+            placed = views.placed(side, placed, element, line)
+        assert max(abs(a - b) for a, b in zip(placed, wanted, strict=True)) * views.scale <= 1.001
+
+
+def test_a_placed_coordinate_has_no_more_decimals_than_tell_the_pixel() -> None:
+    middle = TOP.area.middle
+    moved = UNIT.placed(TOP, (0.123456, 0.0, 0.5), round(middle[0] + 40.5), round(middle[1] - 60.5))
+    assert moved == (4.05, 6.05, 0.5)
+
+
+def test_a_coordinate_that_is_at_the_picked_element_already_stays_exactly() -> None:
+    point = (1.0123, -2.0456, 3.0)
+    element, line = (math.floor(place + 0.5) for place in UNIT.position(FRONT, point))
+    assert UNIT.placed(FRONT, point, element, line) == point
+    assert UNIT.placed(FRONT, point, element + 5, line)[1:] == point[1:]
+
+
+def test_no_point_is_placed_beyond_the_largest_coordinate() -> None:
+    views = fitted_views(np.array([[-1e30, -1e30, -1e30], [1e30, 1e30, 1e30]]))
+    for side in SIDES:
+        placed = views.placed(side, (0.0, 0.0, 0.0), side.area.left, side.area.top)
+        assert max(map(abs, placed)) == LARGEST_COORDINATE
+
+
+@given(st.lists(vectors(), min_size=1, max_size=9), st.floats(-12, 12))
+def test_fitted_points_are_within_all_areas_with_space_left_on_all_sides(
+    many: list[Vector], power: float
+) -> None:
+    found = np.array(many) * 10.0**power
+    views = fitted_views(found)
+    for side in SIDES:
+        positions = views.positions(side, found)
+        assert (positions >= np.array([side.area.left, side.area.top]) + 16).all()
+        assert (positions <= np.array([side.area.right, side.area.bottom]) - 16).all()
+
+
+def test_the_longest_extent_fills_its_view() -> None:
+    assert fitted_views(cube().coordinates).scale == pytest.approx(FILLED * 223)
+    assert fitted_views(cube().coordinates * (4, 1, 1)).scale == pytest.approx(FILLED * 247 / 4)
+    assert fitted_views(cube().coordinates * (4, 1, 1)).center == (2, 0.5, 0.5)
+
+
+def test_a_single_point_and_none_have_space_around_them() -> None:
+    views = fitted_views(np.array([[5.0, 6.0, 7.0]]))
+    assert views.center == (5, 6, 7)
+    assert views.scale == pytest.approx(FILLED * 223)
+    assert fitted_views(np.empty((0, 3))) == OrthographicViews((0.0, 0.0, 0.0), views.scale)
+
+
+def test_nearer_and_farther_again_is_the_same_around_the_same_center() -> None:
+    nearer = UNIT.zoomed(2)
+    assert nearer == OrthographicViews(UNIT.center, 20)
+    assert nearer.zoomed(0.5) == UNIT
+
+
+def test_nearer_ends_where_coordinates_can_no_longer_tell_a_pixel_from_the_next() -> None:
+    views = OrthographicViews((1000.0, 0.0, 0.0), 1.0)
+    for _ in range(200):
+        views = views.zoomed(2)
+    element, line = views.position(TOP, (1000.0, 0.0, 0.0))
+    point = views.placed(TOP, (1000.0, 0.0, 0.0), round(element + 9.5), round(line))
+    assert views.position(TOP, point)[0] == pytest.approx(element + 9.5, abs=0.6)
+    for _ in range(400):
+        views = views.zoomed(0.5)
+    assert views.scale == pytest.approx(1e-30)
+
+
+def test_a_part_comes_to_the_middle_of_all_views_at_the_same_scale() -> None:
+    views = UNIT.centered([3, 4, 5])
+    assert views.scale == UNIT.scale
+    for side in SIDES:
+        assert views.position(side, (3, 4, 5)) == side.area.middle
+
+
+def test_the_edges_of_a_cube_are_strokes_from_corner_to_corner() -> None:
+    views = OrthographicViews((0.5, 0.5, 0.5), 100.0)
+    strokes = views.strokes(FRONT, cube().coordinates, np.array([(0, 1), (0, 2), (0, 4)]))
+    element, line = FRONT.area.middle
+    assert strokes.tolist() == [
+        [element - 50, line + 50, element + 50, line + 50],
+        [element - 50, line + 50, element - 50, line + 50],
+        [element - 50, line + 50, element - 50, line - 50],
+    ]
+
+
+@pytest.mark.parametrize("size", [2.0**-90, 2.0**90])
+def test_no_size_of_the_object_makes_a_difference(size: float) -> None:
+    pairs = np.array([(0, 1), (0, 7), (3, 4)])
+    expected = fitted_views(cube().coordinates).strokes(SIDE, cube().coordinates, pairs)
+    coordinates = cube(size).coordinates
+    assert fitted_views(coordinates).strokes(SIDE, coordinates, pairs) == pytest.approx(expected)
