@@ -112,7 +112,7 @@ LESSONS: Final = (
     Lesson(
         "a cone",
         (
-            "Make a spotlight: in the same menu, switch on the cone angle, and drag",
+            "Make a spotlight: in the same menu, switch on the cone angle. Drag",
             "along its bar until the rim of the light is where you want it.",
         ),
         _narrowed,
@@ -120,8 +120,8 @@ LESSONS: Final = (
     Lesson(
         "mix a color",
         (
-            "Paint the car: pick < picture, pick the body, then color mixing in the",
-            "menu. The bars of its color are red, green, blue, and white for all.",
+            "Paint the car: pick < picture, pick the body, then color mixing in",
+            "the menu. The bars are red, green, blue, and white for all three.",
         ),
         _mixed,
     ),

@@ -45,7 +45,7 @@ STEP_SECONDS: Final = 0.25
 JOYSTICK_SECONDS: Final = 0.02
 """How long a line for the joystick may wait while nothing else happens."""
 HOST_SECONDS: Final = 0.005
-"""How long the input of a window may wait while a connected host sends nothing; a host that polls the joystick
+"""How long the input of a window may wait while a connected host sends nothing; one that polls the joystick
 has its reply at once."""
 PIPE_SECONDS: Final = 0.002
 """How long words on a pipe may wait while there are lines for the joystick, too."""
