@@ -54,7 +54,7 @@ def text(line: str, left: int, top: int, word: int = WHITE, background: int = NI
     """A line of text whose upper left corner is at (left, top), on a background."""
     width = CHARACTER * size * max(1, len(line))
     area = Area(left, top, left + width - 1, top + CHARACTER_LINES * size - 1)
-    if not DRAWABLE.covers(area):
+    if not line or not DRAWABLE.covers(area):
         return Item(area, b"")
     return Item(area, instructions.write_text(line, left, top, word, background, size).tobytes(), True)
 

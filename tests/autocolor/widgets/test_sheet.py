@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from autocolor.arrays import Words
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import WHITE
 from autocolor.widgets.items import Item, filled, lines, text
@@ -15,7 +16,7 @@ from tests.autocolor.widgets.drawing import TINY, items
 SHORT = Configuration(
     name="short", elements=48, lines=40, planes=10, entry_format=EntryFormat.WORD_12, extended=False
 )
-BASES = (
+BASES: tuple[Words | int, ...] = (
     7,
     1008,
     np.arange(40 * 48, dtype=np.uint16).reshape(40, 48) % 1000,
@@ -123,7 +124,7 @@ def test_a_page_that_could_not_be_sent_is_drawn_whole_the_next_time() -> None:
     class Broken(Ramtek9300):
         fails = False
 
-        def send(self, words: object) -> None:
+        def send(self, words: Words) -> None:
             if self.fails:
                 raise PortError("a display must listen")
             super().send(words)
