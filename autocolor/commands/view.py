@@ -138,7 +138,8 @@ def monitor_of(
         return viewer.on_key(key.name, key.control, key.shift, key.text, key.repeated)
 
     def on_pointer(pointer: Pointer) -> None:
-        viewer.on_pointer(pointer.element, pointer.line, pointer.action, pointer.button, pointer.steps)
+        element, line, _, action, button, steps, shift, control = pointer
+        viewer.on_pointer(element, line, action, button, steps, shift, control)
 
     def on_tick() -> None:
         viewer.on_tick(monitor.is_at_rest)
