@@ -69,20 +69,27 @@ class Sheet:
             if len(differing):
                 first, last = int(differing[0]), int(differing[-1])
                 yield self._encode_entries(first, page.entries[first : last + 1])
-        if before is None or not _is_same(page.base, before.base):
-            yield from _restored(page.base, uncovered(self._whole, page.items))
+        whole = uncovered(self._whole, page.items)
+        if before is None:
+            yield from _restored(page.base, whole)
             redrawn = list(page.items)
         else:
-            restored, redrawn = changed_items(before.items, page.items)
-            for area in restored:
+            drawn = [area for area in [differing_lines(before.base, page.base, whole)] if not area.is_empty]
+            restored, redrawn = changed_items(before.items, page.items, drawn)
+            for area in (*drawn, *restored):
                 yield from _restored(page.base, area.within(self._whole))
         for item in redrawn:
             yield np.frombuffer(item.stream, np.uint16)
 
 
-def changed_items(before: Sequence[Item], now: Sequence[Item]) -> tuple[list[Area], list[Item]]:
-    """The areas whose base must be drawn again, and the items to draw again after that, lowest first."""
-    if list(before) == list(now):
+def changed_items(
+    before: Sequence[Item], now: Sequence[Item], drawn: Sequence[Area] = ()
+) -> tuple[list[Area], list[Item]]:
+    """The areas whose base must be drawn again, and the items to draw again after that, lowest first.
+
+    `drawn` are areas whose base is drawn again anyhow.
+    """
+    if not drawn and list(before) == list(now):
         return [], []
     old, new = set(before), set(now)
     if [item for item in before if item in new] != [item for item in now if item in old]:
@@ -90,10 +97,10 @@ def changed_items(before: Sequence[Item], now: Sequence[Item]) -> tuple[list[Are
         old = set()
     fresh = [item for item in now if item not in old]
     gone = [item.area for item in before if item not in new and not item.area.is_empty]
-    solid = [item.area for item in fresh if item.is_solid]
-    restored = [area for area in gone if not any(each.covers(area) for each in solid)]
+    covers = [*drawn, *(item.area for item in fresh if item.is_solid)]
+    restored = [area for area in gone if not any(each.covers(area) for each in covers)]
     # An item is drawn again if it is new, or if something below it was drawn.
-    dirty, redrawn = list(restored), []
+    dirty, redrawn = [*drawn, *restored], []
     for item in now:
         if item not in old or any(item.area.overlaps(area) for area in dirty):
             redrawn.append(item)
@@ -101,10 +108,21 @@ def changed_items(before: Sequence[Item], now: Sequence[Item]) -> tuple[list[Are
     return restored, redrawn
 
 
-def _is_same(base: Words | int, other: Words | int) -> bool:
-    if isinstance(base, int) or isinstance(other, int):
-        return type(base) is type(other) and base == other
-    return base is other
+def differing_lines(before: Words | int, now: Words | int, area: Area) -> Area:
+    """The lines of an area in which two bases differ; an empty area if they are the same."""
+    nowhere = area._replace(bottom=area.top - 1)
+    if isinstance(before, int) or isinstance(now, int):
+        is_same = isinstance(before, int) and isinstance(now, int) and before == now
+        return nowhere if is_same else area
+    if before is now:
+        return nowhere
+    if before.shape != now.shape:
+        return area
+    places = slice(area.top, area.bottom + 1), slice(area.left, area.right + 1)
+    lines = np.flatnonzero((before[places] != now[places]).any(axis=1))
+    if not len(lines):
+        return nowhere
+    return area._replace(top=area.top + int(lines[0]), bottom=area.top + int(lines[-1]))
 
 
 def _restored(base: Words | int, area: Area) -> Iterator[Words]:
