@@ -237,7 +237,7 @@ def curve(mapping: str) -> Callable[[Bench], object]:
     return prepare
 
 
-CASES = (
+CASES: Sequence[Case] = (
     Case("color, by a key", "picture", 4, key("c")),
     Case("blend, by a key", "picture", 4, key("[", "]")),
     Case("color mixing: red, dragged", "mixing", 4, drag("object color, red")),
@@ -257,7 +257,7 @@ CASES = (
 )
 """On the coupe. A new screen is a line here."""
 
-CASES_OF_MANY = (
+CASES_OF_MANY: Sequence[Case] = (
     Case("a light, dragged by its bar", "lights", 33, drag("position x")),
     Case("a light, dragged in a view", "light and view", 33, drag("key: x")),
     Case("the view, dragged", "picture", 33, turned),
@@ -272,7 +272,9 @@ def measure(rounds: int = ROUNDS, quick: bool = False) -> dict[str, Any]:
     with nullcontext() if missing else screen(), TemporaryDirectory() as folder:
         if missing:
             os.environ["SDL_VIDEODRIVER"] = "dummy"
-        scenes = [("the coupe", autocolor.read_scene(demo_folder()), CASES)]
+        scenes: list[tuple[str, autocolor.Scene, Sequence[Case]]] = [
+            ("the coupe", autocolor.read_scene(demo_folder()), CASES)
+        ]
         if not quick:
             many = autocolor.scene_of(hills(side_of(MANY_POLYGONS)))
             scenes.append((f"{MANY_POLYGONS:,} polygons", many, CASES_OF_MANY))

@@ -75,7 +75,10 @@ class Doing:
             session.warn(error)
         # A warning applies to the next key only.
         self.is_warned = self.is_warned and not warned
-        costs = cost_of_edit(before, session.scene) if session.scene is not before else None
+        costs = None
+        if session.scene is not before:
+            session.comparing.end()
+            costs = cost_of_edit(before, session.scene)
         if costs is not None:
             self._source, self._edited_at, self.costs = source, time.monotonic(), costs
         elif not continues:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from autocolor.screens.gestures import Gesture
+from autocolor.screens.gestures import MIDDLE, Gesture
 from autocolor.screens.layout import Layout
 from autocolor.screens.screen import Handle, Screen
 from autocolor.widgets.widget import Place, Widget
@@ -28,7 +28,9 @@ class Grip:
         """Grab what is at the place of a gesture: a widget that can be used, a handle, or the screen."""
         self._start = self._last = gesture
         place = gesture.element, gesture.line
-        widget, handle = layout.widget_at(*place), layout.handle_at(*place)
+        # Modifiers and the middle button are for the screen.
+        is_plain = not gesture.shift and not gesture.control and gesture.button != MIDDLE
+        widget, handle = layout.widget_at(*place), layout.handle_at(*place) if is_plain else None
         if widget is not None:
             self._grabbed = None if widget.why_not else widget
         elif handle is not None:

@@ -40,6 +40,17 @@ class Keyboard:
         continues = repeated and binding.held
         return self._do(chosen, lambda: binding.run(self._actions, number), continues, binding.held)
 
+    def release(self, name: str) -> bool:
+        """Do what letting go of a key asks for; returns False if that is nothing."""
+        released = [
+            each.release
+            for each in BINDINGS
+            if each.release is not None and any(chord.name == name for chord in each.chords)
+        ]
+        for release in released:
+            release(self._actions)
+        return bool(released)
+
     def _typed(self, name: str, typed: str, repeated: bool) -> bool:
         """Let the text that is being typed, the menu or the screen take a key."""
         board, source = self._board, ("key", name)

@@ -41,8 +41,8 @@ class Binding(Generic[Viewer]):
 
     `run` is called with the viewer and the index in `chords` of the key that was pressed. While the key is
     held down, it is called again and again only with `held`, where all is undone as one step, or with
-    `repeats`, where each is a step. `does` describes the action on the help page; `label` replaces the names
-    of the keys there.
+    `repeats`, where each is a step. `release` is called when one of the keys is let go.
+    `does` describes the action on the help page; `label` replaces the names of the keys there.
     """
 
     chords: tuple[Chord, ...]
@@ -51,6 +51,7 @@ class Binding(Generic[Viewer]):
     label: str | None = None
     held: bool = False
     repeats: bool = False
+    release: Callable[[Viewer], object] | None = None
 
     def __str__(self) -> str:
         return self.label or ", ".join(map(str, self.chords))

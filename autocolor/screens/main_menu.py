@@ -26,15 +26,29 @@ def rows_of_menu(session: Session, screen: Screen, screens: Iterable[Screen]) ->
         step=lambda amount: session.undo() if amount < 0 else session.redo(),
         signs=("undo", "redo"),
     )
+    last: list[Widget] = [undo, *([compare_row(session)] if screen.shows_picture else [])]
     if screen.name == PICTURE:
         ways: list[Widget] = [
             Button(each.title, each.help, run=partial(session.turn_to, each.name))
             for each in screens
             if each.is_in_menu and each is not screen
         ]
-        return [Heading("AUTOCOLOR"), *ways, Gap("ways"), *screen.rows(), undo]
+        return [Heading("AUTOCOLOR"), *ways, Gap("ways"), *screen.rows(), Gap("undo gap"), *last]
     back = Button("< picture", "Back to the picture.", run=partial(session.turn_to, PICTURE))
-    return [Heading(screen.title.upper()), back, Gap("ways"), *screen.rows(), Gap("undo gap"), undo]
+    return [Heading(screen.title.upper()), back, Gap("ways"), *screen.rows(), Gap("undo gap"), *last]
+
+
+def compare_row(session: Session) -> Widget:
+    """The row that shows the state to compare with, and the present one again."""
+    other = session.comparing.other
+    if other is None:
+        return Button("compare", why_not="there is no step to undo")
+    return Button(
+        "compare",
+        f"Show {other.name} in place of the present one, and back.",
+        run=session.switch_comparing,
+        is_chosen=session.comparing.is_on,
+    )
 
 
 def page_of_menu(rows: Sequence[Widget], number: int, turn: Callable[[int], object]) -> list[Widget]:

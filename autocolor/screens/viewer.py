@@ -99,6 +99,11 @@ class Viewer:
         self._update()
         return taken
 
+    def on_release(self, name: str) -> None:
+        """Handle that a key was let go."""
+        if self._keyboard.release(name):
+            self._update()
+
     def on_pointer(
         self,
         element: int,
@@ -135,7 +140,8 @@ class Viewer:
         self._watching.advance()
         has_ended = is_at_rest and self._doing.kind != WHEEL and not self.board.is_dragging
         rests = has_ended or self._doing.has_rested
-        if rests and self.studio.is_coarse:
+        if rests and (self.studio.is_coarse or self.session.moving):
+            self.session.moving = False
             self._refine()
             self._update()
         elif (rests and self.board.screen.idle()) or self._had_news != self.session.has_news:
@@ -199,11 +205,18 @@ class Viewer:
     def watch(self) -> None:
         """Blank the picture and let it come in line by line as it is computed; any key shows it at once."""
         self.session.turn_to(PICTURE)
+        self.session.comparing.end()
         self.board.turn()
         self.board.close()
         # Nothing stands over a picture that comes in.
         self._sheet.show(self.board.page()._replace(items=()))
         self._watching.begin(self.studio)
+
+    def compare(self) -> None:
+        """Show the state to compare with, over the picture."""
+        if not self.board.screen.shows_picture:
+            self.session.turn_to(PICTURE)
+        self.session.compare()
 
     def escape(self) -> bool:
         """Take a drag back, close what is open, or return to the picture.

@@ -139,6 +139,34 @@ def test_leaving_by_the_menu_closes_the_window(monkeypatch: pytest.MonkeyPatch) 
     assert closed == [True]
 
 
+def test_modifiers_and_released_keys_reach_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
+    from ramtek_emu.monitor.window import Key, Pointer
+
+    fields = []
+
+    def field(monitor: Any) -> bytes:
+        monitor.tell("")
+        monitor.on_tick()
+        return bytes(monitor.display.field().tobytes())
+
+    def script(monitor: Any) -> None:
+        for held in ({}, {"shift": True}, {"control": True}):
+            monitor.on_pointer(Pointer(300, 200, True, "press", 1, 1, **held))
+            monitor.on_pointer(Pointer(340, 240, True, "move", 0, 1, **held))
+            monitor.on_pointer(Pointer(340, 240, False, "release", 1, 1, **held))
+            fields.append(field(monitor))
+            monitor.on_key(Key("z", "", control=True))
+        monitor.on_key(Key("y", "", control=True))
+        monitor.on_key(Key("b", "b"))
+        compared = field(monitor)
+        monitor.on_release("b")
+        assert field(monitor) == fields[-1] != compared
+
+    monitors[0].script = staticmethod(script)
+    assert run("view", "scene").code == 0
+    assert len(set(fields)) == 3
+
+
 def test_a_bare_command_shows_the_demo(folder: Path, run: Run, monitors: list[Any]) -> None:
     assert run() == (0, "", "")
     assert monitors[1].caption.startswith("autocolor - coupe - ")

@@ -36,7 +36,8 @@ def painted(item: Item, *before: Item, ground: int = UNUSED, display: Ramtek9300
 def inside(area: Area, display: Ramtek9300) -> Booleans:
     rows, columns = np.indices(display.words.shape)
     across = np.logical_and(columns >= area.left, columns <= area.right)
-    return np.logical_and(across, np.logical_and(rows >= area.top, rows <= area.bottom))
+    found: Booleans = np.logical_and(across, np.logical_and(rows >= area.top, rows <= area.bottom))
+    return found
 
 
 @given(items())
