@@ -285,6 +285,7 @@ class Board:
 
     def page(self) -> Page:
         """The page to show now."""
+        self.screen.is_under_menu = self.has_menu and not self.screen.has_menu
         composition = self._composition()
         self._has_message = composition.has_message
         return composition.page()
