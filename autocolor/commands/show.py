@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from autocolor.commands.demo import PLACES
 from autocolor.commands.displays_elsewhere import port_to, refuse_address, session_elsewhere
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.commands.settings import created_again, set_option, with_settings
@@ -98,6 +99,7 @@ def show_once(scene: Scene, address: str) -> None:
 
 
 def folder_of(source: Source) -> Path:
-    """The folder that a scene is in, or that is one."""
+    """The folder that a scene is in, or that is one; for the built-in demo, the current folder."""
     path = Path(source.path).absolute()
-    return path if path.is_dir() else path.parent
+    folder = path if path.is_dir() else path.parent
+    return Path.cwd() if folder in PLACES else folder

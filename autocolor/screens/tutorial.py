@@ -43,7 +43,7 @@ class Tutorial:
         self._is_done = False
         """Whether the lesson before was done, and not skipped."""
         self._before = self._seen = work_of(session.studio.history)
-        self._is_low = False
+        self._is_low = True
         self._is_folded = False
         self._has_ended = False
 

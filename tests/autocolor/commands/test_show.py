@@ -12,7 +12,10 @@ import pytest
 from PIL import Image
 
 from autocolor import Studio, read_journal, read_scene
+from autocolor.commands.demo import demo_folder
+from autocolor.commands.show import folder_of
 from autocolor.journal.autosave import JOURNAL, left_sessions
+from autocolor.journal.places import Source
 from ramtek_emu import Ramtek9300
 from ramtek_emu.host.tcp_server import TcpServer
 from tests.autocolor.commands.conftest import Run
@@ -121,3 +124,10 @@ def test_a_session_that_is_ended_here_is_kept_and_gone_on_with(
     history = read_journal(left / JOURNAL).history
     assert len(history.to_undo) == 2
     assert history.start.ambient == 0.3
+
+
+def test_files_are_in_the_folder_of_the_scene_and_never_in_that_of_the_demo(folder: Path) -> None:
+    assert folder_of(Source("scene")) == folder / "scene"
+    assert folder_of(Source("scene/scene.toml")) == folder / "scene"
+    assert folder_of(Source("two.obj")) == folder
+    assert folder_of(Source(str(demo_folder()))) == folder

@@ -39,7 +39,6 @@ def test_the_whole_tutorial_is_done_by_the_unit_alone(hand: Hand, tutorial: Tuto
     assert name_of(tutorial) == "move a light"
     hand.open_menu()
     hand.pick("light & view")
-    hand.pick("down")
     element, line = hand.handle("key: x")
     hand.drag((element, line), (element + 20, line - 10))
     assert name_of(tutorial) == "flaps"
@@ -114,8 +113,10 @@ def test_the_panel_is_folded_to_its_first_line_until_the_next_lesson(hand: Hand,
 
 def test_what_is_picked_on_the_panel_does_not_reach_the_picture(hand: Hand, tutorial: Tutorial) -> None:
     before = hand.viewer.studio.scene
-    hand.drag((100, 20), (200, 30), (300, 35))
-    hand.click(100, 30)
+    panel = next(each.area for each in hand.viewer.board.widgets() if each.label == "tutorial")
+    line = panel.bottom - 5
+    hand.drag((100, line), (200, line - 8), (300, line - 100))
+    hand.click(100, line)
     assert hand.viewer.studio.scene is before
 
 
