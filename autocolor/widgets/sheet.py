@@ -9,6 +9,7 @@ transfer to the display.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from autocolor.arrays import Bytes, Words
 from autocolor.mapping.level_ranges import BACKGROUND
 from autocolor.sending import configuration_of, encoder_of_entries
 from autocolor.widgets.areas import Area
-from autocolor.widgets.items import Item
+from autocolor.widgets.items import Item, filled
 from ramtek_emu import HostPort, instructions
 
 
@@ -87,6 +88,7 @@ def changed_items(
 ) -> tuple[list[Area], list[Item]]:
     """The areas whose base must be drawn again, and the items to draw again after that, lowest first.
 
+    Where something goes that stood on an item of one word, that much of the item is drawn, and not all of it.
     `drawn` are areas whose base is drawn again anyhow.
     """
     if not drawn and list(before) == list(now):
@@ -98,14 +100,35 @@ def changed_items(
     fresh = [item for item in now if item not in old]
     gone = [item.area for item in before if item not in new and not item.area.is_empty]
     covers = [*drawn, *(item.area for item in fresh if item.is_solid)]
-    restored = [area for area in gone if not any(each.covers(area) for each in covers)]
+    restored: list[Area] = []
+    patches: dict[int, list[Item]] = {}
+    for area in gone:
+        if any(each.covers(area) for each in covers):
+            continue
+        ground = ground_of(area, now, old)
+        if ground is None:
+            restored.append(area)
+        else:
+            patches.setdefault(ground, []).append(filled(area, now[ground].word or 0))
     # An item is drawn again if it is new, or if something below it was drawn.
     dirty, redrawn = [*drawn, *restored], []
-    for item in now:
+    for number, item in enumerate(now):
         if item not in old or any(item.area.overlaps(area) for area in dirty):
             redrawn.append(item)
             dirty.append(item.area)
+        for patch in patches.get(number, ()):
+            redrawn.append(patch)
+            dirty.append(patch.area)
     return restored, redrawn
+
+
+def ground_of(area: Area, items: Sequence[Item], kept: AbstractSet[Item]) -> int | None:
+    """The number of the topmost item of one word, among those that are kept, that covers an area."""
+    for number in range(len(items) - 1, -1, -1):
+        item = items[number]
+        if item.word is not None and item.area.covers(area) and item in kept:
+            return number
+    return None
 
 
 def differing_lines(before: Words | int, now: Words | int, area: Area) -> Area:
