@@ -139,7 +139,7 @@ def _vector_rows(
         usual = world.range_of(axis) if column.unit == WORLD_UNITS else Range(-1, 1, 0.01)
         yield Bar(
             f"{label} {axis}",
-            column.help,
+            _help(column),
             value=value[number],
             low=usual.low,
             high=usual.high,
@@ -149,7 +149,8 @@ def _vector_rows(
 
 
 def _help(column: Column) -> str:
-    return column.help
+    """What the message line says of a number: what it is, and its unit."""
+    return f"{column.help} In {column.unit}." if column.unit else column.help
 
 
 def _put(put: Put, name: str, value: object) -> object:
