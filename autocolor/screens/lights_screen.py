@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
+from autocolor.checks import Vector
 from autocolor.scene.columns.column import fields_of
 from autocolor.scene.lights import Light
 from autocolor.scene.new_lights import new_light_of
@@ -19,6 +21,9 @@ POINT: Final = "point source"
 DIRECTION: Final = "direction"
 AIM: Final = "aim"
 """The kinds of lights: those with an axis have a direction, or an aim."""
+
+DOWN: Final = (0.0, 0.0, -1.0)
+"""The direction of a light that had none."""
 
 NEEDS_AXIS: Final = "a point source has none; choose the kind aim first"
 
@@ -56,10 +61,10 @@ class LightsScreen(OverPicture):
         return [
             Pair(
                 "alone",
-                "This light alone, or all lights on.",
-                run=lambda: session.edit(session.scene.only_lights(light.name)),
+                "This light alone; or all lights on.",
+                run=partial(session.light_alone, light.name),
                 other="all on",
-                run_other=lambda: session.edit(session.scene.with_all_lights_on()),
+                run_other=session.all_lights_on,
             ),
             Pair(
                 "add",
@@ -86,8 +91,9 @@ class LightsScreen(OverPicture):
         if kind == POINT:
             needing = ("concentration", "cone angle")
             rows = [replace(row, why_not=NEEDS_AXIS) if row.label in needing else row for row in rows]
-        # What kind of light it is stands before its aim or direction, and after its place.
-        before = 1 + max(n for n, row in enumerate(rows) if row.label.startswith("position"))
+        # What kind of light it is stands before what only some kinds have.
+        axis = ("direction", "aim", "concentration")
+        before = next(number for number, row in enumerate(rows) if row.label.startswith(axis))
         choice = Choice(
             "kind",
             "A point source shines to all sides; others along a direction, or at an aim.",
@@ -108,11 +114,9 @@ class LightsScreen(OverPicture):
             absent = {name: _default(name) for name in ("direction", "aim", "concentration", "cone_angle")}
             self._put(light.name, absent)
         elif kind == AIM:
-            low, high = self.session.scene.object_bounds
-            middle = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
-            self._put(light.name, {"aim": middle})
+            self._put(light.name, {"aim": aim_of(light, *self.session.world)})
         else:
-            self._put(light.name, {"direction": light.axis or (0.0, 0.0, -1.0)})
+            self._put(light.name, {"direction": light.axis or DOWN})
 
     def _add(self) -> None:
         light = new_light_of(self.session.scene)
@@ -141,6 +145,23 @@ class LightsScreen(OverPicture):
         name = self.session.light_name
         self.session.edit(self.session.scene.without_light(name))
         self.session.tell(f"light {name} removed; undo brings it back")
+
+
+def aim_of(light: Light, low: Vector, high: Vector) -> Vector:
+    """A point at which a light without an aim is aimed: ahead of it, or else the middle of the object.
+
+    A directed light keeps its direction. `low` and `high` are the bounds of the object.
+    """
+    middle = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
+    away = tuple(a - b for a, b in zip(middle, light.position, strict=True))
+    axis = light.axis or (DOWN if not any(away) else None)
+    if axis is None:
+        x, y, z = middle
+        return x, y, z
+    ahead = sum(a * b for a, b in zip(axis, away, strict=True))
+    distance = ahead if ahead > 0 else math.hypot(*away) or 1.0
+    x, y, z = (a + distance * b for a, b in zip(light.position, axis, strict=True))
+    return x, y, z
 
 
 def _default(name: str) -> object:

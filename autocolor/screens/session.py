@@ -111,8 +111,9 @@ class Session:
         self.news = News(message, is_warning, time.monotonic())
 
     def warn(self, message: object) -> None:
-        """Show an error, in one line."""
-        self.tell(str(message).replace("\n", "; "), is_warning=True)
+        """Show an error in one line; of several problems, the first one and how many others there are."""
+        first, *others = str(message).splitlines() or [""]
+        self.tell(f"{first} (and {len(others)} more)" if others else first, is_warning=True)
 
     # What is chosen.
 
@@ -164,6 +165,16 @@ class Session:
     def change_surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> None:
         """Change fields of a surface."""
         self.edit(self.scene.with_surface(name, **changes))
+
+    def light_alone(self, name: str) -> None:
+        """Switch one light on and all others off."""
+        self.edit(self.scene.only_lights(name))
+        self.tell(f"light {name} alone")
+
+    def all_lights_on(self) -> None:
+        """Switch all lights on."""
+        self.edit(self.scene.with_all_lights_on())
+        self.tell("all lights on")
 
     def paint(self, **changes: Unpack[PaintChanges]) -> None:
         """Change the colors of the chosen surface, if there is one."""
