@@ -72,14 +72,15 @@ def fractions_by_surface(
     `extents` are those of `mapped_ranges`; intensities are relative to the picture's scale.
     """
     intensities_of = {surface.surface_number: picture.relative[surface.pixels] for surface in picture.slices}
+    made: dict[int, Fractions] = {}
     found: dict[int, Fractions] = {}
     for number in intensities_of:
         # Surfaces that are mapped by the whole object's range share one function.
         of = WHOLE if extents[number] is extents[WHOLE] else number
-        if of not in found:
+        if of not in made:
             everything = picture.relative if of == WHOLE else intensities_of[number]
-            found[of] = fraction_of(extents[of], mapping, everything, picture.relative_ranges[of])
-        found[number] = found[of]
+            made[of] = fraction_of(extents[of], mapping, everything, picture.relative_ranges[of])
+        found[number] = made[of]
     return found
 
 
