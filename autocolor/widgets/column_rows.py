@@ -36,10 +36,14 @@ class World(NamedTuple):
     high: Vector
 
     def range_of(self, axis: str) -> Range:
-        """The usual range of a coordinate: that of the object and its whole size around."""
+        """The usual range of a coordinate: that of the object and its whole size around.
+
+        Without an axis, it is that of all three.
+        """
         size = math.dist(self.low, self.high) or 1.0
-        number = AXES.find(axis)
-        low, high = (self.low[number], self.high[number]) if number >= 0 else (min(self.low), max(self.high))
+        low, high = min(self.low), max(self.high)
+        if axis:
+            low, high = self.low[AXES.index(axis)], self.high[AXES.index(axis)]
         return bar_within(low - size, high + size)
 
 

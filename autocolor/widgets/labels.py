@@ -15,7 +15,7 @@ def short_label(label: str, most: int) -> str:
 
     A shortened word ends in a consonant and a period.
 
-    >>> short_label("normal reflectance", 12), short_label("x minimum", 8), short_label("cone angle", 10)
+    >>> short_label("normal reflectance", 12), short_label("x minimum", 7), short_label("cone angle", 10)
     ('normal refl.', 'x min.', 'cone angle')
     """
     words = label.split(" ")
