@@ -26,7 +26,7 @@ from autocolor.journal.studio_session import StudioSession
 from autocolor.lighting.highlights import highlight_of
 from autocolor.lighting.light_drags import highlight_placed
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import display_image
+from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.pacing import block_for, blocks_of
@@ -88,6 +88,15 @@ class Studio(StudioSession):
     def entries(self) -> Bytes:
         """The entries of the lookup table, (1024, 3) uint8, read-only."""
         return self._shown.entries
+
+    def image_of(self, scene: Scene) -> DisplayImage:
+        """What another scene would look like on the display; the present one stays, and nothing is sent.
+
+        What both have in common is neither computed nor stored again: if they differ in colors only, `words`
+        is the same array. Raises InputError if the scene cannot be rendered.
+        """
+        picture = rendering(scene, *self._size, self._rendering).picture
+        return display_image(scene, picture, self._shown)
 
     @property
     def sight(self) -> Sight:

@@ -35,8 +35,8 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "lighting", "mapping",
-        "files", "rendering", "pacing", "sending", "scan_lines", "journal", "studio", "images", "screens",
-        "commands", "__main__",
+        "files", "rendering", "pacing", "sending", "scan_lines", "journal", "studio", "images", "widgets",
+        "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png",
@@ -60,7 +60,7 @@ KNOWING_THE_DISPLAY = (
     "autocolor.__main__", "autocolor.files.writing", "autocolor.images", "autocolor.lighting.picture",
     "autocolor.sending", "autocolor.studio",
 )  # fmt: skip
-WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens")
+WINGS_KNOWING_THE_DISPLAY = ("autocolor.commands", "autocolor.screens", "autocolor.widgets")
 DOORS_OF_THE_DISPLAY = {
     "ramtek_emu", "ramtek_emu.command_line", "ramtek_emu.configuration",
     "ramtek_emu.errors", "ramtek_emu.host.tcp_port", "ramtek_emu.instructions", "ramtek_emu.png",

@@ -135,7 +135,8 @@ def monitor_of(
         return viewer.on_key(key.name, key.control, key.shift, key.text, key.repeated)
 
     def on_pointer(pointer: Pointer) -> None:
-        viewer.on_pointer(pointer.element, pointer.line, pointer.action, pointer.button, pointer.steps)
+        element, line, modifiers = pointer.element, pointer.line, (pointer.shift, pointer.control)
+        viewer.on_pointer(element, line, pointer.action, pointer.button, pointer.steps, *modifiers)
 
     def on_tick() -> None:
         viewer.on_tick(monitor.is_at_rest)
@@ -151,6 +152,7 @@ def monitor_of(
         screenshot_name="autocolor",
         on_key=on_key,
         on_pointer=on_pointer,
+        on_release=viewer.on_release,
         on_drop=viewer.on_drop,
         on_tick=on_tick,
         on_close=viewer.on_close,

@@ -6,10 +6,15 @@ from typing import Final, Protocol
 
 from autocolor.screens.keys import Binding, Chord
 from autocolor.screens.picture_edits import PictureEdits
+from autocolor.screens.session import Session
 
 
 class Actions(Protocol):
     """The actions that keys can be bound to."""
+
+    @property
+    def session(self) -> Session:
+        """The session, for the keys that edit nothing."""
 
     @property
     def edits(self) -> PictureEdits:
@@ -23,6 +28,9 @@ class Actions(Protocol):
 
     def watch(self) -> object:
         """Let the picture come in line by line."""
+
+    def compare(self) -> object:
+        """Show the state to compare with."""
 
     def undo(self) -> object:
         """Undo the last step."""
@@ -128,6 +136,12 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
         "watch the picture being computed, line by line",
         lambda viewer, _: viewer.watch(),
     ),
+    Binding(
+        (Chord("b"),),
+        "while held: the state before the last step",
+        lambda viewer, _: viewer.compare(),
+        release=lambda viewer: viewer.session.end_comparing(),
+    ),
     Binding((Chord("z", control=True),), "undo", lambda viewer, _: viewer.undo(), repeats=True),
     Binding(
         (Chord("y", control=True), Chord("z", control=True, shift=True)),
@@ -146,7 +160,8 @@ WINDOW_KEYS: Final = (
     ("F11, Alt+Enter", "full screen, and back"),
     ("F12", "save a numbered screenshot"),
     ("Ctrl+Q", "leave"),
-    ("mouse", "drag: turn; with the middle button: move; wheel: closer"),
+    ("mouse", "drag: turn; Shift, middle: move; Ctrl, wheel: closer"),
+    ("mouse, highlight", "drag it, or click, and click where it goes"),
     ("a file dropped", "open it: a scene, a mesh or a picture file"),
 )
 """The keys that the window itself handles, and the mouse."""

@@ -6,40 +6,27 @@ shows. It knows screens by their interface alone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from typing import Final
 
-import numpy as np
-
-from autocolor.arrays import Bytes
+from autocolor.screens.composition import Composition
 from autocolor.screens.gestures import Gesture
+from autocolor.screens.grip import Grip, place_of
+from autocolor.screens.layout import Layout
+from autocolor.screens.main_menu import page_of_menu, rows_of_menu
+from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.screen import Handle, Screen
-from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.session import Session
 from autocolor.screens.typing_line import TypingLine
-from autocolor.widgets.areas import Area
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.colors import BLACK, HEIGHT, ORANGE, WHITE, WIDTH, YELLOW
-from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
-from autocolor.widgets.menu import (
-    MENU,
-    MESSAGE_LINES,
-    WIDE_BAR,
-    laid_out,
-    menu_items,
-    pages_of,
-)
+from autocolor.widgets.colors import WIDTH
+from autocolor.widgets.menu import MENU
 from autocolor.widgets.sheet import Page
-from autocolor.widgets.widget import Button, Gap, Heading, Place, Steps, Widget
-
-MESSAGE: Final = Area(0, HEIGHT - MESSAGE_LINES, WIDTH - 1, HEIGHT - 1)
-MOST_CHARACTERS: Final = (WIDTH - 16) // CHARACTER
+from autocolor.widgets.widget import NOWHERE, Gap, Heading, Place, Widget
 
 EDGE: Final = 4
 """Assumed: elements at the right edge of the screen that bring the menu."""
-
-REACH: Final = 7
-"""Assumed: elements or lines from a handle within which it is grabbed."""
 
 
 class Board:
@@ -57,12 +44,14 @@ class Board:
         """The handle that was picked, and goes where the next pick is."""
         self._shown = session.screen
         self._is_open = False
-        self._lit = ""
+        self._lit, self._lit_area = "", NOWHERE
+        """The key and the area of what is lit."""
         self._wide = ""
         """The key of the number whose wide bar is shown."""
         self._menu_page = 0
-        self._grabbed: Widget | Handle | Screen | None = None
-        self._start = self._last = Gesture("hover", -1, -1)
+        self._has_message = False
+        """Whether the message line covers what is below it."""
+        self._grip = Grip()
         self._pointer = Place(-1, -1)
 
     # The screen and its widgets.
@@ -80,7 +69,12 @@ class Board:
     @property
     def is_dragging(self) -> bool:
         """Whether something is grabbed."""
-        return self._grabbed is not None
+        return self._grip.is_on
+
+    @property
+    def lit(self) -> str:
+        """The key of the widget that is lit; empty if there is none."""
+        return self._lit
 
     def turn(self) -> bool:
         """Leave and enter screens if the session asked for another one; returns whether it did."""
@@ -89,102 +83,92 @@ class Board:
             return False
         self.release()
         self.screens[self._shown].leave()
-        self._shown, self._wide, self._menu_page, self._lit = wanted, "", 0, ""
+        self._shown, self._wide, self._menu_page = wanted, "", 0
+        self._light(None)
         self.close()
         self.screens[wanted].enter()
         return True
+
+    def layout(self) -> Layout:
+        """What can be pointed at now."""
+        covers = ([MENU] if self.has_menu else []) + ([MESSAGE] if self._has_message else [])
+        return Layout(self.screen, self.menu_rows(), self._wide, covers)
 
     def menu_rows(self) -> list[Widget]:
         """The rows of the menu, laid out."""
         if not self.has_menu:
             return []
-        pages = pages_of(self._all_rows())
-        self._menu_page %= len(pages)
-        rows = pages[self._menu_page]
-        if len(pages) > 1:
-            more = f"{self._menu_page + 1} of {len(pages)}"
-            rows = [*rows, Button("more", "The other rows of this menu.", run=self._turn_menu, value=more)]
-        return laid_out(rows)
-
-    def _turn_menu(self) -> None:
-        self._menu_page += 1
-
-    def _all_rows(self) -> list[Widget]:
-        session, screen = self.session, self.screen
-        undo = Steps(
-            " ",
-            "Undo the last step, or redo it.",
-            step=lambda amount: session.undo() if amount < 0 else session.redo(),
-            signs=("undo", "redo"),
-        )
-        if screen.name == PICTURE:
-            ways: list[Widget] = [
-                Button(each.title, each.help, run=partial(session.turn_to, each.name))
-                for each in self.screens.values()
-                if each.is_in_menu and each is not screen
-            ]
-            return [Heading("AUTOCOLOR"), *ways, Gap("ways"), *screen.rows(), undo]
-        back = Button("< picture", "Back to the picture.", run=partial(session.turn_to, PICTURE))
-        return [Heading(screen.title.upper()), back, Gap("ways"), *screen.rows(), Gap("undo gap"), undo]
+        rows = rows_of_menu(self.session, self.screen, self.screens.values())
+        return page_of_menu(rows, self._menu_page, partial(setattr, self, "_menu_page"))
 
     def widgets(self) -> list[Widget]:
         """Everything that can be pointed at, the topmost first."""
-        rows = self.menu_rows()
-        wide = [row.at(WIDE_BAR) for row in rows if isinstance(row, Bar) and row.key == self._wide]
-        return [*wide, *rows, *self.screen.widgets()]
+        return self.layout().widgets
 
     def widget_at(self, element: int, line: int) -> Widget | None:
         """The widget at a place."""
-        return next((each for each in self.widgets() if each.area.has(element, line)), None)
+        return self.layout().widget_at(element, line)
 
     def handle_at(self, element: int, line: int) -> Handle | None:
-        """The nearest handle within reach of a place, the last of several at the same distance."""
-        best, least = None, REACH + 1
-        for handle in self.screen.handles():
-            distance = max(abs(handle.element - element), abs(handle.line - line))
-            if distance < least or (distance == least and best is not None):
-                best, least = handle, distance
-        return best
+        """The nearest handle within reach of a place, if nothing covers it."""
+        return self.layout().handle_at(element, line)
 
     # Gestures.
 
     def take(self, gesture: Gesture) -> None:
         """Do what a gesture asks for."""
-        self._pointer = Place(gesture.element, gesture.line)
+        self._pointer = place_of(gesture)
         getattr(self, f"_{gesture.kind}")(gesture)
-        self._last = gesture
+
+    def point_at(self, gesture: Gesture) -> None:
+        """Take note of the place of a gesture."""
+        self._pointer = place_of(gesture)
+        self._hover(gesture)
 
     def release(self) -> None:
-        """Let go of what is grabbed or held."""
-        self._grabbed = self.held = None
+        """Let go of what is grabbed, held or typed."""
+        self._let_go()
+        self.typing.end()
+
+    def _let_go(self) -> None:
+        self.held = None
+        self._grip.release()
         self.screens[self._shown].release()
 
-    def _hover(self, gesture: Gesture) -> None:
+    def _light(self, widget: Widget | None) -> None:
+        self._lit, self._lit_area = ("", NOWHERE) if widget is None else (widget.key, widget.area)
+
+    def _hover(self, gesture: Gesture) -> Layout:
         element, line = self._pointer
+        layout = self.layout()
         if not self.screen.has_menu:
-            if element >= WIDTH - EDGE and line <= MENU.bottom:
+            was_open = self._is_open
+            if WIDTH - EDGE <= element < WIDTH and line <= MENU.bottom:
                 self._is_open = True
-            elif element < MENU.left:
+            elif not MENU.left <= element < WIDTH and layout.wide is None:
                 self._is_open = False
-        widget = self.widget_at(element, line)
-        self._lit = widget.key if widget is not None else ""
+            layout = layout if self._is_open == was_open else self.layout()
+        widget = layout.widget_at(element, line)
+        self._light(widget)
         if widget is None:
             self.has_focus = False
+        return layout
 
     def _pick(self, gesture: Gesture) -> None:
-        self._hover(gesture)
+        layout = self._hover(gesture)
         element, line = self._pointer
-        widget = self.widget_at(element, line)
-        held, self.held = self.held, None
+        widget = layout.widget_at(element, line)
         if widget is not None:
-            self.pick_widget(widget)
-        elif self.has_menu and MENU.has(element, line):
+            self.held = None
+            self.pick_widget(widget, self._pointer)
+        elif layout.is_covered(element, line):
             return
-        elif held is not None:
-            self.screen.place(held, element, line)
-            self.screen.release()
+        elif self.held is not None:
+            # One that is refused is still held.
+            self.screen.place(self.held, element, line)
+            self._let_go()
         else:
-            handle = self.handle_at(element, line)
+            handle = layout.handle_at(element, line)
             if handle is None:
                 self.screen.pick(gesture)
                 return
@@ -192,13 +176,12 @@ class Board:
             self.screen.hold(handle)
             self.session.tell(f"{handle.label}: pick its new place")
 
-    def pick_widget(self, widget: Widget) -> None:
-        """Pick a widget, as at its middle if the pointer is elsewhere."""
+    def pick_widget(self, widget: Widget, place: Place | None = None) -> None:
+        """Pick a widget at a place, without one at its middle."""
         if widget.why_not:
             self.session.tell(f"{widget.label}: {widget.why_not}", is_warning=True)
             return
-        place = self._pointer
-        if not widget.area.has(*place):
+        if place is None:
             place = Place((widget.area.left + widget.area.right) // 2, widget.area.top)
         if isinstance(widget, Bar) and MENU.covers(widget.area) and not widget.is_switched_at(place):
             self._wide = "" if self._wide == widget.key else widget.key
@@ -209,43 +192,32 @@ class Board:
 
     def _grab(self, gesture: Gesture) -> None:
         self.held = None
-        element, line = self._pointer
-        self._start = gesture
-        widget = self.widget_at(element, line)
-        if widget is not None:
-            self._grabbed = None if widget.why_not else widget
-            self._lit = widget.key
-            return
-        handle = self.handle_at(element, line)
-        self._grabbed = self.screen if handle is None else handle
-        if handle is not None:
-            self.screen.hold(handle)
+        layout = self.layout()
+        self._light(layout.widget_at(*self._pointer))
+        self._grip.grab(layout, gesture)
 
     def _drag(self, gesture: Gesture) -> None:
-        grabbed = self._grabbed
-        if isinstance(grabbed, Widget):
-            start, last = (Place(each.element, each.line) for each in (self._start, self._last))
-            grabbed.drag(start, last, self._pointer)
-        elif isinstance(grabbed, Handle):
-            self.screen.place(grabbed, *self._pointer)
-        elif grabbed is not None:
-            grabbed.drag(self._start, self._last, gesture)
+        self._grip.drag(self.layout(), gesture)
 
     def _drop(self, gesture: Gesture) -> None:
-        self.release()
+        self._let_go()
 
     def _wheel(self, gesture: Gesture) -> None:
-        widget = self.widget_at(*self._pointer)
-        if widget is None:
+        layout = self.layout()
+        widget = layout.widget_at(*self._pointer)
+        if widget is not None:
+            if not widget.why_not:
+                widget.nudge(gesture.steps)
+        elif not layout.is_covered(*self._pointer):
             self.screen.wheel(gesture)
-        elif not widget.why_not:
-            widget.nudge(gesture.steps)
+
+    # Keys.
 
     def close(self) -> None:
         """Take the menu away where it comes on demand."""
         self.is_pinned = self._is_open = self.has_focus = False
-
-    # Keys.
+        if not self.screen.has_menu:
+            self._wide = ""
 
     def toggle_menu(self) -> None:
         """Bring the menu and give it the keys, or take it away."""
@@ -253,16 +225,17 @@ class Board:
             self.close()
             return
         self.is_pinned = self.has_focus = True
-        if not self._lit_row():
+        if self.layout().lit(self._lit, self._lit_area) is None:
             self._move_light(1)
 
     def escape(self) -> bool:
         """Let go of what is held, or close what is open; returns False if there is nothing."""
+        comes_and_goes = not self.screen.has_menu
         if self.held is not None:
             self.held = None
-        elif self._wide:
+        elif self.layout().wide is not None:
             self._wide = ""
-        elif self.has_focus or self.is_pinned:
+        elif self.has_focus or (comes_and_goes and (self.is_pinned or self._is_open)):
             self.close()
         else:
             return False
@@ -270,7 +243,7 @@ class Board:
 
     def key(self, name: str, typed: str) -> bool:
         """Take a key that is typed into the widget under the pointer, or moves in the menu."""
-        row = self._lit_row()
+        row = self.layout().lit(self._lit, self._lit_area)
         if row is not None and row.typed is not None and self.typing.would_begin(row, typed):
             self.typing.begin(row, typed)
             return True
@@ -281,80 +254,43 @@ class Board:
         elif row is not None and name in ("left", "right") and not row.why_not:
             row.nudge(1 if name == "right" else -1)
         elif row is not None and name in ("return", "space", "enter"):
-            self._pointer = Place(-1, -1)
             self.pick_widget(row)
         else:
             return False
         return True
 
-    def _lit_row(self) -> Widget | None:
-        return next((each for each in self.widgets() if each.key == self._lit), None)
-
     def _move_light(self, step: int) -> None:
-        rows = [each.key for each in self.menu_rows() if not isinstance(each, (Heading, Gap))]
+        layout = self.layout()
+        lit = layout.lit(self._lit, self._lit_area)
+        rows = [each for each in layout.rows if not isinstance(each, (Heading, Gap))]
         if rows:
-            start = rows.index(self._lit) if self._lit in rows else (-1 if step > 0 else 0)
-            self._lit = rows[(start + step) % len(rows)]
+            start = next((n for n, each in enumerate(rows) if each is lit), -1 if step > 0 else 0)
+            self._light(rows[(start + step) % len(rows)])
 
     # What is shown.
 
     @property
     def mark(self) -> tuple[int, int] | None:
         """The place of the handle that is held, or can be grabbed where the pointer is."""
-        handle = self.held
-        if handle is None and self._grabbed is None and self.widget_at(*self._pointer) is None:
-            handle = self.handle_at(*self._pointer)
+        layout, handle = self.layout(), self.held
+        if handle is not None:
+            handle = layout.handle_now(handle)
+        elif not self._grip.is_on and layout.widget_at(*self._pointer) is None:
+            handle = layout.handle_at(*self._pointer)
         return None if handle is None else (handle.element, handle.line)
 
     def page(self) -> Page:
         """The page to show now."""
-        session, screen = self.session, self.screen
-        items = [*self._message_items(), *screen.items()]
-        for widget in screen.widgets():
-            items += widget.items(widget.key == self._lit and not widget.why_not)
-        if self.has_menu:
-            rows = self.menu_rows()
-            items += menu_items(rows, self._lit)
-            for widget in self.widgets()[:1]:
-                if widget.area == WIDE_BAR:
-                    items += widget.items(lit=False)
-        return Page(screen.base(), items, with_loads(session.studio.entries, screen.loads()))
-
-    def _message_items(self) -> list[Item]:
-        line, ink = self.message
-        if not line and not self.has_menu and not self.screen.has_menu:
-            return []
-        found = [filled(MESSAGE, BLACK)]
-        if line:
-            found.append(text(fitted(line, MOST_CHARACTERS), 8, MESSAGE.top + 3, ink, BLACK))
-        return found
+        composition = self._composition()
+        self._has_message = composition.has_message
+        return composition.page()
 
     @property
     def message(self) -> tuple[str, int]:
         """What the message line says, and the word it is written with."""
-        session = self.session
-        if self.typing.is_on:
-            return self.typing.shown, YELLOW
-        if session.has_news:
-            return session.message, ORANGE if session.news.is_warning else WHITE
-        return (self._hint(), WHITE) if self.has_menu else ("", WHITE)
+        return self._composition().message
 
-    def _hint(self) -> str:
-        row = self._lit_row()
-        if row is not None:
-            return row.why_not or row.help or row.label
-        if self.held is not None:
-            return f"{self.held.label}: pick its new place"
-        element, line = self._pointer
-        handle = self.handle_at(element, line)
-        return handle.label if handle is not None else self.screen.hint(element, line)
-
-
-def with_loads(entries: Bytes, loads: Sequence[tuple[int, Bytes]]) -> Bytes:
-    """The lookup table with some runs of entries replaced; the same array if there are none."""
-    if not loads:
-        return entries
-    table = np.array(entries)
-    for first, colors in loads:
-        table[first : first + len(colors)] = colors
-    return table
+    def _composition(self) -> Composition:
+        layout = self.layout()
+        lit = layout.lit(self._lit, self._lit_area)
+        return Composition(self.session, layout, lit, self.held, self._pointer, self.typing)

@@ -19,11 +19,13 @@ from autocolor.mapping.palette import in_palette
 from autocolor.mapping.thumbnail import thumbnail
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
+from autocolor.screens.comparing import BEFORE, Other
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
 from autocolor.widgets.items import CHARACTER, Item, filled, fitted, image, outline, text
+from autocolor.widgets.pairs import Pair
 from autocolor.widgets.widget import ROW_LINES, TEXT_DOWN, Button, Choice, Entry, Gap, Place, Widget
 
 LINES: Final = 84
@@ -165,6 +167,14 @@ class KeptScreen(Screen):
                 run=self._come_back,
                 value=name,
             ),
+            Pair(
+                "compare",
+                f"Compare with {name}, here and by the key; or with the state before the last step again.",
+                why_not,
+                run=self._compare,
+                other="off",
+                run_other=self._compare_with_before,
+            ),
             Button("drop", f"Keep {name} no longer.", why_not, run=self._drop, value=name),
         ]
         pages = len(self._pages)
@@ -198,9 +208,21 @@ class KeptScreen(Screen):
         self.session.tell(f"{self._present} is the scene again; undo goes back")
         self.session.turn_to(PICTURE)
 
+    def _compare(self) -> None:
+        session, name = self.session, self._present
+        session.comparing.choose(Other(f"variant {name}", session.studio.variants[name].scene))
+        session.turn_to(PICTURE)
+        session.compare()
+
+    def _compare_with_before(self) -> None:
+        self.session.comparing.choose(None)
+        self.session.tell(f"compared from now on: {BEFORE}")
+
     def _drop(self) -> None:
         name = self._present
+        kept = self.session.studio.variants[name]
         self.session.studio.drop_variant(name)
+        self.session.comparing.forget(kept.scene)
         self.session.tell(f"{name} is kept no longer")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -41,8 +41,8 @@ class Binding(Generic[Viewer]):
 
     `run` is called with the viewer and the index in `chords` of the key that was pressed. While the key is
     held down, it is called again and again only with `held`, where all is undone as one step, or with
-    `repeats`, where each is a step. `does` describes the action on the help page; `label` replaces the names
-    of the keys there.
+    `repeats`, where each is a step. `release` is called when one of the keys is let go.
+    `does` describes the action on the help page; `label` replaces the names of the keys there.
     """
 
     chords: tuple[Chord, ...]
@@ -51,6 +51,25 @@ class Binding(Generic[Viewer]):
     label: str | None = None
     held: bool = False
     repeats: bool = False
+    release: Callable[[Viewer], object] | None = None
 
     def __str__(self) -> str:
         return self.label or ", ".join(map(str, self.chords))
+
+
+def bound_to(
+    bindings: Sequence[Binding[Viewer]], name: str, control: bool, shift: bool, typed: str
+) -> tuple[Binding[Viewer], int] | None:
+    """The binding of a key that was pressed, and the index of its chord; None if it has none.
+
+    Signs are matched by the typed character, as keyboards place them differently, letters by the key's name.
+    """
+    chords = [
+        (binding, number, chord)
+        for binding in bindings
+        for number, chord in enumerate(binding.chords)
+        if chord.control == control
+    ]
+    by_sign = [row for row in chords if row[2].is_sign and row[2].name == typed]
+    by_name = [row for row in chords if row[2].name == name and (row[2].is_sign or row[2].shift == shift)]
+    return next(((binding, number) for binding, number, _ in by_sign or by_name), None)

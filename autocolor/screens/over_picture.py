@@ -1,8 +1,15 @@
-"""Screens over the picture: pointing names what is seen and chooses it, dragging turns around the object."""
+"""Screens over the picture: pointing names what is seen and chooses it, dragging turns around the object.
+
+The word that is read back from the display tells the surface and its level, as it did then; the polygon that
+is seen there tells the part.
+"""
 
 from __future__ import annotations
 
-from autocolor.arrays import Words
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from autocolor.arrays import Bytes, Words
 from autocolor.screens.gestures import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture_edits import PictureEdits
 from autocolor.screens.screen import Screen
@@ -10,7 +17,7 @@ from autocolor.screens.session import Session
 
 
 class OverPicture(Screen):
-    """A screen whose base is the picture at full size."""
+    """A screen whose base is the picture at full size, or another one that is compared with it."""
 
     shows_picture = True
 
@@ -19,15 +26,29 @@ class OverPicture(Screen):
         self.edits = PictureEdits(session)
 
     def base(self) -> Words:
-        return self.session.studio.words
+        image = self.session.comparing.image
+        return self.session.studio.words if image is None else image.words
+
+    def loads(self) -> Sequence[tuple[int, Bytes]]:
+        image = self.session.comparing.image
+        return () if image is None else ((0, image.entries),)
 
     def hint(self, element: int, line: int) -> str:
-        return self._told(element, line) or self.help
+        pointed = self._pointed(element, line)
+        return self.help if pointed is None else pointed.told
 
     def pick(self, gesture: Gesture) -> None:
         session = self.session
-        session.choose_surface(session.surface_of(session.word_at(gesture.element, gesture.line)))
-        session.tell(self._told(gesture.element, gesture.line) or "the background")
+        if session.comparing.is_on:
+            session.end_comparing()
+            return
+        pointed = self._pointed(gesture.element, gesture.line)
+        if pointed is None:
+            session.tell("the background")
+            return
+        session.choose_surface(pointed.surface)
+        session.part_name = pointed.part
+        session.tell(pointed.told)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
         if start.button == MIDDLE or start.shift:
@@ -40,11 +61,28 @@ class OverPicture(Screen):
     def wheel(self, gesture: Gesture) -> None:
         self.edits.move(wheel_ratio(gesture.steps))
 
-    def _told(self, element: int, line: int) -> str:
-        """What is seen at a place: the surface and its level; nothing for the background."""
-        word = self.session.word_at(element, line)
-        name = self.session.surface_of(word)
-        if not name:
-            return ""
-        first, levels = self.session.studio.level_ranges[name]
-        return f"{name}, level {word - first} of {levels - 1}"
+    def _pointed(self, element: int, line: int) -> Pointed | None:
+        """What is seen at a place; None on the background, and where something else than the picture is."""
+        session = self.session
+        studio, word = session.studio, session.word_at(element, line)
+        name = session.surface_of(word)
+        if not name or session.comparing.is_on or word != studio.words[line, element]:
+            return None
+        seen = studio.seen_at(line, element)
+        first, levels = studio.level_ranges[name]
+        return Pointed(name, "" if seen is None else seen.part, word - first, levels - 1)
+
+
+class Pointed(NamedTuple):
+    """A surface and a part that are pointed at, and the level there of the highest one."""
+
+    surface: str
+    part: str
+    level: int
+    highest: int
+
+    @property
+    def told(self) -> str:
+        """The same, as the message line says it."""
+        names = " - ".join(dict.fromkeys(name for name in (self.part, self.surface) if name))
+        return f"{names}, level {self.level} of {self.highest}"

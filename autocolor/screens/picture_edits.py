@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from autocolor.scene.defaults import framed
@@ -56,15 +57,27 @@ class PictureEdits:
         Paper: Figure 5, RESCALE.
         """
         scene = self.session.scene
-        coordinates = scene.object_coordinates
         if is_surface and self.session.surface_name:
-            numbers = [
-                part
-                for part in scene.mesh.parts_in_use
-                if scene.parts[part].surface == self.session.surface_name
-            ]
-            coordinates = scene.mesh.coordinates_of_parts(numbers)
-        self.look(framed(scene.view, coordinates))
+            name = self.session.surface_name
+            self._fill([part for part in scene.mesh.parts_in_use if scene.parts[part].surface == name])
+        else:
+            self.look(framed(scene.view, scene.object_coordinates))
+
+    @property
+    def chosen_parts(self) -> list[int]:
+        """The number of the part that was pointed at last, if the scene has it."""
+        scene, name = self.session.scene, self.session.part_name
+        return [part for part in scene.mesh.parts_in_use if scene.parts[part].name == name]
+
+    def rescale_part(self) -> None:
+        """Move the eye so that the part that was pointed at last, if any, fills the picture."""
+        if self.chosen_parts:
+            self._fill(self.chosen_parts)
+
+    def _fill(self, parts: Sequence[int]) -> None:
+        """Move the eye so that some parts, by their numbers, fill the picture."""
+        scene = self.session.scene
+        self.look(framed(scene.view, scene.mesh.coordinates_of_parts(parts)))
 
     def tilt(self, degrees: float) -> None:
         """Rotate the horizontal axis of the picture plane (Paper: Figure 5, ANGLE)."""

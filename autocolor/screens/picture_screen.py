@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
+from autocolor.screens.light_handles import LightHandles
 from autocolor.screens.orbit import SIDES
 from autocolor.screens.over_picture import OverPicture
-from autocolor.screens.session import PICTURE
+from autocolor.screens.screen import Handle
+from autocolor.screens.session import PICTURE, Session
+from autocolor.widgets.areas import SCREEN
 from autocolor.widgets.pairs import Pair
-from autocolor.widgets.widget import Choice, Gap, Steps, Switch, Widget
+from autocolor.widgets.widget import Button, Choice, Gap, Steps, Switch, Widget
 
 TURN: Final = 5.0
 """Degrees for each step of a menu row that turns."""
@@ -27,6 +30,16 @@ class PictureScreen(OverPicture):
     title = "picture"
     help = "drag: turn; click: choose a surface; Tab or the right edge: the menu"
     has_menu = False
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self._handles = LightHandles(session, SCREEN, has_rims=False)
+
+    def handles(self) -> Sequence[Handle]:
+        return self._handles.handles()
+
+    def place(self, handle: Handle, element: int, line: int) -> None:
+        self._handles.place(handle, element, line)
 
     def rows(self) -> Sequence[Widget]:
         session, edits = self.session, self.edits
@@ -60,6 +73,12 @@ class PictureScreen(OverPicture):
                 other="surface",
                 run_other=lambda: edits.rescale(True),
             ),
+            Button(
+                "rescale part",
+                f"Fill the picture with {session.part_name}, the part that was clicked.",
+                "" if edits.chosen_parts else "click at a part in the picture first",
+                run=edits.rescale_part,
+            ),
         ]
 
     def _light_rows(self) -> list[Widget]:
@@ -71,6 +90,7 @@ class PictureScreen(OverPicture):
                 is_on=light.on,
                 flip=partial(self.edits.switch_light, number),
                 choose=partial(self._choose_light, light.name),
+                is_chosen=light.name == session.light_name,
             )
             for number, light in enumerate(session.scene.lights)
         ]

@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
+from autocolor.errors import InputError
 from autocolor.files.file_stem import file_stem, free_path
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.recent import note_file
@@ -19,6 +20,7 @@ from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
+from autocolor.screens.comparing import NOW, Comparing
 from autocolor.studio import Studio
 from autocolor.widgets.column_rows import World
 from ramtek_emu import HostPort, instructions
@@ -45,6 +47,8 @@ class Session:
         self.studio = studio
         self.display = display
         self.folder = folder
+        self.comparing = Comparing(studio)
+        """Another state that is shown in place of the present one."""
         self.screen = PICTURE
         """The name of the screen that is shown; setting it turns to another one."""
         self.leaves = False
@@ -81,6 +85,8 @@ class Session:
 
     def turn_to(self, screen: str) -> None:
         """Turn to a screen by its name."""
+        if screen != self.screen:
+            self.comparing.end()
         self.screen = screen
 
     def word_at(self, element: int, line: int) -> int:
@@ -103,8 +109,9 @@ class Session:
 
     @property
     def has_news(self) -> bool:
-        """Whether there is a message whose time has not passed."""
-        return bool(self.news.text) and time.monotonic() - self.news.told_at < MESSAGE_SECONDS
+        """Whether there is a message whose time has not passed; while states are compared, it does not."""
+        is_recent = time.monotonic() - self.news.told_at < MESSAGE_SECONDS
+        return bool(self.news.text) and (is_recent or self.comparing.is_on)
 
     def tell(self, message: str, is_warning: bool = False) -> None:
         """Show a message; an empty one takes the last one away."""
@@ -112,8 +119,11 @@ class Session:
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first one and how many others there are."""
-        first, *others = str(message).splitlines() or [""]
-        self.tell(f"{first} (and {len(others)} more)" if others else first, is_warning=True)
+        more = ""
+        if isinstance(message, InputError) and len(message.problems) > 1:
+            first, *others = message.problems
+            message, more = first, f" (and {len(others)} more)"
+        self.tell(str(message).replace("\n", "; ") + more, is_warning=True)
 
     # What is chosen.
 
@@ -148,6 +158,22 @@ class Session:
     def choose_light(self, name: str) -> None:
         """Choose a light by its name."""
         self._light = name
+
+    # Comparing.
+
+    def compare(self) -> None:
+        """Show the state to compare with, over the picture, until the present one is edited."""
+        if not self.comparing.is_on:
+            self.tell(f"shown: {self.comparing.begin()}")
+
+    def end_comparing(self) -> None:
+        """Show the present state again."""
+        if self.comparing.end():
+            self.tell(f"shown: {NOW}")
+
+    def switch_comparing(self) -> None:
+        """Show the state to compare with, or the present one again."""
+        (self.end_comparing if self.comparing.is_on else self.compare)()
 
     # Edits.
 

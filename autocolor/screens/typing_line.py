@@ -50,14 +50,18 @@ class TypingLine:
         """Type no more, and take nothing."""
         self._typed = None
 
+    def take(self) -> None:
+        """Take the text if it was changed. One that is refused, with an error, stays to be mended."""
+        if self._typed is not None and self._text != self._typed.text:
+            self._typed.take(self._text)
+        self.end()
+
     def key(self, name: str, typed: str) -> None:
         """Take a key. Raises the errors of what takes the text."""
         if name == "escape":
             self.end()
         elif name in ("return", "enter", "tab"):
-            taking, self._typed = self._typed, None
-            if taking is not None and self._text != taking.text:
-                taking.take(self._text)
+            self.take()
         elif name == "backspace":
             self._text, self._is_fresh = ("" if self._is_fresh else self._text[:-1]), False
         elif typed and typed.isprintable():

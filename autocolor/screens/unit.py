@@ -19,10 +19,11 @@ MARK: Final = 1
 POLL_SECONDS: Final = 1 / 100
 """Assumed: the time between two reads of the cursor; a read takes 0.1 ms over TCP."""
 
+ELEMENT_BITS: Final = 0x7FF
 LINE_BITS: Final = 0x3FF
 TRACK: Final = 1 << 12
 ENTER: Final = 1 << 13
-"""Hardware: LIN, the bits of the second word."""
+"""Hardware: LIN, the bits of an element, and those of the second word."""
 
 
 class Unit:
@@ -46,9 +47,10 @@ class Unit:
         self._mark = None
 
     def mark(self, place: tuple[int, int] | None) -> None:
-        """Put the mark at an element and a line, or hide it."""
+        """Put the mark at an element and a line, at most at an edge; or hide it."""
         if place != self._mark:
             element, line = place or (0, 0)
+            element, line = min(max(element, 0), ELEMENT_BITS), min(max(line, 0), LINE_BITS)
             self._display.send(instructions.write_cursor(MARK, element, line, visible=place is not None))
             self._mark = place
 

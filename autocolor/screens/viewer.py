@@ -6,33 +6,26 @@ without. While something moves, the picture may be coarse; `on_tick` refines it 
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final
 
 from autocolor.errors import AutocolorError
 from autocolor.journal.history import History
 from autocolor.scene.columns.column import Tier
-from autocolor.scene.scene import Scene, cost_of_edit
+from autocolor.scene.scene import Scene
 from autocolor.screens.all_screens import SCREENS
-from autocolor.screens.bindings import BINDINGS
 from autocolor.screens.board import Board
+from autocolor.screens.doing import Doing
 from autocolor.screens.gestures import Gesture, Mouse
+from autocolor.screens.keyboard import Keyboard
 from autocolor.screens.picture_edits import PictureEdits
+from autocolor.screens.pointing import WHEEL, Pointing
 from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.unit import Unit
 from autocolor.screens.watching import ENDING, MESSAGE, Watching
 from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import HostPort, RamtekError
-
-REST_SECONDS: Final = 0.1
-"""Assumed: the time without a change after which a movement rests that has not ended by a release: while a
-key is held down, and after a step of the wheel."""
-
-WHEEL: Final = "wheel"
-"""What makes edits by the wheel, which has steps but no beginning and no end."""
 
 
 class Viewer:
@@ -44,8 +37,7 @@ class Viewer:
         self._sheet = Sheet(display)
         self._unit = Unit(display)
         self._mouse = Mouse()
-        self._drags = 0
-        self._edited_at = 0.0
+        self._has_keyboard = False
         self._open(scene)
 
     def _open(self, scene: Scene | History) -> None:
@@ -53,13 +45,14 @@ class Viewer:
         # From now on the sheet sends what is shown.
         self.studio.sends = False
         self.session = Session(self.studio, self.display, self.folder)
+        self.session.has_keyboard = self._has_keyboard
         self.screens = {each.name: each(self.session) for each in SCREENS}
         self.board = Board(self.session, self.screens)
         self.edits = PictureEdits(self.session)
         self._watching = Watching(self.display)
-        self._edited_by: object = None
-        """The key or the movement of the pointer by which the last edit was made, if any."""
-        self._warned = False
+        self._doing = Doing(self.session)
+        self._pointing = Pointing(self.board, self._do)
+        self._keyboard = Keyboard(self.board, self, self._do)
         self._had_news = True
         self._mouse.forget()
         self._sheet.forget()
@@ -95,48 +88,21 @@ class Viewer:
 
         `typed` is the character that the key produces; `repeated` is whether the key is being held down.
         """
-        self.session.has_keyboard = True
-        # The key that began it may still be down.
-        if not repeated and self._watching.end() and name in ENDING and not control:
+        self._has_keyboard = self.session.has_keyboard = True
+        if self._watching.is_on and name in ENDING and not control:
+            # The key that began it may still be down.
+            if not repeated:
+                self._watching.end()
+                self._update()
             return True
-        taken = (not control and self._typed(name, typed, repeated)) or self._bound(
-            name, control, shift, typed, repeated
-        )
+        taken = self._keyboard.press(name, control, shift, typed, repeated)
         self._update()
         return taken
 
-    def _typed(self, name: str, typed: str, repeated: bool) -> bool:
-        """Let the text that is being typed, the menu or the screen take a key."""
-        board = self.board
-        if board.typing.is_on:
-            self._do(None, lambda: board.typing.key(name, typed))
-            return True
-        source = "key", name
-        return (
-            self._do(source, lambda: board.key(name, typed), repeated, repeated) is not False
-            or self._do(source, lambda: board.screen.key(name, typed), repeated, repeated) is not False
-        )
-
-    def _bound(self, name: str, control: bool, shift: bool, typed: str, repeated: bool) -> bool:
-        """Do what a key is bound to."""
-        chords = [
-            (binding, number, chord)
-            for binding in BINDINGS
-            for number, chord in enumerate(binding.chords)
-            if chord.control == control
-        ]
-        # Match signs by the typed character, as keyboards place them differently; match letters by key name.
-        by_sign = [row for row in chords if row[2].is_sign and row[2].name == typed]
-        by_name = [row for row in chords if row[2].name == name and (row[2].is_sign or row[2].shift == shift)]
-        chosen = (by_sign or by_name)[:1]
-        if not chosen:
-            return False
-        binding, number, _ = chosen[0]
-        if repeated and not (binding.held or binding.repeats):
-            # A switch would flip for as long as its key is down.
-            return True
-        source, continues = (binding, number), repeated and binding.held
-        return self._do(source, lambda: binding.run(self, number), continues, binding.held) is not False
+    def on_release(self, name: str) -> None:
+        """Handle that a key was let go."""
+        if self._keyboard.release(name):
+            self._update()
 
     def on_pointer(
         self,
@@ -149,6 +115,10 @@ class Viewer:
         control: bool = False,
     ) -> None:
         """Handle what the mouse does over an element and a line."""
+        # Where there is a mouse, there is a keyboard.
+        self._has_keyboard = self.session.has_keyboard = True
+        if action == "press" and self._watching.end():
+            self._update()
         for gesture in self._mouse.gestures(element, line, action, button, steps, shift, control):
             self.point(gesture)
 
@@ -159,16 +129,7 @@ class Viewer:
 
     def point(self, gesture: Gesture) -> None:
         """Handle a gesture of the mouse or of the joystick unit."""
-        board, kind = self.board, gesture.kind
-        if kind in ("hover", "drop"):
-            board.take(gesture)
-        else:
-            if kind in ("pick", "grab"):
-                board.typing.end()
-                self._drags += 1
-            continues = kind in ("drag", "wheel")
-            source = WHEEL if kind == "wheel" else ("drag", self._drags)
-            self._do(source, lambda: board.take(gesture), continues, continues)
+        self._pointing.take(gesture)
         self._update()
 
     def on_tick(self, is_at_rest: bool = True) -> None:
@@ -177,9 +138,10 @@ class Viewer:
         A picture that is watched comes in by some lines.
         """
         self._watching.advance()
-        has_ended = is_at_rest and self._edited_by != WHEEL and not self.board.is_dragging
-        rests = has_ended or time.monotonic() - self._edited_at > REST_SECONDS
-        if rests and self.studio.is_coarse:
+        has_ended = is_at_rest and self._doing.kind != WHEEL and not self.board.is_dragging
+        rests = has_ended or self._doing.has_rested
+        if rests and (self.studio.is_coarse or self.session.moving):
+            self.session.moving = False
             self._refine()
             self._update()
         elif (rests and self.board.screen.idle()) or self._had_news != self.session.has_news:
@@ -211,36 +173,12 @@ class Viewer:
 
     def _do(
         self, source: object, run: Callable[[], object], continues: bool = False, moving: bool = False
-    ) -> object:
-        """Do what a key or a gesture asks for, and turn an error into a message; returns what `run` does.
-
-        If it continues what made the last edit, both are one step to undo.
-        """
+    ) -> bool:
+        """Do what a key or a gesture asks for; returns False if that does nothing here."""
         self._watching.end()
-        session = self.session
-        warned, news = self._warned, session.news
-        session.tell("")
-        before = session.scene
-        session.same_step = continues and self._edited_by == source
-        session.moving = moving
-        taken: object = True
-        try:
-            taken = run()
-        except (AutocolorError, RamtekError) as error:
-            session.warn(error)
-        if taken is False:
-            session.news = news
-            return False
-        if session is self.session:
-            costs = cost_of_edit(before, session.scene) if session.scene is not before else None
-            if costs is not None:
-                self._edited_by, self._edited_at = source, time.monotonic()
-                if costs > Tier.ENTRIES and not self.board.screen.shows_scene:
-                    session.turn_to(PICTURE)
-            elif not continues:
-                self._edited_by = None
-        # A warning applies to the next key only.
-        self._warned = self._warned and not warned
+        taken = self._doing.do(source, run, continues, moving)
+        if self._doing.costs > Tier.ENTRIES and not self.board.screen.shows_scene:
+            self.session.turn_to(PICTURE)
         return taken
 
     def on_drop(self, path: Path) -> None:
@@ -250,17 +188,9 @@ class Viewer:
 
     def on_close(self) -> bool:
         """Whether the window may close: nothing is unsaved, or this is the second attempt in a row."""
-        may_close = not self._unsaved("close again to discard the changes")
+        may_close = not self._doing.warns_of_changes("close again to discard the changes")
         self._update()
         return may_close
-
-    def _unsaved(self, otherwise: str) -> bool:
-        """Whether to stop because of unsaved changes. They are announced once; the next attempt succeeds."""
-        if not self.studio.is_changed or self._warned:
-            return False
-        self._warned = True
-        self.session.warn(f"not saved: Ctrl+S saves, {otherwise}")
-        return True
 
     # What keys are bound to.
 
@@ -275,10 +205,18 @@ class Viewer:
     def watch(self) -> None:
         """Blank the picture and let it come in line by line as it is computed; any key shows it at once."""
         self.session.turn_to(PICTURE)
+        self.session.comparing.end()
         self.board.turn()
         self.board.close()
-        self._update()
+        # Nothing stands over a picture that comes in.
+        self._sheet.show(self.board.page()._replace(items=()))
         self._watching.begin(self.studio)
+
+    def compare(self) -> None:
+        """Show the state to compare with, over the picture."""
+        if not self.board.screen.shows_picture:
+            self.session.turn_to(PICTURE)
+        self.session.compare()
 
     def escape(self) -> bool:
         """Take a drag back, close what is open, or return to the picture.
@@ -287,7 +225,7 @@ class Viewer:
         """
         board, session = self.board, self.session
         if board.is_dragging:
-            if self._edited_by == ("drag", self._drags):
+            if self._doing.was_by(self._pointing.source):
                 self.studio.undo()
                 session.tell("taken back")
             self._mouse.forget()
@@ -314,6 +252,9 @@ class Viewer:
         self.session.redo()
 
     def _show_scene(self) -> None:
+        # What is dragged or typed may be gone with the step.
+        self._mouse.forget()
+        self.board.release()
         if not self.board.screen.shows_scene:
             self.session.turn_to(PICTURE)
 

@@ -111,11 +111,13 @@ class Bar(Widget):
         return Area(left + beside, top + 4, right - CHARACTER * WIDE_NUMBER - MARGIN, bottom - 4)
 
     def value_at(self, element: int) -> float:
-        """The value at an element, rounded to the step."""
+        """The value at an element, rounded to the step; at the ends, those of the usual range."""
         track = self._track
         share = (element - track.left) / max(1, track.width - 1)
-        value = self.low + min(1.0, max(0.0, share)) * (self.high - self.low)
-        return rounded_to(value, self.step)
+        if not 0 < share < 1:
+            return self.low if share <= 0 else self.high
+        value = rounded_to(self.low + share * (self.high - self.low), self.step)
+        return min(max(value, self.low), self.high)
 
     def is_switched_at(self, place: Place) -> bool:
         """Whether a pick at a place switches the number on or off."""
@@ -156,9 +158,20 @@ def number_text(value: float, step: float) -> str:
     >>> number_text(0.5, 0.01), number_text(20.0, 1), number_text(1.5, 1), number_text(1234567.0, 1)
     ('0.50', '20', '1.5', '1.23457e+06')
     """
-    digits = max(0, -math.floor(math.log10(step) + 1e-9)) if step > 0 else 3
-    if abs(value) >= 1e6:
+    # Without a sign before zero.
+    value += 0.0
+    if abs(value) >= 1e6 or not math.isfinite(value):
         return f"{value:g}"
     if rounded_to(value, step) != round(value, 9):
         return f"{value:.6g}"
-    return f"{value:.{digits}f}"
+    return f"{value:.{digits_of(step)}f}"
+
+
+def digits_of(step: float) -> int:
+    """The digits behind the point of a step, at most nine.
+
+    >>> digits_of(5.0), digits_of(0.25), digits_of(0.1)
+    (0, 2, 1)
+    """
+    digits = f"{step:.9f}".rstrip("0")
+    return len(digits) - digits.index(".") - 1

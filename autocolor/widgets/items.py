@@ -1,7 +1,8 @@
 """Items: the parts of a page, each with the area that it covers and the instructions that draw it.
 
 An item changes no pixel outside its area. Its instructions set every parameter that they depend on, so that
-items can be drawn in any company; two that are equal draw the same.
+items can be drawn in any company; two that are equal draw the same. What lies beyond every display draws
+nothing.
 """
 
 from __future__ import annotations
@@ -15,13 +16,17 @@ import numpy as np
 from autocolor.arrays import Floats, Numbers, Words
 from autocolor.widgets.areas import SCREEN, Area
 from autocolor.widgets.colors import NIGHT, WHITE
-from autocolor.widgets.strokes import clipped, joined, together
+from autocolor.widgets.strokes import clipped, joined
 from ramtek_emu import instructions
 
 CHARACTER: Final = 7
 """Elements from one character of a text to the next."""
 
 CHARACTER_LINES: Final = 9
+
+
+DRAWABLE: Final = Area(-0x8000, -0x8000, 0x7FFF, 0x7FFF)
+"""Hardware: what the sixteen bits of an element and a line can tell."""
 
 
 class Item(NamedTuple):
@@ -38,7 +43,10 @@ class Item(NamedTuple):
 @lru_cache(maxsize=4096)
 def filled(area: Area, word: int) -> Item:
     """An area filled with one word."""
-    return Item(area, instructions.erase(area, word).tobytes(), is_solid=True)
+    drawn = area.within(DRAWABLE)
+    if drawn.is_empty:
+        return Item(area, b"")
+    return Item(drawn, instructions.erase(drawn, word).tobytes(), is_solid=True)
 
 
 @lru_cache(maxsize=4096)
@@ -46,6 +54,8 @@ def text(line: str, left: int, top: int, word: int = WHITE, background: int = NI
     """A line of text whose upper left corner is at (left, top), on a background."""
     width = CHARACTER * size * max(1, len(line))
     area = Area(left, top, left + width - 1, top + CHARACTER_LINES * size - 1)
+    if not line or not DRAWABLE.covers(area):
+        return Item(area, b"")
     return Item(area, instructions.write_text(line, left, top, word, background, size).tobytes(), True)
 
 
@@ -57,24 +67,42 @@ def outline(area: Area, word: int) -> Item:
 
 
 def lines(polylines: Iterable[Sequence[tuple[float, float]] | Floats], word: int, area: Area) -> Item:
-    """Polylines, each of (n, 2) elements and lines, clipped at an area."""
-    return segments(together([joined(each) for each in polylines]), word, area)
+    """Polylines, each of (n, 2) elements and lines, clipped at an area; what is not finite is left out."""
+    parts = []
+    for each in polylines:
+        pixels = pixels_inside(joined(each), area)
+        # What is still linked after the clipping goes into one instruction.
+        breaks = np.flatnonzero((pixels[1:, :2] != pixels[:-1, 2:]).any(axis=1)) + 1
+        for chain in np.split(pixels, breaks):
+            if len(chain):
+                parts.append(instructions.write_vectors(np.vstack([chain[:1, :2], chain[:, 2:]]), word))
+    return Item(area, np.concatenate(parts).tobytes() if parts else b"")
 
 
 def segments(strokes: Floats, word: int, area: Area) -> Item:
-    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area.
+    """Unlinked lines, (n, 4) element and line of both ends, clipped at an area, by WVU of later models."""
+    pixels = pixels_inside(strokes, area)
+    return Item(area, instructions.write_segments(pixels, word).tobytes() if len(pixels) else b"")
+
+
+def pixels_inside(strokes: Floats, area: Area) -> Numbers:
+    """The pixels at both ends, (kept, 4), of what is inside an area of finite strokes, (n, 4).
 
     Hardware: the 9300 clips lines at its memory alone; the write window is of later models.
     """
-    inside = clipped(strokes, area)
-    stream = instructions.write_segments(rounded(inside), word) if len(inside) else np.empty(0, np.uint16)
-    return Item(area, stream.tobytes())
+    area = area.within(DRAWABLE)
+    if area.is_empty:
+        return np.empty((0, 4), np.int64)
+    strokes = strokes[np.isfinite(strokes).all(axis=1)]
+    return rounded(clipped(strokes, area))
 
 
 def image(words: Words, left: int, top: int) -> Item:
     """An array of words, (lines, elements), with its upper left corner at (left, top)."""
     down, across = words.shape
     area = Area(left, top, left + across - 1, top + down - 1)
+    if area.is_empty or not DRAWABLE.covers(area):
+        return Item(area, b"")
     return Item(area, instructions.write_image(words, left, top).tobytes(), is_solid=True)
 
 
@@ -89,7 +117,7 @@ def area_of(points: Floats, margin: int = 0, limit: Area = SCREEN) -> Area:
 
 def rounded(places: Floats) -> Numbers:
     """Places as whole elements and lines, half up, within what a vertex can be."""
-    return np.clip(np.floor(places + 0.5), -0x8000, 0x7FFF).astype(np.int64)
+    return np.clip(np.floor(places + 0.5), DRAWABLE.left, DRAWABLE.right).astype(np.int64)
 
 
 def fitted(line: str, most: int) -> str:

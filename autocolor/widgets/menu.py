@@ -38,11 +38,11 @@ def laid_out(rows: Sequence[Widget], area: Area = MENU) -> list[Widget]:
     return found
 
 
-def menu_items(rows: Sequence[Widget], lit: str, area: Area = MENU) -> list[Item]:
-    """How a menu looks: its ground, and its rows, of which the one with the key `lit` is lit."""
+def menu_items(rows: Sequence[Widget], lit: Widget | None, area: Area = MENU) -> list[Item]:
+    """How a menu looks: its ground, and its rows, of which `lit` is lit."""
     found = [filled(area, NIGHT), filled(area._replace(right=area.left), SLATE)]
     for row in rows:
-        found += row.items(row.key == lit and not row.why_not)
+        found += row.items(row is lit and not row.why_not)
     return found
 
 

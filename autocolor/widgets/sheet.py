@@ -14,8 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from autocolor.arrays import Bytes, Words
-from autocolor.sending import encoder_of_entries
-from autocolor.widgets.areas import SCREEN, Area
+from autocolor.mapping.level_ranges import BACKGROUND
+from autocolor.sending import configuration_of, encoder_of_entries
+from autocolor.widgets.areas import Area
 from autocolor.widgets.items import Item
 from ramtek_emu import HostPort, instructions
 
@@ -33,21 +34,21 @@ class Page(NamedTuple):
 
 
 class Sheet:
-    """Shows pages on a display, which nothing else may draw on meanwhile."""
+    """Shows pages on a display, which nothing else may draw on meanwhile.
+
+    The base fills all that the display shows, which may be more than the screens are laid out for.
+    """
 
     def __init__(self, display: HostPort) -> None:
         self._display = display
         self._encode_entries = encoder_of_entries(display)
+        sizes = configuration_of(display)
+        self._whole = Area(0, 0, sizes.shown_elements - 1, sizes.shown_lines - 1)
         self._page: Page | None = None
 
     def forget(self) -> None:
         """Take nothing for granted: the next page is drawn whole."""
         self._page = None
-
-    def forget_base(self) -> None:
-        """Draw the base of the next page whole, because something else was drawn over it."""
-        if self._page is not None:
-            self._page = self._page._replace(base=-1)
 
     def show(self, page: Page) -> None:
         """Show a page. Raises ReplyError or PortError if the display cannot be reached."""
@@ -69,12 +70,12 @@ class Sheet:
                 first, last = int(differing[0]), int(differing[-1])
                 yield self._encode_entries(first, page.entries[first : last + 1])
         if before is None or not _is_same(page.base, before.base):
-            yield from _restored(page.base, _uncovered(page.items))
+            yield from _restored(page.base, uncovered(self._whole, page.items))
             redrawn = list(page.items)
         else:
             restored, redrawn = changed_items(before.items, page.items)
             for area in restored:
-                yield from _restored(page.base, area)
+                yield from _restored(page.base, area.within(self._whole))
         for item in redrawn:
             yield np.frombuffer(item.stream, np.uint16)
 
@@ -108,22 +109,24 @@ def _is_same(base: Words | int, other: Words | int) -> bool:
 
 def _restored(base: Words | int, area: Area) -> Iterator[Words]:
     """The instruction that draws an area of the base."""
-    area = area.within(SCREEN)
     if area.is_empty:
         return
     if isinstance(base, int):
         yield instructions.erase(area, base)
         return
     lines, elements = base.shape
-    area = area.within(Area(0, 0, elements - 1, lines - 1))
+    whole = Area(0, 0, elements - 1, lines - 1)
+    if not whole.covers(area):
+        # Beside a picture that is smaller than the screen is background.
+        yield instructions.erase(area, BACKGROUND)
+        area = area.within(whole)
     if not area.is_empty:
         part = base[area.top : area.bottom + 1, area.left : area.right + 1]
         yield instructions.write_image(part, area.left, area.top)
 
 
-def _uncovered(items: Sequence[Item]) -> Area:
-    """The screen without solid items along its whole right or lower edge."""
-    area = SCREEN
+def uncovered(area: Area, items: Sequence[Item]) -> Area:
+    """An area without what solid items cover along its whole right or lower edge."""
     for _ in range(2):
         for item in items:
             edge = item.area

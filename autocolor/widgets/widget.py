@@ -173,6 +173,9 @@ class Switch(Widget):
             return self.choose()
         return self.flip()
 
+    def nudge(self, steps: float) -> object:
+        return self.flip() if self.is_on != (steps > 0) else None
+
 
 def box_items(area: Area, is_on: bool, word: int, background: int) -> list[Item]:
     """A box, full or empty."""
@@ -220,8 +223,10 @@ class Choice(Widget):
         if not self.names:
             return None
         names = list(self.names)
-        start = names.index(self.present) if self.present in names else -1
-        return self.choose(names[(start + (1 if steps > 0 else -1)) % len(names)])
+        step = 1 if steps > 0 else -1
+        if self.present not in names:
+            return self.choose(names[min(step, 0)])
+        return self.choose(names[(names.index(self.present) + step) % len(names)])
 
 
 @dataclass(frozen=True)

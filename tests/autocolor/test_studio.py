@@ -790,3 +790,33 @@ def test_while_the_picture_is_coarse_the_block_of_a_pixel_counts() -> None:
     assert (found[0] % 4, found[1] % 4) == (2, 2)
     studio.refine()
     assert studio.sight.block == 1
+
+
+@settings(max_examples=30)
+@given(st.lists(any_edits, min_size=1, max_size=3))
+def test_what_another_scene_looks_like_is_told_and_not_shown(edits: list[Edit]) -> None:
+    studio, display = opened()
+    first = studio.scene
+    for edit in edits:
+        apply(studio, edit)
+    scene, memories = studio.scene, held(display)
+    image = studio.image_of(first)
+    assert (image.words.tobytes(), image.entries.tobytes()) == fresh(first)
+    assert (studio.scene, held(display)) == (scene, memories)
+
+
+@pytest.mark.usefixtures("slow")
+def test_another_scene_is_told_at_its_full_size_while_a_picture_is_coarse() -> None:
+    studio, _ = opened()
+    first = studio.scene
+    turn(studio, 20)
+    assert studio.is_coarse
+    image = studio.image_of(first)
+    assert (image.words.tobytes(), image.entries.tobytes()) == fresh(first)
+
+
+def test_the_image_of_a_scene_in_other_colors_has_the_same_words() -> None:
+    studio, _ = opened()
+    image = studio.image_of(studio.scene.with_paint("body", object_color="#204060"))
+    assert image.words is studio.words
+    assert (image.entries != studio.entries).any()

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, Final, NamedTuple
 
-from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.screens.light_and_view.light_marks import arrow_end, flap_marks
-from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, Side
+from autocolor.screens.light_and_view.orthographic_views import AXES, SIDES, OrthographicViews
 from autocolor.screens.orbit import target_of
 from autocolor.screens.screen import Handle
-
-AXES: Final = "xyz"
 
 EYE: Final = "eye"
 TARGET: Final = "target"
@@ -24,15 +22,15 @@ DIRECTION: Final = "direction"
 FLAP: Final = "flap"
 """What a grip moves."""
 
-ALONG_FLAP: Final = (0.2, 0.5, 0.8)
-"""Assumed: where the line of a flap can be taken hold of, as fractions of its length."""
+BETWEEN: Final = 14
+"""Assumed: elements or lines from one place where the line of a flap can be taken hold of to the next."""
 
 
 class Grip(NamedTuple):
-    """What is moved, in the view of a side: the eye, its target, or something of a light."""
+    """What is moved, in a view by its name: the eye, its target, or something of a light."""
 
     what: str
-    side: str
+    side: str = ""
     light: str = ""
     axis: str = ""
     end: str = ""
@@ -51,7 +49,7 @@ class Grip(NamedTuple):
         if self.what == EYE:
             return scene.view.eye
         if self.what == TARGET:
-            return vector(target_of(scene))
+            return target_in(scene)
         light = next((each for each in scene.lights if each.name == self.light), None)
         if light is None or self.what == LIGHT:
             return None if light is None else light.position
@@ -83,36 +81,38 @@ class Grip(NamedTuple):
 
 def handles_in(scene: Scene, views: OrthographicViews, chosen: str) -> list[Handle]:
     """Everything that can be taken hold of; the chosen light comes last, and goes before the others."""
-    found: list[Handle] = []
-    for side in SIDES:
-        _add(found, Grip(TARGET, side.name), side, scene, views)
-        _add(found, Grip(EYE, side.name), side, scene, views)
+    found = [*_handles(Grip(TARGET), scene, views), *_handles(Grip(EYE), scene, views)]
     for light in sorted(scene.lights, key=lambda each: each.name == chosen):
-        for side in SIDES:
-            if light.name == chosen:
-                _add_flaps(found, light, side, views)
-            if light.axis is not None:
-                what = AIM if light.aim is not None else DIRECTION
-                _add(found, Grip(what, side.name, light.name), side, scene, views)
-            _add(found, Grip(LIGHT, side.name, light.name), side, scene, views)
+        if light.name == chosen:
+            found += _handles_of_flaps(light, views)
+        if light.axis is not None:
+            what = AIM if light.aim is not None else DIRECTION
+            found += _handles(Grip(what, light=light.name), scene, views)
+        found += _handles(Grip(LIGHT, light=light.name), scene, views)
     return found
 
 
-def _add(found: list[Handle], grip: Grip, side: Side, scene: Scene, views: OrthographicViews) -> None:
+def _handles(grip: Grip, scene: Scene, views: OrthographicViews) -> Iterator[Handle]:
+    """The handles of something in the views that show it."""
     point = grip.point_in(scene, views)
-    if point is not None:
+    assert point is not None
+    label = f"{grip.label}: {told(point)}"
+    for side in SIDES:
         element, line = (round(each) for each in views.position(side, point))
         if side.area.has(element, line):
-            found.append(Handle(grip, element, line, f"{grip.label}: {told(point)}"))
+            yield Handle(grip._replace(side=side.name), element, line, label)
 
 
-def _add_flaps(found: list[Handle], light: Light, side: Side, views: OrthographicViews) -> None:
-    for mark in flap_marks(views, side, light):
-        left, top, right, bottom = mark.stroke[0]
-        grip = Grip(FLAP, side.name, light.name, AXES[mark.axis], mark.end)
-        for share in ALONG_FLAP:
-            element, line = left + share * (right - left), top + share * (bottom - top)
-            found.append(Handle(grip, round(element), round(line), grip.label))
+def _handles_of_flaps(light: Light, views: OrthographicViews) -> Iterator[Handle]:
+    """The handles along the lines of a light's flaps."""
+    for side in SIDES:
+        for mark in flap_marks(views, side, light):
+            grip = Grip(FLAP, side.name, light.name, AXES[mark.axis], mark.end)
+            left, top, right, bottom = (round(each) for each in mark.stroke[0])
+            for along in range(BETWEEN // 2, max(right - left, bottom - top), BETWEEN):
+                is_level = mark.axis == side.up
+                place = (left + along, top) if is_level else (left, top + along)
+                yield Handle(grip, *place, grip.label)
 
 
 def told(point: Vector) -> str:
@@ -124,9 +124,10 @@ def told(point: Vector) -> str:
     return "  ".join(f"{axis} {value:.6g}" for axis, value in zip(AXES, point, strict=True))
 
 
-def vector(values: Floats) -> Vector:
-    """Three coordinates as plain numbers."""
-    return float(values[0]), float(values[1]), float(values[2])
+def target_in(scene: Scene) -> Vector:
+    """The target of the view; without one, the point at which it is as deep as the object."""
+    x, y, z = target_of(scene).tolist()
+    return x, y, z
 
 
 def _step(start: Vector, end: Vector) -> Vector:

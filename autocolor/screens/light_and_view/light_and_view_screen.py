@@ -6,50 +6,44 @@ views fix all three coordinates, and no number is typed. It can be dragged as we
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
-import numpy as np
-
-from autocolor.arrays import Words
 from autocolor.checks import Vector
-from autocolor.scene.lights import Light
+from autocolor.errors import UsageError
 from autocolor.screens.gestures import Gesture, turn_between, wheel_ratio
-from autocolor.screens.light_and_view.areas import PICTURE_AREA, area_of_picture
-from autocolor.screens.light_and_view.grips import AXES, FLAP, Grip, handles_in, told, vector
-from autocolor.screens.light_and_view.light_marks import flap_marks
-from autocolor.screens.light_and_view.marks import eye_items, light_items, lines_across
+from autocolor.screens.light_and_view.areas import PICTURE_AREA
+from autocolor.screens.light_and_view.display_view import MESH, PICTURE, DisplayView
+from autocolor.screens.light_and_view.flap_switches import flap_switches
+from autocolor.screens.light_and_view.grips import FLAP, Grip, handles_in, target_in, told
+from autocolor.screens.light_and_view.kept import Kept
+from autocolor.screens.light_and_view.light_rows import light_rows
+from autocolor.screens.light_and_view.marks import SideItems
 from autocolor.screens.light_and_view.object_lines import ObjectLines
 from autocolor.screens.light_and_view.orthographic_views import (
+    AXES,
     SIDES,
     OrthographicViews,
     Side,
     fitted_views,
 )
 from autocolor.screens.light_and_view.shown_points import shown_points
-from autocolor.screens.orbit import target_of
+from autocolor.screens.light_parameters import put_light
 from autocolor.screens.picture_edits import PictureEdits
 from autocolor.screens.screen import Handle, Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import GRAY, NIGHT, SLATE, WHITE, YELLOW
-from autocolor.widgets.column_rows import rows_of
-from autocolor.widgets.items import Item, filled, image, text
+from autocolor.widgets.colors import SLATE
+from autocolor.widgets.items import Item, filled
 from autocolor.widgets.pairs import Pair
-from autocolor.widgets.widget import Button, Gap, Place, Steps, Switch, Widget, box_items
+from autocolor.widgets.widget import Button, Choice, Gap, Steps, Widget
 
 CLOSER: Final = 1.25
 """Assumed: the ratio of scales for each step of RESCALE."""
 
 ANGLE: Final = 5.0
 """Degrees for each step of ANGLE."""
-
-LIGHT_ROWS: Final = ("concentration", "cone_angle", "flaps")
-"""The columns of the chosen light that stand in the menu; others are pointed at, or on the lights screen."""
-
-BOX: Final = 7
-"""Elements and lines of the switch of a flap."""
 
 LINES_BETWEEN: Final = (Area(251, 0, 252, 463), Area(0, 227, 503, 228))
 """The lines between the quarters."""
@@ -66,10 +60,14 @@ class LightAndViewScreen(Screen):
         super().__init__(session)
         self.edits = PictureEdits(session)
         self._lines = ObjectLines()
+        self._sides = {side: SideItems(side) for side in SIDES}
+        self._display = DisplayView(session, self._lines)
+        self._handles: Kept[list[Handle]] = Kept()
         self._views: OrthographicViews | None = None
-        self._shows_mesh = False
         self._moved: Vector | None = None
-        """The point that is being placed, of which lines run across the views."""
+        """The point that is being placed. It keeps the coordinate that its view does not show."""
+        self._has_lines = False
+        """Whether lines run from it across the views."""
 
     @property
     def views(self) -> OrthographicViews:
@@ -82,59 +80,37 @@ class LightAndViewScreen(Screen):
         self._views = None
 
     def leave(self) -> None:
-        self._moved = None
+        self.release()
 
     # What is seen.
 
     def items(self) -> Sequence[Item]:
         scene, views, chosen = self.session.scene, self.views, self.session.light_name
-        target = vector(target_of(scene))
-        found = [*(filled(area, SLATE) for area in LINES_BETWEEN), *self._fourth_quarter()]
-        for side in SIDES:
-            if self._moved is not None:
-                found += lines_across(views, side, self._moved)
-            found += self._lines.of_side(scene, views, side)
-            found += eye_items(views, side, scene.view, target)
-            for number, light in enumerate(scene.lights, start=1):
-                found += light_items(views, side, light, number, light.name == chosen)
-            label = f"{side.name}   {AXES[side.right]} >  {AXES[side.up]} ^"
-            found.append(text(label, side.area.left + 8, side.area.top + 4, GRAY))
+        target, moved = target_in(scene), self._moved if self._has_lines else None
+        found = [*(filled(area, SLATE) for area in LINES_BETWEEN), *self._display.items()]
+        for side, side_items in self._sides.items():
+            strokes = self._lines.of_side(scene, views, side)
+            found += side_items.items(views, scene, target, strokes, chosen, moved)
         return found
 
-    def _fourth_quarter(self) -> list[Item]:
-        area = area_of_picture(PICTURE_AREA)
-        if self._shows_mesh:
-            return [filled(area, NIGHT), *self._lines.of_eye(self.session.scene, area)]
-        return [image(smaller(self.session.studio.words, area), area.left, area.top)]
+    def idle(self) -> bool:
+        return self._lines.leave_out_hidden(self.session.scene) or self._display.leave_out_hidden()
 
     # What can be pointed at.
 
     def widgets(self) -> Sequence[Widget]:
         light = self.session.chosen_light
-        return [] if light is None else list(self._flap_switches(light))
-
-    def _flap_switches(self, light: Light) -> Iterator[Widget]:
-        """A small switch at the end of each line of a flap."""
-        for side in SIDES:
-            for mark in flap_marks(self.views, side, light):
-                axis, on = AXES[mark.axis], mark.on
-                right, bottom = (int(each) for each in mark.stroke[0, 2:])
-                left, top = (right - BOX, bottom - BOX) if mark.axis == side.up else (right + 2, bottom - BOX)
-                flaps = {axis: {"on": not on}}
-                yield FlapSwitch(
-                    f"{light.name}: flap {axis}, {mark.end}, {side.name}",
-                    f"Switch flap {axis} of {light.name} {'off' if on else 'on'}.",
-                    area=Area(left, top, left + BOX - 1, top + BOX - 1).within(side.area),
-                    is_on=on,
-                    flip=partial(self._put_light, light.name, {"flaps": flaps}),
-                )
+        if light is None:
+            return []
+        return list(flap_switches(self.views, light, partial(put_light, self.session, light.name)))
 
     def handles(self) -> Sequence[Handle]:
-        return handles_in(self.session.scene, self.views, self.session.light_name)
+        scene, views, chosen = self.session.scene, self.views, self.session.light_name
+        return self._handles.of(lambda: handles_in(scene, views, chosen), scene, views, chosen)
 
     def hint(self, element: int, line: int) -> str:
         if PICTURE_AREA.has(element, line):
-            return "The view: drag to turn around the object, the wheel moves closer"
+            return "The view: drag to turn around the object, the wheel moves closer; click: picture or mesh"
         side = side_at(element, line)
         if side is None:
             return self.help
@@ -148,34 +124,38 @@ class LightAndViewScreen(Screen):
         grip = grip_of(handle)
         if grip.light:
             self.session.choose_light(grip.light)
-        self._moved = None if grip.what == FLAP else grip.point_in(self.session.scene, self.views)
+        self._moved = grip.point_in(self.session.scene, self.views)
+        self._has_lines = grip.what != FLAP
 
     def release(self) -> None:
         self._moved = None
 
     def place(self, handle: Handle, element: int, line: int) -> None:
-        grip, session = grip_of(handle), self.session
+        grip, session, views = grip_of(handle), self.session, self.views
         side = next(each for each in SIDES if each.name == grip.side)
         area = side.area
-        if not area.has(element, line):
-            if not session.moving:
-                session.warn(f"{grip.label}: its new place must be in the {side.name} view")
-                return
+        if session.moving:
             element = min(max(element, area.left), area.right)
             line = min(max(line, area.top), area.bottom)
-        point = grip.point_in(session.scene, self.views)
+        elif not area.has(element, line):
+            raise UsageError(f"{grip.label}: its new place must be in the {side.name} view; pick it there")
+        point = self._moved or grip.point_in(session.scene, views)
         if point is None:
             return
-        point = self.views.placed(side, point, element, line)
+        point = views.placed(side, point, element, line)
         session.edit(grip.put(session.scene, point))
+        self._moved = point
         if grip.what == FLAP:
-            session.tell(f"{grip.label} {point[AXES.index(grip.axis)]:g}")
+            now = grip.point_in(session.scene, views) or point
+            session.tell(f"{grip.label} {now[AXES.index(grip.axis)]:g}")
         else:
-            self._moved = point
             session.tell(f"{grip.label}: {told(point)}")
 
     def pick(self, gesture: Gesture) -> None:
-        self.session.tell(self.help)
+        if PICTURE_AREA.has(gesture.element, gesture.line):
+            self._display.show(PICTURE if self._display.shown == MESH else MESH)
+        else:
+            self.session.tell(self.help)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
         if PICTURE_AREA.has(start.element, start.line):
@@ -194,10 +174,43 @@ class LightAndViewScreen(Screen):
         else:
             self.zoom(gesture.steps / 2)
 
+    # The menu.
+
+    def rows(self) -> Sequence[Widget]:
+        session = self.session
+        return [
+            *light_rows(session, self.edits),
+            Gap("view gap"),
+            Steps("rescale", "RESCALE: move the three views farther or nearer.", step=self.zoom),
+            Pair(
+                "fit all",
+                "RESCALE: show everything, or the object, with space left on all sides.",
+                run=self.fit,
+                other="object",
+                run_other=self.fit_object,
+            ),
+            Button("fit surface", f"Show the chosen surface: {session.surface_name}.", run=self.fit_surface),
+            Gap("display gap"),
+            Choice(
+                "display",
+                "DISPLAY VIEW: the picture, or the mesh, as the eye sees it.",
+                names=(PICTURE, MESH),
+                present=self._display.shown,
+                choose=self._display.show,
+            ),
+            Steps("angle", "ANGLE: turn the picture.", step=self._tilt, signs=("<", ">")),
+            Button("frame", "Move the eye so that the object fills the picture.", run=self.edits.rescale),
+        ]
+
     def fit(self) -> None:
         """Show everything, with space left on all sides."""
         self._views = fitted_views(shown_points(self.session.scene))
         self.session.tell("the views show everything")
+
+    def fit_object(self) -> None:
+        """Show the object."""
+        self._views = fitted_views(self.session.scene.object_coordinates)
+        self.session.tell("the views show the object")
 
     def fit_surface(self) -> None:
         """Show the chosen surface."""
@@ -211,80 +224,9 @@ class LightAndViewScreen(Screen):
         """Move nearer, or farther."""
         self._views = self.views.zoomed(CLOSER**steps)
 
-    def idle(self) -> bool:
-        return self._lines.leave_out_hidden(self.session.scene)
-
-    # The menu.
-
-    def rows(self) -> Sequence[Widget]:
-        session, light = self.session, self.session.chosen_light
-        found: list[Widget] = [
-            Switch(
-                f"{number} {each.name}",
-                f"Switch light {each.name} on or off; beside the box: choose it.",
-                is_on=each.on,
-                flip=partial(self.edits.switch_light, number - 1),
-                choose=partial(session.choose_light, each.name),
-                is_chosen=each is light,
-            )
-            for number, each in enumerate(session.scene.lights, start=1)
-        ]
-        if light is not None:
-            others = [name for name in vars(light) if name not in LIGHT_ROWS]
-            put = partial(self._put_light, light.name)
-            found += [Gap("light gap"), *rows_of(light, put, session.world, leave_out=others)]
-        return [
-            *found,
-            Gap("view gap"),
-            Pair(
-                "picture",
-                "DISPLAY VIEW: the picture, or the mesh, as the eye sees it.",
-                run=partial(self._show_mesh, False),
-                other="mesh",
-                run_other=partial(self._show_mesh, True),
-            ),
-            Steps("rescale", "RESCALE: move the three views farther or nearer.", step=self.zoom),
-            Pair(
-                "fit all",
-                "Show everything in the views, or the chosen surface.",
-                run=self.fit,
-                other="surface",
-                run_other=self.fit_surface,
-            ),
-            Steps(
-                "angle",
-                "ANGLE: turn the horizontal axis of the picture.",
-                step=lambda steps: self.edits.tilt(steps * ANGLE),
-                signs=("<", ">"),
-            ),
-            Button("frame", "Move the eye so that the object fills the picture.", run=self.edits.rescale),
-        ]
-
-    def _show_mesh(self, shows_mesh: bool) -> None:
-        self._shows_mesh = shows_mesh
-
-    def _put_light(self, light: str, changes: Mapping[str, Any]) -> None:
-        self.session.change_light(light, **changes)
-
-
-class FlapSwitch(Switch):
-    """The small box of a flap's switch."""
-
-    def items(self, lit: bool) -> list[Item]:
-        if self.area.is_empty:
-            return []
-        return box_items(self.area, self.is_on, WHITE if lit else YELLOW, NIGHT)
-
-    def pick(self, place: Place) -> object:
-        return self.flip()
-
-
-def smaller(words: Words, area: Area) -> Words:
-    """The words of a picture at the size of an area: each pixel is one of the picture's."""
-    lines = np.arange(area.height) * len(words) // area.height
-    elements = np.arange(area.width) * words.shape[1] // area.width
-    found: Words = words[np.ix_(lines, elements)]
-    return found
+    def _tilt(self, steps: float) -> None:
+        self.edits.tilt(steps * ANGLE)
+        self.session.tell(f"angle {self.session.scene.view.angle:g} degrees")
 
 
 def side_at(element: int, line: int) -> Side | None:

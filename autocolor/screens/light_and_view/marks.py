@@ -1,66 +1,167 @@
-"""The items of the marks in the three views: the eye, the lights with their numbers, the chosen one's flaps.
+"""The items of one of the three views: the object, the eye, and the lights with their numbers.
 
-What did not move is not made anew: items are kept by the values that they show.
+Lines of one color are drawn together, and those that did not change are kept: what takes time is the number
+of instructions. The chosen light lies over all others, the numbers over all lines.
 """
 
 from __future__ import annotations
 
-from functools import lru_cache
+import math
+from collections.abc import Mapping, Sequence
 
+from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
+from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
-from autocolor.screens.light_and_view.eye_marks import eye_marks
-from autocolor.screens.light_and_view.light_marks import flap_marks, light_marks
-from autocolor.screens.light_and_view.orthographic_views import OrthographicViews, Side
+from autocolor.screens.light_and_view.arrows import SHORTEST
+from autocolor.screens.light_and_view.eye_marks import LIDS, eye_marks
+from autocolor.screens.light_and_view.kept import Kept
+from autocolor.screens.light_and_view.light_marks import arrow_end, flap_marks, light_marks
+from autocolor.screens.light_and_view.numerals import Cross, numerals
+from autocolor.screens.light_and_view.object_lines import ObjectStrokes
+from autocolor.screens.light_and_view.orthographic_views import AXES, OrthographicViews, Side
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLUE, GRAY, LIGHT_GRAY, SLATE, WHITE, YELLOW
-from autocolor.widgets.items import CHARACTER, CHARACTER_LINES, Item, filled, segments, text
+from autocolor.widgets.items import Item, rounded, segments, text
+from autocolor.widgets.strokes import joined, together
+from ramtek_emu import instructions
+
+Numbered = tuple[int, Light]
+"""A light, after its number in the table, from 1 on."""
 
 
-@lru_cache(maxsize=64)
-def eye_items(views: OrthographicViews, side: Side, view: View, target: Vector) -> tuple[Item, ...]:
-    """The eye, the view direction, and the edges of the picture."""
-    marks = eye_marks(views, side, view, target)
-    return (
-        segments(marks.picture, SLATE, side.area),
-        segments(marks.direction, BLUE, side.area),
-        segments(marks.eye, BLUE, side.area),
-    )
+class SideItems:
+    """The items of one of the views, which are made anew as far as something changed."""
+
+    def __init__(self, side: Side) -> None:
+        self._side = side
+        self._still: Kept[list[Item]] = Kept()
+        self._chosen: Kept[list[Item]] = Kept()
+        self._numerals: Kept[list[Item]] = Kept()
+        title = f"{side.name}   {AXES[side.right]} >  {AXES[side.up]} ^"
+        self._label = text(title, side.area.left + 8, side.area.top + 4, GRAY)
+
+    def items(
+        self,
+        views: OrthographicViews,
+        scene: Scene,
+        target: Vector,
+        strokes: ObjectStrokes,
+        chosen: str,
+        moved: Vector | None,
+    ) -> list[Item]:
+        """The items of a scene, from the lowest to the highest.
+
+        `target` is that of the view, `chosen` the name of a light, and `moved` a point that is being placed,
+        through which lines run across the views.
+        """
+        side, view = self._side, scene.view
+        lights = list(enumerate(scene.lights, start=1))
+        ours = [light for light in scene.lights if light.name == chosen]
+        others = [light for light in scene.lights if light.name != chosen]
+        # The number of the chosen light makes way for the others, so that they stay where they are.
+        ordered = sorted(lights, key=lambda each: each[1].name == chosen)
+
+        def still() -> list[Item]:
+            return still_items(views, side, view, target, strokes, others)
+
+        def numbers() -> list[Item]:
+            return numeral_items(views, side, view.eye, ordered, chosen, self._label.area)
+
+        return [
+            self._label,
+            *([] if moved is None else [lines_across(views, side, moved)]),
+            *self._still.of(still, views, view, strokes, *others),
+            *self._chosen.of(lambda: chosen_items(views, side, ours), views, *ours),
+            *self._numerals.of(numbers, views, view, chosen, *scene.lights),
+        ]
 
 
-@lru_cache(maxsize=512)
-def light_items(
-    views: OrthographicViews, side: Side, light: Light, number: int, is_chosen: bool
-) -> tuple[Item, ...]:
-    """A light with its number: a cross, an arrow, its cone; of the chosen one the lines of its flaps, too."""
-    area = side.area
-    word = YELLOW if is_chosen else WHITE if light.on else GRAY
-    marks = light_marks(views, side, light)
-    quiet = word if is_chosen else GRAY
-    found = [
-        segments(marks.cone, quiet, area),
-        segments(marks.arrow, word if is_chosen else LIGHT_GRAY if light.on else GRAY, area),
-        segments(marks.cross, word, area),
-    ]
-    element, line = (round(each) for each in views.position(side, light.position))
-    left, top = element + 6, line - 11
-    numeral = Area(left, top, left + CHARACTER * len(str(number)) - 1, top + CHARACTER_LINES - 1)
-    if area.covers(numeral):
-        found.append(text(str(number), left, top, word))
-    if is_chosen:
+def still_items(
+    views: OrthographicViews,
+    side: Side,
+    view: View,
+    target: Vector,
+    strokes: ObjectStrokes,
+    lights: Sequence[Light],
+) -> list[Item]:
+    """The object, the eye with the edges of the picture, and some lights, none of them chosen."""
+    eye = eye_marks(views, side, view, target)
+    layers: dict[int, list[Floats]] = {
+        SLATE: [strokes.stage, eye.picture],
+        GRAY: [strokes.features],
+        LIGHT_GRAY: [strokes.silhouette],
+        BLUE: [eye.direction, eye.eye],
+        WHITE: [],
+    }
+    for light in lights:
+        marks = light_marks(views, side, light)
+        layers[GRAY].append(marks.cone)
+        layers[LIGHT_GRAY if light.on else GRAY].append(marks.arrow)
+        layers[WHITE if light.on else GRAY].append(marks.cross)
+    return drawn_items(layers)
+
+
+def chosen_items(views: OrthographicViews, side: Side, lights: Sequence[Light]) -> list[Item]:
+    """The chosen light, if there is one, with its flaps."""
+    layers: dict[int, list[Floats]] = {GRAY: [], YELLOW: []}
+    for light in lights:
         for mark in flap_marks(views, side, light):
-            found.append(segments(mark.stroke, word if mark.on else GRAY, area))
-    return tuple(found)
+            layers[YELLOW if mark.on else GRAY].append(mark.stroke)
+        layers[YELLOW] += light_marks(views, side, light)
+    return drawn_items(layers)
 
 
-def lines_across(views: OrthographicViews, side: Side, point: Vector) -> list[Item]:
+def numeral_items(
+    views: OrthographicViews, side: Side, eye: Vector, lights: Sequence[Numbered], chosen: str, label: Area
+) -> list[Item]:
+    """The numbers of lights, each beside its cross; the later ones make way for those before."""
+    lids = area_around(joined(LIDS + views.position(side, eye)))
+    light_of = dict(lights)
+    crosses = [cross_of(views, side, number, light) for number, light in lights]
+    found = []
+    for cross, area in numerals(crosses, side.area, [label, lids]):
+        light = light_of[cross.number]
+        word = YELLOW if light.name == chosen else WHITE if light.on else GRAY
+        found.append(text(str(cross.number), area.left, area.top, word))
+    return found
+
+
+def cross_of(views: OrthographicViews, side: Side, number: int, light: Light) -> Cross:
+    """Where a light is in one of the views, and where its arrow points."""
+    element, line = views.position(side, light.position)
+    end, arrow = arrow_end(views, light), (0.0, 0.0)
+    if end is not None:
+        right, down = (a - b for a, b in zip(views.position(side, end), (element, line), strict=True))
+        length = math.hypot(right, down)
+        # An arrow that points at the viewer or away is in no place's way.
+        if length > SHORTEST:
+            arrow = right / length, down / length
+    return Cross(number, round(element), round(line), arrow)
+
+
+def lines_across(views: OrthographicViews, side: Side, point: Vector) -> Item:
     """Thin lines through a point, which run on in the view beside or above."""
     area = side.area
-    element, line = (round(each) for each in views.position(side, point))
+    element, line = views.position(side, point)
+    upright = joined([(element, area.top), (element, area.bottom)])
+    level = joined([(area.left, line), (area.right, line)])
+    return segments(together([upright, level]), SLATE, area)
+
+
+def drawn_items(layers: Mapping[int, Sequence[Floats]]) -> list[Item]:
+    """Strokes that are clipped already, by their words, each with the area that they need."""
     found = []
-    if area.left <= element <= area.right:
-        found.append(filled(Area(element, area.top, element, area.bottom), SLATE))
-    if area.top <= line <= area.bottom:
-        found.append(filled(Area(area.left, line, area.right, line), SLATE))
+    for word, parts in layers.items():
+        strokes = together(parts)
+        if len(strokes):
+            stream = instructions.write_segments(rounded(strokes), word).tobytes()
+            found.append(Item(area_around(strokes), stream))
     return found
+
+
+def area_around(strokes: Floats) -> Area:
+    """The pixels around some strokes, at least one."""
+    low, high = rounded(strokes.min(axis=0)).tolist(), rounded(strokes.max(axis=0)).tolist()
+    return Area(min(low[0], low[2]), min(low[1], low[3]), max(high[0], high[2]), max(high[1], high[3]))

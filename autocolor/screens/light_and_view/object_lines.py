@@ -14,19 +14,29 @@ from autocolor.arrays import Floats, Indices
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
-from autocolor.screens.light_and_view.hidden_edges import depths_toward, without_hidden
+from autocolor.screens.light_and_view.hidden_edges import VisibleDepths, depths_toward, without_hidden
+from autocolor.screens.light_and_view.kept import Kept
 from autocolor.screens.light_and_view.mesh_edges import MeshEdges, mesh_edges
 from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, Side
 from autocolor.screens.light_and_view.perspective_strokes import perspective_strokes
 from autocolor.screens.light_and_view.silhouettes import silhouette_from, silhouette_toward
 from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import GRAY, LIGHT_GRAY, SLATE
-from autocolor.widgets.items import Item, segments
 from autocolor.widgets.strokes import drawn
 
 
+class ObjectStrokes(NamedTuple):
+    """The strokes of an object in a view from pixel to pixel, each (n, 4).
+
+    They are those of the features of its stage, of its own features, and of its silhouette.
+    """
+
+    stage: Floats
+    features: Floats
+    silhouette: Floats
+
+
 class _Found(NamedTuple):
-    """The edges of a mesh with its parts, and what was made of them for each view."""
+    """The edges of a mesh with its parts; of each view, by its name, the features and the silhouette."""
 
     mesh: Mesh
     parts: tuple[Part, ...]
@@ -34,9 +44,7 @@ class _Found(NamedTuple):
     edges: MeshEdges
     stage: Indices
     of_side: dict[str, tuple[Indices, Indices]]
-    """The features and the silhouette."""
     is_without_hidden: set[str]
-    items: dict[tuple[str, OrthographicViews], tuple[Item, ...]]
 
 
 class ObjectLines:
@@ -44,20 +52,17 @@ class ObjectLines:
 
     def __init__(self) -> None:
         self._found: _Found | None = None
+        self._strokes: dict[str, Kept[ObjectStrokes]] = {side.name: Kept() for side in SIDES}
 
-    def of_side(self, scene: Scene, views: OrthographicViews, side: Side) -> tuple[Item, ...]:
-        """The lines in one of the three views: of the stage, features, and the silhouette."""
-        found = self._of(scene)
-        if (side.name, views) not in found.items:
-            # The views before are not shown again.
-            for other in [each for each in found.items if each[1] != views]:
-                del found.items[other]
-            features, silhouette = found.of_side[side.name]
-            found.items[side.name, views] = tuple(
-                _item(views.strokes(side, scene.mesh.coordinates, edges), word, side.area)
-                for edges, word in ((found.stage, SLATE), (features, GRAY), (silhouette, LIGHT_GRAY))
-            )
-        return found.items[side.name, views]
+    def of_side(self, scene: Scene, views: OrthographicViews, side: Side) -> ObjectStrokes:
+        """The lines in one of the three views, the same as before if nothing changed."""
+        found, coordinates = self._of(scene), scene.mesh.coordinates
+        edges = found.of_side[side.name]
+
+        def strokes() -> ObjectStrokes:
+            return _drawn(*(views.strokes(side, coordinates, each) for each in (found.stage, *edges)))
+
+        return self._strokes[side.name].of(strokes, edges, views)
 
     def leave_out_hidden(self, scene: Scene) -> bool:
         """Leave out what is hidden in one view where that was not done; returns False if there is none."""
@@ -74,22 +79,19 @@ class ObjectLines:
                 without_hidden(features, coordinates, depths),
                 without_hidden(silhouette, coordinates, depths),
             )
-            found.items.clear()
         return True
 
-    def of_eye(self, scene: Scene, area: Area) -> tuple[Item, ...]:
-        """The lines as the eye sees them, in an area of the shape of the picture."""
+    def of_eye(self, scene: Scene, area: Area, visible: VisibleDepths | None = None) -> ObjectStrokes:
+        """The lines as the eye sees them, in an area of the shape of the picture.
+
+        With the depths of what is visible in the picture, those that are hidden are left out.
+        """
         found = self._of(scene)
         coordinates, view = scene.mesh.coordinates, scene.view
-        silhouette = silhouette_from(found.edges, view.eye)
-        return tuple(
-            _item(perspective_strokes(coordinates, edges, view, area), word, area)
-            for edges, word in (
-                (found.stage, SLATE),
-                (found.edges.features, GRAY),
-                (silhouette, LIGHT_GRAY),
-            )
-        )
+        edges = [found.stage, found.edges.features, silhouette_from(found.edges, view.eye)]
+        if visible is not None:
+            edges = [without_hidden(each, coordinates, visible) for each in edges]
+        return _drawn(*(perspective_strokes(coordinates, each, view, area) for each in edges))
 
     def _of(self, scene: Scene) -> _Found:
         found = self._found
@@ -100,10 +102,10 @@ class ObjectLines:
             edges = mesh_edges(scene.mesh, numbers)
             outline = mesh_edges(scene.mesh, stage).features if stage else np.empty((0, 2), np.intp)
             of_side = {side.name: (edges.features, silhouette_toward(edges, side.toward)) for side in SIDES}
-            found = _Found(scene.mesh, scene.parts, numbers, edges, outline, of_side, set(), {})
+            found = _Found(scene.mesh, scene.parts, numbers, edges, outline, of_side, set())
             self._found = found
         return found
 
 
-def _item(strokes: Floats, word: int, area: Area) -> Item:
-    return segments(drawn(strokes).astype(np.float64), word, area)
+def _drawn(*strokes: Floats) -> ObjectStrokes:
+    return ObjectStrokes(*(drawn(each).astype(np.float64) for each in strokes))

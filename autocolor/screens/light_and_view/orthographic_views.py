@@ -36,6 +36,10 @@ SMALLEST: Final = 1e-30
 """Assumed: the least size of a pixel, in units."""
 
 
+AXES: Final = "xyz"
+"""The names of the axes."""
+
+
 class Side(NamedTuple):
     """One of the three views: the axes that run to the right and up, and its area.
 

@@ -1,4 +1,4 @@
-"""A hand on the joystick unit of a display: it points, presses ENTER and holds TRACK, and counts its steps."""
+"""A hand on the joystick unit of a display: it points, presses ENTER, holds TRACK, and counts its steps."""
 
 from __future__ import annotations
 

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from autocolor.screens.drawing import BLACK, CHARACTER, WHITE, YELLOW, text
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -12,9 +11,12 @@ from autocolor.screens.entries_screen import (
     CELL_WIDTH,
     SIDE,
     cell_words,
-    draw_entries,
+    cells_of,
+    entries_items,
     named_cells,
 )
+from autocolor.widgets.colors import BLACK, WHITE, YELLOW
+from autocolor.widgets.items import CHARACTER, Item, text
 from ramtek_emu import Ramtek9300, instructions
 
 RANGES = {"body": LevelRange(1, 500), "glass": LevelRange(501, 40)}
@@ -60,15 +62,27 @@ def test_a_line_runs_between_cells_of_different_owners(word: int) -> None:
         assert (edge == (YELLOW if apart else word)).all()
 
 
-def test_the_page_is_drawn_by_instructions_with_the_name_of_each_range() -> None:
+def drawn(items: list[Item]) -> Ramtek9300:
     display = Ramtek9300()
-    draw_entries(display, RANGES)
-    expected = Ramtek9300()
-    expected.send(instructions.write_image(cell_words(RANGES)))
+    display.send(instructions.write_image(cell_words(RANGES)))
+    for item in items:
+        display.send(np.frombuffer(item.stream, np.uint16))
+    return display
+
+
+def test_the_page_has_the_name_of_each_range() -> None:
     # The body begins at the second cell, the glass at the 22nd of its row, the screens in the middle.
-    for name, line, element in (("body", 0, 1), ("glass", 15, 21), ("screens", 31, 16)):
-        text(expected, name, element * CELL_WIDTH + 3, line * CELL_HEIGHT + 3, WHITE, BLACK)
-    assert np.array_equal(display.words, expected.words)
+    places = (("body", 0, 1), ("glass", 15, 21), ("screens", 31, 16))
+    expected = [
+        text(name, element * CELL_WIDTH + 3, line * CELL_HEIGHT + 3, WHITE, BLACK)
+        for name, line, element in places
+    ]
+    assert np.array_equal(drawn(entries_items(RANGES)).words, drawn(expected).words)
+
+
+def test_equal_ranges_have_the_same_page() -> None:
+    assert cells_of(tuple(RANGES.items())) is cells_of(tuple(dict(RANGES).items()))
+    assert np.array_equal(cells_of(tuple(RANGES.items())), cell_words(RANGES))
 
 
 @given(st.lists(st.tuples(st.text("abc", min_size=1, max_size=30), st.integers(2, 300)), max_size=6))

@@ -8,7 +8,7 @@ import pytest
 
 from autocolor import Light, read_rig
 from autocolor.scene.columns.column import fields_of
-from autocolor.screens.lights_screen import AIM, DIRECTION, POINT, aim_of
+from autocolor.screens.light_parameters import AIM, DIRECTION, POINT
 from autocolor.widgets.bars import Bar
 from tests.autocolor.screens.boxes import (
     KEY,
@@ -138,18 +138,6 @@ def test_the_kind_goes_back_at_the_left_end_of_its_row(hand: Hand) -> None:
     assert hand.widget("kind").present == POINT  # type: ignore[attr-defined]
     hand.pick("kind", 0.05)
     assert hand.widget("kind").present == DIRECTION  # type: ignore[attr-defined]
-
-
-def test_a_directed_light_is_aimed_ahead() -> None:
-    ahead = aim_of(Light("a", (0, 0, 4), direction=(0, 0, -2)), (-1, -1, -1), (1, 1, 1))
-    assert ahead == pytest.approx((0, 0, 0))
-    aside = aim_of(Light("a", (0, 0, 4), direction=(1, 0, 0)), (-1, -1, -1), (1, 1, 1))
-    assert aside == pytest.approx((4, 0, 4))
-    assert aim_of(Light("a", (0, 0, 4)), (-1, -1, -1), (3, 1, 1)) == (1, 0, 0)
-
-
-def test_a_light_in_the_middle_of_the_object_is_aimed_down() -> None:
-    assert aim_of(Light("a", (0, 0, 0)), (-1, -1, -1), (1, 1, 1)) == (0, 0, -1)
 
 
 def test_one_light_alone_and_all(hand: Hand) -> None:

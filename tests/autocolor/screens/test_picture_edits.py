@@ -2,38 +2,36 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from autocolor.screens.picture_edits import PictureEdits
+from autocolor.screens.session import Session
 from autocolor.studio import Studio
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import wall_scene
 
 
-class Plain(PictureEdits):
-    """Edits without pages."""
-
-    message = ""
-
-    def back(self) -> bool:
-        return False
+@pytest.fixture
+def session(tmp_path: Path) -> Session:
+    display = Ramtek9300()
+    return Session(Studio(wall_scene(lights=[]), display), display, tmp_path)
 
 
-def test_the_edits_of_a_scene_without_lights_and_surfaces_in_use_are_told() -> None:
-    edits = Plain()
-    edits.begin(Studio(wall_scene(lights=[]), Ramtek9300()))
-    edits.switch_light(0)
-    assert edits.message == "the scene has no light 1"
+def test_a_light_that_a_scene_does_not_have_is_told(session: Session) -> None:
+    PictureEdits(session).switch_light(0)
+    assert session.message == "the scene has no light 1"
 
 
-def test_an_edit_of_a_movement_passes_on_that_it_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    edits = Plain()
-    edits.begin(Studio(wall_scene(lights=[]), Ramtek9300()))
+def test_an_edit_of_a_movement_passes_on_that_it_is_one(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
     told: list[tuple[bool, bool]] = []
     monkeypatch.setattr(
-        edits.studio, "edit", lambda scene, same_step, moving: told.append((same_step, moving))
+        session.studio, "edit", lambda scene, same_step, moving: told.append((same_step, moving))
     )
     for is_one in (False, True):
-        edits.same_step = edits.moving = is_one
-        edits.turn(5, 0)
+        session.same_step = session.moving = is_one
+        PictureEdits(session).turn(5, 0)
     assert told == [(False, False), (True, True)]

@@ -116,6 +116,15 @@ def undo(hand: Hand) -> None:
     assert hand.viewer.studio.scene is coupe()
 
 
+def compare(hand: Hand) -> None:
+    hand.drag((300, 60), (340, 60))
+    hand.steps = 0
+    hand.open_menu()
+    for is_before in (True, False):
+        hand.pick("compare")
+        assert hand.viewer.session.comparing.is_on == is_before
+
+
 TASKS: dict[str, Callable[[Hand], None]] = {
     "move a light": move_a_light,
     "aim a light": aim_a_light,
@@ -126,6 +135,7 @@ TASKS: dict[str, Callable[[Hand], None]] = {
     "turn and move the view": turn_and_move_the_view,
     "save": save,
     "undo": undo,
+    "compare": compare,
 }
 
 

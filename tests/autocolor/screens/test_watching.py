@@ -16,6 +16,9 @@ from autocolor.mapping.level_ranges import BACKGROUND
 from autocolor.screens.viewer import Viewer
 from autocolor.screens.watching import MESSAGE, PICTURE_SECONDS, TICK_SECONDS
 from autocolor.studio import Studio
+from autocolor.widgets.areas import Area
+from autocolor.widgets.colors import WHITE
+from autocolor.widgets.items import filled
 from ramtek_emu import Ramtek9300
 from tests.autocolor.sessions import SMALL, car
 from tests.autocolor.strategies import scenes
@@ -248,25 +251,35 @@ def test_a_scene_dropped_while_another_comes_in_is_shown_whole(
     assert is_whole(watching)
 
 
-def test_in_full_screen_a_message_waits_until_the_picture_is_there(tmp_path: Path, clock: Clock) -> None:
+def test_a_message_waits_until_the_picture_is_there(tmp_path: Path, clock: Clock) -> None:
     viewer = Viewer(CLOSE, Ramtek9300(), folder=tmp_path)
-    viewer.on_tick(True, True)
     assert not is_whole(viewer)
     viewer.on_key("w", typed="w")
-    viewer.on_tick(True, True)
+    viewer.on_tick()
     viewer.tell("a screenshot")
     assert lines_there(viewer) == 0
     clock.now += 2 * PICTURE_SECONDS
-    viewer.on_tick(True, True)
+    viewer.on_tick()
     assert is_whole(viewer)
     viewer.on_key("w", typed="w")
-    viewer.on_tick(True, True)
+    viewer.on_tick()
     viewer.tell("a screenshot")
     viewer.on_key("q", typed="q")
-    assert is_whole(viewer)
-    viewer.on_tick(True, True)
     assert np.array_equal(display_of(viewer).words[:464], viewer.studio.words[:464])
     assert not is_whole(viewer)
+
+
+def test_what_stands_over_the_picture_comes_back_after_watching(
+    viewer: Viewer, clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    items = [filled(Area(3, 3, 8, 8), WHITE)]
+    monkeypatch.setattr(viewer.board.screen, "items", lambda: items)
+    viewer.on_key("w", typed="w")
+    assert lines_there(viewer) == 0
+    after(viewer, clock, 2)
+    viewer.on_key("q", typed="q")
+    assert (display_of(viewer).words[3:9, 3:9] == WHITE).all()
+    assert np.array_equal(display_of(viewer).words[9:], viewer.studio.words[9:])
 
 
 @given(scenes(), st.lists(st.floats(0, 0.4), max_size=8))

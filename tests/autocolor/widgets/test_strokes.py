@@ -11,7 +11,7 @@ from autocolor.arrays import Floats
 from autocolor.widgets.areas import Area
 from autocolor.widgets.strokes import between, clipped, drawn, joined, together
 
-AREA = Area(10, 20, 31, 21)
+AREA = Area(10, 20, 40, 40)
 
 places = st.tuples(st.floats(-100, 100), st.floats(-100, 100))
 

@@ -13,7 +13,7 @@ from autocolor.widgets.areas import Area
 from tests.autocolor.meshes import cube, sphere, wall
 from tests.autocolor.strategies import meshes, views
 
-AREA = area_of_picture(Area(256, 0, 248, 224))
+AREA = area_of_picture(Area(256, 0, 503, 223))
 
 
 def test_edges_are_where_the_renderer_has_their_pixels() -> None:
@@ -29,7 +29,7 @@ def test_edges_are_where_the_renderer_has_their_pixels() -> None:
 def test_the_height_of_the_area_is_the_field_of_view() -> None:
     view = View((0.0, -1.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=90.0)
     edges = mesh_edges(wall(half=0.98))
-    found = perspective_strokes(edges.coordinates, edges.features, view, Area(0, 0, 100, 100))
+    found = perspective_strokes(edges.coordinates, edges.features, view, Area(0, 0, 99, 99))
     # At 45 degrees a unit is half the height: the outer pixels end at -0.5 and 99.5.
     assert (found.min(), found.max()) == pytest.approx((49.5 - 49, 49.5 + 49))
     assert len(found) == 4

@@ -1,0 +1,51 @@
+"""Random items and pages, and displays that show them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from hypothesis import strategies as st
+
+from autocolor.widgets.areas import Area
+from autocolor.widgets.items import Item, filled, image, lines, outline, text
+from ramtek_emu import Configuration, Ramtek9300
+
+TINY = Configuration(name="tiny", elements=48, lines=40, planes=10)
+"""A display on which random items often meet."""
+
+places = st.integers(-12, 60)
+words = st.integers(0, 1023)
+
+
+@st.composite
+def areas(draw: st.DrawFn) -> Area:
+    """Areas on a tiny display, across its edges, beyond them, or empty."""
+    left, top = draw(places), draw(places)
+    return Area(left, top, left + draw(st.integers(-3, 30)), top + draw(st.integers(-3, 30)))
+
+
+@st.composite
+def items(draw: st.DrawFn) -> Item:
+    """Items of every kind."""
+    area, word = draw(areas()), draw(words)
+    kind = draw(st.sampled_from(["filled", "outline", "text", "lines", "image"]))
+    if kind == "filled":
+        return filled(area, word)
+    if kind == "outline":
+        return outline(area, word)
+    if kind == "text":
+        line = draw(st.text("aM.", max_size=4))
+        return text(line, area.left, area.top, word, draw(words), draw(st.integers(1, 2)))
+    if kind == "lines":
+        far = st.one_of(places, places, st.sampled_from([-1e30, -70000.0, 70000.0, 1e30, float("nan")]))
+        polyline = st.lists(st.tuples(far, far), max_size=4)
+        return lines(draw(st.lists(polyline, max_size=3)), word, area)
+    across, down = draw(st.integers(1, 9)), draw(st.integers(1, 9))
+    return image(np.arange(across * down, dtype=np.uint16).reshape(down, across), area.left, area.top)
+
+
+def draw_items(display: Ramtek9300, drawn: Sequence[Item]) -> None:
+    """Send the instructions of some items, in their order."""
+    for item in drawn:
+        display.send(np.frombuffer(item.stream, np.uint16))

@@ -1,0 +1,161 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from autocolor.arrays import Words
+from autocolor.widgets.areas import Area
+from autocolor.widgets.colors import WHITE
+from autocolor.widgets.items import Item, filled, lines, text
+from autocolor.widgets.sheet import Page, Sheet, uncovered
+from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, EntryFormat, PortError, Ramtek9300
+from tests.autocolor.widgets.drawing import TINY, items
+
+SHORT = Configuration(
+    name="short", elements=48, lines=40, planes=10, entry_format=EntryFormat.WORD_12, extended=False
+)
+BASES: tuple[Words | int, ...] = (
+    7,
+    1008,
+    np.arange(40 * 48, dtype=np.uint16).reshape(40, 48) % 1000,
+    np.full((30, 50), 3, np.uint16),
+    np.full((44, 20), 9, np.uint16),
+)
+TABLES = tuple(np.random.default_rng(seed).integers(0, 256, (1024, 3)).astype(np.uint8) for seed in range(2))
+
+
+@st.composite
+def sessions(draw: st.DrawFn) -> list[Page]:
+    """Pages of a few items, overlapping, in any order, repeated, that come and go."""
+    known = draw(st.lists(items(), min_size=1, max_size=6))
+    pages = []
+    for _ in range(draw(st.integers(1, 6))):
+        chosen = draw(st.lists(st.sampled_from(known), max_size=8))
+        table = draw(st.sampled_from(TABLES))
+        if draw(st.booleans()):
+            # Some entries differ, as those that a screen borrows.
+            table = table.copy()
+            first = draw(st.integers(0, 1000))
+            table[first : first + draw(st.integers(1, 24))] = 17
+        pages.append(Page(draw(st.sampled_from(BASES)), chosen, table))
+    return pages
+
+
+@pytest.mark.parametrize("configuration", [TINY, SHORT], ids=["tiny", "short"])
+@settings(max_examples=60)
+@given(data=st.data())
+def test_after_any_pages_the_display_has_what_the_last_one_alone_gives(
+    configuration: Configuration, data: st.DataObject
+) -> None:
+    pages = data.draw(sessions())
+    display, fresh = Ramtek9300(configuration), Ramtek9300(configuration)
+    sheet = Sheet(display)
+    for page in pages:
+        sheet.show(page)
+    Sheet(fresh).show(pages[-1])
+    assert np.array_equal(display.words, fresh.words)
+    assert np.array_equal(display.entries, fresh.entries)
+
+
+def page(*shown: Item, base: int = 0) -> Page:
+    return Page(base, shown, TABLES[0])
+
+
+ROWS = [filled(Area(500, 20 * n, 639, 20 * n + 15), 5) for n in range(10)]
+
+
+def test_an_unchanged_page_sends_nothing() -> None:
+    display = Ramtek9300()
+    sheet = Sheet(display)
+    sheet.show(page(*ROWS))
+    received = display.words_received
+    sheet.show(Page(0, list(ROWS), TABLES[0].copy()))
+    assert display.words_received == received
+
+
+def test_a_page_that_differs_in_one_small_item_writes_few_words() -> None:
+    display = Ramtek9300()
+    sheet = Sheet(display)
+    sheet.show(page(*ROWS))
+    written, entries = display.frame_buffer.written, display.lookup_table.written
+    lit = filled(ROWS[3].area, 9)
+    sheet.show(page(*ROWS[:3], lit, *ROWS[4:]))
+    assert display.frame_buffer.written - written == 140 * 16
+    assert display.lookup_table.written == entries
+
+
+def test_what_an_item_covered_alone_is_drawn_again_when_it_goes() -> None:
+    display = Ramtek9300()
+    sheet = Sheet(display)
+    cross = lines([[(10, 10), (30, 30)], [(10, 30), (30, 10)]], WHITE, Area(10, 10, 30, 30))
+    sheet.show(page(*ROWS, cross, base=4))
+    written = display.frame_buffer.written
+    sheet.show(page(*ROWS, base=4))
+    assert display.frame_buffer.written - written == 21 * 21
+    assert (display.words[:40, :40] == 4).all()
+
+
+def test_other_entries_write_no_word() -> None:
+    display = Ramtek9300()
+    sheet = Sheet(display)
+    sheet.show(page(*ROWS))
+    written = display.frame_buffer.written
+    sheet.show(page(*ROWS)._replace(entries=TABLES[1]))
+    assert display.frame_buffer.written == written
+    assert np.array_equal(display.entries, TABLES[1])
+
+
+def test_a_sheet_that_forgets_draws_over_whatever_is_there() -> None:
+    display = Ramtek9300()
+    sheet = Sheet(display)
+    sheet.show(page(*ROWS))
+    other = Sheet(display)
+    other.show(page(text("other", 5, 5), base=8))
+    sheet.forget()
+    sheet.show(page(*ROWS))
+    fresh = Ramtek9300()
+    Sheet(fresh).show(page(*ROWS))
+    assert np.array_equal(display.words, fresh.words)
+
+
+def test_a_page_that_could_not_be_sent_is_drawn_whole_the_next_time() -> None:
+    class Broken(Ramtek9300):
+        fails = False
+
+        def send(self, words: Words) -> None:
+            if self.fails:
+                raise PortError("a display must listen")
+            super().send(words)
+
+    display = Broken()
+    sheet = Sheet(display)
+    sheet.show(page(*ROWS))
+    display.fails = True
+    with pytest.raises(PortError):
+        sheet.show(page(base=3))
+    display.fails = False
+    sheet.show(page(base=3))
+    assert (display.words == 3).all()
+
+
+def test_below_the_menu_no_word_of_the_base_is_sent() -> None:
+    menu, message = filled(Area(504, 0, 639, 463), 5), filled(Area(0, 464, 639, 479), 6)
+    screen = Area(0, 0, 639, 479)
+    assert uncovered(screen, [menu, message]) == (0, 0, 503, 463)
+    assert uncovered(screen, [message, menu]) == (0, 0, 503, 463)
+    assert uncovered(screen, [menu]) == screen
+    assert uncovered(screen, [menu._replace(is_solid=False), message]) == (0, 0, 639, 463)
+
+
+@pytest.mark.parametrize("configuration", [GMR_9300, PRINCETON_9300])
+def test_the_base_fills_all_that_the_display_shows(configuration: Configuration) -> None:
+    display = Ramtek9300(configuration)
+    shown = configuration.shown_lines, configuration.shown_elements
+    sheet = Sheet(display)
+    sheet.show(page(base=4))
+    assert (display.words == 4).all()
+    picture = (np.arange(shown[0] * shown[1]) % 1000).astype(np.uint16).reshape(shown)
+    sheet.show(Page(picture, [], TABLES[0]))
+    assert np.array_equal(display.words, picture)

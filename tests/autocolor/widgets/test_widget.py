@@ -1,0 +1,116 @@
+from __future__ import annotations
+
+import pytest
+
+from autocolor.widgets.areas import Area
+from autocolor.widgets.widget import (
+    Button,
+    Choice,
+    Entry,
+    Gap,
+    Heading,
+    Place,
+    Steps,
+    Switch,
+    Widget,
+)
+
+ROW = Area(505, 32, 639, 47)
+LEFT, RIGHT = Place(510, 40), Place(630, 40)
+LONG = "a label that is far too long for a row"
+
+
+class Done:
+    """What widgets did."""
+
+    def __init__(self) -> None:
+        self.did: list[object] = []
+
+    def __call__(self, *values: object) -> None:
+        self.did.append(values[0] if values else "done")
+
+
+def test_a_button_runs_when_it_is_picked() -> None:
+    done = Done()
+    Button("go", run=done, area=ROW).pick(LEFT)
+    assert done.did == ["done"]
+
+
+def test_a_switch_flips_at_its_box_and_chooses_beside_it() -> None:
+    flipped, chosen = Done(), Done()
+    switch = Switch("key", flip=flipped, choose=chosen, area=ROW)
+    switch.pick(RIGHT)
+    assert (len(flipped.did), len(chosen.did)) == (1, 0)
+    switch.pick(LEFT)
+    assert (len(flipped.did), len(chosen.did)) == (1, 1)
+    Switch("key", flip=flipped, area=ROW).pick(LEFT)
+    assert len(flipped.did) == 2
+
+
+@pytest.mark.parametrize(
+    ("is_on", "steps", "flips"), [(True, 1, 0), (True, -1, 1), (False, 1, 1), (False, -2, 0)]
+)
+def test_a_step_up_switches_on_and_a_step_down_off(is_on: bool, steps: float, flips: int) -> None:
+    flipped = Done()
+    Switch("key", is_on=is_on, flip=flipped, area=ROW).nudge(steps)
+    assert len(flipped.did) == flips
+
+
+def test_signs_take_whole_steps_and_a_drag_small_ones() -> None:
+    done = Done()
+    steps = Steps("turn", step=done, area=ROW)
+    steps.pick(LEFT)
+    steps.pick(RIGHT)
+    steps.nudge(2)
+    assert done.did == [-1, 1, 2]
+    done.did.clear()
+    for element in range(510, 526):
+        steps.drag(LEFT, Place(element, 40), Place(element + 1, 40))
+    assert sum(each for each in done.did if isinstance(each, float)) == 1
+
+
+@pytest.mark.parametrize(
+    ("present", "place", "chosen"),
+    [("b", RIGHT, "c"), ("b", LEFT, "a"), ("c", RIGHT, "a"), ("", RIGHT, "a"), ("", LEFT, "c")],
+)
+def test_a_choice_goes_around_in_both_directions(present: str, place: Place, chosen: str) -> None:
+    done = Done()
+    Choice("curve", names=("a", "b", "c"), present=present, choose=done, area=ROW).pick(place)
+    assert done.did == [chosen]
+
+
+def test_a_choice_of_nothing_chooses_nothing() -> None:
+    done = Done()
+    Choice("curve", choose=done, area=ROW).pick(RIGHT)
+    assert done.did == []
+
+
+def test_an_entry_takes_what_is_typed() -> None:
+    done = Done()
+    typed = Entry("name", value="key", take=done).typed
+    assert typed.text == "key"
+    typed.take("fill")
+    assert done.did == ["fill"]
+
+
+@pytest.mark.parametrize("lit", [True, False])
+@pytest.mark.parametrize(
+    "widget",
+    [
+        Heading(LONG),
+        Gap("gap"),
+        Button(LONG, value="12345", is_chosen=True),
+        Button(LONG, why_not="not now", value=LONG),
+        Switch(LONG, is_on=True),
+        Switch(LONG, is_chosen=True),
+        Steps(LONG),
+        Choice(LONG, present=LONG),
+        Entry(LONG, value="12"),
+    ],
+    ids=lambda widget: type(widget).__name__,
+)
+def test_a_row_stays_in_its_area_and_fills_it(widget: Widget, lit: bool) -> None:
+    items = widget.at(ROW).items(lit)
+    assert items[0].area == ROW
+    assert items[0].is_solid
+    assert all(ROW.covers(item.area) for item in items)
