@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from benchmarks.cases import Spread, ratios, spread, timed
+from benchmarks.color_drags import BLEND_BAR, COLOR_BAR, UPRIGHT_BAR, ColorDrag, color_drag_seconds
 from benchmarks.comparison import comparison_scene
 from benchmarks.contestants import case_of, contestants
 from benchmarks.movement import drag_seconds
@@ -57,6 +58,11 @@ def between(case: str, other: str) -> Callable[[Seconds], Spread]:
     return lambda seconds: ratios(seconds[case], seconds[other])
 
 
+def dragged(drag: ColorDrag) -> Callable[[Seconds], Spread]:
+    """How long a drag of a color takes to be seen."""
+    return lambda _: color_drag_seconds(drag).times(1e3)
+
+
 TARGETS = (
     Target("scan-out", "copies of a field", 1.6, between(SCAN_OUT, COPY)),
     Target("recolor a surface, scan-out", "copies of a field", 3, between(RECOLOR, COPY)),
@@ -92,6 +98,9 @@ TARGETS = (
         "a picture through the instructions", "ms", 1, lambda seconds: spread(seconds[STREAM]).times(1e3)
     ),
     Target("a drag on 100,000 polygons", "ms between fields", 33, lambda _: drag_seconds().times(1e3)),
+    Target("a color bar of the coupe, dragged", "ms to its field", 4, dragged(COLOR_BAR)),
+    Target("the blend bar of the coupe, dragged", "ms to its field", 4, dragged(BLEND_BAR)),
+    Target("light blending of the coupe, dragged", "ms to its field", 4, dragged(UPRIGHT_BAR)),
     Target("ten million polygons", "frames of a million", 12),
     Target("memory, ten million polygons", "MB beyond the tables", 600),
     Target("1,000 recolorings to PNG", "of it is the encoder", 0.85, at_least=True),

@@ -28,6 +28,17 @@ def blend_level(blend: float, levels: int) -> int:
     return half_up(blend * (levels - 1))
 
 
+def blend_from(level: int, levels: int) -> float:
+    """The blend whose blend level is a level, in as few digits as that takes, from two on.
+
+    >>> blend_from(124, 249), blend_from(136, 249), blend_from(137, 249)
+    (0.5, 0.55, 0.552)
+    """
+    blend = level / max(levels - 1, 1)
+    rounded = (round(blend, digits) for digits in range(2, 9))
+    return next((each for each in rounded if blend_level(each, levels) == level), blend)
+
+
 @lru_cache(maxsize=512)
 def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> Bytes:
     """The entries of a paint, (levels, 3) uint8, read-only: red, green, blue, from the lowest level up.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from autocolor.screens.blending_screen import BlendingScreen
 from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
@@ -11,6 +12,7 @@ from autocolor.screens.kept_screen import KeptScreen
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
+from autocolor.screens.mixing_screen import MixingScreen
 from autocolor.screens.picture_screen import PictureScreen
 from autocolor.screens.reflectance_screen import ReflectanceScreen
 from autocolor.screens.screen import Screen
@@ -20,6 +22,8 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     LightAndViewScreen,
     LightsScreen,
     ReflectanceScreen,
+    MixingScreen,
+    BlendingScreen,
     MappingScreen,
     KeptScreen,
     FileScreen,

@@ -159,7 +159,7 @@ class Board:
         element, line = self._pointer
         widget = layout.widget_at(element, line)
         if widget is not None:
-            self.held = None
+            self._let_go()
             self.pick_widget(widget, self._pointer)
         elif layout.is_covered(element, line):
             return
@@ -191,7 +191,7 @@ class Board:
             widget.pick(place)
 
     def _grab(self, gesture: Gesture) -> None:
-        self.held = None
+        self._let_go()
         layout = self.layout()
         self._light(layout.widget_at(*self._pointer))
         self._grip.grab(layout, gesture)
@@ -232,7 +232,7 @@ class Board:
         """Let go of what is held, or close what is open; returns False if there is nothing."""
         comes_and_goes = not self.screen.has_menu
         if self.held is not None:
-            self.held = None
+            self._let_go()
         elif self.layout().wide is not None:
             self._wide = ""
         elif self.has_focus or (comes_and_goes and (self.is_pinned or self._is_open)):
@@ -281,6 +281,7 @@ class Board:
 
     def page(self) -> Page:
         """The page to show now."""
+        self.screen.is_under_menu = self.has_menu and not self.screen.has_menu
         composition = self._composition()
         self._has_message = composition.has_message
         return composition.page()

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
+from autocolor.errors import UsageError
+from autocolor.mapping.level_ranges import SCREENS
 from autocolor.screens.light_handles import LightHandles
 from autocolor.screens.orbit import SIDES
 from autocolor.screens.over_picture import OverPicture
@@ -39,6 +41,11 @@ class PictureScreen(OverPicture):
         return self._handles.handles()
 
     def place(self, handle: Handle, element: int, line: int) -> None:
+        if self.session.word_at(element, line) >= SCREENS.first:
+            raise UsageError(
+                f"the {handle.label} must be placed on the picture, not on what covers it;"
+                " choose another pixel"
+            )
         self._handles.place(handle, element, line)
 
     def rows(self) -> Sequence[Widget]:

@@ -47,6 +47,8 @@ class Screen:
 
     def __init__(self, session: Session) -> None:
         self.session = session
+        self.is_under_menu = False
+        """Whether the menu, which was asked for, stands over its right part."""
 
     # What is seen.
 

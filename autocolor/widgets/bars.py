@@ -17,6 +17,9 @@ from autocolor.widgets.widget import BOX, MARGIN, ROW_LINES, TEXT_DOWN, Place, T
 THIN: Final = 2
 """Lines of the bar in a row."""
 
+BESIDE_BOX: Final = "  "
+"""What the number leaves to the box at its right."""
+
 
 @dataclass(frozen=True)
 class Bar(Widget):
@@ -64,7 +67,7 @@ class Bar(Widget):
 
     def _row_items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
-        value = self.number if self.flip is None else f"{self.number}  "
+        value = self._row_number + ("" if self.flip is None else BESIDE_BOX)
         room = (self.area.width - 2 * MARGIN) // CHARACTER
         found = self.row(lit, short_label(self.label, room - len(value) - 1), value)
         if self.flip is not None:
@@ -75,6 +78,14 @@ class Bar(Widget):
             end = track.left + round(self.share * (track.width - 1))
             found.append(filled(track._replace(right=end), YELLOW if lit else self.word))
         return found
+
+    @property
+    def _row_number(self) -> str:
+        """The number as it stands in a row: to its step if the label would be cut by more digits."""
+        room = (self.area.width - 2 * MARGIN) // CHARACTER - len(self.label) - 1
+        if self.value is None or len(self.number) <= room - (0 if self.flip is None else len(BESIDE_BOX)):
+            return self.number
+        return number_text(rounded_to(self.value, self.step), self.step)
 
     def _wide_items(self, lit: bool) -> list[Item]:
         left, top, right, bottom = self.area

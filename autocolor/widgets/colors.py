@@ -1,13 +1,27 @@
 """The words that screens draw with, by the names of their colors, and the size that screens are laid out for.
 
-| words | used by |
+| words | their entries |
 |---|---|
-| `SCREENS`, the sixteen highest | every screen: text, bars, lines; their entries never change |
-| those of the surfaces | the picture, large or small, and bars of a surface's own colors |
-| those of surfaces that are not shown | color mixing: ramps and swatches, whose entries it borrows |
+| 0, the background, and those of the surfaces | the scene's |
+| `SCREENS`, the sixteen highest | constant: the colors below |
 
-A page tells all 1024 entries, and a sheet loads those that differ from the page before: so whatever a screen
-borrows is restored by the page that follows.
+| screen | words | borrowed entries |
+|---|---|---|
+| picture, lights, reflectance, mapping | all, `SCREENS` over the picture | none |
+| light and view | `SCREENS`; all in its small picture | none |
+| color mixing | `SCREENS`; the chosen surface's, in a small picture and a bar | ramps and swatches |
+| light blending | all, and the chosen surface's again in a bar, and `SCREENS` | none |
+| kept | `SCREENS` | small pictures, in the words of all surfaces |
+| entries | all, each in its cell | none |
+| file, help | `SCREENS` | none |
+
+A screen borrows words by `Screen.loads` alone. Color mixing borrows those of surfaces that it does not show;
+where these are too few, it borrows some of the chosen surface's, too, spread over its levels, each of which
+is then shown by its neighbor. `mixing_palette` tells which ones.
+
+A page tells its base and all 1024 entries, and a sheet loads the entries that differ from those of the page
+before, and writes the words of another base whole: so whatever a screen borrows or covers is restored by the
+page that follows, and none has to clean up.
 """
 
 from __future__ import annotations

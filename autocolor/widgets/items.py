@@ -123,7 +123,7 @@ def rounded(places: Floats) -> Numbers:
 def fitted(line: str, most: int) -> str:
     """A line of text that has at most so many characters; a longer one is cut and ends in two periods.
 
-    >>> fitted("windscreen", 10), fitted("windscreen", 6), fitted("windscreen", 1)
-    ('windscreen', 'wind..', '.')
+    >>> fitted("windscreen", 10), fitted("windscreen", 6), fitted("windscreen", 1), fitted("windscreen", -1)
+    ('windscreen', 'wind..', '.', '')
     """
-    return line if len(line) <= most else f"{line[: max(0, most - 2)]}.."[:most]
+    return line if len(line) <= most else f"{line[: max(0, most - 2)]}.."[: max(0, most)]

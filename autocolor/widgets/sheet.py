@@ -97,7 +97,9 @@ def changed_items(before: Sequence[Item], now: Sequence[Item]) -> tuple[list[Are
     for item in now:
         if item not in old or any(item.area.overlaps(area) for area in dirty):
             redrawn.append(item)
-            dirty.append(item.area)
+            # Few areas are enough: this is done at each movement, for hundreds of items.
+            if not any(area.covers(item.area) for area in dirty):
+                dirty.append(item.area)
     return restored, redrawn
 
 

@@ -7,7 +7,7 @@ from the scene whenever they are shown; a widget holds no state of its own.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Final, NamedTuple, TypeVar
 
 from autocolor.widgets.areas import Area
@@ -69,7 +69,10 @@ class Widget:
 
     def at(self: SomeWidget, area: Area) -> SomeWidget:
         """The same at an area."""
-        return replace(self, area=area)
+        # Everything is placed anew at each change; `replace` would take most of the time of that.
+        placed = object.__new__(type(self))
+        vars(placed).update(vars(self), area=area)
+        return placed
 
     def items(self, lit: bool) -> list[Item]:
         """How it looks; lit while the pointer is over it."""

@@ -170,6 +170,23 @@ def test_the_window_shows_the_field_after_every_key(session: Session, tmp_path: 
     assert session.end() == (0, "", "")
 
 
+def test_the_state_before_is_shown_while_its_key_is_held(session: Session) -> None:
+    session.press("c", "c")
+    session.wait_for_the_field()
+    session.tool("keydown", "b")
+    session.viewer.on_key("b", typed="b")
+    assert session.viewer.session.comparing.is_on
+    session.wait_for_the_field()
+    # Longer than a key takes to be repeated, and to be released between two repetitions.
+    time.sleep(1.0)
+    session.wait_for_the_field()
+    assert session.caption().endswith("shown: the state before the last step")
+    session.tool("keyup", "b")
+    session.viewer.on_release("b")
+    session.wait_for_the_field()
+    assert session.caption().endswith("shown: the present state")
+
+
 def test_a_key_held_down_is_undone_at_once(session: Session) -> None:
     session.tool("keydown", "Right")
     session.wait_for(lambda: not session.shows_the_field())

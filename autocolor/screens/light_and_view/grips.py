@@ -79,9 +79,19 @@ class Grip(NamedTuple):
         return scene.with_light(self.light, flaps=flaps)
 
 
+def grip_of(handle: Handle) -> Grip:
+    """What a handle of this screen moves."""
+    assert isinstance(handle.key, Grip)
+    return handle.key
+
+
 def handles_in(scene: Scene, views: OrthographicViews, chosen: str) -> list[Handle]:
-    """Everything that can be taken hold of; the chosen light comes last, and goes before the others."""
-    found = [*_handles(Grip(TARGET), scene, views), *_handles(Grip(EYE), scene, views)]
+    """Everything that can be taken hold of; what is chosen comes last, and goes before all others.
+
+    `chosen` is the name of a light, or empty for the eye.
+    """
+    eye = [*_handles(Grip(TARGET), scene, views), *_handles(Grip(EYE), scene, views)]
+    found = eye if chosen else []
     for light in sorted(scene.lights, key=lambda each: each.name == chosen):
         if light.name == chosen:
             found += _handles_of_flaps(light, views)
@@ -89,7 +99,7 @@ def handles_in(scene: Scene, views: OrthographicViews, chosen: str) -> list[Hand
             what = AIM if light.aim is not None else DIRECTION
             found += _handles(Grip(what, light=light.name), scene, views)
         found += _handles(Grip(LIGHT, light=light.name), scene, views)
-    return found
+    return found if chosen else found + eye
 
 
 def _handles(grip: Grip, scene: Scene, views: OrthographicViews) -> Iterator[Handle]:

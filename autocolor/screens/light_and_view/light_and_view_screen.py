@@ -16,7 +16,7 @@ from autocolor.screens.gestures import Gesture, turn_between, wheel_ratio
 from autocolor.screens.light_and_view.areas import PICTURE_AREA
 from autocolor.screens.light_and_view.display_view import MESH, PICTURE, DisplayView
 from autocolor.screens.light_and_view.flap_switches import flap_switches
-from autocolor.screens.light_and_view.grips import FLAP, Grip, handles_in, target_in, told
+from autocolor.screens.light_and_view.grips import FLAP, grip_of, handles_in, target_in, told
 from autocolor.screens.light_and_view.kept import Kept
 from autocolor.screens.light_and_view.light_rows import light_rows
 from autocolor.screens.light_and_view.marks import SideItems
@@ -25,8 +25,8 @@ from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
     SIDES,
     OrthographicViews,
-    Side,
     fitted_views,
+    side_at,
 )
 from autocolor.screens.light_and_view.shown_points import shown_points
 from autocolor.screens.light_parameters import put_light
@@ -64,6 +64,7 @@ class LightAndViewScreen(Screen):
         self._display = DisplayView(session, self._lines)
         self._handles: Kept[list[Handle]] = Kept()
         self._views: OrthographicViews | None = None
+        self._eye_is_chosen = False
         self._moved: Vector | None = None
         """The point that is being placed. It keeps the coordinate that its view does not show."""
         self._has_lines = False
@@ -76,8 +77,19 @@ class LightAndViewScreen(Screen):
             self._views = fitted_views(shown_points(self.session.scene))
         return self._views
 
+    @property
+    def chosen(self) -> str:
+        """The name of the light that is chosen; empty if it is the eye."""
+        return "" if self._eye_is_chosen else self.session.light_name
+
+    def choose(self, light: str) -> None:
+        """Choose a light by its name, or the eye by an empty one."""
+        self._eye_is_chosen = not light
+        if light:
+            self.session.choose_light(light)
+
     def enter(self) -> None:
-        self._views = None
+        self._views, self._eye_is_chosen = None, False
 
     def leave(self) -> None:
         self.release()
@@ -85,7 +97,7 @@ class LightAndViewScreen(Screen):
     # What is seen.
 
     def items(self) -> Sequence[Item]:
-        scene, views, chosen = self.session.scene, self.views, self.session.light_name
+        scene, views, chosen = self.session.scene, self.views, self.chosen
         target, moved = target_in(scene), self._moved if self._has_lines else None
         found = [*(filled(area, SLATE) for area in LINES_BETWEEN), *self._display.items()]
         for side, side_items in self._sides.items():
@@ -99,13 +111,14 @@ class LightAndViewScreen(Screen):
     # What can be pointed at.
 
     def widgets(self) -> Sequence[Widget]:
-        light = self.session.chosen_light
-        if light is None:
+        session, chosen = self.session, self.chosen
+        if not chosen:
             return []
-        return list(flap_switches(self.views, light, partial(put_light, self.session, light.name)))
+        put = partial(put_light, session, chosen)
+        return list(flap_switches(self.views, session.scene.light(chosen), put))
 
     def handles(self) -> Sequence[Handle]:
-        scene, views, chosen = self.session.scene, self.views, self.session.light_name
+        scene, views, chosen = self.session.scene, self.views, self.chosen
         return self._handles.of(lambda: handles_in(scene, views, chosen), scene, views, chosen)
 
     def hint(self, element: int, line: int) -> str:
@@ -122,8 +135,7 @@ class LightAndViewScreen(Screen):
 
     def hold(self, handle: Handle) -> None:
         grip = grip_of(handle)
-        if grip.light:
-            self.session.choose_light(grip.light)
+        self.choose(grip.light)
         self._moved = grip.point_in(self.session.scene, self.views)
         self._has_lines = grip.what != FLAP
 
@@ -179,7 +191,7 @@ class LightAndViewScreen(Screen):
     def rows(self) -> Sequence[Widget]:
         session = self.session
         return [
-            *light_rows(session, self.edits),
+            *light_rows(session, self.edits, self.chosen, self.choose),
             Gap("view gap"),
             Steps("rescale", "RESCALE: move the three views farther or nearer.", step=self.zoom),
             Pair(
@@ -227,14 +239,3 @@ class LightAndViewScreen(Screen):
     def _tilt(self, steps: float) -> None:
         self.edits.tilt(steps * ANGLE)
         self.session.tell(f"angle {self.session.scene.view.angle:g} degrees")
-
-
-def side_at(element: int, line: int) -> Side | None:
-    """The view at a place."""
-    return next((side for side in SIDES if side.area.has(element, line)), None)
-
-
-def grip_of(handle: Handle) -> Grip:
-    """What a handle of this screen moves."""
-    assert isinstance(handle.key, Grip)
-    return handle.key

@@ -1,7 +1,7 @@
 """The items of one of the three views: the object, the eye, and the lights with their numbers.
 
 Lines of one color are drawn together, and those that did not change are kept: what takes time is the number
-of instructions. The chosen light lies over all others, the numbers over all lines.
+of instructions. What is chosen is yellow and lies over all others, the numbers over all lines.
 """
 
 from __future__ import annotations
@@ -13,9 +13,8 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
-from autocolor.scene.view import View
 from autocolor.screens.light_and_view.arrows import SHORTEST
-from autocolor.screens.light_and_view.eye_marks import LIDS, eye_marks
+from autocolor.screens.light_and_view.eye_marks import LIDS, EyeMarks, eye_marks
 from autocolor.screens.light_and_view.kept import Kept
 from autocolor.screens.light_and_view.light_marks import arrow_end, flap_marks, light_marks
 from autocolor.screens.light_and_view.numerals import Cross, numerals
@@ -36,6 +35,7 @@ class SideItems:
 
     def __init__(self, side: Side) -> None:
         self._side = side
+        self._eye: Kept[EyeMarks] = Kept()
         self._still: Kept[list[Item]] = Kept()
         self._chosen: Kept[list[Item]] = Kept()
         self._numerals: Kept[list[Item]] = Kept()
@@ -53,8 +53,8 @@ class SideItems:
     ) -> list[Item]:
         """The items of a scene, from the lowest to the highest.
 
-        `target` is that of the view, `chosen` the name of a light, and `moved` a point that is being placed,
-        through which lines run across the views.
+        `target` is that of the view, `chosen` the name of a light, empty for the eye, and `moved` a point
+        that is being placed, through which lines run across the views.
         """
         side, view = self._side, scene.view
         lights = list(enumerate(scene.lights, start=1))
@@ -62,9 +62,13 @@ class SideItems:
         others = [light for light in scene.lights if light.name != chosen]
         # The number of the chosen light makes way for the others, so that they stay where they are.
         ordered = sorted(lights, key=lambda each: each[1].name == chosen)
+        eye = self._eye.of(lambda: eye_marks(views, side, view, target), views, view, strokes)
 
         def still() -> list[Item]:
-            return still_items(views, side, view, target, strokes, others)
+            return still_items(views, side, eye, strokes, others, bool(ours))
+
+        def above() -> list[Item]:
+            return [item for light in ours for item in chosen_items(views, side, light)] or eye_items(eye)
 
         def numbers() -> list[Item]:
             return numeral_items(views, side, view.eye, ordered, chosen, self._label.area)
@@ -72,8 +76,8 @@ class SideItems:
         return [
             self._label,
             *([] if moved is None else [lines_across(views, side, moved)]),
-            *self._still.of(still, views, view, strokes, *others),
-            *self._chosen.of(lambda: chosen_items(views, side, ours), views, *ours),
+            *self._still.of(still, views, eye, strokes, bool(ours), *others),
+            *self._chosen.of(above, views, eye, *ours),
             *self._numerals.of(numbers, views, view, chosen, *scene.lights),
         ]
 
@@ -81,18 +85,17 @@ class SideItems:
 def still_items(
     views: OrthographicViews,
     side: Side,
-    view: View,
-    target: Vector,
+    eye: EyeMarks,
     strokes: ObjectStrokes,
     lights: Sequence[Light],
+    has_eye: bool,
 ) -> list[Item]:
-    """The object, the eye with the edges of the picture, and some lights, none of them chosen."""
-    eye = eye_marks(views, side, view, target)
+    """The object, the edges of the picture, and what is not chosen: some lights, and maybe the eye."""
     layers: dict[int, list[Floats]] = {
         SLATE: [strokes.stage, eye.picture],
         GRAY: [strokes.features],
         LIGHT_GRAY: [strokes.silhouette],
-        BLUE: [eye.direction, eye.eye],
+        BLUE: [eye.direction, eye.eye] if has_eye else [],
         WHITE: [],
     }
     for light in lights:
@@ -103,13 +106,17 @@ def still_items(
     return drawn_items(layers)
 
 
-def chosen_items(views: OrthographicViews, side: Side, lights: Sequence[Light]) -> list[Item]:
-    """The chosen light, if there is one, with its flaps."""
+def eye_items(eye: EyeMarks) -> list[Item]:
+    """The eye that is chosen, and its direction."""
+    return drawn_items({YELLOW: [eye.direction, eye.eye]})
+
+
+def chosen_items(views: OrthographicViews, side: Side, light: Light) -> list[Item]:
+    """The light that is chosen, with its flaps."""
     layers: dict[int, list[Floats]] = {GRAY: [], YELLOW: []}
-    for light in lights:
-        for mark in flap_marks(views, side, light):
-            layers[YELLOW if mark.on else GRAY].append(mark.stroke)
-        layers[YELLOW] += light_marks(views, side, light)
+    for mark in flap_marks(views, side, light):
+        layers[YELLOW if mark.on else GRAY].append(mark.stroke)
+    layers[YELLOW] += light_marks(views, side, light)
     return drawn_items(layers)
 
 

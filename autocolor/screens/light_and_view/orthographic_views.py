@@ -61,6 +61,11 @@ SIDES: Final = (TOP, FRONT, SIDE)
 """The three views. Assumed: x to the right and y up, x to the right and z up, y to the right and z up."""
 
 
+def side_at(element: float, line: float) -> Side | None:
+    """The view in whose area a place is; None beside them."""
+    return next((side for side in SIDES if side.area.has(element, line)), None)
+
+
 @dataclass(frozen=True)
 class OrthographicViews:
     """The coordinates in the middle of every area, and the one scale of all, in elements for each unit."""

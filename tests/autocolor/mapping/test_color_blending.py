@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Paint
-from autocolor.mapping.color_blending import blend_level, entries_of
+from autocolor.mapping.color_blending import blend_from, blend_level, entries_of
 from tests.autocolor.reference import entry_of
 from tests.autocolor.strategies import numbers, paints
 
@@ -27,6 +27,18 @@ def test_the_lowest_level_is_black_and_the_highest_the_light_color_at_100_percen
     assert entries[0].tolist() == [0, 0, 0]
     never = blend_level(paint.blend, levels) == levels - 1
     assert tuple(entries[-1].tolist()) == (paint.object_color if never else paint.light_color)
+
+
+@given(st.integers(1, 1007), st.data())
+def test_the_blend_from_a_level_has_that_level_and_no_digit_more_than_it_takes(
+    levels: int, data: st.DataObject
+) -> None:
+    level = data.draw(st.integers(0, levels - 1))
+    blend = blend_from(level, levels)
+    assert 0 <= blend <= 1
+    assert blend_level(blend, levels) == level
+    digits = len(f"{blend!r}") - 2
+    assert digits <= 2 or blend_level(round(level / (levels - 1), digits - 1), levels) != level
 
 
 @given(paints, st.integers(2, 300))

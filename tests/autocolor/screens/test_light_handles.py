@@ -146,6 +146,17 @@ def test_a_dragged_highlight_keeps_beside_the_menu(at_lights: Hand) -> None:
     assert hand.handle("highlight of key") == (WORK.right, 240)
 
 
+def test_a_highlight_is_not_dragged_under_the_menu(hand: Hand) -> None:
+    scene = scene_of(hand)
+    hand.viewer.session.edit(scene.replace(view=scene.view.replace(field_of_view=12.0)))
+    hand.viewer.on_key("tab")
+    hand.drag(hand.handle("highlight of key"), MIDDLE, (WORK.right + 40, 450))
+    assert hand.handle("highlight of key") == MIDDLE
+    assert hand.viewer.message == (
+        "the highlight of key must be placed on the picture, not on what covers it; choose another pixel"
+    )
+
+
 # The rims.
 
 

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from autocolor import Scene, read_scene
+from autocolor.scene.swatches import swatches
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand
@@ -92,6 +93,20 @@ def switch_a_light(hand: Hand) -> None:
     assert not hand.viewer.studio.scene.light("side").on
 
 
+def choose_any_paint(hand: Hand) -> None:
+    go_to(hand, "color mixing")
+    hand.pick("swatches")
+    hand.pick("paints", 0.7)
+    assert hand.viewer.studio.scene.surface("body").paint.object_color in set(map(tuple, swatches().tolist()))
+
+
+def blend(hand: Hand) -> None:
+    go_to(hand, "light blending")
+    hand.move(20, 20)
+    hand.pick("blend level", 0.5)
+    assert hand.viewer.studio.scene.surface("body").paint.blend == pytest.approx(0.5, abs=0.01)
+
+
 def turn_and_move_the_view(hand: Hand) -> None:
     hand.drag((300, 60), (340, 60), (360, 70))
     hand.open_menu()
@@ -132,6 +147,8 @@ TASKS: dict[str, Callable[[Hand], None]] = {
     "switch a cone on and off": switch_a_cone_on_and_off,
     "set intensity and concentration": set_intensity_and_concentration,
     "switch a light": switch_a_light,
+    "choose any paint": choose_any_paint,
+    "blend": blend,
     "turn and move the view": turn_and_move_the_view,
     "save": save,
     "undo": undo,

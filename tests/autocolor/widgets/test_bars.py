@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,6 +9,7 @@ from hypothesis import strategies as st
 from autocolor.errors import UsageError
 from autocolor.widgets.areas import Area
 from autocolor.widgets.bars import Bar, digits_of, number_text, rounded_to
+from autocolor.widgets.items import Item
 from autocolor.widgets.menu import WIDE_BAR
 from autocolor.widgets.widget import Place
 
@@ -85,6 +88,19 @@ def test_a_bar_is_set_by_pick_drag_step_and_text() -> None:
         bar.typed.take("much")
     assert str(refusal.value) == "bar must be a number, not 'much'; type one, such as 1.5"
     assert number.value == 0.75
+
+
+def test_a_row_has_no_more_digits_than_leave_its_label_whole() -> None:
+    def written(label: str, value: float, **fields: Any) -> list[Item]:
+        # After the ground of the row come the number and the label.
+        return Bar(label, area=ROW, value=value, step=0.1, **fields).items(lit=False)[1:3]
+
+    assert written("position x", -0.525909) == written("position x", -0.5)
+    assert written("x", -0.525909) != written("x", -0.5)
+    box = {"flip": lambda: None}
+    assert written("cone angle", 12.045, **box) == written("cone angle", 12.0, **box)
+    assert written("cone", 12.045, **box) != written("cone", 12.0, **box)
+    assert Bar("position x", area=ROW, value=-0.525909, step=0.1).typed.text == "-0.525909"
 
 
 def test_a_number_that_can_be_absent_has_a_box() -> None:

@@ -17,6 +17,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
     OrthographicViews,
     Side,
     fitted_views,
+    side_at,
 )
 from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import vectors
@@ -183,3 +184,9 @@ def test_no_size_of_the_object_makes_a_difference(size: float) -> None:
     expected = fitted_views(cube().coordinates).strokes(SIDE, cube().coordinates, pairs)
     coordinates = cube(size).coordinates
     assert fitted_views(coordinates).strokes(SIDE, coordinates, pairs) == pytest.approx(expected)
+
+
+def test_a_place_is_in_the_view_whose_area_holds_it_or_in_none() -> None:
+    assert [side_at(*side.area.middle) for side in SIDES] == list(SIDES)
+    assert side_at(250, 100) is None
+    assert side_at(380, 100) is None

@@ -1,0 +1,62 @@
+"""Pointing at the light and view screen: scenes, and a hand on the unit of a display that shows it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from autocolor import Light, Mesh, Scene, Surface, View, scene_of
+from autocolor.screens.light_and_view.grips import Grip
+from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
+from autocolor.screens.screen import Handle
+from autocolor.screens.viewer import Viewer
+from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import cube
+from tests.autocolor.screens.hand import Hand
+
+KEY = Light("key", (2.0, -3.0, 4.0), aim=(0.5, 0.5, 0.5), concentration=2.0)
+FILL = Light("fill", (-3.0, -3.0, 1.0), intensity=0.5)
+
+
+def boxed(*lights: Light) -> Scene:
+    """A cube of two surfaces under some lights."""
+    mesh = Mesh(cube().coordinates, cube().node_numbers, np.array([0, 0, 0, 1, 1, 1]), ("low", "high"))
+    surfaces = [Surface("low"), Surface("high")]
+    view = View((-2.0, -3.0, 2.0), target=(0.5, 0.5, 0.5))
+    return scene_of(mesh, surfaces=surfaces, lights=list(lights), view=view, name="box")
+
+
+def opened(scene: Scene) -> Hand:
+    """A hand on the unit of a display that shows the light and view screen of a scene."""
+    viewer = Viewer(scene, Ramtek9300())
+    viewer.session.turn_to("light and view")
+    viewer.tell("")
+    return Hand(viewer)
+
+
+def screen_of(hand: Hand) -> LightAndViewScreen:
+    """The light and view screen that is shown."""
+    screen = hand.viewer.board.screen
+    assert isinstance(screen, LightAndViewScreen)
+    return screen
+
+
+def scene_of_hand(hand: Hand) -> Scene:
+    """The scene now."""
+    return hand.viewer.studio.scene
+
+
+def handle_of(hand: Hand, grip: Grip) -> Handle:
+    """The first handle of something."""
+    return next(each for each in screen_of(hand).handles() if each.key == grip)
+
+
+def place_of(hand: Hand, grip: Grip) -> tuple[int, int]:
+    """Where something can be taken hold of."""
+    handle = handle_of(hand, grip)
+    return handle.element, handle.line
+
+
+def is_undone_at_once(hand: Hand, before: Scene) -> bool:
+    """Whether one step of undo brings a scene back, and there is no other step before it."""
+    studio = hand.viewer.studio
+    return studio.undo() and studio.scene == before and not studio.undo()

@@ -1,0 +1,433 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Flap, Flaps, Light, Scene, View
+from autocolor.screens.light_and_view.areas import FRONT_AREA, PICTURE_AREA, SIDE_AREA, TOP_AREA
+from autocolor.screens.light_and_view.grips import AIM, DIRECTION, EYE, FLAP, LIGHT, TARGET, Grip
+from autocolor.screens.light_and_view.orthographic_views import FRONT, SIDE, SIDES, TOP, Side
+from autocolor.studio import Studio
+from autocolor.widgets.areas import Area
+from autocolor.widgets.colors import ORANGE, SLATE, YELLOW
+from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.hand import Hand
+from tests.autocolor.screens.light_and_view.pointing import (
+    FILL,
+    KEY,
+    boxed,
+    handle_of,
+    is_undone_at_once,
+    opened,
+    place_of,
+    scene_of_hand,
+    screen_of,
+)
+
+unit = st.floats(-3.0, 3.0)
+
+
+def places(area: Area) -> st.SearchStrategy[tuple[int, int]]:
+    return st.tuples(st.integers(area.left, area.right), st.integers(area.top, area.bottom))
+
+
+def where(hand: Hand, side: Side, light: str = "key") -> tuple[float, float]:
+    """Where a light is in one of the views, now."""
+    return screen_of(hand).views.position(side, scene_of_hand(hand).light(light).position)
+
+
+@given(
+    st.tuples(unit, unit, unit),
+    st.booleans(),
+    st.integers(-4, 0),
+    places(TOP_AREA),
+    st.integers(FRONT_AREA.top, FRONT_AREA.bottom),
+)
+def test_two_drags_in_two_views_put_a_light_at_the_picked_coordinates_to_a_pixel(
+    position: tuple[float, float, float], has_aim: bool, zoom: int, place: tuple[int, int], line: int
+) -> None:
+    light = KEY.replace(position=position) if has_aim else Light("key", position)
+    hand = opened(boxed(light))
+    screen_of(hand).zoom(zoom)
+    z = position[2]
+    element = place[0]
+
+    hand.drag(place_of(hand, Grip(LIGHT, "top", "key")), (120, 110), place)
+    now = scene_of_hand(hand).light("key").position
+    assert now[2] == z
+    assert where(hand, TOP) == pytest.approx(place, abs=0.6)
+
+    grips = [each.key for each in screen_of(hand).handles()]
+    if Grip(LIGHT, "front", "key") in grips:
+        hand.drag(place_of(hand, Grip(LIGHT, "front", "key")), (element, line))
+        after = scene_of_hand(hand).light("key").position
+        # The element is that of the top view: y does not move, and x is where it was.
+        assert after[:2] == now[:2]
+        assert where(hand, FRONT) == pytest.approx((element, line), abs=0.6)
+
+
+@pytest.mark.parametrize(("side", "unseen"), [(TOP, 2), (FRONT, 1), (SIDE, 0)])
+@pytest.mark.parametrize("what", [EYE, TARGET, LIGHT, AIM])
+def test_a_drag_never_moves_the_coordinate_that_its_view_does_not_show(
+    what: str, side: Side, unseen: int
+) -> None:
+    hand = opened(boxed(KEY))
+    before = scene_of_hand(hand)
+    grip = Grip(what, side.name, "key" if what in (LIGHT, AIM) else "")
+    if what == TARGET:
+        # The aim of the light is at the same place.
+        hand.pick("eye")
+    start = grip.point_in(before, screen_of(hand).views)
+    element, line = place_of(hand, grip)
+    hand.drag((element, line), (element + 9, line - 4), (element + 21, line - 17))
+    end = grip.point_in(scene_of_hand(hand), screen_of(hand).views)
+    assert start is not None
+    assert end is not None
+    assert [number for number in range(3) if start[number] != end[number]] == sorted({side.right, side.up})
+    assert unseen not in (side.right, side.up)
+    assert screen_of(hand).views.position(side, end) == pytest.approx((element + 21, line - 17), abs=0.6)
+    assert is_undone_at_once(hand, before)
+
+
+def test_a_light_is_moved_by_two_picks_as_in_the_paper() -> None:
+    hand = opened(boxed(KEY, FILL))
+    before = scene_of_hand(hand)
+    hand.click(*place_of(hand, Grip(LIGHT, "top", "fill")))
+    assert hand.viewer.session.light_name == "fill"
+    assert hand.viewer.message == "fill: x -3  y -3  z 1: pick its new place"
+    assert scene_of_hand(hand) is before
+    hand.click(200, 60)
+    after = scene_of_hand(hand).light("fill").position
+    assert after[2] == 1.0
+    assert where(hand, TOP, "fill") == pytest.approx((200, 60), abs=0.6)
+    assert hand.viewer.message.startswith("fill: x ")
+    hand.click(*place_of(hand, Grip(LIGHT, "side", "fill")))
+    hand.click(300, 250)
+    assert scene_of_hand(hand).light("fill").position[0] == after[0]
+    assert where(hand, SIDE, "fill") == pytest.approx((300, 250), abs=0.6)
+    assert hand.viewer.studio.undo()
+    assert is_undone_at_once(hand, before)
+
+
+@pytest.mark.parametrize("place", [(300, 300), (300, 100), (250, 100)])
+def test_a_pick_outside_of_its_view_is_refused_in_one_sentence(place: tuple[int, int]) -> None:
+    hand = opened(boxed(KEY))
+    before = scene_of_hand(hand)
+    hand.click(*place_of(hand, Grip(LIGHT, "top", "key")))
+    hand.click(*place)
+    assert scene_of_hand(hand) is before
+    assert hand.viewer.session.news.is_warning
+    assert hand.viewer.message == "key: its new place must be in the top view; pick it there"
+    assert (words_of(hand)[464:] == ORANGE).any()
+    # The light is still held.
+    hand.click(100, 90)
+    assert where(hand, TOP) == pytest.approx((100, 90), abs=0.6)
+    assert is_undone_at_once(hand, before)
+
+
+def test_the_lines_of_a_light_that_is_held_go_when_it_is_let_go_of() -> None:
+    hand = opened(boxed(KEY))
+    for let_go in (
+        lambda: hand.viewer.on_key("escape"),
+        lambda: hand.pick("display"),
+        lambda: hand.drag((20, 440), (21, 440)),
+        lambda: hand.click(150, 150),
+    ):
+        element, line = place_of(hand, Grip(LIGHT, "top", "key"))
+        hand.click(element, line)
+        assert (words_of(hand)[240:440, element] == SLATE).sum() > 150
+        let_go()
+        hand.move(20, 440)
+        assert (words_of(hand)[240:440, element] == SLATE).sum() < 100
+
+
+def words_of(hand: Hand) -> np.ndarray[tuple[int, int], np.dtype[np.uint16]]:
+    assert isinstance(hand.viewer.display, Ramtek9300)
+    return hand.viewer.display.words.reshape(480, 640)
+
+
+def test_a_light_that_is_dragged_beyond_its_view_stays_at_the_edge() -> None:
+    hand = opened(boxed(KEY))
+    hand.drag(place_of(hand, Grip(LIGHT, "top", "key")), (300, 120), (400, 300))
+    assert where(hand, TOP) == pytest.approx((TOP_AREA.right, TOP_AREA.bottom), abs=0.6)
+    hand.drag(place_of(hand, Grip(LIGHT, "side", "key")), (10, 10))
+    assert where(hand, SIDE) == pytest.approx((SIDE_AREA.left, SIDE_AREA.top), abs=0.6)
+
+
+def test_a_point_that_is_dragged_has_lines_across_the_views_and_tells_its_coordinates() -> None:
+    hand = opened(boxed(KEY))
+    clear = words_of(hand).copy()
+    hand.move(*place_of(hand, Grip(LIGHT, "top", "key")))
+    hand.joystick.track = True
+    hand.viewer.poll()
+    hand.move(40, 60)
+    x, y, z = scene_of_hand(hand).light("key").position
+    assert hand.viewer.message == f"key: x {x:.6g}  y {y:.6g}  z {z:.6g}"
+    for line in (20, 215, 240, 450):
+        assert words_of(hand)[line, 40] == SLATE != clear[line, 40]
+    assert words_of(hand)[60, 230] == SLATE
+    hand.joystick.track = False
+    hand.viewer.poll()
+    assert words_of(hand)[450, 40] == clear[450, 40]
+
+
+def test_escape_takes_a_drag_back() -> None:
+    hand = opened(boxed(KEY))
+    before = scene_of_hand(hand)
+    hand.move(*place_of(hand, Grip(LIGHT, "front", "key")))
+    hand.joystick.track = True
+    hand.viewer.poll()
+    hand.move(40, 300)
+    hand.move(60, 400)
+    assert scene_of_hand(hand) != before
+    hand.viewer.on_key("escape")
+    assert scene_of_hand(hand) == before
+    assert not hand.viewer.studio.undo()
+    hand.move(100, 350)
+    hand.joystick.track = False
+    hand.viewer.poll()
+    assert scene_of_hand(hand) == before
+    assert words_of(hand)[450, 60] != SLATE
+
+
+def test_a_place_that_the_scene_refuses_is_told_and_the_drag_goes_on() -> None:
+    hand = opened(boxed(Light("key", (2.0, -3.0, 0.5), aim=(0.5, 0.5, 0.5))))
+    before = scene_of_hand(hand)
+    # Put the light where the pixel of a place is, then the aim there, and the light back.
+    views = screen_of(hand).views
+    point = views.placed(TOP, (2.0, -3.0, 0.5), 60, 70)
+    hand.viewer.session.change_light("key", aim=point)
+    hand.viewer.tell("")
+    aimed = scene_of_hand(hand)
+    hand.move(*place_of(hand, Grip(LIGHT, "top", "key")))
+    hand.joystick.track = True
+    hand.viewer.poll()
+    hand.move(100, 100)
+    near = scene_of_hand(hand)
+    assert near != aimed
+    hand.move(60, 70)
+    assert scene_of_hand(hand) is near
+    assert hand.viewer.session.news.is_warning
+    assert "the aim must not be the position" in hand.viewer.message
+    hand.move(50, 90)
+    assert where(hand, TOP) == pytest.approx((50, 90), abs=0.6)
+    assert not hand.viewer.session.news.is_warning
+    hand.joystick.track = False
+    hand.viewer.poll()
+    hand.viewer.studio.undo()
+    assert scene_of_hand(hand) == aimed
+    assert is_undone_at_once(hand, before)
+
+
+def test_a_direction_depends_on_where_its_end_was_put_and_not_on_the_way_there() -> None:
+    spot = Light("key", (0.0, 0.0, 3.0), direction=(0.3, 0.2, -1.0))
+    found = []
+    for way in ([], [(30, 30), (200, 200), (20, 200)]):
+        hand = opened(boxed(spot))
+        before = scene_of_hand(hand)
+        hand.drag(place_of(hand, Grip(DIRECTION, "top", "key")), *way, (180, 90))
+        light = scene_of_hand(hand).light("key")
+        found.append(light.axis)
+        assert light.position == spot.position
+        assert light.aim is None
+        assert is_undone_at_once(hand, before)
+    assert found[0] == found[1] != spot.axis
+
+
+def test_a_view_without_a_target_looks_where_the_end_of_its_arrow_was_put() -> None:
+    hand = opened(boxed(KEY).replace(view=View((-2.0, -3.0, 2.0), direction=(2.5, 3.5, -1.5))))
+    before = scene_of_hand(hand).view
+    hand.pick("eye")
+    element, line = place_of(hand, Grip(TARGET, "top"))
+    hand.drag((element, line), (element + 60, line), (element, line - 30))
+    view = scene_of_hand(hand).view
+    assert view.target is None
+    assert view.eye == before.eye
+    assert view.axes[2][1] > before.axes[2][1]
+
+
+@pytest.mark.parametrize(("end", "low", "high"), [("minimum", 0.9, 0.9), ("maximum", 0.1, 0.1)])
+def test_an_end_of_a_flap_is_dragged_as_far_as_the_other(end: str, low: float, high: float) -> None:
+    hand = opened(boxed(KEY.replace(flaps=Flaps(z=Flap(0.1, 0.9)))))
+    before = scene_of_hand(hand)
+    grip = Grip(FLAP, "front", "key", "z", end)
+    element, line = place_of(hand, grip)
+    hand.drag((element, line), (element, line + 3), (element, 240 if end == "minimum" else 450))
+    assert scene_of_hand(hand).light("key").flaps.z == Flap(low, high)
+    assert hand.viewer.message == f"key: flap z, {end} {low:g}"
+    assert is_undone_at_once(hand, before)
+
+
+def test_an_end_of_a_flap_is_put_where_the_second_pick_is() -> None:
+    hand = opened(boxed(KEY.replace(flaps=Flaps(x=Flap(-1.0, 2.0)))))
+    grip = Grip(FLAP, "top", "key", "x", "maximum")
+    hand.click(*place_of(hand, grip))
+    hand.click(200, 30)
+    flap = scene_of_hand(hand).light("key").flaps.x
+    assert flap is not None
+    assert flap.minimum == -1.0
+    element, _ = screen_of(hand).views.position(TOP, (flap.maximum, 0.0, 0.0))
+    assert element == pytest.approx(200, abs=0.6)
+    assert (words_of(hand)[30:200, 200] == YELLOW).all()
+
+
+def test_the_switch_of_a_flap_keeps_its_ends() -> None:
+    hand = opened(boxed(KEY.replace(flaps=Flaps(z=Flap(0.1, 0.9)))))
+    before = scene_of_hand(hand)
+    hand.pick("key: flap z, maximum, side", 0.5)
+    assert scene_of_hand(hand).light("key").flaps.z == Flap(0.1, 0.9, on=False)
+    assert is_undone_at_once(hand, before)
+
+
+def test_dragging_beside_everything_moves_the_views_together_and_no_edit_is_made() -> None:
+    hand = opened(boxed(KEY))
+    before, scene = screen_of(hand).views, scene_of_hand(hand)
+    point = (0.5, 0.5, 0.5)
+    hand.drag((20, 440), (30, 430), (40, 420))
+    after = screen_of(hand).views
+    element, line = before.position(FRONT, point)
+    assert after.position(FRONT, point) == pytest.approx((element + 20, line - 20))
+    assert after.position(TOP, point)[0] == pytest.approx(before.position(TOP, point)[0] + 20)
+    assert after.position(SIDE, point)[1] == pytest.approx(before.position(SIDE, point)[1] - 20)
+    assert scene_of_hand(hand) is scene
+
+
+def test_rescale_moves_nearer_and_farther_and_fits_everything_with_space_on_all_sides() -> None:
+    hand = opened(boxed(KEY, FILL))
+    scale = screen_of(hand).views.scale
+    hand.pick("rescale", 0.95)
+    assert screen_of(hand).views.scale == pytest.approx(1.25 * scale)
+    hand.pick("rescale", 0.05)
+    assert screen_of(hand).views.scale == pytest.approx(scale)
+    far = (40.0, -30.0, 20.0)
+    hand.viewer.session.change_light("key", position=far)
+    hand.pick("fit all", 0.25)
+    assert screen_of(hand).views.scale < scale / 3
+    for side in SIDES:
+        element, line = screen_of(hand).views.position(side, far)
+        assert side.area.inset(15).has(element, line)
+    hand.pick("fit all", 0.75)
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float64)
+    for side in SIDES:
+        spots = screen_of(hand).views.positions(side, corners)
+        assert all(side.area.inset(15).has(*spot) for spot in spots.tolist())
+    assert screen_of(hand).views.scale > 2 * scale
+    hand.pick("fit surface")
+    assert hand.viewer.message == "the views show low"
+
+
+def test_angle_and_frame_change_the_view_by_one_step_each() -> None:
+    hand = opened(boxed(KEY))
+    before = scene_of_hand(hand)
+    hand.pick("angle", 0.95)
+    assert scene_of_hand(hand).view.angle == 5.0
+    assert hand.viewer.message == "angle 5 degrees"
+    assert is_undone_at_once(hand, before)
+    hand.pick("frame")
+    assert scene_of_hand(hand).view.eye != before.view.eye
+    assert is_undone_at_once(hand, before)
+
+
+def test_dragging_the_picture_turns_around_the_object() -> None:
+    hand = opened(boxed(KEY))
+    before = scene_of_hand(hand)
+    element, line = (round(each) for each in PICTURE_AREA.middle)
+    hand.drag((element, line), (element + 5, line), (element + 20, line + 10))
+    assert scene_of_hand(hand).view.eye != before.view.eye
+    assert is_undone_at_once(hand, before)
+
+
+def test_the_wheel_rescales_the_views_and_moves_the_eye_over_the_picture() -> None:
+    hand = opened(boxed(KEY))
+    scale, eye = screen_of(hand).views.scale, scene_of_hand(hand).view.eye
+    hand.viewer.on_pointer(20, 440, "wheel up", steps=2)
+    assert screen_of(hand).views.scale == pytest.approx(1.25 * scale)
+    assert scene_of_hand(hand).view.eye == eye
+    hand.viewer.on_pointer(380, 100, "wheel up")
+    assert scene_of_hand(hand).view.eye != eye
+
+
+def test_a_light_becomes_a_point_source_and_is_aimed_again_by_pointing() -> None:
+    hand = opened(boxed(KEY))
+    hand.pick("kind", 0.05)
+    light = scene_of_hand(hand).light("key")
+    assert (light.aim, light.direction, light.concentration) == (None, None, 0.0)
+    assert not any(each.key.what == AIM for each in screen_of(hand).handles() if isinstance(each.key, Grip))
+    hand.pick("kind", 0.9)
+    assert scene_of_hand(hand).light("key").aim == (0.5, 0.5, 0.5)
+    assert handle_of(hand, Grip(AIM, "top", "key")).label == "key: aim: x 0.5  y 0.5  z 0.5"
+
+
+def test_the_message_line_tells_what_is_where_the_pointer_is() -> None:
+    hand = opened(boxed(KEY))
+    hand.move(*place_of(hand, Grip(EYE, "top")))
+    assert hand.viewer.board.message[0] == "eye: x -2  y -3  z 2"
+    hand.move(20, 440)
+    assert hand.viewer.board.message[0].startswith("front: x ")
+    hand.move(380, 100)
+    assert hand.viewer.board.message[0].startswith("The view: ")
+    hand.move(250, 228)
+    assert hand.viewer.board.message[0] == screen_of(hand).help
+
+
+def test_what_is_chosen_is_yellow() -> None:
+    hand = opened(boxed(KEY, FILL))
+    counts = []
+    for grip in (Grip(LIGHT, "top", "key"), Grip(EYE, "top"), Grip(LIGHT, "top", "fill")):
+        element, line = place_of(hand, grip)
+        for place in ((element, line), (element, line)):
+            hand.click(*place)
+        row = words_of(hand)[line, element - 4 : element + 5]
+        counts.append((row == YELLOW).sum())
+        assert screen_of(hand).chosen == grip.light
+    assert counts[0] == counts[2] == 9
+    assert counts[1] >= 3
+    assert scene_of_hand(hand).lights == boxed(KEY, FILL).lights
+
+
+def fresh(scene: Scene) -> tuple[bytes, bytes]:
+    display = Ramtek9300()
+    Studio(scene, display)
+    return display.words.tobytes(), display.entries.tobytes()
+
+
+def test_leaving_restores_the_picture_byte_for_byte() -> None:
+    hand = opened(boxed(KEY.replace(flaps=Flaps(z=Flap(0.1, 0.9))), FILL))
+    hand.drag(place_of(hand, Grip(LIGHT, "top", "key")), (60, 60), (90, 80))
+    hand.pick("display", 0.9)
+    for _ in range(6):
+        hand.viewer.on_tick()
+    hand.pick("< picture")
+    hand.move(100, 100)
+    hand.viewer.tell("")
+    display = hand.viewer.display
+    assert isinstance(display, Ramtek9300)
+    assert (display.words.tobytes(), display.entries.tobytes()) == fresh(scene_of_hand(hand))
+
+
+def test_a_page_that_changed_step_by_step_is_the_page_drawn_at_once() -> None:
+    hand = opened(boxed(KEY.replace(flaps=Flaps(z=Flap(0.1, 0.9))), FILL))
+    for _ in range(6):
+        hand.viewer.on_tick()
+    hand.drag(place_of(hand, Grip(LIGHT, "top", "fill")), (60, 60), (90, 80))
+    hand.drag(place_of(hand, Grip(EYE, "front")), (60, 300), (90, 350))
+    hand.pick("display", 0.9)
+    for _ in range(6):
+        hand.viewer.on_tick()
+    hand.move(100, 216)
+    hand.viewer.tell("")
+    before = words_of(hand).copy()
+    hand.viewer._sheet.forget()
+    hand.viewer.tell("")
+    assert np.array_equal(before, words_of(hand))
+
+
+def test_a_scene_without_lights_shows_the_eye_alone() -> None:
+    hand = opened(boxed())
+    assert screen_of(hand).widgets() == []
+    assert {each.label.split(":")[0] for each in screen_of(hand).handles()} == {"eye", "target"}
+    element, line = place_of(hand, Grip(EYE, "top"))
+    hand.drag((element, line), (element + 20, line + 9))
+    assert scene_of_hand(hand).view.eye[2] == 2.0

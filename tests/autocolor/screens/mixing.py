@@ -1,0 +1,63 @@
+"""A hand at the color mixing screen, and whether its ramps and its blend bar show what they should."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from autocolor import Scene
+from autocolor.screens.mixing_screen import BLEND
+from autocolor.screens.viewer import Viewer
+from autocolor.widgets.areas import Area
+from autocolor.widgets.level_bars import LANE
+from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.painting_hand import PaintingHand
+
+STRIP = Area(BLEND.left, BLEND.top + LANE, BLEND.right, BLEND.bottom - LANE)
+RAMPS = {"light source": Area(8, 24, 167, 119), "object": Area(8, 192, 167, 287)}
+ZERO = 192
+"""The element of a bar at which a component is 0; each of the next is one more."""
+
+
+def mixing(scene: Scene, folder: Path) -> PaintingHand:
+    """A hand at the color mixing screen of a scene."""
+    hand = PaintingHand(Viewer(scene, Ramtek9300(), folder))
+    hand.turn_to("color mixing")
+    assert hand.viewer.page == "mixing"
+    return hand
+
+
+def line_of(hand: PaintingHand, bar: str) -> int:
+    """The line in the middle of a bar."""
+    area = hand.widget(bar).area
+    return (area.top + area.bottom) // 2
+
+
+def ramps_are_right(hand: PaintingHand) -> bool:
+    """Whether step k of the 64 of each ramp is k / 63 of its color, rounded half up."""
+    steps = np.floor(np.arange(160) * 63 / 159 + 0.5)
+    paint = hand.paint
+    return all(
+        np.array_equal(
+            hand.colors(RAMPS[title]),
+            np.broadcast_to(np.floor(np.outer(steps, color) / 63 + 0.5), (96, 160, 3)),
+        )
+        for title, color in (("light source", paint.light_color), ("object", paint.object_color))
+    )
+
+
+def bar_is_right(hand: PaintingHand, most_off: int = 0) -> bool:
+    """Whether the blend bar has the entries of the surface's levels, rising to the right."""
+    first, levels = hand.viewer.studio.level_ranges[hand.viewer.session.surface_name]
+    entries = hand.viewer.studio.entries[first : first + levels]
+    wanted = np.floor(np.arange(STRIP.width) * (levels - 1) / (STRIP.width - 1) + 0.5).astype(int)
+    seen = hand.colors(STRIP)
+    return all(
+        any(
+            np.array_equal(seen[line, element], entries[np.clip(level + off, 0, levels - 1)])
+            for off in range(-most_off, most_off + 1)
+        )
+        for line in (0, STRIP.height - 1)
+        for element, level in enumerate(wanted)
+    )
