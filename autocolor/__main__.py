@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import os
+
 from autocolor.commands.autocolor import autocolor
 from ramtek_emu.command_line import run_command
 
 
 def main() -> None:
     """Run the command that the arguments name."""
+    # Products of so few rows take as long in one thread. On a machine that others use as well, a light takes
+    # five times as long in two, because they wait for each other. Numpy reads this when it is imported.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     run_command(autocolor, "autocolor")
 
 

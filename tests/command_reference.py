@@ -72,6 +72,7 @@ COMMANDS = (
     (66, "autocolor render nothing.obj"),
     (66, "ramtek play nothing.ramtek"),
     (69, "autocolor view car"),
+    (69, "autocolor tutorial"),
     (69, "autocolor show car --to tcp://127.0.0.1:1"),
     (69, "ramtek"),
     (73, "autocolor render car -o here.png"),
@@ -109,6 +110,7 @@ LEFT = " | true"
 
 LINES = (
     "autocolor re",
+    "autocolor t",
     "autocolor render ",
     "autocolor render car/",
     "autocolor render car --light ",

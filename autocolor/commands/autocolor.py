@@ -28,7 +28,8 @@ class AutocolorGroup(CommandGroup):
         "view": "show a scene in an interactive window",
         "info": "print the counts, sizes and ranges of a scene",
         "validate": "list every problem of a scene",
-        "show": "render a scene and show it on a display over TCP",
+        "show": "show a scene in the interactive system on a display elsewhere",
+        "tutorial": "learn the interactive system step by step on the built-in demo",
         "tables": "print or write the tables of a scene, including created ones",
     }
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from autocolor.errors import MissingInputError
 
 if TYPE_CHECKING:
+    from autocolor.journal.history import History
     from autocolor.scene.scene import Scene
 
 PACKAGE: Final = Path(__file__).resolve().parents[1]
@@ -29,3 +30,14 @@ def demo() -> Scene:
     from autocolor.files.scene_sources import read_scene
 
     return read_scene(demo_folder()).replace(name="coupe")
+
+
+def demo_session() -> History:
+    """A session with the demo. Raises MissingInputError if it is not installed."""
+    from autocolor.files.scene_sources import read_scene
+    from autocolor.journal.history import History
+    from autocolor.journal.places import Place, Source
+
+    folder = demo_folder()
+    # The demo was not named by the user: it is saved to new files, wherever it is.
+    return History(read_scene(folder), Place(Source(str(folder))))

@@ -84,21 +84,23 @@ def view(
 
 def show_demo() -> None:
     """Show the built-in demo in a window."""
-    from autocolor.commands.demo import demo_folder
-    from autocolor.files.scene_sources import read_scene
-    from autocolor.journal.history import History
-    from autocolor.journal.places import Place, Source
+    from autocolor.commands.demo import demo_session
 
-    folder = demo_folder()
-    # The demo was not named by the user: it is saved to new files, wherever it is.
-    show(History(read_scene(folder), Place(Source(str(folder)))))
+    show(demo_session())
 
 
-def show(history: History, full_screen: bool = False, fit: bool = False, left: Path | None = None) -> None:
+def show(
+    history: History,
+    full_screen: bool = False,
+    fit: bool = False,
+    left: Path | None = None,
+    prepare: Callable[[Viewer], object] = lambda _: None,
+) -> None:
     """Show the scene of a session in a window until that is closed.
 
     The journal of the session is kept in the state folder until then; `left` is its folder there if it was
-    left before. Raises UnavailableError if there is no screen.
+    left before. `prepare` is called with the viewer at the beginning. Raises UnavailableError if there is no
+    screen.
     """
     from autocolor.commands.kept_session import kept_session
     from autocolor.errors import UnavailableError
@@ -112,6 +114,7 @@ def show(history: History, full_screen: bool = False, fit: bool = False, left: P
         display = Ramtek9300()
         viewer = Viewer(history, display)
         viewer.session.is_at_hand = True
+        prepare(viewer)
         with kept_session(viewer, left) as update:
             monitor_of(viewer, display, full_screen, fit, update).run()
     except NoScreenError as error:
@@ -143,6 +146,8 @@ def monitor_of(
         update()
         if monitor.caption != viewer.caption:
             monitor.caption = viewer.caption
+        if viewer.session.leaves:
+            monitor.close()
 
     monitor = Monitor(
         display,

@@ -6,7 +6,7 @@ shows. It knows screens by their interface alone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Final
 
@@ -36,6 +36,8 @@ class Board:
         self.session = session
         self.screens = screens
         self.typing = TypingLine(session)
+        self.over: Callable[[], Sequence[Widget]] = tuple
+        """What stands over every screen, the topmost first: a panel that is there for a while."""
         self.is_pinned = False
         """Whether the menu was asked for; else it goes when the pointer leaves it."""
         self.has_focus = False
@@ -91,8 +93,10 @@ class Board:
 
     def layout(self) -> Layout:
         """What can be pointed at now."""
+        over = self.over()
         covers = ([MENU] if self.has_menu else []) + ([MESSAGE] if self._has_message else [])
-        return Layout(self.screen, self.menu_rows(), self._wide, covers)
+        covers += [each.area for each in over]
+        return Layout(self.screen, self.menu_rows(), self._wide, covers, over)
 
     def menu_rows(self) -> list[Widget]:
         """The rows of the menu, laid out."""

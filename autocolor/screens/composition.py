@@ -34,7 +34,7 @@ class Composition:
         """The page."""
         layout, screen = self.layout, self.layout.screen
         items = list(screen.items())
-        for widget in layout.others:
+        for widget in (*layout.others, *reversed(layout.over)):
             items += widget.items(widget is self.lit and not widget.why_not)
         if self.has_message:
             line, ink = self.message

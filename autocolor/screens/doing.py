@@ -10,7 +10,7 @@ from autocolor.errors import AutocolorError
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import cost_of_edit
 from autocolor.screens.session import Session
-from ramtek_emu import RamtekError
+from ramtek_emu import PortError, RamtekError, ReplyError
 
 REST_SECONDS: Final = 0.1
 """Assumed: the time without a change after which a movement rests that has not ended by a release: while a
@@ -68,6 +68,9 @@ class Doing:
             if run() is False:
                 session.news = news
                 return False
+        except (PortError, ReplyError):
+            # Without the display and its replies, there is nothing to show a message on.
+            raise
         except (AutocolorError, RamtekError) as error:
             session.warn(error)
         # A warning applies to the next key only.

@@ -29,6 +29,8 @@ class Layout:
     wide_key: str
     """The key of the row whose wide bar is shown, if it is on this page of the menu."""
     covers: Sequence[Area]
+    over: Sequence[Widget] = ()
+    """The widgets over every screen, the topmost first."""
 
     @property
     def has_menu(self) -> bool:
@@ -54,7 +56,8 @@ class Layout:
     @property
     def widgets(self) -> list[Widget]:
         """Everything that can be pointed at, the topmost first."""
-        return [*([self.wide] if self.wide is not None else []), *self.rows, *self.others]
+        wide = [self.wide] if self.wide is not None else []
+        return [*wide, *self.over, *self.rows, *self.others]
 
     def is_covered(self, element: int, line: int) -> bool:
         """Whether the menu, its wide bar or the message line is at a place."""
@@ -79,7 +82,7 @@ class Layout:
 
     def lit(self, key: str, area: Area) -> Widget | None:
         """The row or widget that has a key; of several, the one at an area."""
-        found = [each for each in (*self.rows, *self.others) if each.key == key]
+        found = [each for each in (*self.over, *self.rows, *self.others) if each.key == key]
         return next((each for each in found if each.area == area), found[0] if found else None)
 
     def now(self, grabbed: Widget) -> Widget | None:

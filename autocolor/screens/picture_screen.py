@@ -86,6 +86,10 @@ class PictureScreen(OverPicture):
                 "" if edits.chosen_parts else "click at a part in the picture first",
                 run=edits.rescale_part,
             ),
+            Gap("leave gap"),
+            Button(
+                "leave", "Leave the program; changes that are not saved are told first.", run=session.leave
+            ),
         ]
 
     def _light_rows(self) -> list[Widget]:

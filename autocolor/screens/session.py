@@ -67,6 +67,8 @@ class Session:
         """The part that was pointed at last, if any."""
         self._light = ""
         self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
+        self._refused_to_leave: Scene | None = None
+        """The scene whose changes leaving would have discarded, when the user was told so last."""
         self.news = News("", False, 0.0)
         """The last message."""
 
@@ -250,3 +252,14 @@ class Session:
     def redo(self) -> None:
         """Redo the last undone step."""
         self.tell("redone" if self.studio.redo() else "nothing to redo")
+
+    # The end.
+
+    def leave(self) -> None:
+        """Ask to leave the program; changes that are not saved are told first, and the next time lost."""
+        unsaved = self.studio.is_changed or self.studio.history.left_unsaved
+        if unsaved and self._refused_to_leave is not self.scene:
+            self._refused_to_leave = self.scene
+            self.warn("not saved: save it, or leave once more to discard the changes")
+        else:
+            self.leaves = True

@@ -261,3 +261,13 @@ class Viewer:
     def save(self) -> None:
         """Save the scene and the picture."""
         self.session.save()
+
+    def clear(self) -> None:
+        """Leave the picture alone on the display, without menu, message and cursors."""
+        self._watching.end()
+        self.session.turn_to(PICTURE)
+        self.board.turn()
+        self.board.close()
+        self.session.tell("")
+        self._update()
+        self._unit.hide()

@@ -38,6 +38,8 @@ class Item(NamedTuple):
     area: Area
     stream: bytes
     is_solid: bool = False
+    word: int | None = None
+    """The word that fills it whole, if it is of one."""
 
 
 @lru_cache(maxsize=4096)
@@ -46,7 +48,7 @@ def filled(area: Area, word: int) -> Item:
     drawn = area.within(DRAWABLE)
     if drawn.is_empty:
         return Item(area, b"")
-    return Item(drawn, instructions.erase(drawn, word).tobytes(), is_solid=True)
+    return Item(drawn, instructions.erase(drawn, word).tobytes(), True, word)
 
 
 @lru_cache(maxsize=4096)

@@ -9,6 +9,7 @@ transfer to the display.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from autocolor.arrays import Bytes, Words
 from autocolor.mapping.level_ranges import BACKGROUND
 from autocolor.sending import configuration_of, encoder_of_entries
 from autocolor.widgets.areas import Area
-from autocolor.widgets.items import Item
+from autocolor.widgets.items import Item, filled
 from ramtek_emu import HostPort, instructions
 
 
@@ -69,20 +70,28 @@ class Sheet:
             if len(differing):
                 first, last = int(differing[0]), int(differing[-1])
                 yield self._encode_entries(first, page.entries[first : last + 1])
-        if before is None or not _is_same(page.base, before.base):
-            yield from _restored(page.base, uncovered(self._whole, page.items))
+        whole = uncovered(self._whole, page.items)
+        if before is None:
+            yield from _restored(page.base, whole)
             redrawn = list(page.items)
         else:
-            restored, redrawn = changed_items(before.items, page.items)
-            for area in restored:
+            drawn = [area for area in [differing_lines(before.base, page.base, whole)] if not area.is_empty]
+            restored, redrawn = changed_items(before.items, page.items, drawn)
+            for area in (*drawn, *restored):
                 yield from _restored(page.base, area.within(self._whole))
         for item in redrawn:
             yield np.frombuffer(item.stream, np.uint16)
 
 
-def changed_items(before: Sequence[Item], now: Sequence[Item]) -> tuple[list[Area], list[Item]]:
-    """The areas whose base must be drawn again, and the items to draw again after that, lowest first."""
-    if list(before) == list(now):
+def changed_items(
+    before: Sequence[Item], now: Sequence[Item], drawn: Sequence[Area] = ()
+) -> tuple[list[Area], list[Item]]:
+    """The areas whose base must be drawn again, and the items to draw again after that, lowest first.
+
+    Where something goes that stood on an item of one word, that much of the item is drawn, and not all of it.
+    `drawn` are areas whose base is drawn again anyhow.
+    """
+    if not drawn and list(before) == list(now):
         return [], []
     old, new = set(before), set(now)
     if [item for item in before if item in new] != [item for item in now if item in old]:
@@ -90,23 +99,55 @@ def changed_items(before: Sequence[Item], now: Sequence[Item]) -> tuple[list[Are
         old = set()
     fresh = [item for item in now if item not in old]
     gone = [item.area for item in before if item not in new and not item.area.is_empty]
-    solid = [item.area for item in fresh if item.is_solid]
-    restored = [area for area in gone if not any(each.covers(area) for each in solid)]
+    covers = [*drawn, *(item.area for item in fresh if item.is_solid)]
+    restored: list[Area] = []
+    patches: dict[int, list[Item]] = {}
+    for area in gone:
+        if any(each.covers(area) for each in covers):
+            continue
+        ground = ground_of(area, now, old)
+        if ground is None:
+            restored.append(area)
+        else:
+            patches.setdefault(ground, []).append(filled(area, now[ground].word or 0))
     # An item is drawn again if it is new, or if something below it was drawn.
-    dirty, redrawn = list(restored), []
-    for item in now:
+    dirty, redrawn = [*drawn, *restored], []
+    for number, item in enumerate(now):
         if item not in old or any(item.area.overlaps(area) for area in dirty):
             redrawn.append(item)
             # Few areas are enough: this is done at each movement, for hundreds of items.
             if not any(area.covers(item.area) for area in dirty):
                 dirty.append(item.area)
+        for patch in patches.get(number, ()):
+            redrawn.append(patch)
+            dirty.append(patch.area)
     return restored, redrawn
 
 
-def _is_same(base: Words | int, other: Words | int) -> bool:
-    if isinstance(base, int) or isinstance(other, int):
-        return type(base) is type(other) and base == other
-    return base is other
+def ground_of(area: Area, items: Sequence[Item], kept: AbstractSet[Item]) -> int | None:
+    """The number of the topmost item of one word, among those that are kept, that covers an area."""
+    for number in range(len(items) - 1, -1, -1):
+        item = items[number]
+        if item.word is not None and item.area.covers(area) and item in kept:
+            return number
+    return None
+
+
+def differing_lines(before: Words | int, now: Words | int, area: Area) -> Area:
+    """The lines of an area in which two bases differ; an empty area if they are the same."""
+    nowhere = area._replace(bottom=area.top - 1)
+    if isinstance(before, int) or isinstance(now, int):
+        is_same = isinstance(before, int) and isinstance(now, int) and before == now
+        return nowhere if is_same else area
+    if before is now:
+        return nowhere
+    if before.shape != now.shape:
+        return area
+    places = slice(area.top, area.bottom + 1), slice(area.left, area.right + 1)
+    lines = np.flatnonzero((before[places] != now[places]).any(axis=1))
+    if not len(lines):
+        return nowhere
+    return area._replace(top=area.top + int(lines[0]), bottom=area.top + int(lines[-1]))
 
 
 def _restored(base: Words | int, area: Area) -> Iterator[Words]:

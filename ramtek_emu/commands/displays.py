@@ -146,11 +146,17 @@ def tell(message: str) -> None:
     click.echo(message, err=True)
 
 
-def show(display: Ramtek9300, serve_for: Callable[[float], None]) -> None:
-    """Show the display in a window until that is closed; `serve_for` is called at each tick."""
+def show(
+    display: Ramtek9300, serve_for: Callable[[float], None], waits: Callable[[], bool] = lambda: False
+) -> None:
+    """Show the display in a window until that is closed; `serve_for` is called at each tick.
+
+    `waits` tells whether `serve_for` waits for a host's words itself, so that the window need not wait for
+    input.
+    """
     # Signals close the window between two ticks, never while a host is served; outputs are still written.
     with end_signals() as signals:
-        from ramtek_emu.monitor.window import Monitor
+        from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
 
         def tick() -> None:
             if signals.received:
@@ -159,7 +165,12 @@ def show(display: Ramtek9300, serve_for: Callable[[float], None]) -> None:
                 serve_for(TICK_SECONDS)
 
         monitor = Monitor(display, f"RAMTEK {display.configuration.name.replace('_', ' ')}", on_tick=tick)
-        monitor.run()
+        monitor.open()
+        try:
+            while monitor.is_open:
+                monitor.step(0 if waits() else TICK_MILLISECONDS)
+        finally:
+            monitor.close()
 
 
 def tell_the_end(display: Ramtek9300, held_words: int, odd_byte: bytes) -> None:

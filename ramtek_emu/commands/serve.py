@@ -6,6 +6,7 @@ import os
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import click
@@ -43,6 +44,9 @@ Examples:
 STEP_SECONDS: Final = 0.25
 JOYSTICK_SECONDS: Final = 0.02
 """How long a line for the joystick may wait while nothing else happens."""
+HOST_SECONDS: Final = 0.005
+"""How long the input of a window may wait while a connected host sends nothing; one that polls the joystick
+has its reply at once."""
 PIPE_SECONDS: Final = 0.002
 """How long words on a pipe may wait while there are lines for the joystick, too."""
 
@@ -194,7 +198,8 @@ def serve_hosts(
         # Fail before a host is told where to connect.
         open_screen()
         announce(server)
-        show(server.display, obeying(lines, server.serve_for))
+        serve_for = partial(server.serve_for, wait=HOST_SECONDS)
+        show(server.display, obeying(lines, serve_for), lambda: server.busy)
         return
     with end_signals() as signals:
         announce(server)

@@ -86,11 +86,15 @@ class Server:
             done = True
         return done
 
-    def serve_for(self, seconds: float) -> None:
-        """Serve, without blocking, until nothing is left to do or the time is over; for a window's ticks."""
+    def serve_for(self, seconds: float, wait: float = 0.0) -> None:
+        """Serve until nothing is left to do or the time is over; for a window's ticks.
+
+        It blocks only while a host is connected, and up to `wait` seconds, for the first words.
+        """
         end = time.monotonic() + seconds
-        while self.step() and time.monotonic() < end:
-            pass
+        done = self.step(wait if self.busy else 0.0)
+        while done and time.monotonic() < end:
+            done = self.step()
 
     def reset(self) -> None:
         """Press RESET on the control unit: an unfinished instruction is dropped, the host stays connected."""

@@ -13,11 +13,12 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
+from autocolor.scene.view import View
 from autocolor.screens.light_and_view.arrows import SHORTEST
 from autocolor.screens.light_and_view.eye_marks import LIDS, EyeMarks, eye_marks
 from autocolor.screens.light_and_view.kept import Kept
 from autocolor.screens.light_and_view.light_marks import arrow_end, flap_marks, light_marks
-from autocolor.screens.light_and_view.numerals import Cross, numerals
+from autocolor.screens.light_and_view.numerals import Cross, Numeral, numerals
 from autocolor.screens.light_and_view.object_lines import ObjectStrokes
 from autocolor.screens.light_and_view.orthographic_views import AXES, OrthographicViews, Side
 from autocolor.widgets.areas import Area
@@ -38,7 +39,7 @@ class SideItems:
         self._eye: Kept[EyeMarks] = Kept()
         self._still: Kept[list[Item]] = Kept()
         self._chosen: Kept[list[Item]] = Kept()
-        self._numerals: Kept[list[Item]] = Kept()
+        self._numerals: Kept[list[Numeral]] = Kept()
         title = f"{side.name}   {AXES[side.right]} >  {AXES[side.up]} ^"
         self._label = text(title, side.area.left + 8, side.area.top + 4, GRAY)
 
@@ -58,27 +59,42 @@ class SideItems:
         """
         side, view = self._side, scene.view
         lights = list(enumerate(scene.lights, start=1))
-        ours = [light for light in scene.lights if light.name == chosen]
-        others = [light for light in scene.lights if light.name != chosen]
-        # The number of the chosen light makes way for the others, so that they stay where they are.
-        ordered = sorted(lights, key=lambda each: each[1].name == chosen)
+        ours = [each for each in lights if each[1].name == chosen]
+        others = [each for each in lights if each[1].name != chosen]
+        tables = [light for _, light in others]
         eye = self._eye.of(lambda: eye_marks(views, side, view, target), views, view, strokes)
 
         def still() -> list[Item]:
-            return still_items(views, side, eye, strokes, others, bool(ours))
+            return still_items(views, side, eye, strokes, tables, bool(ours))
 
         def above() -> list[Item]:
-            return [item for light in ours for item in chosen_items(views, side, light)] or eye_items(eye)
-
-        def numbers() -> list[Item]:
-            return numeral_items(views, side, view.eye, ordered, chosen, self._label.area)
+            return [item for _, light in ours for item in chosen_items(views, side, light)] or eye_items(eye)
 
         return [
             self._label,
             *([] if moved is None else [lines_across(views, side, moved)]),
-            *self._still.of(still, views, eye, strokes, bool(ours), *others),
-            *self._chosen.of(above, views, eye, *ours),
-            *self._numerals.of(numbers, views, view, chosen, *scene.lights),
+            *self._still.of(still, views, eye, strokes, bool(ours), *tables),
+            *self._chosen.of(above, views, eye, *(light for _, light in ours)),
+            *self._numeral_items(views, view, others, ours),
+        ]
+
+    def _numeral_items(
+        self, views: OrthographicViews, view: View, others: Sequence[Numbered], ours: Sequence[Numbered]
+    ) -> list[Item]:
+        """The numbers of the lights. That of the chosen one makes way for the others, which stay in place."""
+        side = self._side
+        taken = [self._label.area, area_around(joined(LIDS + views.position(side, view.eye)))]
+
+        def found() -> list[Numeral]:
+            return numerals([cross_of(views, side, *each) for each in others], side.area, taken)
+
+        kept = self._numerals.of(found, views, view, *(part for each in others for part in each))
+        around = [area for cross, area in kept] + [cross.area for cross, _ in kept]
+        own = numerals([cross_of(views, side, *each) for each in ours], side.area, [*taken, *around])
+        is_on = {number: light.on for number, light in others}
+        return [
+            *(numeral_item(each, WHITE if is_on[each.cross.number] else GRAY) for each in kept),
+            *(numeral_item(each, YELLOW) for each in own),
         ]
 
 
@@ -120,19 +136,9 @@ def chosen_items(views: OrthographicViews, side: Side, light: Light) -> list[Ite
     return drawn_items(layers)
 
 
-def numeral_items(
-    views: OrthographicViews, side: Side, eye: Vector, lights: Sequence[Numbered], chosen: str, label: Area
-) -> list[Item]:
-    """The numbers of lights, each beside its cross; the later ones make way for those before."""
-    lids = area_around(joined(LIDS + views.position(side, eye)))
-    light_of = dict(lights)
-    crosses = [cross_of(views, side, number, light) for number, light in lights]
-    found = []
-    for cross, area in numerals(crosses, side.area, [label, lids]):
-        light = light_of[cross.number]
-        word = YELLOW if light.name == chosen else WHITE if light.on else GRAY
-        found.append(text(str(cross.number), area.left, area.top, word))
-    return found
+def numeral_item(numeral: Numeral, word: int) -> Item:
+    """The number of a light in a color."""
+    return text(str(numeral.cross.number), numeral.area.left, numeral.area.top, word)
 
 
 def cross_of(views: OrthographicViews, side: Side, number: int, light: Light) -> Cross:

@@ -49,10 +49,17 @@ class Cross(NamedTuple):
         return Area(left, top, left + width - 1, top + CHARACTER_LINES - 1)
 
 
-def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> list[tuple[Cross, Area]]:
-    """The areas of the numerals of the crosses that are within an area, in their order.
+class Numeral(NamedTuple):
+    """A cross in an area, and where its numeral stands."""
 
-    `taken` are areas that should stay free. A numeral that would not fit has none.
+    cross: Cross
+    area: Area
+
+
+def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> list[Numeral]:
+    """The numerals of the crosses that are within an area, in their order.
+
+    `taken` are areas that should stay free, as far as can be.
     """
     seen = [cross for cross in crosses if area.has(cross.element, cross.line)]
     filled = [*taken, *(cross.area for cross in seen)]
@@ -70,6 +77,6 @@ def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> lis
             if least == 0:
                 break
         if best is not None:
-            found.append((cross, best))
+            found.append(Numeral(cross, best))
             filled.append(best)
     return found

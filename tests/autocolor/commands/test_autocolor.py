@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from autocolor.commands.autocolor import AutocolorGroup, autocolor
-from tests.autocolor.commands.conftest import Run
+from tests.autocolor.commands.conftest import ROOT, Run
 
 SLOW = ("numpy", "pygame", "pydantic", "PIL")
 POSIX = pytest.mark.skipif(os.name != "posix", reason="needs what POSIX says about pipes and signals")
@@ -206,3 +207,23 @@ def test_nothing_is_needed_of_a_home(process: Run, folder: Path) -> None:
 def test_a_shell_can_complete_commands_and_options(process: Run) -> None:
     completion = {"_AUTOCOLOR_COMPLETE": "bash_complete", "COMP_WORDS": "autocolor re", "COMP_CWORD": "1"}
     assert process(environment=completion).out.split() == ["plain,render", "plain,recolor"]
+
+
+def test_the_command_multiplies_in_one_thread_unless_it_is_asked_for_more() -> None:
+    program = (
+        "import os, sys; sys.argv[1:] = ['--version']\n"
+        "from autocolor.__main__ import main\n"
+        "try: main()\n"
+        "except SystemExit: print(os.environ['OPENBLAS_NUM_THREADS'], 'numpy' in sys.modules)"
+    )
+    for asked in ("", "3"):
+        environment = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}
+        environment |= {"OPENBLAS_NUM_THREADS": asked} if asked else {}
+        ran = subprocess.run(
+            [sys.executable, "-c", program],
+            env={**environment, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert ran.stdout.splitlines()[-1] == f"{asked or '1'} False"

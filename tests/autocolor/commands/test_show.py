@@ -1,21 +1,29 @@
 from __future__ import annotations
 
+import os
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from autocolor import Studio, read_scene
+from autocolor import Studio, read_journal, read_scene
+from autocolor.commands.demo import demo_folder
+from autocolor.commands.show import folder_of
+from autocolor.journal.autosave import JOURNAL, left_sessions
+from autocolor.journal.places import Source
 from ramtek_emu import Ramtek9300
+from ramtek_emu.host.tcp_server import TcpServer
 from tests.autocolor.commands.conftest import Run
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng lid\nf 1 2 3 4\n"
 
 
-def test_a_scene_is_shown_on_a_display_behind_a_port(tmp_path: Path, run: Run) -> None:
+def test_a_picture_is_shown_once_on_a_display_behind_a_port(tmp_path: Path, run: Run) -> None:
     mesh, picture = tmp_path / "square.obj", tmp_path / "shown.png"
     mesh.write_text(SQUARE)
     command = [sys.executable, "-m", "ramtek_emu", "serve", "--port", "0", "--once", "-o", str(picture)]
@@ -25,7 +33,7 @@ def test_a_scene_is_shown_on_a_display_behind_a_port(tmp_path: Path, run: Run) -
     ) as server:
         assert server.stdout is not None
         address = server.stdout.readline().split()[-1]
-        ran = run("show", str(mesh), "--to", address)
+        ran = run("show", str(mesh), "--to", address, "--once")
         if ran.code:
             # It would wait for its host forever.
             server.kill()
@@ -45,3 +53,81 @@ def test_what_is_no_address_is_refused_in_a_sentence(address: str, tmp_path: Pat
     ran = run("show", str(tmp_path / "square.obj"), "--to", address)
     assert ran.code == 2
     assert ran.err.startswith("autocolor: --to: an address must be tcp://host:port")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "rule"),
+    [
+        ((), "show must have SCENE or --recover, one of them; name a scene"),
+        (("scene", "--recover", "newest"), "show must have SCENE or --recover, one of them; name a scene"),
+        (("--recover", "--once"), "--set and --once are for SCENE, not for sessions; leave them out"),
+    ],
+)
+def test_a_scene_or_a_session_is_shown(folder: Path, run: Run, arguments: tuple[str, ...], rule: str) -> None:
+    ran = run("show", "--to", "tcp://127.0.0.1:1", *arguments)
+    assert (ran.code, ran.err) == (2, f"autocolor: {rule}\n")
+
+
+def test_a_display_that_is_not_there_is_told(folder: Path, run: Run) -> None:
+    ran = run("show", "scene", "--to", "tcp://127.0.0.1:1")
+    assert ran.code == 69
+    assert ran.err.startswith("autocolor: a display must listen at tcp://127.0.0.1:1, and it is not reached")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows ends programs without a signal")
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 128 + signal.SIGTERM)])
+def test_a_session_that_is_ended_here_is_kept_and_gone_on_with(
+    folder: Path, state: Path, number: int, code: int
+) -> None:
+    """The display turns the object by TRACK; what was done is there after the signal."""
+    with TcpServer(Ramtek9300()) as server:
+
+        def start(*arguments: str) -> subprocess.Popen[str]:
+            return subprocess.Popen(
+                [sys.executable, "-m", "autocolor", "show", *arguments, "--to", server.address],
+                cwd=folder,
+                env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])},
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+
+        def serve(seconds: float) -> None:
+            end = time.monotonic() + seconds
+            while time.monotonic() < end:
+                server.step(0.01)
+
+        def is_shown() -> bool:
+            return any(cursor.is_visible for cursor in server.display.cursors.all)
+
+        for arguments in (("scene", "--set", "ambient=0.3"), ("--recover",)):
+            process = start(*arguments)
+            end = time.monotonic() + 30
+            while not is_shown() and time.monotonic() < end:
+                serve(0.1)
+            serve(0.3)
+            joystick = server.display.joystick
+            joystick.move_to(300, 200)
+            joystick.track = True
+            serve(0.1)
+            joystick.move_to(340, 210)
+            serve(0.3)
+            joystick.track = False
+            serve(0.3)
+            process.send_signal(number)
+            while process.poll() is None:
+                server.step(0.01)
+            serve(0.1)
+            _, err = process.communicate(timeout=30)
+            assert process.returncode == code, err
+            server.display.cursors.hide()
+    (left,) = left_sessions()
+    history = read_journal(left / JOURNAL).history
+    assert len(history.to_undo) == 2
+    assert history.start.ambient == 0.3
+
+
+def test_files_are_in_the_folder_of_the_scene_and_never_in_that_of_the_demo(folder: Path) -> None:
+    assert folder_of(Source("scene")) == folder / "scene"
+    assert folder_of(Source("scene/scene.toml")) == folder / "scene"
+    assert folder_of(Source("two.obj")) == folder
+    assert folder_of(Source(str(demo_folder()))) == folder

@@ -120,6 +120,25 @@ def test_the_mouse_reaches_the_viewer(
     assert fields[1] == fields[2]
 
 
+def test_leaving_by_the_menu_closes_the_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    from autocolor.commands.view import monitor_of
+    from autocolor.screens.viewer import Viewer
+    from ramtek_emu import Ramtek9300
+    from tests.autocolor.sessions import car
+
+    display = Ramtek9300()
+    viewer = Viewer(car(), display)
+    monitor = monitor_of(viewer, display)
+    closed: list[bool] = []
+    monkeypatch.setattr(monitor, "close", lambda: closed.append(True))
+    assert monitor.on_tick is not None
+    monitor.on_tick()
+    assert closed == []
+    viewer.session.leave()
+    monitor.on_tick()
+    assert closed == [True]
+
+
 def test_modifiers_and_released_keys_reach_the_viewer(folder: Path, run: Run, monitors: list[Any]) -> None:
     from ramtek_emu.monitor.window import Key, Pointer
 

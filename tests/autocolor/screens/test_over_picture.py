@@ -71,24 +71,6 @@ def test_what_is_under_the_menu_or_a_message_is_not_the_picture(hand: Hand) -> N
         assert "level" not in hand.viewer.board.message[0]
 
 
-def fill_with(hand: Hand, label: str, share: float = 0.25) -> Scene:
-    hand.open_menu()
-    hand.pick(label, share)
-    return hand.viewer.studio.scene
-
-
-def test_the_chosen_part_fills_the_picture(hand: Hand) -> None:
-    start = hand.viewer.studio.scene
-    assert fill_with(hand, "rescale part") is start
-    assert hand.viewer.message == "rescale part: click at a part in the picture first"
-    hand.click(*MIDDLE)
-    part = fill_with(hand, "rescale part").view
-    hand.viewer.session.undo()
-    assert fill_with(hand, "rescale", 0.9).view == part
-    hand.viewer.session.undo()
-    assert fill_with(hand, "rescale").view != part
-
-
 HELD: dict[str, tuple[dict[str, bool], int, Callable[[Scene], View]]] = {
     "plain": ({}, 1, lambda scene: turned(scene, *turn_between(400, 100, 430, 110))),
     "Shift": ({"shift": True}, 1, lambda scene: panned(scene, 30, 10, 480)),

@@ -9,17 +9,21 @@ from autocolor.arrays import Words
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import WHITE
 from autocolor.widgets.items import Item, filled, lines, text
-from autocolor.widgets.sheet import Page, Sheet, uncovered
+from autocolor.widgets.sheet import Page, Sheet, differing_lines, uncovered
 from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, EntryFormat, PortError, Ramtek9300
 from tests.autocolor.widgets.drawing import TINY, items
 
 SHORT = Configuration(
     name="short", elements=48, lines=40, planes=10, entry_format=EntryFormat.WORD_12, extended=False
 )
+PICTURE = np.arange(40 * 48, dtype=np.uint16).reshape(40, 48) % 1000
+OTHER = PICTURE.copy()
+OTHER[12:20, 10:30] = 700
 BASES: tuple[Words | int, ...] = (
     7,
     1008,
-    np.arange(40 * 48, dtype=np.uint16).reshape(40, 48) % 1000,
+    PICTURE,
+    OTHER,
     np.full((30, 50), 3, np.uint16),
     np.full((44, 20), 9, np.uint16),
 )
@@ -140,6 +144,36 @@ def test_a_page_that_could_not_be_sent_is_drawn_whole_the_next_time() -> None:
     assert (display.words == 3).all()
 
 
+def test_where_a_picture_changed_its_lines_are_sent_and_what_stands_beside_stays() -> None:
+    picture = np.full((480, 640), 3, np.uint16)
+    other = picture.copy()
+    other[100:110, 20:30] = 4
+    display = Ramtek9300()
+    sheet = Sheet(display)
+    menu, mark = filled(Area(504, 0, 639, 479), 5), filled(Area(50, 104, 53, 107), 6)
+    far, row = filled(Area(50, 200, 53, 203), 7), filled(Area(520, 100, 630, 115), 8)
+    sheet.show(Page(picture, [menu, row, mark, far], TABLES[0]))
+    written = display.frame_buffer.written
+    sheet.show(Page(other, [menu, row, mark, far], TABLES[0]))
+    assert display.frame_buffer.written - written == 10 * 504 + 4 * 4
+    assert (display.words[100:104, 20:30] == 4).all()
+    assert (display.words[104:108, 50:54] == 6).all()
+    written = display.frame_buffer.written
+    sheet.show(Page(other.copy(), [menu, row, mark, far], TABLES[0]))
+    assert display.frame_buffer.written == written
+
+
+def test_bases_differ_in_the_lines_between_the_first_and_the_last_difference() -> None:
+    whole = Area(0, 0, 47, 39)
+    assert differing_lines(PICTURE, OTHER, whole) == (0, 12, 47, 19)
+    assert differing_lines(PICTURE, OTHER, Area(30, 5, 47, 30)).is_empty
+    assert differing_lines(PICTURE, PICTURE.copy(), whole).is_empty
+    assert differing_lines(3, 3, whole).is_empty
+    assert differing_lines(3, 4, whole) == whole
+    assert differing_lines(3, PICTURE, whole) == whole
+    assert differing_lines(PICTURE[:30], PICTURE, whole) == whole
+
+
 def test_below_the_menu_no_word_of_the_base_is_sent() -> None:
     menu, message = filled(Area(504, 0, 639, 463), 5), filled(Area(0, 464, 639, 479), 6)
     screen = Area(0, 0, 639, 479)
@@ -159,3 +193,19 @@ def test_the_base_fills_all_that_the_display_shows(configuration: Configuration)
     picture = (np.arange(shown[0] * shown[1]) % 1000).astype(np.uint16).reshape(shown)
     sheet.show(Page(picture, [], TABLES[0]))
     assert np.array_equal(display.words, picture)
+
+
+def test_where_a_text_goes_the_ground_below_it_is_drawn_there_alone() -> None:
+    display = Ramtek9300()
+    sheet = Sheet(display)
+    ground = filled(Area(504, 0, 639, 479), 5)
+    rows = [filled(Area(505, 16 * n, 639, 16 * n + 15), 6) for n in range(1, 10)]
+    words = [text("a row", 520, 16 * n + 3, WHITE, 6) for n in range(1, 10)]
+    long, short = (text(line, 560, 16 * 4 + 3, WHITE, 6) for line in ("12.50", "9.5"))
+    sheet.show(page(ground, *rows, *words, long))
+    written = display.frame_buffer.written
+    sheet.show(page(ground, *rows, *words, short))
+    assert display.frame_buffer.written - written == long.area.width * 9 + short.area.width * 9
+    fresh = Ramtek9300()
+    Sheet(fresh).show(page(ground, *rows, *words, short))
+    assert np.array_equal(display.words, fresh.words)

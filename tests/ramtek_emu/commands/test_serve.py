@@ -18,7 +18,7 @@ import pytest
 from ramtek_emu import Ramtek9300, TcpPort, UnixPort, instructions, read_snapshot
 from ramtek_emu.commands.displays import show
 from ramtek_emu.host.tcp_server import TcpServer
-from ramtek_emu.monitor.window import Monitor
+from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
 from tests.ramtek_emu.processes import ROOT, PipedHost, environment, field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import BARS, OUTLINE, words
 from tests.ramtek_emu.screens import shown
@@ -317,6 +317,30 @@ def test_the_window_shows_what_a_remote_host_draws_as_it_draws(on_screen: str) -
             monitor.step(2)
         assert server.display.words.max() == 319
         monitor.close()
+
+
+def test_a_host_that_polls_the_joystick_of_a_window_does_not_wait_for_its_ticks(on_screen: str) -> None:
+    polls = 100
+
+    def poll(address: str) -> None:
+        with TcpPort(address) as host:
+            for _ in range(polls):
+                host.send(instructions.read_cursor(0))
+                assert len(host.receive(2)) == 2
+
+    with TcpServer(Ramtek9300()) as server:
+        host = threading.Thread(target=poll, args=(server.address,))
+        host.start()
+        begin = time.monotonic()
+
+        def serve_for(seconds: float) -> None:
+            server.serve_for(seconds, wait=0.005)
+            if server.served:
+                os.kill(os.getpid(), signal.SIGTERM)
+
+        show(server.display, serve_for, lambda: server.busy)
+        assert time.monotonic() - begin < polls * TICK_MILLISECONDS / 1000 / 2
+        host.join(10)
 
 
 def test_a_window_closes_at_once_while_a_host_is_still_sending(on_screen: str) -> None:

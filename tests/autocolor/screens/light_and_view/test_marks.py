@@ -15,8 +15,9 @@ from autocolor.screens.light_and_view.marks import (
     cross_of,
     drawn_items,
     lines_across,
-    numeral_items,
+    numeral_item,
 )
+from autocolor.screens.light_and_view.numerals import Cross, Numeral
 from autocolor.screens.light_and_view.object_lines import ObjectLines
 from autocolor.screens.light_and_view.orthographic_views import (
     FRONT,
@@ -28,7 +29,7 @@ from autocolor.screens.light_and_view.orthographic_views import (
 from autocolor.screens.light_and_view.shown_points import shown_points
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLUE, GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
-from autocolor.widgets.items import Item
+from autocolor.widgets.items import Item, text
 from ramtek_emu import Ramtek9300, instructions
 from tests.autocolor.screens.light_and_view.pointing import FILL, KEY, boxed
 
@@ -135,13 +136,22 @@ def test_lines_of_a_point_outside_of_a_view_are_left_out() -> None:
     assert (words == SLATE).sum() == TOP.area.width
 
 
-def test_the_number_of_the_chosen_light_makes_way_for_the_others() -> None:
-    lights = [Light("key", (0.0, 0.0, 1.0)), Light("fill", (0.0, 0.0, 2.0))]
-    eye = (9.0, 9.0, 9.0)
-    alone = numeral_items(VIEWS, TOP, eye, [(2, lights[1])], "key", Area(0, 0, 0, 0))
-    both = numeral_items(VIEWS, TOP, eye, [(2, lights[1]), (1, lights[0])], "key", Area(0, 0, 0, 0))
-    assert both[0] == alone[0]
-    assert not both[0].area.overlaps(both[1].area)
+def test_the_number_of_the_chosen_light_makes_way_for_the_others_and_they_stay() -> None:
+    scene = boxed(Light("key", (-2.0, 0.0, 1.0)), Light("fill", (1.0, 0.0, 2.0)))
+    view = Drawn(scene)
+    fill = view.items(scene)[-2]
+    for place in ((1.0, 0.0, 1.0), (1.1, 0.05, 1.0)):
+        *_, other, own = view.items(scene.with_light("key", position=place))
+        assert other == fill
+        assert not own.area.overlaps(other.area)
+        assert words_of([own]) == {YELLOW, NIGHT}
+        assert words_of([other]) == {WHITE, NIGHT}
+
+
+def test_a_numeral_is_written_where_it_stands() -> None:
+    item = numeral_item(Numeral(Cross(16, 50, 50), Area(60, 30, 73, 38)), GRAY)
+    assert item == text("16", 60, 30, GRAY)
+    assert item.area == (60, 30, 73, 38)
 
 
 def test_an_arrow_toward_the_viewer_is_in_no_place_s_way() -> None:

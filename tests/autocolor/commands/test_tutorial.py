@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from autocolor.commands.tutorial import teach
+from autocolor.journal.history import History
+from autocolor.screens.viewer import Viewer
+from ramtek_emu import Ramtek9300
+from tests.autocolor.commands.conftest import Run
+from tests.autocolor.sessions import car
+
+
+def test_the_panel_stands_over_the_first_screen() -> None:
+    display = Ramtek9300()
+    viewer = Viewer(car(), display)
+    before = display.field()
+    teach(viewer)
+    after = display.field()
+    labels = [each.label for each in viewer.board.widgets()]
+    assert labels == ["skip", "end", "up", "tutorial"]
+    panel = viewer.board.widgets()[-1].area
+    changed = before != after
+    assert changed[panel.top : panel.bottom + 1, panel.left : panel.right + 1].any()
+    # The first message of the viewer was at the bottom.
+    assert not changed[: panel.top].any()
+    assert not changed[panel.bottom + 1 : 464].any()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows always has a screen")
+def test_without_a_screen_render_is_named(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
+        monkeypatch.delenv(name, raising=False)
+    ran = run("tutorial")
+    assert (ran.code, ran.out) == (69, "")
+    assert "`autocolor render SCENE -o PNG` renders without a screen" in ran.err
+
+
+def test_it_is_taught_on_a_display_elsewhere(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    from autocolor.commands import tutorial
+
+    asked: list[tuple[str, str, Path]] = []
+
+    def session(history: History, address: str, place: Path, prepare: object) -> None:
+        assert prepare is teach
+        asked.append((history.scene.name, address, place))
+
+    monkeypatch.setattr(tutorial, "session_elsewhere", session)
+    assert run("tutorial", "--to", "tcp://127.0.0.1:9300").code == 0
+    assert asked == [("coupe", "tcp://127.0.0.1:9300", folder)]
+
+
+def test_a_wrong_address_is_refused(folder: Path, run: Run) -> None:
+    assert run("tutorial", "--to", "127.0.0.1").code == 2
