@@ -65,13 +65,21 @@ def words_of(
 
 
 def fractions_by_surface(
-    picture: Picture, extents: Mapping[int, IntensityRange], mapping: str | CurvePoints
+    picture: Picture,
+    extents: Mapping[int, IntensityRange],
+    mapping: str | CurvePoints,
+    only: int | None = None,
 ) -> Mapping[int, Fractions]:
     """The function from the intensities of each visible surface to fractions, 0 to 1, by surface number.
 
-    `extents` are those of `mapped_ranges`; intensities are relative to the picture's scale.
+    `extents` are those of `mapped_ranges`; intensities are relative to the picture's scale. With `only`, the
+    function of that surface alone is made, if it is visible.
     """
-    intensities_of = {surface.surface_number: picture.relative[surface.pixels] for surface in picture.slices}
+    intensities_of = {
+        surface.surface_number: picture.relative[surface.pixels]
+        for surface in picture.slices
+        if only in (None, surface.surface_number)
+    }
     made: dict[int, Fractions] = {}
     found: dict[int, Fractions] = {}
     for number in intensities_of:

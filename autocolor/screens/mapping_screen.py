@@ -13,10 +13,10 @@ from typing import Any, Final
 import numpy as np
 
 from autocolor.arrays import Singles
-from autocolor.lighting.picture import IntensityRange, Picture
+from autocolor.lighting.picture import Picture
 from autocolor.mapping.exposure import mapped_ranges
 from autocolor.mapping.intensity_mapping import fractions_by_surface
-from autocolor.scene.curves import CURVES, CurvePoints, Fractions
+from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.scene import AUTO, Exposure
 from autocolor.screens.curve_panel import (
     ACROSS,
@@ -206,21 +206,18 @@ def curve_of(
     None for a surface that is not visible.
     """
     number = picture.surfaces.index(name) + 1 if name in picture.surfaces else 0
-    curves = _curves_of(picture, scaling, mapping, exposure)
+    extents = mapped_ranges(picture, scaling, exposure)
+    curves = fractions_by_surface(picture, extents, mapping, only=number)
     if number not in curves:
         return None
-    (low, high), function = curves[number]
+    low, high = extents[number]
     # The sum may exceed the maximum by rounding, where a curve has no value.
-    levels = function(np.minimum(np.float32(low) + ACROSS * np.float32(high - low), np.float32(high)))
+    levels = curves[number](np.minimum(np.float32(low) + ACROSS * np.float32(high - low), np.float32(high)))
+    return levels, _shares(picture, number, low, high)
+
+
+@lru_cache(maxsize=4)
+def _shares(picture: Picture, number: int, low: float, high: float) -> Singles:
+    """How often the intensities of a visible surface are seen, which no curve changes."""
     seen = next(surface for surface in picture.slices if surface.surface_number == number)
-    return levels, shares_of(picture.relative[seen.pixels], low, high)
-
-
-@lru_cache(maxsize=1)
-def _curves_of(
-    picture: Picture, scaling: str, mapping: str | CurvePoints, exposure: Exposure
-) -> Mapping[int, tuple[IntensityRange, Fractions]]:
-    """The range of intensities and the curve of each visible surface, by number."""
-    extents = mapped_ranges(picture, scaling, exposure)
-    functions = fractions_by_surface(picture, extents, mapping)
-    return {number: (extents[number], function) for number, function in functions.items()}
+    return shares_of(picture.relative[seen.pixels], low, high)

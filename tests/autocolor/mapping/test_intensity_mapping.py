@@ -231,6 +231,8 @@ def test_surfaces_that_share_a_range_share_their_function(mapping: Any) -> None:
     shared = fractions_by_surface(picture, mapped_ranges(picture, "object", "auto"), mapping)
     assert own.keys() == shared.keys() == {1, 2}
     assert own[1] is not own[2]
+    assert fractions_by_surface(picture, mapped_ranges(picture, "surface", "auto"), mapping, 2).keys() == {2}
+    assert not fractions_by_surface(picture, mapped_ranges(picture, "surface", "auto"), mapping, 3)
     assert shared[1] is shared[2]
 
 
