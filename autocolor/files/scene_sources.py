@@ -97,11 +97,6 @@ def _with_source_kept(report: SceneReport, folder: Path, scene_file: Path | None
     return report
 
 
-def opened_suffixes() -> tuple[str, ...]:
-    """The endings of the files that `read_scene` reads, in lower case: those of scenes, then of meshes."""
-    return (*scene_suffixes(), *mesh_suffixes())
-
-
 def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
     """The path to read and its format; the path of a folder with a scene file is that of the scene file."""
     found: SceneFormat | MeshFormat | None
@@ -116,7 +111,7 @@ def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
         )
     else:
         found = scene_format_named(path) or format_of(path) or scene_format_within(path)
-        *others, last = opened_suffixes()
+        *others, last = (*scene_suffixes(), *mesh_suffixes())
         rule = (
             f"a scene must be a folder, or a file that ends in {', '.join(others)} or {last}, not in"
             f" {path.suffix!r}; name one of these"

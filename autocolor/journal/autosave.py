@@ -44,7 +44,6 @@ class Autosave:
     def __init__(self, folder: Path | None = None) -> None:
         self._folder = folder
         self._lock = None if folder is None else _locked(folder)
-        self._history: History | None = None
         self._first_lines: list[str] = []
         self._lines: list[tuple[Step, str]] = []
         self._beside = MeshesBeside(folder)
@@ -54,10 +53,9 @@ class Autosave:
     def update(self, history: History, at_once: bool = False) -> None:
         """Write the journal if there were steps since it was written, at most once a second unless `at_once`.
 
-        Raises AutocolorError if it cannot be written; the session goes on, and the next update tries again.
+        The history is always that of the same session: a file that is opened is a step of it. Raises
+        AutocolorError if it cannot be written; the session goes on, and the next update tries again.
         """
-        if history is not self._history:
-            self._begin(history)
         steps = history.steps
         now = len(steps), steps[-1] if steps else None
         is_due = at_once or time.monotonic() - self._written_at >= SECONDS_BETWEEN
@@ -81,12 +79,6 @@ class Autosave:
             if self._lock is not None:
                 os.close(self._lock)
             shutil.rmtree(folder, ignore_errors=True)
-
-    def _begin(self, history: History) -> None:
-        """Begin with another session, such as that of a scene that was opened."""
-        if self._history is not None:
-            self.end()
-        self._history, self._first_lines, self._lines, self._written = history, [], [], (0, None)
 
     def _own_folder(self) -> Path:
         """The folder of this session, which is made if there is none. Raises OSError."""

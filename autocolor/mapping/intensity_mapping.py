@@ -65,21 +65,30 @@ def words_of(
 
 
 def fractions_by_surface(
-    picture: Picture, extents: Mapping[int, IntensityRange], mapping: str | CurvePoints
+    picture: Picture,
+    extents: Mapping[int, IntensityRange],
+    mapping: str | CurvePoints,
+    only: int | None = None,
 ) -> Mapping[int, Fractions]:
     """The function from the intensities of each visible surface to fractions, 0 to 1, by surface number.
 
-    `extents` are those of `mapped_ranges`; intensities are relative to the picture's scale.
+    `extents` are those of `mapped_ranges`; intensities are relative to the picture's scale. With `only`, the
+    function of that surface alone is made, if it is visible.
     """
-    intensities_of = {surface.surface_number: picture.relative[surface.pixels] for surface in picture.slices}
+    intensities_of = {
+        surface.surface_number: picture.relative[surface.pixels]
+        for surface in picture.slices
+        if only in (None, surface.surface_number)
+    }
+    made: dict[int, Fractions] = {}
     found: dict[int, Fractions] = {}
     for number in intensities_of:
         # Surfaces that are mapped by the whole object's range share one function.
         of = WHOLE if extents[number] is extents[WHOLE] else number
-        if of not in found:
+        if of not in made:
             everything = picture.relative if of == WHOLE else intensities_of[number]
-            found[of] = fraction_of(extents[of], mapping, everything, picture.relative_ranges[of])
-        found[number] = found[of]
+            made[of] = fraction_of(extents[of], mapping, everything, picture.relative_ranges[of])
+        found[number] = made[of]
     return found
 
 

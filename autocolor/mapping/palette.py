@@ -17,8 +17,11 @@ def in_palette(colors: Bytes, most: int) -> tuple[Words, Bytes]:
 
     `colors` are (lines, elements, 3). A picture with no more than `most` colors keeps them exactly.
     """
-    pixels = colors.reshape(-1, 3)
-    distinct, place_of_pixel, counts = np.unique(pixels, axis=0, return_inverse=True, return_counts=True)
+    red, green, blue = np.moveaxis(colors.astype(np.uint32), -1, 0)
+    packed, place_of_pixel, counts = np.unique(
+        (red << 16 | green << 8 | blue).ravel(), return_inverse=True, return_counts=True
+    )
+    distinct = np.stack([packed >> 16, packed >> 8 & 255, packed & 255], axis=1).astype(np.int64)
     boxes = [np.arange(len(distinct))]
     sizes = [_size(distinct[box]) for box in boxes]
     while len(boxes) < most and max(sizes) > 0:
@@ -29,21 +32,21 @@ def in_palette(colors: Bytes, most: int) -> tuple[Words, Bytes]:
     palette = np.empty((len(boxes), 3), np.uint8)
     place = np.empty(len(distinct), np.uint16)
     for number, box in enumerate(boxes):
-        mean = np.average(distinct[box], axis=0, weights=counts[box])
+        mean = counts[box] @ distinct[box] / counts[box].sum()
         palette[number] = halves_up(mean.astype(np.float32))
         place[box] = number
     return place[place_of_pixel.reshape(-1)].reshape(colors.shape[:2]), palette
 
 
-def _size(colors: Bytes) -> int:
+def _size(colors: Indices) -> int:
     """How much is gained by cutting the box of some colors: its longest side, times their number."""
-    return int(np.ptp(colors.astype(np.int64), axis=0).max()) * len(colors)
+    return int((colors.max(axis=0) - colors.min(axis=0)).max()) * len(colors)
 
 
-def _halves(distinct: Bytes, counts: Indices, box: Indices) -> list[Indices]:
+def _halves(distinct: Indices, counts: Indices, box: Indices) -> list[Indices]:
     """A box cut in two at the median of its longest side; neither is empty."""
-    inside = distinct[box].astype(np.int64)
-    axis = int(np.argmax(np.ptp(inside, axis=0)))
+    inside = distinct[box]
+    axis = int((inside.max(axis=0) - inside.min(axis=0)).argmax())
     order = box[np.argsort(inside[:, axis], kind="stable")]
     passed = np.cumsum(counts[order])
     middle = int(np.searchsorted(passed, passed[-1] / 2)) + 1

@@ -1,37 +1,40 @@
 """The file screen: scenes, meshes, pictures and rigs to open, recent files, and saving.
 
-A pointer opens what is in the session's folder and below, and on the machine of the window also what was
-opened before. Opening is one step to undo, so nothing is lost by it.
+A pointer opens what is in the session's folder and below, links resolved; on the machine of the window, also
+everything else. Opening is one step to undo, so nothing is lost by it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Final
 
-from autocolor.errors import InputError, reason_of
+from autocolor.errors import InputError, UsageError
+from autocolor.files.openable import FOLDER, Openable, kind_of, openables_of, stays_within
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.recent import recent_files
-from autocolor.files.scene_sources import opened_suffixes
+from autocolor.files.rig_file import RIG_SUFFIX, is_rig
 from autocolor.screens.screen import Screen
-from autocolor.screens.session import Session
+from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import GRAY, LIGHT_GRAY, SLATE, YELLOW
-from autocolor.widgets.items import Item, filled, fitted, text
+from autocolor.widgets.items import CHARACTER, Item, filled, text
 from autocolor.widgets.pairs import Pair
-from autocolor.widgets.widget import ROW_LINES, Button, Gap, Widget
+from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Choice, Gap, Widget
 
 LEFT: Final = Area(8, 40, 247, 455)
 RIGHT: Final = Area(256, 40, 495, 455)
 """The columns of the folder's files and of recent ones."""
 
 MOST_ROWS: Final = LEFT.height // ROW_LINES
-CHARACTERS: Final = 32
-MOST_ENTRIES: Final = 1000
-"""Assumed: files of a folder that are looked at."""
+CHARACTERS: Final = (LEFT.width - 2 * MARGIN) // CHARACTER
+ACROSS: Final = (RIGHT.right - LEFT.left - 2 * MARGIN) // CHARACTER
+
+UP: Final = ".."
+RIG: Final = "rig"
 
 
 class FileScreen(Screen):
@@ -40,132 +43,167 @@ class FileScreen(Screen):
     name = "file"
     title = "file"
     help = "Click a file to open it; undo goes back to the scene before"
+    shows_scene = False
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
         self._root = session.folder.resolve()
         self._folder = self._root
-        self._entries: list[Path] = []
-        self._recent: list[Path] = []
+        self._files: list[Openable] = []
+        self._recent: list[Openable] = []
+        self._rigs: dict[Path, bool] = {}
+        """Whether the scene files that were shown are rigs."""
         self._page = 0
 
     def enter(self) -> None:
-        self._list()
+        recent = [Openable(path, kind_of(path)) for path in recent_files() if self._may_open(path)]
+        self._recent = [each for each in recent if each.kind]
+        try:
+            self._list(self._folder)
+        except InputError as error:
+            self.session.warn(error)
 
-    def _list(self) -> None:
-        self._entries, self._page = entries_of(self._folder), 0
-        self._recent = [path for path in recent_files() if self._may_open(path)]
+    def _list(self, folder: Path) -> None:
+        """Show a folder as it is now. Raises InputError if it cannot be read."""
+        self._files = [each for each in openables_of(folder) if self._may_open(each.path)]
+        self._folder, self._page, self._rigs = folder, 0, {}
 
     def _may_open(self, path: Path) -> bool:
-        """Whether the pointer of this session may open a file."""
-        return self.session.is_at_hand or path.resolve().is_relative_to(self._root)
+        """Whether the pointer of this session may open a file or a folder."""
+        return self.session.is_at_hand or stays_within(path, self._root)
+
+    def _told(self, path: Path) -> str:
+        """A path as it is shown: beside the session's folder where the user is elsewhere."""
+        if self.session.is_at_hand:
+            return str(path)
+        below = path.relative_to(self._root) if path.is_relative_to(self._root) else path.name
+        return str(Path(self._root.name or "/", below))
+
+    # What is seen.
 
     def items(self) -> Sequence[Item]:
-        folder = str(self._folder) if self.session.is_at_hand else self._folder.name or "/"
-        shown = folder if len(folder) <= 66 else f"..{folder[-64:]}"
+        down, left = LEFT.top + TEXT_DOWN, LEFT.left + MARGIN
         found = [
-            text("OPEN", LEFT.left + 8, 6, YELLOW),
-            text("RECENT", RIGHT.left + 8, 6, YELLOW),
-            text(shown, LEFT.left + 8, 22, LIGHT_GRAY),
-            filled(Area(251, 40, 251, 455), SLATE),
+            text("OPEN", left, TEXT_DOWN, YELLOW),
+            text("RECENT", RIGHT.left + MARGIN, TEXT_DOWN, YELLOW),
+            text(shortened(self._told(self._folder), ACROSS), left, ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
+            filled(Area(251, LEFT.top, 251, LEFT.bottom), SLATE),
         ]
-        if not self._entries:
-            found.append(text("no scene, mesh or picture here", LEFT.left + 8, LEFT.top + 3, GRAY))
+        if not self._files:
+            found.append(text("no scene, mesh or picture", left, down + ROW_LINES * self._has_way_up, GRAY))
+        if not self._recent:
+            found.append(text("nothing was opened yet", RIGHT.left + MARGIN, down, GRAY))
         return found
+
+    @property
+    def _has_way_up(self) -> bool:
+        above = self._folder.parent
+        return above != self._folder and self._may_open(above)
 
     def widgets(self) -> Sequence[Widget]:
         rows: list[Widget] = []
-        if self._folder != self._root or self.session.is_at_hand:
+        if self._has_way_up:
+            above = Openable(self._folder.parent, FOLDER)
+            rows.append(self._row(above, UP))
+        room = MOST_ROWS - len(rows)
+        if len(self._files) > room:
+            room -= 1
+        pages = [self._files[first : first + room] for first in range(0, len(self._files), room)]
+        page = min(self._page, len(pages) - 1)
+        rows += [self._row(each) for each in pages[page]] if pages else []
+        if len(pages) > 1:
+            names = tuple(f"{number} of {len(pages)}" for number in range(1, len(pages) + 1))
             rows.append(
-                Button("..", "The folder above.", run=partial(self._go_to, self._folder.parent), value="up")
+                Choice(
+                    "page",
+                    "A click turns to the next page of files; at the left end, to the one before.",
+                    names=names,
+                    present=names[page],
+                    choose=lambda name: setattr(self, "_page", names.index(name)),
+                )
             )
-        most = MOST_ROWS - len(rows) - 1
-        pages = max(1, -(-len(self._entries) // most))
-        self._page %= pages
-        for path in self._entries[self._page * most : (self._page + 1) * most]:
-            rows.append(self._row(path))
-        if pages > 1:
-            shown = f"{self._page + 1} of {pages}"
-            rows.append(Button("more files", "The other files of this folder.", run=self._turn, value=shown))
-        recent = [self._row(path, "recent ") for path in self._recent]
+        recent = [self._row(each, key="recent ") for each in self._recent]
         return [*_placed(rows, LEFT), *_placed(recent, RIGHT)]
 
-    def _row(self, path: Path, key: str = "") -> Widget:
-        kind = kind_of(path)
-        if kind == "folder":
-            return FileRow(f"{key}{path}", f"Look into {path}", run=partial(self._go_to, path), path=path)
-        return FileRow(f"{key}{path}", f"Open {path}", run=partial(self._open, path), path=path)
-
-    def _turn(self) -> None:
-        self._page += 1
-
-    def _go_to(self, folder: Path) -> None:
-        self._folder = folder
-        self._list()
-
-    def _open(self, path: Path) -> None:
-        self.session.open(path)
-        self._recent = [each for each in recent_files() if self._may_open(each)]
+    def _row(self, openable: Openable, shown: str = "", key: str = "") -> Widget:
+        path, kind = openable
+        if kind == FOLDER:
+            help, run = f"Look into {self._told(path)}", partial(self._go_to, path)
+        else:
+            help, run = f"Open {self._told(path)}", partial(self._open, path)
+        if path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE:
+            if path not in self._rigs:
+                self._rigs[path] = is_rig(path)
+            kind = RIG if self._rigs[path] else kind
+        if not shown:
+            # Every scene has a file of this name: its folder tells which it is.
+            shown = f"{path.parent.name}/{path.name}" if key and path.name == SCENE_FILE else path.name
+        return FileRow(f"{key}{path}", help, run=run, value=kind, shown=shown)
 
     def rows(self) -> Sequence[Widget]:
         session = self.session
         changed = "changed" if session.studio.is_changed else ""
         return [
-            Button("save", "Save the scene and the picture; Ctrl+S.", run=self._save, value=changed),
-            Button("save the rig", "Save the lights, to put them on another scene.", run=self._save_rig),
-            Button("screenshot", "Save the picture as it is shown.", run=self._screenshot),
+            Button(
+                "save",
+                "Save the scene and the picture.",
+                run=partial(self._save, session.save),
+                value=changed,
+            ),
+            Button(
+                "save the rig",
+                "Save all lights, to put them on another scene.",
+                run=partial(self._save, session.save_rig),
+            ),
+            Button(
+                "screenshot",
+                "Save the picture as an image, without menus.",
+                run=session.save_image,
+            ),
             Gap("list gap"),
             Pair(
                 "refresh",
                 "Read the folder again, or go to the one where files are saved.",
-                run=self._list,
+                run=lambda: self._list(self._folder),
                 other="home",
                 run_other=partial(self._go_to, self._root),
             ),
         ]
 
-    def _save(self) -> None:
-        self.session.save()
-        self._list()
+    # What that does.
 
-    def _save_rig(self) -> None:
-        self.session.save_rig()
-        self._list()
+    def _go_to(self, folder: Path) -> None:
+        self._check(folder)
+        self._list(folder)
 
-    def _screenshot(self) -> None:
-        self.session.save_image()
+    def _open(self, path: Path) -> None:
+        self._check(path)
+        self.session.open(path)
+        self.session.turn_to(PICTURE)
 
+    def _check(self, path: Path) -> None:
+        """Raise UsageError for what the pointer of this session may not open."""
+        if not self._may_open(path):
+            raise UsageError(
+                f"{path.name}: what is opened from here must be in the folder {self._root.name}, and not a"
+                " link to elsewhere; choose another"
+            )
 
-def entries_of(folder: Path) -> list[Path]:
-    """What can be opened in a folder, and its folders: those with a scene first, then by name."""
-    try:
-        paths = []
-        for number, path in enumerate(folder.iterdir()):
-            if number >= MOST_ENTRIES:
-                break
-            if not path.name.startswith(".") and kind_of(path):
-                paths.append(path)
-    except OSError as error:
-        raise InputError(
-            f"{folder}: a folder must be one that can be read ({reason_of(error)}); choose another"
-        ) from None
-    order = ("scene", "mesh", "picture", "rig or scene", "folder")
-    return sorted(paths, key=lambda path: (order.index(kind_of(path)), path.name.lower()))
+    def _save(self, save: Callable[[], object]) -> None:
+        save()
+        self._list(self._folder)
 
 
-def kind_of(path: Path) -> str:
-    """What opening a path gives: "scene", "mesh", "picture", "rig or scene", "folder"; empty for nothing."""
-    try:
-        if path.is_dir():
-            return "scene" if (path / SCENE_FILE).is_file() else "folder"
-    except OSError:
-        return ""
-    suffix = path.suffix.lower()
-    if suffix not in opened_suffixes():
-        return ""
-    if path.name == SCENE_FILE:
-        return "scene"
-    return {".toml": "rig or scene", ".npz": "picture"}.get(suffix, "mesh")
+def shortened(name: str, most: int) -> str:
+    """A name of at most so many characters; of a longer one the middle is left out, as ends differ.
+
+    >>> shortened("fender of the left door 12.obj", 16)
+    'fender .. 12.obj'
+    """
+    if len(name) <= most:
+        return name
+    end = (most - 2) // 2
+    return f"{name[: most - 2 - end]}..{name[len(name) - end :]}"
 
 
 def _placed(rows: Sequence[Widget], area: Area) -> list[Widget]:
@@ -181,8 +219,7 @@ def _placed(rows: Sequence[Widget], area: Area) -> list[Widget]:
 class FileRow(Button):
     """A file, with its kind at the right."""
 
-    path: Path = Path()
+    shown: str = ""
 
     def items(self, lit: bool) -> list[Item]:
-        kind = kind_of(self.path)
-        return self.row(lit, fitted(self.path.name, CHARACTERS - len(kind)), kind)
+        return self.row(lit, shortened(self.shown, CHARACTERS - len(self.value) - 1), self.value)

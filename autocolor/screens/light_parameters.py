@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
+from autocolor.checks import Vector
 from autocolor.scene.columns.column import fields_of
 from autocolor.scene.lights import Light
 from autocolor.screens.session import Session
@@ -18,6 +20,9 @@ DIRECTION: Final = "direction"
 AIM: Final = "aim"
 """The kinds of lights: those with an axis have a direction, or an aim."""
 
+DOWN: Final = (0.0, 0.0, -1.0)
+"""The direction of a light that had none."""
+
 NEEDS_AXIS: Final = "a point source has none; choose the kind aim first"
 
 
@@ -27,13 +32,14 @@ def kind_of(light: Light) -> str:
 
 
 def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()) -> list[Widget]:
-    """The rows of the columns of a light, without some, and of its kind, which stands after its place."""
+    """The rows of the columns of a light, without some, and of its kind, before what only some kinds have."""
     rows = rows_of(light, partial(put_light, session, light.name), session.world, leave_out)
     # A point source has no axis: what needs one cannot be used, and says so.
     if kind_of(light) == POINT:
         needing = ("concentration", "cone angle")
         rows = [replace(row, why_not=NEEDS_AXIS) if row.label in needing else row for row in rows]
-    before = max((n for n, row in enumerate(rows, start=1) if row.label.startswith("position")), default=0)
+    axis = ("direction", "aim", "concentration")
+    before = next((number for number, row in enumerate(rows) if row.label.startswith(axis)), len(rows))
     choice = Choice(
         "kind",
         "A point source shines to all sides; others along a direction, or at an aim.",
@@ -52,17 +58,32 @@ def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
 
 
 def choose_kind(session: Session, light: Light, kind: str) -> None:
-    """Make a light one of another kind, aimed at the middle of the object, or in the direction it had."""
+    """Make a light one of another kind; one that has a direction or an aim keeps where it shines."""
     if kind == POINT:
         # Without an axis there is no concentration and no cone.
         absent = {name: _default(name) for name in ("direction", "aim", "concentration", "cone_angle")}
         put_light(session, light.name, absent)
     elif kind == AIM:
-        low, high = session.scene.object_bounds
-        middle = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
-        put_light(session, light.name, {"aim": middle})
+        put_light(session, light.name, {"aim": aim_of(light, *session.world)})
     else:
-        put_light(session, light.name, {"direction": light.axis or (0.0, 0.0, -1.0)})
+        put_light(session, light.name, {"direction": light.axis or DOWN})
+
+
+def aim_of(light: Light, low: Vector, high: Vector) -> Vector:
+    """A point at which a light without an aim is aimed: ahead of it, or else the middle of the object.
+
+    A directed light keeps its direction. `low` and `high` are the bounds of the object.
+    """
+    middle = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
+    away = tuple(a - b for a, b in zip(middle, light.position, strict=True))
+    axis = light.axis or (DOWN if not any(away) else None)
+    if axis is None:
+        x, y, z = middle
+        return x, y, z
+    ahead = sum(a * b for a, b in zip(axis, away, strict=True))
+    distance = ahead if ahead > 0 else math.hypot(*away) or 1.0
+    x, y, z = (a + distance * b for a, b in zip(light.position, axis, strict=True))
+    return x, y, z
 
 
 def _default(name: str) -> object:

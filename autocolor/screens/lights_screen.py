@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 from autocolor.scene.lights import Light
 from autocolor.scene.new_lights import new_light_of
@@ -63,10 +64,10 @@ class LightsScreen(OverPicture):
         return [
             Pair(
                 "alone",
-                "This light alone, or all lights on.",
-                run=lambda: session.edit(session.scene.only_lights(light.name)),
+                "This light alone; or all lights on.",
+                run=partial(session.light_alone, light.name),
                 other="all on",
-                run_other=lambda: session.edit(session.scene.with_all_lights_on()),
+                run_other=session.all_lights_on,
             ),
             Pair(
                 "add",

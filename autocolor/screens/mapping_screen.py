@@ -12,33 +12,33 @@ from typing import Any, Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Singles
-from autocolor.lighting.picture import IntensityRange, Picture
+from autocolor.arrays import Singles
+from autocolor.lighting.picture import Picture
 from autocolor.mapping.exposure import mapped_ranges
 from autocolor.mapping.intensity_mapping import fractions_by_surface
-from autocolor.scene.curves import CURVES, CurvePoints, Fractions
+from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.scene import AUTO, Exposure
+from autocolor.screens.curve_panel import (
+    ACROSS,
+    PANEL,
+    Curve,
+    fractions_of,
+    panel_items,
+    place_of,
+    shares_of,
+)
+from autocolor.screens.curve_points import STRAIGHT, added, moved, removed
 from autocolor.screens.gestures import Gesture
+from autocolor.screens.held_ranges import held_rows
 from autocolor.screens.over_picture import OverPicture
 from autocolor.screens.screen import Handle
-from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
+from autocolor.screens.session import Session
 from autocolor.widgets.column_rows import rows_of
-from autocolor.widgets.items import Item, filled, lines, outline, text
-from autocolor.widgets.menu import WORK
-from autocolor.widgets.pairs import Pair
+from autocolor.widgets.items import Item
 from autocolor.widgets.widget import Button, Choice, Gap, Widget
 
-PANEL: Final = Area(8, WORK.bottom - 215, 223, WORK.bottom - 8)
-"""The panel of the curve, at the lower left of the picture."""
-
-CURVE: Final = Area(PANEL.left + 8, PANEL.top + 16, PANEL.right - 8, PANEL.bottom - 8)
-"""Where the curve is: intensity rises to the right, the level upward."""
-
 POINTS: Final = "points"
-STRAIGHT: Final[CurvePoints] = ((0.0, 0.0), (0.25, 0.25), (0.5, 0.5), (0.75, 0.75), (1.0, 1.0))
-LEAST_APART: Final = 0.01
-"""Assumed: the smallest distance of two points along the intensities."""
+HELD: Final = "held"
 
 
 class MappingScreen(OverPicture):
@@ -46,50 +46,61 @@ class MappingScreen(OverPicture):
 
     name = "mapping"
     title = "mapping"
-    help = "How intensities become levels; drag the points of the curve"
+    help = "How intensities become levels; click in the picture: the surface whose curve is shown"
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self._touched: int | None = None
+        """The number of the point that was touched last."""
+
+    # The menu.
 
     def rows(self) -> Sequence[Widget]:
-        session = self.session
-        scene = session.scene
-        present = scene.mapping if isinstance(scene.mapping, str) else POINTS
+        scene, session = self.session.scene, self.session
         others = ("name", "background", "view")
         return [
             Choice(
                 "mapping",
-                "How intensities are mapped to levels; points can be dragged.",
+                "How intensities are mapped to levels; a click in the curve makes points of it.",
                 names=(*CURVES, POINTS),
-                present=present,
+                present=scene.mapping if isinstance(scene.mapping, str) else POINTS,
                 choose=self._choose,
             ),
             Button("straight", "A straight curve with five points.", run=partial(self._put_points, STRAIGHT)),
+            self._remove_row(),
             Gap("exposure gap"),
-            Pair(
-                "hold",
-                "Hold the exposure, so that less light is darker; or let it follow the picture.",
-                run=self._hold,
-                other="auto",
-                run_other=self._release,
+            Choice(
+                "exposure",
+                "Auto: the range of intensities is the picture's. Held: it stays, and less light is darker.",
+                names=(AUTO, HELD),
+                present=AUTO if scene.exposure == AUTO else HELD,
+                choose=self._expose,
             ),
+            *held_rows(session, self._put),
             Gap("scene gap"),
             *rows_of(scene, self._put, session.world, leave_out=others),
         ]
 
+    def _remove_row(self) -> Widget:
+        touched, points = self._touched, self._points()
+        why_not = ""
+        if not points:
+            why_not = "a curve with a name has no points; click in it to make some"
+        elif touched is None or touched >= len(points):
+            why_not = "click at a point of the curve first"
+        elif touched in (0, len(points) - 1):
+            why_not = "the ends of the curve stay; click at another point first"
+        return Button(
+            "remove point",
+            "Remove the point that was touched last, which is yellow.",
+            why_not,
+            run=self._remove,
+        )
+
+    # The curve.
+
     def items(self) -> Sequence[Item]:
-        xs = np.linspace(0, 1, CURVE.width, dtype=np.float32)
-        levels = self._levels(xs)
-        at_ends = [(0, 0), (0, 1), (1, 1), (1, 0), (0, 0)]
-        found = [
-            filled(PANEL, NIGHT),
-            outline(PANEL, SLATE),
-            text("level", CURVE.left, PANEL.top + 4, LIGHT_GRAY),
-            text("intensity", CURVE.right - 62, CURVE.bottom - 10, GRAY),
-            lines([places_of(at_ends)], SLATE, CURVE),
-            lines([places_of(list(zip(xs.tolist(), levels.tolist(), strict=True)))], YELLOW, CURVE),
-        ]
-        for x, y in self._points():
-            element, line = place_of(x, y)
-            found.append(filled(Area(element - 2, line - 2, element + 2, line + 2).within(PANEL), WHITE))
-        return found
+        return panel_items(self._curve())
 
     def handles(self) -> Sequence[Handle]:
         return [
@@ -97,35 +108,40 @@ class MappingScreen(OverPicture):
             for number, (x, y) in enumerate(self._points())
         ]
 
+    def hold(self, handle: Handle) -> None:
+        if isinstance(handle.key, int):
+            self._touched = handle.key
+
     def place(self, handle: Handle, element: int, line: int) -> None:
-        points = list(self._points())
-        number = handle.key
-        if not isinstance(number, int) or number >= len(points):
-            return
-        x, y = fractions_of(element, line)
-        # The ends stay at the ends, and the curve stays a rising one.
-        if 0 < number < len(points) - 1:
-            x = min(max(x, points[number - 1][0] + LEAST_APART), points[number + 1][0] - LEAST_APART)
-        else:
-            x = points[number][0]
-        low = points[number - 1][1] if number else 0.0
-        high = points[number + 1][1] if number < len(points) - 1 else 1.0
-        points[number] = (round(x, 4), round(min(max(y, low), high), 4))
-        self._put_points(tuple(points))
-        self.session.tell(f"intensity {points[number][0]:.2f}, level {points[number][1]:.2f}")
+        points, number = self._points(), handle.key
+        if isinstance(number, int) and number < len(points):
+            points = moved(points, number, *fractions_of(element, line))
+            self._put_points(points)
+            x, y = points[number]
+            self.session.tell(f"intensity {x:.2f}, level {y:.2f}")
 
     def pick(self, gesture: Gesture) -> None:
         if not PANEL.has(gesture.element, gesture.line):
             super().pick(gesture)
             return
-        # A click on the panel adds a point.
-        x, y = fractions_of(gesture.element, gesture.line)
-        points = self._points()
-        if all(abs(x - other) > LEAST_APART for other, _ in points):
-            below = [b for a, b in points if a < x]
-            above = [b for a, b in points if a > x]
-            y = min(max(y, below[-1]), above[0])
-            self._put_points(tuple(sorted((*points, (round(x, 4), round(y, 4))))))
+        points = self._points() or self._points_of_curve()
+        points, self._touched = added(points, *fractions_of(gesture.element, gesture.line))
+        self._put_points(points)
+
+    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
+        # What is dragged on the panel beside its points does not turn the object behind it.
+        if not PANEL.has(start.element, start.line):
+            super().drag(start, last, now)
+
+    def wheel(self, gesture: Gesture) -> None:
+        if not PANEL.has(gesture.element, gesture.line):
+            super().wheel(gesture)
+
+    def hint(self, element: int, line: int) -> str:
+        if not PANEL.has(element, line):
+            return super().hint(element, line)
+        x, y = fractions_of(element, line)
+        return f"intensity {x:.2f}, level {y:.2f}: a click adds a point; points are dragged"
 
     def _points(self) -> CurvePoints:
         """The points of the curve; none of one that has a name."""
@@ -135,62 +151,73 @@ class MappingScreen(OverPicture):
     def _put_points(self, points: CurvePoints) -> None:
         self._put({"mapping": points})
 
+    def _points_of_curve(self) -> CurvePoints:
+        """Points on the curve that is shown."""
+        xs = np.array([x for x, _ in STRAIGHT], np.float32)
+        ys = np.interp(xs, ACROSS, self._curve().levels)
+        rising = np.maximum.accumulate(ys.round(4).clip(0, 1))
+        return tuple(zip(xs.tolist(), rising.tolist(), strict=True))
+
+    def _curve(self) -> Curve:
+        session, scene = self.session, self.session.scene
+        curve = curve_of(
+            session.studio.picture, scene.scaling, scene.mapping, scene.exposure, session.surface_name
+        )
+        levels, shares = (ACROSS, np.zeros_like(ACROSS)) if curve is None else curve
+        return Curve(session.surface_name, levels, shares, self._points(), self._touched)
+
+    # What the rows do.
+
     def _choose(self, name: str) -> None:
         if name != POINTS:
             self._put({"mapping": name})
-        elif isinstance(self.session.scene.mapping, str):
-            # Points begin on the curve that they follow.
-            xs = np.array([x for x, _ in STRAIGHT], np.float32)
-            ys = np.maximum.accumulate(self._levels(xs)).round(4).clip(0, 1)
-            self._put_points(tuple(zip(xs.tolist(), ys.tolist(), strict=True)))
+        elif not self._points():
+            self._put_points(self._points_of_curve())
 
-    def _levels(self, xs: Singles) -> Singles:
-        """The levels, 0 to 1, at fractions of the range that is mapped for the chosen surface."""
-        studio, scene = self.session.studio, self.session.scene
-        picture = studio.picture
-        number = next(
-            (each for each, name in enumerate(picture.surfaces, 1) if name == self.session.surface_name), 0
-        )
-        curves = curves_of(picture, scene.scaling, scene.mapping, scene.exposure)
-        if number not in curves:
-            return xs
-        (low, high), function = curves[number]
-        return function((low + xs * (high - low)).astype(np.float32))
+    def _remove(self) -> None:
+        if self._touched is not None:
+            self._put_points(removed(self._points(), self._touched))
+            self._touched = None
+
+    def _expose(self, how: str) -> None:
+        if how == AUTO:
+            self._put({"exposure": AUTO})
+            self.session.tell("the exposure follows the picture")
+            return
+        self.session.studio.hold_exposure()
+        if self.session.scene.exposure == AUTO:
+            self.session.warn(
+                "to hold the exposure, a surface must have different intensities, and none has;"
+                " switch a light on"
+            )
+        else:
+            self.session.tell("exposure held: less light is darker")
 
     def _put(self, changes: Mapping[str, Any]) -> None:
         self.session.edit(self.session.scene.replace(**changes))
 
-    def _hold(self) -> None:
-        self.session.studio.hold_exposure()
-        self.session.tell("exposure held: less light is darker")
 
-    def _release(self) -> None:
-        self._put({"exposure": AUTO})
-        self.session.tell("the exposure follows the picture")
+@lru_cache(maxsize=4)
+def curve_of(
+    picture: Picture, scaling: str, mapping: str | CurvePoints, exposure: Exposure, name: str
+) -> tuple[Singles, Singles] | None:
+    """The levels, 0 to 1, and the shares of the intensities of a surface across its mapped range.
 
-
-@lru_cache(maxsize=1)
-def curves_of(
-    picture: Picture, scaling: str, mapping: str | CurvePoints, exposure: Exposure
-) -> Mapping[int, tuple[IntensityRange, Fractions]]:
-    """The range of intensities and the curve of each visible surface, by number."""
+    None for a surface that is not visible.
+    """
+    number = picture.surfaces.index(name) + 1 if name in picture.surfaces else 0
     extents = mapped_ranges(picture, scaling, exposure)
-    functions = fractions_by_surface(picture, extents, mapping)
-    return {number: (extents[number], function) for number, function in functions.items()}
+    curves = fractions_by_surface(picture, extents, mapping, only=number)
+    if number not in curves:
+        return None
+    low, high = extents[number]
+    # The sum may exceed the maximum by rounding, where a curve has no value.
+    levels = curves[number](np.minimum(np.float32(low) + ACROSS * np.float32(high - low), np.float32(high)))
+    return levels, _shares(picture, number, low, high)
 
 
-def place_of(x: float, y: float) -> tuple[int, int]:
-    """The element and the line of fractions of intensity and level."""
-    return round(CURVE.left + x * (CURVE.width - 1)), round(CURVE.bottom - y * (CURVE.height - 1))
-
-
-def places_of(points: Sequence[tuple[float, float]]) -> Floats:
-    """The elements and lines, (n, 2), of fractions."""
-    return np.array([place_of(x, y) for x, y in points], np.float64)
-
-
-def fractions_of(element: int, line: int) -> tuple[float, float]:
-    """The fractions of intensity and level at a place, 0 to 1."""
-    x = (element - CURVE.left) / (CURVE.width - 1)
-    y = (CURVE.bottom - line) / (CURVE.height - 1)
-    return min(1.0, max(0.0, x)), min(1.0, max(0.0, y))
+@lru_cache(maxsize=4)
+def _shares(picture: Picture, number: int, low: float, high: float) -> Singles:
+    """How often the intensities of a visible surface are seen, which no curve changes."""
+    seen = next(surface for surface in picture.slices if surface.surface_number == number)
+    return shares_of(picture.relative[seen.pixels], low, high)

@@ -94,7 +94,7 @@ class PictureScreen(OverPicture):
 
     def _light_rows(self) -> list[Widget]:
         session = self.session
-        return [
+        switches: list[Widget] = [
             Switch(
                 light.name,
                 f"Switch light {light.name} on or off; beside the box: choose it.",
@@ -105,6 +105,17 @@ class PictureScreen(OverPicture):
             )
             for number, light in enumerate(session.scene.lights)
         ]
+        chosen = session.light_name
+        if not chosen:
+            return switches
+        alone = Pair(
+            "alone",
+            f"Light {chosen} alone; or all lights on.",
+            run=partial(session.light_alone, chosen),
+            other="all on",
+            run_other=session.all_lights_on,
+        )
+        return [*switches, alone]
 
     def _choose_light(self, name: str) -> None:
         self.session.choose_light(name)

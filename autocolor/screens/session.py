@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
+from autocolor.errors import InputError
 from autocolor.files.file_stem import file_stem, free_path
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.recent import note_file
@@ -119,8 +120,12 @@ class Session:
         self.news = News(message, is_warning, time.monotonic())
 
     def warn(self, message: object) -> None:
-        """Show an error, in one line."""
-        self.tell(str(message).replace("\n", "; "), is_warning=True)
+        """Show an error in one line; of several problems, the first one and how many others there are."""
+        more = ""
+        if isinstance(message, InputError) and len(message.problems) > 1:
+            first, *others = message.problems
+            message, more = first, f" (and {len(others)} more)"
+        self.tell(str(message).replace("\n", "; ") + more, is_warning=True)
 
     # What is chosen.
 
@@ -188,6 +193,16 @@ class Session:
     def change_surface(self, name: str, /, **changes: Unpack[SurfaceChanges]) -> None:
         """Change fields of a surface."""
         self.edit(self.scene.with_surface(name, **changes))
+
+    def light_alone(self, name: str) -> None:
+        """Switch one light on and all others off."""
+        self.edit(self.scene.only_lights(name))
+        self.tell(f"light {name} alone")
+
+    def all_lights_on(self) -> None:
+        """Switch all lights on."""
+        self.edit(self.scene.with_all_lights_on())
+        self.tell("all lights on")
 
     def paint(self, **changes: Unpack[PaintChanges]) -> None:
         """Change the colors of the chosen surface, if there is one."""

@@ -11,6 +11,7 @@ from autocolor.errors import UsageError
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
 from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
+from autocolor.widgets.labels import short_label
 from autocolor.widgets.widget import BOX, MARGIN, ROW_LINES, TEXT_DOWN, Place, Typed, Widget, box_items
 
 THIN: Final = 2
@@ -66,7 +67,9 @@ class Bar(Widget):
 
     def _row_items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
-        found = self.row(lit, self.label, self._row_number + ("" if self.flip is None else BESIDE_BOX))
+        value = self._row_number + ("" if self.flip is None else BESIDE_BOX)
+        room = (self.area.width - 2 * MARGIN) // CHARACTER
+        found = self.row(lit, short_label(self.label, room - len(value) - 1), value)
         if self.flip is not None:
             found += box_items(self._box, self.value is not None, self.ink, background)
         track = self._track

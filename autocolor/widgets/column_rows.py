@@ -36,10 +36,14 @@ class World(NamedTuple):
     high: Vector
 
     def range_of(self, axis: str) -> Range:
-        """The usual range of a coordinate: that of the object and its whole size around."""
+        """The usual range of a coordinate: that of the object and its whole size around.
+
+        Without an axis, it is that of all three.
+        """
         size = math.dist(self.low, self.high) or 1.0
-        number = AXES.find(axis)
-        low, high = (self.low[number], self.high[number]) if number >= 0 else (min(self.low), max(self.high))
+        low, high = min(self.low), max(self.high)
+        if axis:
+            low, high = self.low[AXES.index(axis)], self.high[AXES.index(axis)]
         return bar_within(low - size, high + size)
 
 
@@ -139,7 +143,7 @@ def _vector_rows(
         usual = world.range_of(axis) if column.unit == WORLD_UNITS else Range(-1, 1, 0.01)
         yield Bar(
             f"{label} {axis}",
-            column.help,
+            _help(column),
             value=value[number],
             low=usual.low,
             high=usual.high,
@@ -149,7 +153,8 @@ def _vector_rows(
 
 
 def _help(column: Column) -> str:
-    return column.help
+    """What the message line says of a number: what it is, and its unit."""
+    return f"{column.help} In {column.unit}." if column.unit else column.help
 
 
 def _put(put: Put, name: str, value: object) -> object:

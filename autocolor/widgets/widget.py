@@ -26,6 +26,9 @@ TEXT_DOWN: Final = 3
 BOX: Final = 8
 """Elements and lines of the box of a switch."""
 
+FEWEST: Final = 4
+"""The fewest characters of a label that is cut."""
+
 NOWHERE: Final = Area(0, 0, -1, -1)
 
 SomeWidget = TypeVar("SomeWidget", bound="Widget")
@@ -102,7 +105,9 @@ class Widget:
         if shown:
             start = right + 1 - MARGIN - CHARACTER * len(shown)
             found.append(text(shown, start, top + TEXT_DOWN, ink, background))
-        label = fitted(label, room - len(shown) - bool(shown))
+        beside = room - len(shown) - bool(shown)
+        # A value that needs the row is shown without its label, of which a letter or two would tell nothing.
+        label = fitted(label, beside) if beside >= min(len(label), FEWEST) else ""
         if label:
             quiet = LIGHT_GRAY if value and ink == WHITE else ink
             found.append(text(label, left + MARGIN, top + TEXT_DOWN, quiet, background))

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from autocolor.files.file_stem import file_stem
+from autocolor.files.file_stem import file_stem, free_path
 
 
 @pytest.mark.parametrize(
@@ -48,3 +48,13 @@ def test_any_name_becomes_a_file_in_the_folder_where_it_is_put(name: str) -> Non
 @given(st.text())
 def test_a_stem_is_a_stem_already(name: str) -> None:
     assert file_stem(file_stem(name)) == file_stem(name)
+
+
+def test_a_path_that_is_taken_gets_the_lowest_number_from_two(tmp_path: Path) -> None:
+    path = tmp_path / "rig.toml"
+    assert free_path(path) == path
+    path.touch()
+    assert free_path(path) == tmp_path / "rig-2.toml"
+    (tmp_path / "rig-2.toml").mkdir()
+    (tmp_path / "rig-3.toml").symlink_to(tmp_path / "nowhere")
+    assert free_path(path) == tmp_path / "rig-4.toml"

@@ -20,6 +20,7 @@ from autocolor import (
     scene_of,
     write_rig,
 )
+from autocolor.files.rig_file import is_rig
 from autocolor.files.scenes.toml_text import LARGEST_TEXT
 from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import scenes
@@ -160,3 +161,12 @@ def test_what_cannot_be_written_is_refused_and_leaves_no_file(
     with pytest.raises(kind, match=sentence):
         write_rig(tmp_path / name, rig)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_with_the_size_of_an_object_and_no_mesh_is_a_rig(tmp_path: Path) -> None:
+    write_rig(tmp_path / "rig.toml", scene_of(cube()))
+    assert is_rig(tmp_path / "rig.toml")
+    for text in ("", "ambient = 0.5", 'minimum = [0, 0, 0]\n[[mesh]]\nfile = "car.obj"', "minimum = ["):
+        assert not is_rig(given_text(tmp_path, text)), text
+    assert not is_rig(tmp_path / "gone.toml")
+    assert not is_rig(tmp_path)

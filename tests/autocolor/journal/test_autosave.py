@@ -112,15 +112,13 @@ def test_every_text_is_that_of_the_session_whatever_was_taken(
     kept.end()
 
 
-def test_a_scene_of_no_file_is_saved_beside(source: Source, history: History, state: Path) -> None:
+def test_a_scene_of_no_file_is_saved_beside(state: Path) -> None:
     kept = Autosave()
-    take(history, 0.5)
-    kept.update(history, at_once=True)
-    opened = History(car().with_light("key", on=False))
-    kept.update(opened, at_once=True)
+    unsaved = History(car().with_light("key", on=False))
+    kept.update(unsaved, at_once=True)
     assert journals(state) == []
-    take(opened, 0.7)
-    kept.update(opened, at_once=True)
+    take(unsaved, 0.7)
+    kept.update(unsaved, at_once=True)
     (path,) = journals(state)
     session = read_journal(path)
     assert session.source.path == str(path.parent / "scene")

@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 
 from autocolor import InputError, LevelRange, Picture, Scene, render
 from autocolor.lighting.picture import IntensityRange
+from autocolor.mapping.exposure import mapped_ranges
 from autocolor.mapping.intensity_mapping import (
     dithered_levels,
     fraction_of,
+    fractions_by_surface,
     levels_of,
     ordered_thresholds,
     words_of,
@@ -220,3 +222,23 @@ def test_a_surface_named_object_has_no_held_range_of_its_own() -> None:
 def test_dithering_leaves_what_has_no_extent_alone() -> None:
     words = words_of(picture_of([3.0] * 30), {"a": LevelRange(1, 10)}, dither="ordered")
     assert set(words.ravel().tolist()) == {0, 6}
+
+
+@pytest.mark.parametrize("mapping", MAPPINGS, ids=str)
+def test_surfaces_that_share_a_range_share_their_function(mapping: Any) -> None:
+    picture = picture_of([0.1, 0.4, 0.9], [0.2, 0.3, 1.5])
+    own = fractions_by_surface(picture, mapped_ranges(picture, "surface", "auto"), mapping)
+    shared = fractions_by_surface(picture, mapped_ranges(picture, "object", "auto"), mapping)
+    assert own.keys() == shared.keys() == {1, 2}
+    assert own[1] is not own[2]
+    assert fractions_by_surface(picture, mapped_ranges(picture, "surface", "auto"), mapping, 2).keys() == {2}
+    assert not fractions_by_surface(picture, mapped_ranges(picture, "surface", "auto"), mapping, 3)
+    assert shared[1] is shared[2]
+
+
+def test_a_function_of_a_surface_maps_its_range_to_0_and_1() -> None:
+    picture = picture_of([0.1, 0.4, 0.9], [0.2, 0.3, 1.5])
+    extents = mapped_ranges(picture, "surface", "auto")
+    for number, function in fractions_by_surface(picture, extents, "linear").items():
+        ends = np.array(extents[number], np.float32)
+        assert function(ends).tolist() == [0, 1]

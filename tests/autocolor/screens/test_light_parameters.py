@@ -4,12 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from autocolor import InputError, Light, Scene, scene_of
+from autocolor import Light, Scene, scene_of
 from autocolor.screens.light_parameters import (
     AIM,
     DIRECTION,
     NEEDS_AXIS,
     POINT,
+    aim_of,
     choose_kind,
     kind_of,
     parameter_rows,
@@ -36,11 +37,13 @@ def test_the_kind_of_a_light_is_told_by_what_it_has() -> None:
     assert kind_of(Light("key", (0.0, 0.0, 0.0))) == POINT
 
 
-def test_the_row_of_the_kind_stands_after_the_place_and_first_without_it() -> None:
+def test_the_row_of_the_kind_stands_before_what_only_some_kinds_have() -> None:
     session = session_of(AIMED)
-    labels = [row.label for row in parameter_rows(session, AIMED)]
-    assert labels[labels.index("position z") + 1] == "kind"
-    assert next(row.label for row in parameter_rows(session, AIMED, ["name", "position"])) == "kind"
+    for leave_out in ([], ["name", "position"]):
+        labels = [row.label for row in parameter_rows(session, AIMED, leave_out)]
+        assert labels[labels.index("kind") - 1 : labels.index("kind") + 2] == ["on", "kind", "aim x"]
+    without = parameter_rows(session, AIMED, ["aim", "concentration", "cone_angle", "flaps"])
+    assert [row.label for row in without][-1] == "kind"
 
 
 def test_every_kind_can_be_chosen_from_every_other() -> None:
@@ -76,12 +79,6 @@ def test_a_point_source_has_no_concentration_and_no_cone() -> None:
     assert not any(row.why_not for row in parameter_rows(session, AIMED))
 
 
-def test_a_light_in_the_middle_of_the_object_cannot_be_aimed_at_it() -> None:
-    session = session_of(Light("key", (0.5, 0.5, 0.5)))
-    with pytest.raises(InputError, match="the aim must not be the position"):
-        choose_kind(session, session.scene.light("key"), AIM)
-
-
 def test_the_row_of_the_kind_goes_on_to_the_next() -> None:
     session = session_of(AIMED)
     (row,) = [row for row in parameter_rows(session, AIMED) if isinstance(row, Choice)]
@@ -93,3 +90,15 @@ def test_a_light_that_gets_another_name_stays_chosen() -> None:
     session = session_of(AIMED)
     put_light(session, "key", {"name": "sun"})
     assert session.light_name == "sun"
+
+
+def test_a_directed_light_is_aimed_ahead() -> None:
+    ahead = aim_of(Light("a", (0, 0, 4), direction=(0, 0, -2)), (-1, -1, -1), (1, 1, 1))
+    assert ahead == pytest.approx((0, 0, 0))
+    aside = aim_of(Light("a", (0, 0, 4), direction=(1, 0, 0)), (-1, -1, -1), (1, 1, 1))
+    assert aside == pytest.approx((4, 0, 4))
+    assert aim_of(Light("a", (0, 0, 4)), (-1, -1, -1), (3, 1, 1)) == (1, 0, 0)
+
+
+def test_a_light_in_the_middle_of_the_object_is_aimed_down() -> None:
+    assert aim_of(Light("a", (0, 0, 0)), (-1, -1, -1), (1, 1, 1)) == (0, 0, -1)

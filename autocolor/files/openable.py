@@ -1,0 +1,89 @@
+"""What can be opened in a folder: scenes, meshes, pictures, rigs of lights, and further folders.
+
+A list is made from names alone, so that it is quick; a file is read when it is opened.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from itertools import islice
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from autocolor.errors import InputError, reason_of
+from autocolor.files.meshes.formats import format_of_folder, mesh_suffixes
+from autocolor.files.scenes.formats import scene_format_named, scene_formats
+
+FOLDER: Final = "folder"
+MESH: Final = "mesh"
+
+MOST_LISTED: Final = 1000
+"""Assumed: the names of a folder that are looked at; more cannot be pointed at."""
+
+
+class Openable(NamedTuple):
+    """A path, and what it is: "scene", "picture", "mesh" or "folder"."""
+
+    path: Path
+    kind: str
+
+
+def openables_of(folder: Path) -> list[Openable]:
+    """What can be opened in a folder, then its folders, by name; hidden names are left out.
+
+    Of a folder with more than MOST_LISTED names, only so many are looked at. Raises InputError if it cannot
+    be read.
+    """
+    try:
+        with os.scandir(folder) as listed:
+            names = [each.name for each in islice(listed, MOST_LISTED)]
+    except OSError as error:
+        raise InputError(
+            f"{folder.name or folder}: a folder must be readable, and is not ({reason_of(error)});"
+            " choose another"
+        ) from None
+    paths = [folder / name for name in sorted(names, key=_in_order) if not name.startswith(".")]
+    found = [Openable(path, kind) for path in paths if (kind := kind_of(path))]
+    return sorted(found, key=lambda each: each.kind == FOLDER)
+
+
+def kind_of(path: Path) -> str:
+    """What a path is, as in `Openable`; empty for what cannot be opened, or is not there."""
+    try:
+        if path.is_dir():
+            if _scene_file_in(path) is not None:
+                return "scene"
+            return FOLDER if format_of_folder(path) is None else MESH
+        if not path.is_file():
+            return ""
+    except OSError:
+        return ""
+    scene_format = scene_format_named(path)
+    if scene_format is not None:
+        return scene_format.name.removesuffix(" file")
+    return MESH if path.suffix.lower() in mesh_suffixes() else ""
+
+
+def stays_within(path: Path, folder: Path) -> bool:
+    """Whether a path, and what is read first if it is opened, are in a folder, links resolved."""
+    real = os.path.realpath(folder)
+    read = [path]
+    if path.is_dir():
+        found = format_of_folder(path)
+        names = [each.in_folder for each in scene_formats() if each.in_folder]
+        names += found.in_folder if found is not None else ()
+        read += [path / name for name in names]
+    return all(Path(os.path.realpath(each)).is_relative_to(real) for each in read)
+
+
+def _scene_file_in(folder: Path) -> str | None:
+    """The name of the scene file in a folder; None if there is none."""
+    names = (each.in_folder for each in scene_formats())
+    return next((name for name in names if name and (folder / name).is_file()), None)
+
+
+def _in_order(name: str) -> list[tuple[int, str]]:
+    """The key to sort names by, so that car2 stands before car10."""
+    parts = re.split(r"(\d+)", name.casefold())
+    return [(int(part), "") if part.isdecimal() and part.isascii() else (0, part) for part in parts]

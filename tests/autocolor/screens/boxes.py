@@ -1,0 +1,73 @@
+"""A small scene for the screens, and a hand on the unit of its display."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, View, scene_of
+from autocolor.mapping.level_ranges import SCREENS
+from autocolor.screens.viewer import Viewer
+from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import STRETCHED, cube
+from tests.autocolor.screens.hand import Hand
+
+KEY = Light(
+    "key",
+    (2, -3, 4),
+    aim=(0.5, 0.5, 0.5),
+    concentration=4,
+    cone_angle=60,
+    flaps=Flaps(x=Flap(-0.5, 1.5), z=Flap(maximum=0.75, on=False)),
+)
+
+
+def boxes() -> Scene:
+    """A cube of two surfaces under two lights."""
+    mesh = Mesh(cube().coordinates, cube().node_numbers, np.array([0, 0, 0, 1, 1, 1]), ("low", "high"))
+    return scene_of(
+        mesh,
+        surfaces=[Surface("low"), Surface("high")],
+        surface_of_part={"low": "low", "high": "high"},
+        lights=[KEY, Light("fill", (-3, -3, 1), intensity=0.5)],
+        view=View((-2, -3, 2), target=(0.5, 0.5, 0.5)),
+        name="boxes",
+    ).replace(**STRETCHED)
+
+
+def hand_at(folder: Path, screen: str, scene: Scene | None = None) -> Hand:
+    """A hand before a screen, to which it went by the menu."""
+    hand = Hand(Viewer(boxes() if scene is None else scene, Ramtek9300(), folder))
+    hand.open_menu()
+    hand.pick(screen)
+    assert hand.viewer.session.screen == screen
+    return hand
+
+
+def told(hand: Hand) -> tuple[str, bool]:
+    """The message, and whether it is a warning."""
+    news = hand.viewer.session.news
+    return news.text, news.is_warning
+
+
+def hint_of(hand: Hand, label: str) -> str:
+    """What the message line says while the pointer is on a row."""
+    left, top, right, bottom = hand.widget(label).area
+    hand.viewer.tell("")
+    hand.move((left + right) / 2, (top + bottom) / 2)
+    return hand.viewer.board.message[0]
+
+
+def undo(hand: Hand) -> None:
+    """Pick undo in the menu."""
+    hand.pick(" ")
+
+
+def words_are_those_of_the_scene(hand: Hand) -> bool:
+    """Whether the display has the words of the picture, but for the lines that stand over it."""
+    display, studio = hand.viewer.display, hand.viewer.studio
+    assert isinstance(display, Ramtek9300)
+    shown, words = display.words[:200, :500], studio.words[:200, :500]
+    others = shown[shown != words]
+    return len(others) < words.size // 50 and bool((others >= SCREENS.first).all())

@@ -1,0 +1,114 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from autocolor import CookTorrance, Surface
+from autocolor.scene.columns.column import fields_of
+from autocolor.scene.reflection_models import MODELS
+from autocolor.widgets.bars import Bar
+from tests.autocolor.screens.boxes import boxes, hand_at, told, undo, words_are_those_of_the_scene
+from tests.autocolor.screens.hand import Hand
+
+NUMBERS: dict[str, Callable[[Surface], object]] = {
+    "diffuse": lambda surface: surface.reflectance.diffuse,
+    "specular": lambda surface: surface.reflectance.specular,
+    "exponent": lambda surface: vars(surface.reflectance.model).get("exponent"),
+}
+
+BOX = 0.95
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Hand:
+    return hand_at(tmp_path, "reflectance")
+
+
+def surface_of(hand: Hand, name: str = "low") -> Surface:
+    return hand.viewer.studio.scene.surface(name)
+
+
+@pytest.mark.parametrize("label", NUMBERS)
+def test_a_drag_along_a_number_sets_it_alone_and_is_one_step(hand: Hand, label: str) -> None:
+    before = hand.viewer.studio.scene
+    hand.pull(label, 0.2, 0.4)
+    row = hand.widget(label)
+    assert isinstance(row, Bar)
+    assert NUMBERS[label](surface_of(hand)) == row.value
+    start, now = before.surface("low"), surface_of(hand)
+    assert [name for name, get in NUMBERS.items() if get(start) != get(now)] == [label]
+    assert surface_of(hand, "high") is before.surface("high")
+    assert words_are_those_of_the_scene(hand)
+    undo(hand)
+    assert hand.viewer.studio.scene is before
+
+
+def test_every_model_is_reached_and_every_parameter_of_it_can_be_set(hand: Hand) -> None:
+    seen = []
+    for _ in MODELS:
+        hand.pick("model")
+        model = surface_of(hand).reflectance.model
+        seen.append(type(model))
+        for name in fields_of(type(model)):
+            hand.pull(name.replace("_", " "), 0.3, 0.5)
+            assert vars(surface_of(hand).reflectance.model)[name] != vars(model)[name]
+    assert seen[-1:] + seen[:-1] == list(MODELS.values())
+    assert CookTorrance in seen
+
+
+def test_the_number_of_levels_is_switched_and_set_in_whole_numbers(hand: Hand) -> None:
+    hand.pick("levels", BOX)
+    first = surface_of(hand).levels
+    assert isinstance(first, int)
+    hand.pull("levels", 0.2, 0.25)
+    levels = surface_of(hand).levels
+    assert isinstance(levels, int)
+    assert levels != first
+    assert hand.viewer.studio.level_ranges["low"].levels == levels
+    hand.pick("levels", BOX)
+    assert surface_of(hand).levels is None
+
+
+def test_a_surface_is_one_sided_by_a_click(hand: Hand) -> None:
+    hand.pick("two sided", BOX)
+    assert not surface_of(hand).two_sided
+
+
+def test_a_click_in_the_picture_chooses_the_surface(hand: Hand) -> None:
+    studio = hand.viewer.studio
+    levels = studio.level_ranges["high"]
+    seen = (levels.first <= studio.words) & (studio.words <= levels.last)
+    lines, elements = np.nonzero(seen[:440, :480])
+    middle = len(lines) // 2
+    hand.click(elements[middle], lines[middle])
+    assert hand.viewer.session.surface_name == "high"
+    assert "high" in told(hand)[0]
+    hand.pull("diffuse", 0.2, 0.4)
+    assert surface_of(hand, "high") != boxes().surface("high")
+    assert surface_of(hand) == boxes().surface("low")
+
+
+def test_the_surface_is_chosen_in_the_menu_too(hand: Hand) -> None:
+    hand.pick("surface")
+    assert hand.viewer.session.surface_name == "high"
+
+
+def test_colors_are_not_among_the_properties(hand: Hand) -> None:
+    labels = {row.label for row in hand.viewer.board.screen.rows()}
+    assert labels.isdisjoint(name.replace("_", " ") for name in vars(surface_of(hand).paint))
+
+
+def test_what_is_refused_is_told_and_changes_nothing(hand: Hand) -> None:
+    hand.viewer.session.has_keyboard = True
+    before = hand.viewer.studio.scene
+    hand.move(560, hand.widget("diffuse").area.top + 4)
+    hand.viewer.on_key("-", typed="-")
+    hand.viewer.on_key("1", typed="1")
+    hand.viewer.on_key("return")
+    message, is_warning = told(hand)
+    assert is_warning
+    assert "diffuse must be" in message
+    assert hand.viewer.studio.scene is before

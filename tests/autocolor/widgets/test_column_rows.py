@@ -1,0 +1,225 @@
+"""A row of a made-up table, with a column of each kind: whatever is added to a table appears by itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any
+
+import pytest
+
+from autocolor.checks import Color, Vector
+from autocolor.scene.columns.bars import Bar as Range
+from autocolor.scene.columns.color_kinds import ColorKind
+from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
+from autocolor.scene.columns.row_kinds import Nested, Variant
+from autocolor.scene.columns.rows import changed
+from autocolor.scene.columns.value_kinds import Choice as ChoiceKind
+from autocolor.scene.columns.value_kinds import CurveKind, Number, Text, VectorKind, Whole
+from autocolor.scene.columns.value_kinds import Switch as SwitchKind
+from autocolor.widgets.areas import Area
+from autocolor.widgets.bars import Bar
+from autocolor.widgets.column_rows import World, rows_of
+from autocolor.widgets.widget import Choice, Entry, Place, Switch, Widget
+
+MIX = Tier.MIX
+WORLD = World((-1.0, -2.0, 0.0), (1.0, 2.0, 1.0))
+SIZE = math.sqrt(4 + 16 + 1)
+AREA = Area(505, 0, 639, 15)
+
+
+@dataclass(frozen=True)
+class Shutter(Row):
+    low: Annotated[float, Column(Number(endless=-math.inf), MIX, "Low.", WORLD_UNITS)] = -math.inf
+    high: Annotated[float, Column(Number(endless=math.inf), MIX, "High.", WORLD_UNITS)] = math.inf
+    on: Annotated[bool, Column(SwitchKind(), MIX, "Whether it is used.")] = True
+
+
+@dataclass(frozen=True)
+class Shutters(Row):
+    x: Annotated[Shutter | None, Column(Nested(Shutter), MIX, "Across.")] = None
+    z: Annotated[Shutter | None, Column(Nested(Shutter), MIX, "Upward.")] = None
+
+
+@dataclass(frozen=True)
+class Haze(Row):
+    density: Annotated[float, Column(Number(0, 1), MIX, "How dense.")] = 0.25
+
+
+@dataclass(frozen=True)
+class Smooth(Row):
+    grain: Annotated[float, Column(Number(0, 1), MIX, "How fine.")] = 0.5
+
+
+@dataclass(frozen=True)
+class Coarse(Row):
+    size: Annotated[int, Column(Whole(1, 9), MIX, "How coarse.")] = 3
+
+
+@dataclass(frozen=True)
+class Lamp(Row):
+    """One column of each kind."""
+
+    name: Annotated[str, Column(Text(), MIX, "Its name.")] = "lamp"
+    share: Annotated[float, Column(Number(0, 1), MIX, "A share.")] = 0.5
+    tilt_angle: Annotated[
+        float | None, Column(Number(0, 180), MIX, "A tilt.", "degrees", bar=Range(0, 90, 1), start=30.0)
+    ] = None
+    blades: Annotated[int, Column(Whole(2, 12), MIX, "Blades.")] = 6
+    count: Annotated[int | None, Column(Whole(1, 100), MIX, "A count.")] = None
+    reach: Annotated[float, Column(Number(), MIX, "How far.", WORLD_UNITS)] = 1.0
+    on: Annotated[bool, Column(SwitchKind(), MIX, "Whether it is on.")] = True
+    mode: Annotated[str, Column(ChoiceKind(("wide", "narrow")), MIX, "Its mode.")] = "wide"
+    tint: Annotated[Color, Column(ColorKind(), MIX, "Its tint.")] = (255, 0, 0)
+    place: Annotated[Vector, Column(VectorKind(), MIX, "Where it is.", WORLD_UNITS)] = (0.0, 0.0, 0.0)
+    facing: Annotated[Vector | None, Column(VectorKind(has_length=True), MIX, "Where it faces.")] = None
+    finish: Annotated[Row, Column(Variant({"smooth": Smooth, "coarse": Coarse}), MIX, "Its finish.")] = field(
+        default_factory=Smooth
+    )
+    haze: Annotated[Haze, Column(Nested(Haze, inline=True), MIX, "Its haze.")] = field(default_factory=Haze)
+    shutters: Annotated[Shutters, Column(Nested(Shutters), MIX, "Its shutters.")] = field(
+        default_factory=Shutters
+    )
+    curve: Annotated[str, Column(CurveKind({"linear": 1}), MIX, "Its curve.")] = "linear"
+
+
+class Table:
+    """A lamp whose rows change it."""
+
+    def __init__(self, lamp: Lamp | None = None) -> None:
+        self.lamp = Lamp() if lamp is None else lamp
+
+    def put(self, changes: Mapping[str, Any]) -> None:
+        self.lamp = changed(self.lamp, changes)
+
+    def rows(self, **options: Any) -> dict[str, Widget]:
+        return {row.label: row.at(AREA) for row in rows_of(self.lamp, self.put, WORLD, **options)}
+
+    def bar(self, label: str) -> Bar:
+        row = self.rows()[label]
+        assert isinstance(row, Bar)
+        return row
+
+
+@pytest.fixture
+def table() -> Table:
+    return Table()
+
+
+def test_each_kind_of_column_has_its_rows_in_their_order(table: Table) -> None:
+    kinds = {
+        "name": Entry, "share": Bar, "tilt angle": Bar, "blades": Bar, "count": Bar, "reach": Bar,
+        "on": Switch, "mode": Choice, "tint": Entry, "place x": Bar, "place y": Bar, "place z": Bar,
+        "finish": Choice, "grain": Bar, "density": Bar, "shutters x": Switch, "shutters z": Switch,
+    }  # fmt: skip
+    assert {label: type(row) for label, row in table.rows().items()} == kinds
+    assert list(table.rows()) == list(kinds)
+
+
+def test_what_is_left_out_has_no_row(table: Table) -> None:
+    assert not {"name", "place x"} & set(table.rows(leave_out=("name", "place")))
+
+
+def test_the_unit_is_told_with_the_help(table: Table) -> None:
+    rows = table.rows()
+    assert rows["tilt angle"].help == "A tilt. In degrees."
+    assert rows["place y"].help == "Where it is. In world units."
+    assert rows["share"].help == "A share."
+    assert table.bar("tilt angle").unit == "degrees"
+
+
+@pytest.mark.parametrize(
+    "label", ["share", "blades", "reach", "place x", "place y", "place z", "grain", "density"]
+)
+def test_pointing_along_a_bar_puts_the_number_at_that_place(table: Table, label: str) -> None:
+    before = table.bar(label).value
+    table.bar(label).drag(Place(520, 8), Place(520, 8), Place(620, 8))
+    after = table.bar(label)
+    assert after.value is not None
+    assert after.value != before
+    assert after.low < after.value < after.high
+    others = [key for key in vars(Lamp()) if vars(table.lamp)[key] != vars(Lamp())[key]]
+    assert len(others) == 1
+
+
+def test_coordinates_reach_the_whole_size_around_the_object(table: Table) -> None:
+    bar = table.bar("place y")
+    assert (bar.low, bar.high) == pytest.approx((-2 - SIZE, 2 + SIZE))
+    assert (table.bar("reach").low, table.bar("reach").high) == pytest.approx((-2 - SIZE, 2 + SIZE))
+
+
+def test_whole_numbers_stay_whole(table: Table) -> None:
+    table.bar("blades").put(7.0)
+    assert table.lamp.blades == 7
+    assert type(table.lamp.blades) is int
+
+
+def test_an_absent_number_begins_at_its_start_or_the_lowest_of_its_range(table: Table) -> None:
+    for label, start in (("tilt angle", 30.0), ("count", 1)):
+        assert table.bar(label).value is None
+        table.bar(label).pick(Place(632, 8))
+        assert table.bar(label).value == start
+        table.bar(label).pick(Place(632, 8))
+        assert table.bar(label).value is None
+
+
+def test_switches_choices_and_texts_put_their_values(table: Table) -> None:
+    table.rows()["on"].pick(Place(632, 8))
+    table.rows()["mode"].pick(Place(600, 8))
+    for label, typed in (("name", "sun"), ("tint", "#00f")):
+        entry = table.rows()[label]
+        assert isinstance(entry, Entry)
+        entry.typed.take(typed)
+    lamp = table.lamp
+    assert (lamp.on, lamp.mode, lamp.name, lamp.tint) == (False, "narrow", "sun", (0, 0, 255))
+
+
+def test_a_vector_that_is_given_has_three_bars(table: Table) -> None:
+    given = Table(Lamp(facing=(0.0, 0.0, -1.0)))
+    assert "facing x" not in table.rows()
+    given.bar("facing x").put(0.5)
+    assert given.lamp.facing == (0.5, 0, -1)
+    assert (given.bar("facing x").low, given.bar("facing x").high) == (-1, 1)
+
+
+def test_a_row_of_one_of_several_classes_has_the_parameters_of_that_class(table: Table) -> None:
+    table.bar("grain").put(0.75)
+    assert table.lamp.finish == Smooth(0.75)
+    table.rows()["finish"].pick(Place(600, 8))
+    assert repr(table.lamp.finish) == repr(Coarse())
+    assert "grain" not in table.rows()
+    table.bar("size").put(5.0)
+    assert repr(table.lamp.finish) == repr(Coarse(5))
+
+
+def test_a_row_within_the_row_changes_in_its_place(table: Table) -> None:
+    table.bar("density").put(0.5)
+    assert table.lamp.haze == Haze(0.5)
+
+
+def test_an_absent_row_is_made_by_its_switch_and_then_switched(table: Table) -> None:
+    table.rows()["shutters x"].pick(Place(632, 8))
+    assert table.lamp.shutters == Shutters(x=Shutter())
+    assert {"x low", "x high"} <= set(table.rows())
+    assert "x on" not in table.rows()
+    table.rows()["shutters x"].pick(Place(632, 8))
+    assert table.lamp.shutters.x == Shutter(on=False)
+
+
+def test_a_number_without_limit_begins_at_the_bound_of_the_object_on_that_side(table: Table) -> None:
+    lamp = Lamp(shutters=Shutters(z=Shutter()))
+    table = Table(lamp)
+    for label, bound in (("z low", 0.0), ("z high", 1.0)):
+        assert table.bar(label).value is None
+        table.bar(label).pick(Place(632, 8))
+        assert table.bar(label).value == bound
+    assert table.lamp.shutters.z == Shutter(0.0, 1.0)
+    table.bar("z low").pick(Place(632, 8))
+    assert table.lamp.shutters.z == Shutter(-math.inf, 1.0)
+
+
+def test_a_point_without_size_has_a_range_too() -> None:
+    nowhere = World((3.0, 3.0, 3.0), (3.0, 3.0, 3.0))
+    usual = nowhere.range_of("x")
+    assert (usual.low, usual.high) == (2, 4)
