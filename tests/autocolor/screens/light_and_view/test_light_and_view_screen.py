@@ -431,3 +431,27 @@ def test_a_scene_without_lights_shows_the_eye_alone() -> None:
     element, line = place_of(hand, Grip(EYE, "top"))
     hand.drag((element, line), (element + 20, line + 9))
     assert scene_of_hand(hand).view.eye[2] == 2.0
+
+
+def test_pointing_sends_nothing_but_the_message_and_the_mark() -> None:
+    hand = opened(boxed(KEY, FILL))
+    hand.move(20, 440)
+    display = hand.viewer.display
+    assert isinstance(display, Ramtek9300)
+    before = display.words_received
+    hand.move(*place_of(hand, Grip(LIGHT, "top", "key")))
+    assert display.words_received - before < 200
+
+
+def test_a_dragged_light_sends_the_small_picture_and_some_lines() -> None:
+    hand = opened(boxed(KEY, FILL))
+    hand.move(*place_of(hand, Grip(LIGHT, "top", "key")))
+    hand.joystick.track = True
+    hand.viewer.poll()
+    hand.move(100, 90)
+    display = hand.viewer.display
+    assert isinstance(display, Ramtek9300)
+    before = display.words_received
+    hand.move(104, 95)
+    picture = 232 * 174
+    assert picture < display.words_received - before < picture + 3000
