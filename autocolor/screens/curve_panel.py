@@ -13,7 +13,8 @@ from autocolor.arrays import Floats, Singles
 from autocolor.scene.curves import CurvePoints
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
-from autocolor.widgets.items import CHARACTER, Item, filled, fitted, lines, outline, segments, text
+from autocolor.widgets.items import CHARACTER, Item, filled, lines, outline, segments, text
+from autocolor.widgets.labels import short_name
 from autocolor.widgets.menu import WORK
 
 PANEL: Final = Area(8, WORK.bottom - 215, 223, WORK.bottom - 8)
@@ -47,7 +48,7 @@ class Curve(NamedTuple):
 
 def panel_items(curve: Curve) -> list[Item]:
     """How the panel looks."""
-    name = fitted(curve.surface, MOST_CHARACTERS)
+    name = short_name(curve.surface, MOST_CHARACTERS)
     top = PANEL.top + 4
     found = [
         filled(PANEL, NIGHT),

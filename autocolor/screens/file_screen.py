@@ -22,6 +22,7 @@ from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import GRAY, LIGHT_GRAY, SLATE, YELLOW
 from autocolor.widgets.items import CHARACTER, Item, filled, text
+from autocolor.widgets.labels import short_name
 from autocolor.widgets.pairs import Pair
 from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Choice, Gap, Widget
 
@@ -86,7 +87,7 @@ class FileScreen(Screen):
         found = [
             text("OPEN", left, TEXT_DOWN, YELLOW),
             text("RECENT", RIGHT.left + MARGIN, TEXT_DOWN, YELLOW),
-            text(shortened(self._told(self._folder), ACROSS), left, ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
+            text(short_name(self._told(self._folder), ACROSS), left, ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
             filled(Area(251, LEFT.top, 251, LEFT.bottom), SLATE),
         ]
         if not self._files:
@@ -194,18 +195,6 @@ class FileScreen(Screen):
         self._list(self._folder)
 
 
-def shortened(name: str, most: int) -> str:
-    """A name of at most so many characters; of a longer one the middle is left out, as ends differ.
-
-    >>> shortened("fender of the left door 12.obj", 16)
-    'fender .. 12.obj'
-    """
-    if len(name) <= most:
-        return name
-    end = (most - 2) // 2
-    return f"{name[: most - 2 - end]}..{name[len(name) - end :]}"
-
-
 def _placed(rows: Sequence[Widget], area: Area) -> list[Widget]:
     """Rows one below the other, as far as they fit."""
     found = []
@@ -222,4 +211,4 @@ class FileRow(Button):
     shown: str = ""
 
     def items(self, lit: bool) -> list[Item]:
-        return self.row(lit, shortened(self.shown, CHARACTERS - len(self.value) - 1), self.value)
+        return self.row(lit, short_name(self.shown, CHARACTERS - len(self.value) - 1), self.value)

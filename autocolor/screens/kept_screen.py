@@ -24,7 +24,8 @@ from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
-from autocolor.widgets.items import CHARACTER, Item, filled, fitted, image, outline, text
+from autocolor.widgets.items import CHARACTER, Item, filled, image, outline, text
+from autocolor.widgets.labels import short_name
 from autocolor.widgets.pairs import Pair
 from autocolor.widgets.widget import ROW_LINES, TEXT_DOWN, Button, Choice, Entry, Gap, Place, Widget
 
@@ -233,7 +234,7 @@ class Variant(Button):
         word = YELLOW if self.is_chosen else LIGHT_GRAY if lit else SLATE
         area = self.area
         top = area.bottom - 12
-        name = fitted(self.label, (area.width - 8) // CHARACTER)
+        name = short_name(self.label, (area.width - 8) // CHARACTER)
         return [
             outline(area._replace(bottom=area.top + LINES + 2 * FRAME - 1), word),
             filled(Area(area.left, top, area.right, area.bottom), NIGHT),

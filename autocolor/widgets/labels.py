@@ -1,4 +1,4 @@
-"""Labels: the names of numbers, made short enough for a narrow row."""
+"""Labels: the names of numbers and of things, made short enough for a narrow row."""
 
 from __future__ import annotations
 
@@ -30,3 +30,15 @@ def short_label(label: str, most: int) -> str:
         if len(stem) + 1 < len(word):
             words[number] = f"{stem}."
     return " ".join(words)
+
+
+def short_name(name: str, most: int) -> str:
+    """A name of at most so many characters; of a longer one the middle is left out, as ends differ.
+
+    >>> short_name("fender of the left door 12.obj", 16)
+    'fender .. 12.obj'
+    """
+    if len(name) <= most:
+        return name
+    end = max(0, (most - 2) // 2)
+    return f"{name[: max(0, most - 2 - end)]}..{name[len(name) - end :]}"[: max(0, most)]

@@ -13,6 +13,7 @@ from typing import Any, Final, NamedTuple, TypeVar
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLACK, GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
 from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
+from autocolor.widgets.labels import short_name
 
 ROW_LINES: Final = 16
 """The height of a row of a menu."""
@@ -100,14 +101,14 @@ class Widget:
         background = WHITE if chosen else SLATE if lit else NIGHT
         ink = BLACK if chosen else self.ink
         room = (self.area.width - 2 * MARGIN) // CHARACTER
-        shown = fitted(value, room)
+        shown = short_name(value, room)
         found = [filled(self.area, background)]
         if shown:
             start = right + 1 - MARGIN - CHARACTER * len(shown)
             found.append(text(shown, start, top + TEXT_DOWN, ink, background))
         beside = room - len(shown) - bool(shown)
         # A value that needs the row is shown without its label, of which a letter or two would tell nothing.
-        label = fitted(label, beside) if beside >= min(len(label), FEWEST) else ""
+        label = short_name(label, beside) if beside >= min(len(label), FEWEST) else ""
         if label:
             quiet = LIGHT_GRAY if value and ink == WHITE else ink
             found.append(text(label, left + MARGIN, top + TEXT_DOWN, quiet, background))

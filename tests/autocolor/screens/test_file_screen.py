@@ -7,7 +7,7 @@ import pytest
 from autocolor import Light, Scene, read_scene, write_rig, write_scene
 from autocolor.errors import AutocolorError
 from autocolor.files.recent import note_file
-from autocolor.screens.file_screen import LEFT, MOST_ROWS, RIGHT, FileRow, shortened
+from autocolor.screens.file_screen import LEFT, MOST_ROWS, RIGHT, FileRow
 from autocolor.screens.session import PICTURE
 from autocolor.widgets.menu import WORK
 from tests.autocolor.meshes import wall_scene
@@ -261,19 +261,6 @@ def test_an_empty_folder_says_so(tmp_path: Path) -> None:
     hand = hand_at(tmp_path, "file")
     assert rows_of(hand) == rows_of(hand, recent=True) == {}
     assert len(hand.viewer.board.screen.items()) == 6
-
-
-@pytest.mark.parametrize(
-    ("name", "most", "shown"),
-    [
-        ("car.obj", 7, "car.obj"),
-        ("fender of the left door 12.obj", 16, "fender .. 12.obj"),
-        ("abcdef", 5, "ab..f"),
-        ("abcdef", 2, ".."),
-    ],
-)
-def test_the_middle_of_a_long_name_is_left_out(name: str, most: int, shown: str) -> None:
-    assert shortened(name, most) == shown
 
 
 def test_the_scene_of_a_session_is_not_changed_by_looking(hand: Hand) -> None:

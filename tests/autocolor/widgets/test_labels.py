@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.widgets.labels import FEWEST, short_label
+from autocolor.widgets.labels import FEWEST, short_label, short_name
 
 
 @pytest.mark.parametrize(
@@ -34,3 +34,18 @@ def test_a_label_keeps_its_words_and_fits_if_it_can(label: str, most: int) -> No
     assert len(short) <= max(most, least)
     if len(label) <= most:
         assert short == label
+
+
+@pytest.mark.parametrize(
+    ("name", "most", "shown"),
+    [
+        ("car.obj", 7, "car.obj"),
+        ("fender of the left door 12.obj", 16, "fender .. 12.obj"),
+        ("abcdef", 5, "ab..f"),
+        ("abcdef", 2, ".."),
+        ("abcdef", 1, "."),
+        ("abcdef", -3, ""),
+    ],
+)
+def test_the_middle_of_a_long_name_is_left_out(name: str, most: int, shown: str) -> None:
+    assert short_name(name, most) == shown
