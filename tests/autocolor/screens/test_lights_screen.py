@@ -236,3 +236,7 @@ def test_sixteen_lights_with_long_names_are_all_reached(tmp_path: Path) -> None:
         hand.pick("light")
     assert seen == [light.name for light in lights]
     assert hand.viewer.session.light_name == lights[0].name
+    hand.pull("light", 0.0, 1.0)
+    assert hand.viewer.session.light_name == lights[-1].name
+    hand.pull("light", 1.0, 0.45)
+    assert hand.viewer.session.light_name == lights[7].name
