@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from autocolor.screens.over_picture import OverPicture
+from autocolor.screens.picture.over_picture import OverPicture
 from autocolor.widgets.column_rows import rows_of
 from autocolor.widgets.widget import Choice, Gap, Widget
 

@@ -12,8 +12,8 @@ import pytest
 from autocolor import InputError, Light, Mesh, Scene, Surface, View, read_picture, scene_of
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.defaults import framed
-from autocolor.screens.message_line import MESSAGE
-from autocolor.screens.orbit import panned
+from autocolor.screens.board.message_line import MESSAGE
+from autocolor.screens.picture.orbit import panned
 from autocolor.screens.session import MESSAGE_SECONDS
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
