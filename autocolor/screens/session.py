@@ -255,10 +255,14 @@ class Session:
 
     # The end.
 
+    @property
+    def has_unsaved(self) -> bool:
+        """Whether the scene has changes that are not saved, or one that was open before."""
+        return self.studio.is_changed or bool(self.studio.history.left_unsaved)
+
     def leave(self) -> None:
         """Ask to leave the program; changes that are not saved are told first, and the next time lost."""
-        unsaved = self.studio.is_changed or self.studio.history.left_unsaved
-        if unsaved and self._refused_to_leave is not self.scene:
+        if self.has_unsaved and self._refused_to_leave is not self.scene:
             self._refused_to_leave = self.scene
             self.warn("not saved: save it, or leave once more to discard the changes")
         else:

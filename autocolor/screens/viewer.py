@@ -236,7 +236,7 @@ class Viewer:
         if session.screen != PICTURE:
             session.turn_to(PICTURE)
             return True
-        if self.studio.is_changed:
+        if session.has_unsaved:
             session.warn("not saved: Ctrl+S saves, Ctrl+Q twice discards the changes")
             return True
         return False

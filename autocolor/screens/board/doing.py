@@ -46,7 +46,7 @@ class Doing:
 
     def warns_of_changes(self, otherwise: str) -> bool:
         """Whether to stop because of unsaved changes. They are announced once; the next attempt succeeds."""
-        if not self._session.studio.is_changed or self.is_warned:
+        if not self._session.has_unsaved or self.is_warned:
             return False
         self.is_warned = True
         self._session.warn(f"not saved: Ctrl+S saves, {otherwise}")

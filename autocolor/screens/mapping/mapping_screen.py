@@ -57,7 +57,7 @@ class MappingScreen(OverPicture):
 
     def rows(self) -> Sequence[Widget]:
         scene, session = self.session.scene, self.session
-        others = ("name", "background", "view")
+        others = ("name", "view")
         return [
             Choice(
                 "mapping",

@@ -753,3 +753,16 @@ def test_rescale_fills_the_picture_with_the_chosen_surface(tmp_path: Path) -> No
     assert shown.studio.scene.view == framed(view, window.coordinates)
     shown.on_key("r", typed="r")
     assert shown.studio.scene.view == framed(view, Mesh.joined([cube(), window]).coordinates)
+
+
+def test_closing_asks_also_for_a_scene_with_changes_that_was_open_before(
+    viewer: Viewer, tmp_path: Path
+) -> None:
+    press_c(viewer)
+    (tmp_path / "roof.obj").write_text(TRIANGLE)
+    viewer.on_drop(tmp_path / "roof.obj")
+    assert not viewer.studio.is_changed
+    assert viewer.on_key("escape")
+    assert "not saved" in viewer.message
+    assert not viewer.on_close()
+    assert viewer.on_close()

@@ -22,7 +22,7 @@ from tests.autocolor.sessions import SMALL, car
 
 pytest.importorskip("pygame")
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 WITHOUT_SCREEN = {"SDL_VIDEODRIVER": "dummy", "PYGAME_HIDE_SUPPORT_PROMPT": "1"}
 """Without the line that pygame prints, the first one is that of the first step."""

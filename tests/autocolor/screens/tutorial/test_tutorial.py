@@ -15,7 +15,7 @@ from autocolor.widgets.widget import MARGIN
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 @pytest.fixture
