@@ -281,7 +281,9 @@ class Board:
             handle = layout.handle_now(handle)
         elif not self._grip.is_on and layout.widget_at(*self._pointer) is None:
             handle = layout.handle_at(*self._pointer)
-        return None if handle is None else (handle.element, handle.line)
+        place = None if handle is None else Place(handle.element, handle.line)
+        # Cursors invert what is below them: of two at one place nothing would be seen.
+        return None if place == self._pointer else place
 
     def page(self) -> Page:
         """The page to show now."""

@@ -15,6 +15,7 @@ from autocolor.widgets.menu import MENU, WIDE_BAR
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import PRINCETON_9300, Ramtek9300
 from tests.autocolor.screens.boards import Desk, desk_viewer, middle_of, point
+from tests.autocolor.sessions import car
 
 
 @pytest.fixture
@@ -360,3 +361,14 @@ def test_entries_that_change_while_some_are_borrowed_are_there_afterwards(
     viewer.session.turn_to("picture")
     viewer.tell("")
     assert np.array_equal(display_of(viewer).entries, viewer.studio.entries)
+
+
+def test_the_mark_goes_when_the_pointer_is_exactly_on_it(tmp_path: Path) -> None:
+    viewer = Viewer(car(), Ramtek9300(), tmp_path)
+    viewer.session.turn_to("light and view")
+    viewer.on_tick()
+    handle = viewer.board.screen.handles()[-1]
+    viewer.on_pointer(handle.element + 3, handle.line + 3, "move")
+    assert viewer.board.mark is not None
+    viewer.on_pointer(*viewer.board.mark, "move")
+    assert viewer.board.mark is None
