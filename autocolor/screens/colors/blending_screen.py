@@ -16,12 +16,13 @@ import numpy as np
 
 from autocolor.mapping.color_blending import blend_from, blend_level
 from autocolor.screens.picture.over_picture import OverPicture
+from autocolor.screens.picture.surface_row import surface_row
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import WIDTH
 from autocolor.widgets.column_rows import rows_of
 from autocolor.widgets.level_bars import LANE, LevelBar, PercentBar
 from autocolor.widgets.menu import MENU
-from autocolor.widgets.widget import Choice, Gap, Widget
+from autocolor.widgets.widget import Gap, Widget
 
 TOP: Final = 24
 BOTTOM: Final = MENU.bottom - 24
@@ -47,13 +48,7 @@ class BlendingScreen(OverPicture):
             return []
         rows = rows_of(surface.paint, self._put, self.session.world, leave_out=COLORS)
         return [
-            Choice(
-                "surface",
-                "The surface whose colors blend; a click in the picture chooses, too.",
-                names=tuple(self.session.studio.level_ranges),
-                present=surface.name,
-                choose=self.session.choose_surface,
-            ),
+            surface_row(self.session, "The surface whose colors blend; a click in the picture chooses, too."),
             Gap("blend gap"),
             # The names of the columns, such that they fit beside their numbers.
             *(replace(row, label=row.label.replace("percentage", "percent")) for row in rows),

@@ -23,6 +23,7 @@ from autocolor.screens.colors.mixing_palette import Palette, palette_of
 from autocolor.screens.colors.paint_choices import TOP as CHOICES_TOP
 from autocolor.screens.colors.paint_choices import PaintChoices
 from autocolor.screens.input.gestures import Gesture
+from autocolor.screens.picture.surface_row import surface_row
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.areas import Area
@@ -30,7 +31,7 @@ from autocolor.widgets.colors import HEIGHT, LIGHT_GRAY, WIDTH
 from autocolor.widgets.column_rows import rows_of
 from autocolor.widgets.items import CHARACTER, Item, fitted, image, text
 from autocolor.widgets.level_bars import LevelBar
-from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Choice, Gap, Widget
+from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Gap, Widget
 
 LIGHT_TOP: Final = 8
 BLEND_TOP: Final = 120
@@ -77,13 +78,7 @@ class MixingScreen(Screen):
         colors = ("object_color", "light_color")
         rows = rows_of(surface.paint, self._put, self.session.world, leave_out=colors)
         return [
-            Choice(
-                "surface",
-                "The surface whose colors these are.",
-                names=tuple(self.session.studio.level_ranges),
-                present=surface.name,
-                choose=self._choose_surface,
-            ),
+            surface_row(self.session, "The surface whose colors these are.", self._choose_surface),
             Gap("colors gap"),
             self.light.row(surface.paint),
             self.object.row(surface.paint),

@@ -11,6 +11,7 @@ from autocolor.mapping.level_ranges import SCREENS
 from autocolor.screens.picture.light_handles import LightHandles
 from autocolor.screens.picture.orbit import SIDES
 from autocolor.screens.picture.over_picture import OverPicture
+from autocolor.screens.picture.surface_row import surface_row
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.areas import SCREEN
@@ -51,12 +52,9 @@ class PictureScreen(OverPicture):
     def rows(self) -> Sequence[Widget]:
         session, edits = self.session, self.edits
         return [
-            Choice(
-                "surface",
+            surface_row(
+                session,
                 "The surface that colors and reflectance are for; a click in the picture chooses, too.",
-                names=tuple(session.studio.level_ranges),
-                present=session.surface_name,
-                choose=session.choose_surface,
             ),
             *self._light_rows(),
             Gap("view gap"),
