@@ -72,7 +72,7 @@ _HOME: Final = {
     "Phong": "scene.reflection_models",
     "Picture": "lighting.picture",
     "Reflectance": "scene.surfaces",
-    "Rig": "scene.rigs",
+    "Rig": "scene.light_sets.rigs",
     "Scene": "scene.scene",
     "Studio": "studio",
     "Surface": "scene.surfaces",
