@@ -14,7 +14,7 @@ from autocolor.screens.composition import Composition
 from autocolor.screens.gestures import Gesture
 from autocolor.screens.grip import Grip, place_of
 from autocolor.screens.layout import Layout
-from autocolor.screens.main_menu import page_of_menu, rows_of_menu
+from autocolor.screens.main_menu import last_rows, page_of_menu, rows_of_menu
 from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.screen import Handle, Screen
 from autocolor.screens.session import Session
@@ -103,7 +103,8 @@ class Board:
         if not self.has_menu:
             return []
         rows = rows_of_menu(self.session, self.screen, self.screens.values())
-        return page_of_menu(rows, self._menu_page, partial(setattr, self, "_menu_page"))
+        last = last_rows(self.session, self.screen)
+        return page_of_menu(rows, last, self._menu_page, partial(setattr, self, "_menu_page"))
 
     def widgets(self) -> list[Widget]:
         """Everything that can be pointed at, the topmost first."""
