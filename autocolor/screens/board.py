@@ -17,7 +17,7 @@ from autocolor.screens.layout import Layout
 from autocolor.screens.main_menu import last_rows, page_of_menu, rows_of_menu
 from autocolor.screens.message_line import MESSAGE
 from autocolor.screens.screen import Handle, Screen
-from autocolor.screens.session import Session
+from autocolor.screens.session import PICTURE, Session
 from autocolor.screens.typing_line import TypingLine
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.colors import WIDTH
@@ -89,7 +89,15 @@ class Board:
         self._light(None)
         self.close()
         self.screens[wanted].enter()
+        self._tell_the_way()
         return True
+
+    def _tell_the_way(self) -> None:
+        """Tell what to do on a screen beside which no menu stands, and how to come back from it."""
+        screen = self.screen
+        is_reached_by_menu = screen.is_in_menu and screen.name != PICTURE
+        if is_reached_by_menu and not screen.has_menu and not self.session.has_news:
+            self.session.tell(f"{screen.help}; the right edge: the menu")
 
     def layout(self) -> Layout:
         """What can be pointed at now."""
@@ -152,6 +160,9 @@ class Board:
                 self._is_open = True
             elif not MENU.left <= element < WIDTH and layout.wide is None:
                 self._is_open = False
+            if self._is_open and not was_open and self.session.news.stands:
+                # Beside the menu, hints stand in its place.
+                self.session.tell("")
             layout = layout if self._is_open == was_open else self.layout()
         widget = layout.widget_at(element, line)
         self._light(widget)

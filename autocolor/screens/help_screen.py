@@ -28,7 +28,7 @@ class HelpScreen(Screen):
 
     name = "help"
     title = "help"
-    help = "What keys and the mouse do."
+    help = "What keys and the mouse do"
     has_menu = False
     shows_scene = False
 

@@ -38,6 +38,8 @@ class News(NamedTuple):
     text: str
     is_warning: bool
     told_at: float
+    stands: bool = False
+    """Whether it stands until something is done, or the menu comes."""
 
 
 class Session:
@@ -113,11 +115,11 @@ class Session:
     def has_news(self) -> bool:
         """Whether there is a message whose time has not passed; while states are compared, it does not."""
         is_recent = time.monotonic() - self.news.told_at < MESSAGE_SECONDS
-        return bool(self.news.text) and (is_recent or self.comparing.is_on)
+        return bool(self.news.text) and (is_recent or self.news.stands or self.comparing.is_on)
 
-    def tell(self, message: str, is_warning: bool = False) -> None:
-        """Show a message; an empty one takes the last one away."""
-        self.news = News(message, is_warning, time.monotonic())
+    def tell(self, message: str, is_warning: bool = False, stands: bool = False) -> None:
+        """Show a message for some seconds, or one that `stands`; an empty one takes the last one away."""
+        self.news = News(message, is_warning, time.monotonic(), stands)
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first one and how many others there are."""

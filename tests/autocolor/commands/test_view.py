@@ -35,7 +35,7 @@ def monitors(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 def test_a_scene_is_shown_until_the_window_is_closed(folder: Path, run: Run, monitors: list[Any]) -> None:
     assert run("view", "scene") == (0, "", "")
     monitor = monitors[1]
-    assert monitor.caption == "autocolor - scene - [front.low] - F1 help, Tab menu"
+    assert monitor.caption == "autocolor - scene - [front.low] - F1: help; Tab or the right edge: the menu"
     assert not monitor.full_screen
     assert not monitor.fit
     assert monitor.display.words.any()

@@ -31,6 +31,19 @@ def test_a_message_stands_for_some_seconds(session: Session, monkeypatch: pytest
     assert not session.has_news
 
 
+def test_a_message_that_stands_does_so_until_the_next_one(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = 100.0
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    session.tell("welcome", stands=True)
+    now += 100 * MESSAGE_SECONDS
+    assert (session.message, session.has_news) == ("welcome", True)
+    session.tell("saved")
+    now += MESSAGE_SECONDS
+    assert not session.has_news
+
+
 @pytest.mark.parametrize(
     ("error", "shown"),
     [
