@@ -16,6 +16,7 @@ from autocolor.errors import InputError, UsageError
 from autocolor.files.openable import FOLDER, Openable, kind_of, openables_of, stays_within
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.recent import recent_files
+from autocolor.files.repair.polygons import UPS
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
@@ -168,6 +169,13 @@ class FileScreen(Screen):
                 run=lambda: self._list(self._folder),
                 other="home",
                 run_other=partial(self._go_to, self._root),
+            ),
+            Choice(
+                "mesh up",
+                "The up axis of mesh files that are opened; other files give their own.",
+                names=UPS,
+                present=session.mesh_up,
+                choose=partial(setattr, session, "mesh_up"),
             ),
         ]
 

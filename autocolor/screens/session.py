@@ -12,6 +12,7 @@ from typing import Final, NamedTuple, Unpack
 
 from autocolor.errors import InputError
 from autocolor.files.file_stem import file_stem, free_path
+from autocolor.files.openable import MESH, kind_of
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.recent import note_file
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
@@ -63,6 +64,8 @@ class Session:
         """Whether something can be typed."""
         self.is_at_hand = False
         """Whether the user sits at this machine; a pointer from elsewhere keeps to the folder."""
+        self.mesh_up = "z"
+        """The up axis of mesh files that are opened; other files give their own."""
         self.surface = 0
         """The number of the chosen surface among those in use; see `surface_name`."""
         self.part_name = ""
@@ -222,7 +225,8 @@ class Session:
             self.edit(self.scene.with_rig(read_rig(path)))
             self.tell(f"the lights of {path.name}, fitted to {self.scene.name}; undo goes back")
             return
-        self.studio.open(path)
+        up = self.mesh_up if kind_of(path) == MESH else "z"
+        self.studio.open(path, up=up)
         note_file(path.resolve())
         self.tell(f"opened {path.name}; undo goes back")
 

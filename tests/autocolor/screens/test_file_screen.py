@@ -270,3 +270,17 @@ def test_the_scene_of_a_session_is_not_changed_by_looking(hand: Hand) -> None:
     hand.pick("refresh")
     assert scene_of(hand) is before
     assert before.name == boxes().name
+
+
+def test_the_up_axis_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand, folder: Path) -> None:
+    row = next(each for each in hand.viewer.board.menu_rows() if each.label == "mesh up")
+    # From z to x and y.
+    for _ in range(2):
+        hand.click(row.area.right - 8, row.area.top + 8)
+    pick(hand, "deeper")
+    pick(hand, "triangle.obj")
+    # What was up to y is up to z now: z has become -y.
+    assert scene_of(hand).mesh.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [0, -1, 0]]
+    # Other files give their own.
+    hand.viewer.session.open(folder / "wall")
+    assert scene_of(hand).name == "wall"
