@@ -43,8 +43,7 @@ class PictureScreen(OverPicture):
     def place(self, handle: Handle, element: int, line: int) -> None:
         if self.session.word_at(element, line) >= SCREENS.first:
             raise UsageError(
-                f"the {handle.label} must be placed on the picture, not on what covers it;"
-                " choose another pixel"
+                "a highlight must be placed on the picture, not on what covers it; choose another pixel"
             )
         self._handles.place(handle, element, line)
 
