@@ -261,11 +261,23 @@ class Session:
 
     # The end.
 
+    @property
+    def unsaved(self) -> str:
+        """What leaving the program would lose, and how that is saved; empty if there is nothing."""
+        history = self.studio.history
+        if history.is_changed:
+            return "not saved: Ctrl+S saves" if self.has_keyboard else "not saved: save it"
+        if history.left_unsaved:
+            return f"{history.left_unsaved[-1]} is not saved: undo goes back to it"
+        if history.unsaved_variants:
+            return f"variant {history.unsaved_variants[-1]} is not saved: come back to it and save it"
+        return ""
+
     def leave(self) -> None:
         """Ask to leave the program; changes that are not saved are told first, and the next time lost."""
-        unsaved = self.studio.is_changed or self.studio.history.left_unsaved
+        unsaved = self.unsaved
         if unsaved and self._refused_to_leave is not self.scene:
             self._refused_to_leave = self.scene
-            self.warn("not saved: save it, or leave once more to discard the changes")
+            self.warn(f"{unsaved}, or leave once more to discard the changes")
         else:
             self.leaves = True

@@ -239,8 +239,8 @@ class Viewer:
         if session.screen != PICTURE:
             session.turn_to(PICTURE)
             return True
-        if self.studio.is_changed:
-            session.warn("not saved: Ctrl+S saves, Ctrl+Q twice discards the changes")
+        if session.unsaved:
+            session.warn(f"{session.unsaved}, Ctrl+Q twice discards the changes")
             return True
         return False
 
