@@ -59,7 +59,13 @@ class PictureScreen(OverPicture):
             ),
             *self._light_rows(),
             Gap("view gap"),
-            Choice("view", "The view from a side.", names=tuple(SIDES), choose=self._see_from),
+            Choice(
+                "view",
+                "A click looks from the next side; at the left end, from the one before.",
+                names=tuple(SIDES),
+                present=edits.side,
+                choose=self._see_from,
+            ),
             Steps(
                 "turn", "Turn around the object.", step=lambda n: edits.turn(n * TURN, 0), signs=("<", ">")
             ),

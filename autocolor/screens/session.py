@@ -21,6 +21,7 @@ from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
+from autocolor.scene.view import View
 from autocolor.screens.comparing import NOW, Comparing
 from autocolor.studio import Studio
 from autocolor.widgets.column_rows import World
@@ -68,6 +69,8 @@ class Session:
         """The up axis of mesh files that are opened; other files give their own."""
         self.surface = 0
         """The number of the chosen surface among those in use; see `surface_name`."""
+        self.named_view: tuple[View, str] | None = None
+        """The view from one of the sides that have names that was taken last, and that name."""
         self.part_name = ""
         """The part that was pointed at last, if any."""
         self._light = ""
