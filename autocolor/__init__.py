@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from autocolor.mapping.level_ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
     from autocolor.scene.creation import scene_of as scene_of
+    from autocolor.scene.light_sets.rigs import Rig as Rig
     from autocolor.scene.lights import Flap as Flap
     from autocolor.scene.lights import Flaps as Flaps
     from autocolor.scene.lights import Light as Light
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     from autocolor.scene.reflection_models import BlinnPhong as BlinnPhong
     from autocolor.scene.reflection_models import CookTorrance as CookTorrance
     from autocolor.scene.reflection_models import Phong as Phong
-    from autocolor.scene.rigs import Rig as Rig
     from autocolor.scene.scene import Scene as Scene
     from autocolor.scene.surfaces import Paint as Paint
     from autocolor.scene.surfaces import Part as Part

@@ -66,7 +66,7 @@ def show(
     if recover is not None and (settings or once):
         raise UsageError("--set and --once are for SCENE, not for sessions; leave them out")
     if recover is not None:
-        from autocolor.commands.left_sessions import chosen_session
+        from autocolor.commands.sessions.left_sessions import chosen_session
 
         left, session = chosen_session(recover)
         session_elsewhere(session.history, address, folder_of(session.source), left)

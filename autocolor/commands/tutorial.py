@@ -48,7 +48,7 @@ def tutorial(address: str | None, full_screen: bool, fit: bool) -> None:
 
 def teach(viewer: Viewer) -> None:
     """Put the panel of the tutorial over the screens of a viewer."""
-    from autocolor.screens.tutorial import Tutorial
+    from autocolor.screens.tutorial.tutorial import Tutorial
 
     viewer.board.over = Tutorial(viewer.session).widgets
     viewer.tell("")

@@ -63,11 +63,11 @@ def view(
     if settings and source is None:
         raise UsageError("--set is for SCENE, not for sessions; leave it out")
     if sessions or forget is not None:
-        from autocolor.commands.left_sessions import forget_session, list_sessions
+        from autocolor.commands.sessions.left_sessions import forget_session, list_sessions
 
         list_sessions() if forget is None else forget_session(forget)
     elif recover is not None:
-        from autocolor.commands.left_sessions import chosen_session
+        from autocolor.commands.sessions.left_sessions import chosen_session
 
         folder, session = chosen_session(recover)
         show(session.history, full_screen, fit, folder)
@@ -110,7 +110,7 @@ def show(
     left before. `prepare` is called with the viewer at the beginning. Raises UnavailableError if there is no
     screen.
     """
-    from autocolor.commands.kept_session import kept_session
+    from autocolor.commands.sessions.kept_session import kept_session
     from autocolor.errors import UnavailableError
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import NoScreenError, Ramtek9300

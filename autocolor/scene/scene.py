@@ -34,10 +34,10 @@ from autocolor.scene.columns.rows import changed, cost, with_values
 from autocolor.scene.columns.value_kinds import Choice, CurveKind, Instance, Number, Text
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import object_bounds, object_coordinates
-from autocolor.scene.light_copies import axis_number, free_name, mirrored
+from autocolor.scene.light_sets.light_copies import axis_number, free_name, mirrored
+from autocolor.scene.light_sets.rigs import Rig
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.rigs import Rig
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
 

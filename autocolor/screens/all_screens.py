@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import Final
 
-from autocolor.screens.blending_screen import BlendingScreen
+from autocolor.screens.colors.blending_screen import BlendingScreen
+from autocolor.screens.colors.mixing_screen import MixingScreen
 from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
 from autocolor.screens.kept_screen import KeptScreen
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
-from autocolor.screens.lights_screen import LightsScreen
-from autocolor.screens.mapping_screen import MappingScreen
-from autocolor.screens.mixing_screen import MixingScreen
-from autocolor.screens.picture_screen import PictureScreen
+from autocolor.screens.lights.lights_screen import LightsScreen
+from autocolor.screens.mapping.mapping_screen import MappingScreen
+from autocolor.screens.picture.picture_screen import PictureScreen
 from autocolor.screens.reflectance_screen import ReflectanceScreen
 from autocolor.screens.screen import Screen
 

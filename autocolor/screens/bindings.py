@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final, Protocol
 
-from autocolor.screens.keys import Binding, Chord
-from autocolor.screens.picture_edits import PictureEdits
+from autocolor.screens.input.keys import Binding, Chord
+from autocolor.screens.picture.picture_edits import PictureEdits
 from autocolor.screens.session import Session
 
 

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from autocolor.screens.over_picture import OverPicture
+from autocolor.screens.picture.over_picture import OverPicture
+from autocolor.screens.picture.surface_row import surface_row
 from autocolor.widgets.column_rows import rows_of
-from autocolor.widgets.widget import Choice, Gap, Widget
+from autocolor.widgets.widget import Gap, Widget
 
 
 class ReflectanceScreen(OverPicture):
@@ -24,13 +25,7 @@ class ReflectanceScreen(OverPicture):
         if surface is None:
             return []
         return [
-            Choice(
-                "surface",
-                "The surface that these are the properties of.",
-                names=tuple(session.studio.level_ranges),
-                present=surface.name,
-                choose=session.choose_surface,
-            ),
+            surface_row(session, "The surface that these are the properties of."),
             Gap("properties gap"),
             *rows_of(surface, partial(self._put, surface.name), session.world, leave_out=("name", "paint")),
         ]

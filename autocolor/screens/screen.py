@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import ClassVar, NamedTuple
 
 from autocolor.arrays import Bytes, Words
-from autocolor.screens.gestures import Gesture
+from autocolor.screens.input.gestures import Gesture
 from autocolor.screens.session import Session
 from autocolor.widgets.colors import NIGHT
 from autocolor.widgets.items import Item

@@ -14,15 +14,15 @@ from autocolor.journal.history import History
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import Scene
 from autocolor.screens.all_screens import SCREENS
-from autocolor.screens.board import Board
-from autocolor.screens.doing import Doing
-from autocolor.screens.gestures import Gesture, Mouse
-from autocolor.screens.keyboard import Keyboard
-from autocolor.screens.picture_edits import PictureEdits
-from autocolor.screens.pointing import WHEEL, Pointing
+from autocolor.screens.board.board import Board
+from autocolor.screens.board.doing import Doing
+from autocolor.screens.board.keyboard import Keyboard
+from autocolor.screens.board.pointing import WHEEL, Pointing
+from autocolor.screens.input.gestures import Gesture, Mouse
+from autocolor.screens.input.unit import Unit
+from autocolor.screens.picture.picture_edits import PictureEdits
+from autocolor.screens.picture.watching import ENDING, MESSAGE, Watching
 from autocolor.screens.session import PICTURE, Session
-from autocolor.screens.unit import Unit
-from autocolor.screens.watching import ENDING, MESSAGE, Watching
 from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import HostPort, RamtekError

@@ -211,7 +211,10 @@ class Steps(Widget):
 
 @dataclass(frozen=True)
 class Choice(Widget):
-    """One of several names: a pick on the row goes to the next, at its left end to the one before."""
+    """One of several names: a pick on the row goes to the next, at its left end to the one before.
+
+    A drag along the row runs through all of them, from the first at its left end to the last.
+    """
 
     names: Sequence[str] = ()
     present: str = ""
@@ -222,6 +225,11 @@ class Choice(Widget):
 
     def pick(self, place: Place) -> object:
         return self.nudge(-1 if place.element < self.area.left + 3 * MARGIN else 1)
+
+    def drag(self, start: Place, last: Place, place: Place) -> object:
+        number = (place.element - self.area.left) * len(self.names) // self.area.width
+        name = self.names[min(max(number, 0), len(self.names) - 1)] if self.names else self.present
+        return None if name == self.present else self.choose(name)
 
     def nudge(self, steps: float) -> object:
         if not self.names:

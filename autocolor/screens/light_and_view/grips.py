@@ -11,7 +11,7 @@ from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.screens.light_and_view.light_marks import arrow_end, flap_marks
 from autocolor.screens.light_and_view.orthographic_views import AXES, SIDES, OrthographicViews
-from autocolor.screens.orbit import target_of
+from autocolor.screens.picture.orbit import target_of
 from autocolor.screens.screen import Handle
 
 EYE: Final = "eye"

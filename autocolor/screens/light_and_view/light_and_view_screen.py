@@ -12,7 +12,7 @@ from typing import Final
 
 from autocolor.checks import Vector
 from autocolor.errors import UsageError
-from autocolor.screens.gestures import Gesture, turn_between, wheel_ratio
+from autocolor.screens.input.gestures import Gesture, turn_between, wheel_ratio
 from autocolor.screens.light_and_view.areas import PICTURE_AREA
 from autocolor.screens.light_and_view.display_view import MESH, PICTURE, DisplayView
 from autocolor.screens.light_and_view.flap_switches import flap_switches
@@ -29,8 +29,8 @@ from autocolor.screens.light_and_view.orthographic_views import (
     side_at,
 )
 from autocolor.screens.light_and_view.shown_points import shown_points
-from autocolor.screens.light_parameters import put_light
-from autocolor.screens.picture_edits import PictureEdits
+from autocolor.screens.lights.light_parameters import put_light
+from autocolor.screens.picture.picture_edits import PictureEdits
 from autocolor.screens.screen import Handle, Screen
 from autocolor.screens.session import Session
 from autocolor.widgets.areas import Area

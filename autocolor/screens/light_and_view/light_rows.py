@@ -6,8 +6,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Final
 
-from autocolor.screens.light_parameters import parameter_rows
-from autocolor.screens.picture_edits import PictureEdits
+from autocolor.screens.lights.light_parameters import parameter_rows
+from autocolor.screens.picture.picture_edits import PictureEdits
 from autocolor.screens.session import Session
 from autocolor.widgets.widget import Button, Gap, Switch, Widget
 

@@ -7,7 +7,7 @@ import numpy as np
 from autocolor.arrays import Floats
 from autocolor.scene.defaults import object_bounds
 from autocolor.scene.scene import Scene
-from autocolor.screens.orbit import target_of
+from autocolor.screens.picture.orbit import target_of
 
 
 def shown_points(scene: Scene) -> Floats:

@@ -51,6 +51,8 @@ class Hand:
             for each in self.viewer.board.widgets():
                 if each.label == label:
                     return each
+            if label == "more":
+                break
             self.pick("more")
         raise AssertionError(f"{label!r} is not among {[each.label for each in self.viewer.board.widgets()]}")
 

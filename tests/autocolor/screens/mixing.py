@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from autocolor import Scene
-from autocolor.screens.mixing_screen import BLEND
+from autocolor.screens.colors.mixing_screen import BLEND
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.areas import Area
 from autocolor.widgets.level_bars import LANE

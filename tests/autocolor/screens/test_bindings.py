@@ -5,7 +5,7 @@ from collections import Counter
 import pytest
 
 from autocolor.screens.bindings import BINDINGS, WINDOW_KEYS
-from autocolor.screens.keys import Binding, Chord
+from autocolor.screens.input.keys import Binding, Chord
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import wall_scene

@@ -1,8 +1,8 @@
 from __future__ import annotations
 
 from autocolor.screens.bindings import rows_of_help
+from autocolor.screens.board.message_line import MESSAGE
 from autocolor.screens.help_screen import LIMITS, MIDDLE, STEP, TITLE, TOP, help_items
-from autocolor.screens.message_line import MESSAGE
 from autocolor.widgets.areas import SCREEN
 from autocolor.widgets.colors import ORANGE, WHITE
 from autocolor.widgets.items import text

@@ -12,8 +12,8 @@ import pytest
 from autocolor import InputError, Light, Mesh, Scene, Surface, View, read_picture, scene_of
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.defaults import framed
-from autocolor.screens.message_line import MESSAGE, MOST_CHARACTERS
-from autocolor.screens.orbit import panned
+from autocolor.screens.board.message_line import MESSAGE, MOST_CHARACTERS
+from autocolor.screens.picture.orbit import panned
 from autocolor.screens.session import MESSAGE_SECONDS
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
@@ -779,3 +779,16 @@ def test_rescale_fills_the_picture_with_the_chosen_surface(tmp_path: Path) -> No
     assert shown.studio.scene.view == framed(view, window.coordinates)
     shown.on_key("r", typed="r")
     assert shown.studio.scene.view == framed(view, Mesh.joined([cube(), window]).coordinates)
+
+
+def test_closing_asks_also_for_a_scene_with_changes_that_was_open_before(
+    viewer: Viewer, tmp_path: Path
+) -> None:
+    press_c(viewer)
+    (tmp_path / "roof.obj").write_text(TRIANGLE)
+    viewer.on_drop(tmp_path / "roof.obj")
+    assert not viewer.studio.is_changed
+    assert viewer.on_key("escape")
+    assert "not saved" in viewer.message
+    assert not viewer.on_close()
+    assert viewer.on_close()

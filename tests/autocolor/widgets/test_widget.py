@@ -79,9 +79,20 @@ def test_a_choice_goes_around_in_both_directions(present: str, place: Place, cho
     assert done.did == [chosen]
 
 
+def test_a_drag_along_a_choice_runs_through_all_names() -> None:
+    done = Done()
+    choice = Choice("curve", names=("a", "b", "c"), present="b", choose=done, area=ROW)
+    for element in range(ROW.left - 20, ROW.right + 20):
+        choice.drag(LEFT, LEFT, Place(element, 40))
+    assert list(dict.fromkeys(done.did)) == ["a", "c"]
+    assert abs(done.did.count("a") - done.did.count("c")) <= 1
+
+
 def test_a_choice_of_nothing_chooses_nothing() -> None:
     done = Done()
-    Choice("curve", choose=done, area=ROW).pick(RIGHT)
+    choice = Choice("curve", choose=done, area=ROW)
+    choice.pick(RIGHT)
+    choice.drag(LEFT, LEFT, RIGHT)
     assert done.did == []
 
 

@@ -1,0 +1,188 @@
+"""Direct handling of the chosen light in the picture: its highlight, and where its cone and its flaps end.
+
+The highlight is dragged to the pixel where it is to be, and a rim to a pixel through which it is to go. The
+light follows; see `lighting.light_drags`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import chain
+from typing import Final, Literal, NamedTuple
+
+import numpy as np
+
+from autocolor.arrays import Indices
+from autocolor.checks import Vector
+from autocolor.lighting.light_controls import flaps_of
+from autocolor.lighting.light_drags import cone_placed, flap_placed, highlight_placed
+from autocolor.lighting.rims import CONE, Rim, rims
+from autocolor.scene.lights import Light
+from autocolor.screens.screen import Handle
+from autocolor.screens.session import Session
+from autocolor.visibility.visible_points import VisiblePoints
+from autocolor.widgets.areas import SCREEN, Area
+from autocolor.widgets.colors import BLACK, YELLOW
+from autocolor.widgets.items import Item, area_of, segments
+
+HIGHLIGHT: Final = "highlight"
+
+CELL: Final = 6
+"""Assumed: elements and lines of a cell in which a rim has one handle at most. So each place on a rim is
+within reach of one, and the rims of a light have some hundred."""
+
+ARM: Final = 5
+"""Elements or lines from the middle of the cross at a highlight to its ends."""
+
+DOTS: Final = 3
+PERIOD: Final = 5
+"""Of so many neighboring pixels of a rim, so many are drawn."""
+
+
+class HandleKey(NamedTuple):
+    """What a handle moves of a light. Those of one rim are told apart by their line and element."""
+
+    light: str
+    what: Literal["highlight"] | Rim
+    place: tuple[int, int] | None = None
+
+
+class LightHandles:
+    """The handles of the chosen light in an area of the picture; without `has_rims`, its highlight alone."""
+
+    def __init__(self, session: Session, area: Area, has_rims: bool) -> None:
+        self.session = session
+        self._area = area
+        self._has_rims = has_rims
+        self._highlight: tuple[Vector, VisiblePoints, tuple[int, int] | None] | None = None
+        """The position of a light, the visible points, and the line and element of its highlight: those that
+        it was placed at, which need not be searched and may be one of several."""
+        self._rims: tuple[Light, VisiblePoints, Sequence[Handle], Sequence[Item]] | None = None
+        """A light, the visible points, and the handles and marks at its rims."""
+
+    def handles(self) -> Sequence[Handle]:
+        """The handles of the chosen light; none if it is off, or while something moves."""
+        light = self._seen_light()
+        if light is None or self.session.moving:
+            return ()
+        # Of several at the same distance the last one is taken.
+        return [*self._at_rims(light)[0], *self._at_highlight(light)]
+
+    def items(self) -> Sequence[Item]:
+        """The marks at the handles: dotted lines along the rims, and a cross at the highlight.
+
+        While something moves, the rims are left out, and a highlight that is not the one that is dragged: the
+        light itself shows where it is and ends, and the picture is not kept waiting. Measured on the coupe:
+        five rims take 8 of 20 ms, and a highlight a third of a light's drag.
+        """
+        light = self._seen_light()
+        if light is None:
+            return ()
+        rims_seen = () if self.session.moving else self._at_rims(light)[1]
+        crosses = (highlight_items(each.element, each.line, self._area) for each in self._at_highlight(light))
+        return [*rims_seen, *chain.from_iterable(crosses)]
+
+    def place(self, handle: Handle, element: int, line: int) -> None:
+        """Let the light follow a handle to a place. Raises UsageError on the background."""
+        key, session = handle.key, self.session
+        assert isinstance(key, HandleKey)
+        # What is beside the area is covered by the menu.
+        element, line = min(element, self._area.right), min(line, self._area.bottom)
+        scene, seen = session.scene, session.studio.seen_at(line, element)
+        if key.what == HIGHLIGHT:
+            scene = highlight_placed(scene, seen, key.light)
+        elif key.what == CONE:
+            scene = cone_placed(scene, seen, key.light)
+        else:
+            scene = flap_placed(scene, seen, key.light, *key.what)
+        session.edit(scene)
+        light = scene.light(key.light)
+        if key.what == HIGHLIGHT:
+            self._highlight = light.position, session.studio.sight.points, (line, element)
+        session.tell(told(light, key.what))
+
+    def _seen_light(self) -> Light | None:
+        """The chosen light, if it is on and what is shown is the finished picture of the scene."""
+        session, light = self.session, self.session.chosen_light
+        is_seen = light is not None and light.on
+        return light if is_seen and not session.studio.is_coarse and not session.comparing.is_on else None
+
+    def _at_highlight(self, light: Light) -> list[Handle]:
+        """The handle at the highlight, if it is in the area."""
+        studio = self.session.studio
+        points = studio.sight.points
+        known = self._highlight
+        if known is None or known[0] != light.position or known[1] is not points:
+            if self.session.moving:
+                return []
+            known = self._highlight = light.position, points, studio.highlight_of(light.name)
+        if known[2] is None:
+            return []
+        line, element = known[2]
+        handle = Handle(HandleKey(light.name, HIGHLIGHT), element, line, f"highlight of {light.name}")
+        return [handle] if self._area.has(element, line) else []
+
+    def _at_rims(self, light: Light) -> tuple[Sequence[Handle], Sequence[Item]]:
+        """The handles and the marks at the rims in the area."""
+        sight, area = self.session.studio.sight, self._area
+        if not self._has_rims:
+            return (), ()
+        known = self._rims
+        if known is None or known[0] != light or known[1] is not sight.points:
+            handles: list[Handle] = []
+            items: list[Item] = []
+            for rim, pixels in rims(sight, light.name).items():
+                seen = pixels[(pixels <= (area.bottom, area.right)).all(axis=1)]
+                handles += rim_handles(light.name, rim, seen)
+                items += rim_items(seen, area)
+            known = self._rims = light, sight.points, handles, items
+        return known[2:]
+
+
+def rim_handles(light: str, rim: Rim, pixels: Indices) -> list[Handle]:
+    """Handles along the pixels of a rim, (n, 2) line and element, one in each cell that it runs through."""
+    lines, elements = (pixels // CELL).T
+    _, chosen = np.unique(lines * SCREEN.width + elements, return_index=True)
+    label = f"end of the {name_of(rim)} of {light}"
+    return [
+        Handle(HandleKey(light, rim, (line, element)), element, line, label)
+        for line, element in pixels[chosen].tolist()
+    ]
+
+
+def rim_items(pixels: Indices, area: Area) -> list[Item]:
+    """A dotted line along the pixels of a rim, (n, 2) line and element."""
+    # A pattern that has dots in all directions.
+    dots = pixels[(pixels[:, 1] + 2 * pixels[:, 0]) % PERIOD < DOTS][:, ::-1]
+    if not len(dots):
+        return []
+    places = dots.astype(np.float64)
+    return [segments(np.concatenate([places, places], axis=1), YELLOW, area_of(places, limit=area))]
+
+
+def highlight_items(element: int, line: int, area: Area) -> list[Item]:
+    """A diagonal cross at a highlight, which the upright pointer does not hide, with a shadow on white."""
+    arms = np.array([(-1, -1), (1, -1), (-1, 1), (1, 1)], np.float64)
+    middle = np.array((element, line), np.float64)
+    strokes = np.concatenate([middle + 2 * arms, middle + ARM * arms], axis=1)
+    around = area_of(strokes.reshape(-1, 2), margin=1, limit=area)
+    shadow = strokes + np.array((1, 0, 1, 0))
+    return [segments(shadow, BLACK, around), segments(strokes, YELLOW, around)]
+
+
+def name_of(rim: Rim) -> str:
+    """What the message line calls what ends at a rim."""
+    return "cone" if rim == CONE else f"flap {rim[0]}, {rim[1]},"
+
+
+def told(light: Light, what: Literal["highlight"] | Rim) -> str:
+    """What the message line says of a light while something of it is placed."""
+    if what == HIGHLIGHT:
+        places = zip("xyz", light.position, strict=True)
+        return f"{light.name}: " + "  ".join(f"{axis} {place:.2f}" for axis, place in places)
+    if what == CONE:
+        return f"{light.name}: cone angle {light.cone_angle:.1f} degrees"
+    axis, end = what
+    flap = flaps_of(light)[axis]
+    assert flap is not None
+    return f"{light.name}: flap {axis}, {end} {getattr(flap, end):.2f}"

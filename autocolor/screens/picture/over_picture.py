@@ -1,0 +1,88 @@
+"""Screens over the picture: pointing names what is seen and chooses it, dragging turns around the object.
+
+The word that is read back from the display tells the surface and its level, as it did then; the polygon that
+is seen there tells the part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from autocolor.arrays import Bytes, Words
+from autocolor.screens.input.gestures import MIDDLE, Gesture, turn_between, wheel_ratio
+from autocolor.screens.picture.picture_edits import PictureEdits
+from autocolor.screens.screen import Screen
+from autocolor.screens.session import Session
+
+
+class OverPicture(Screen):
+    """A screen whose base is the picture at full size, or another one that is compared with it."""
+
+    shows_picture = True
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self.edits = PictureEdits(session)
+
+    def base(self) -> Words:
+        image = self.session.comparing.image
+        return self.session.studio.words if image is None else image.words
+
+    def loads(self) -> Sequence[tuple[int, Bytes]]:
+        image = self.session.comparing.image
+        return () if image is None else ((0, image.entries),)
+
+    def hint(self, element: int, line: int) -> str:
+        pointed = self._pointed(element, line)
+        return self.help if pointed is None else pointed.told
+
+    def pick(self, gesture: Gesture) -> None:
+        session = self.session
+        if session.comparing.is_on:
+            session.end_comparing()
+            return
+        pointed = self._pointed(gesture.element, gesture.line)
+        if pointed is None:
+            session.tell("the background")
+            return
+        session.choose_surface(pointed.surface)
+        session.part_name = pointed.part
+        session.tell(pointed.told)
+
+    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
+        if start.button == MIDDLE or start.shift:
+            self.edits.pan(now.element - last.element, now.line - last.line)
+        elif start.control:
+            self.edits.move(wheel_ratio((last.line - now.line) / 8))
+        else:
+            self.edits.turn(*turn_between(last.element, last.line, now.element, now.line))
+
+    def wheel(self, gesture: Gesture) -> None:
+        self.edits.move(wheel_ratio(gesture.steps))
+
+    def _pointed(self, element: int, line: int) -> Pointed | None:
+        """What is seen at a place; None on the background, and where something else than the picture is."""
+        session = self.session
+        studio, word = session.studio, session.word_at(element, line)
+        name = session.surface_of(word)
+        if not name or session.comparing.is_on or word != studio.words[line, element]:
+            return None
+        seen = studio.seen_at(line, element)
+        first, levels = studio.level_ranges[name]
+        return Pointed(name, "" if seen is None else seen.part, word - first, levels - 1)
+
+
+class Pointed(NamedTuple):
+    """A surface and a part that are pointed at, and the level there of the highest one."""
+
+    surface: str
+    part: str
+    level: int
+    highest: int
+
+    @property
+    def told(self) -> str:
+        """The same, as the message line says it."""
+        names = " - ".join(dict.fromkeys(name for name in (self.part, self.surface) if name))
+        return f"{names}, level {self.level} of {self.highest}"

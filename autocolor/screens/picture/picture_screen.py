@@ -1,0 +1,128 @@
+"""The picture screen: the whole picture, over which the main menu comes on demand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Final
+
+from autocolor.errors import UsageError
+from autocolor.mapping.level_ranges import SCREENS
+from autocolor.screens.picture.light_handles import LightHandles
+from autocolor.screens.picture.orbit import SIDES
+from autocolor.screens.picture.over_picture import OverPicture
+from autocolor.screens.picture.surface_row import surface_row
+from autocolor.screens.screen import Handle
+from autocolor.screens.session import PICTURE, Session
+from autocolor.widgets.areas import SCREEN
+from autocolor.widgets.pairs import Pair
+from autocolor.widgets.widget import Button, Choice, Gap, Steps, Switch, Widget
+
+TURN: Final = 5.0
+"""Degrees for each step of a menu row that turns."""
+
+CLOSER: Final = 0.9
+PAN: Final = 16.0
+"""Elements or lines for each step of a menu row that moves the picture."""
+
+
+class PictureScreen(OverPicture):
+    """The picture."""
+
+    name = PICTURE
+    title = "picture"
+    help = "drag: turn; click: choose a surface; Tab or the right edge: the menu"
+    has_menu = False
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self._handles = LightHandles(session, SCREEN, has_rims=False)
+
+    def handles(self) -> Sequence[Handle]:
+        return self._handles.handles()
+
+    def place(self, handle: Handle, element: int, line: int) -> None:
+        if self.session.word_at(element, line) >= SCREENS.first:
+            raise UsageError(
+                "a highlight must be placed on the picture, not on what covers it; choose another pixel"
+            )
+        self._handles.place(handle, element, line)
+
+    def rows(self) -> Sequence[Widget]:
+        session, edits = self.session, self.edits
+        return [
+            surface_row(
+                session,
+                "The surface that colors and reflectance are for; a click in the picture chooses, too.",
+            ),
+            *self._light_rows(),
+            Gap("view gap"),
+            Choice(
+                "view",
+                "A click looks from the next side; at the left end, from the one before.",
+                names=tuple(SIDES),
+                present=edits.side,
+                choose=self._see_from,
+            ),
+            Steps(
+                "turn", "Turn around the object.", step=lambda n: edits.turn(n * TURN, 0), signs=("<", ">")
+            ),
+            Steps("rise", "Look from lower or from higher.", step=lambda n: edits.turn(0, n * TURN)),
+            Steps("closer", "Move farther or closer.", step=lambda n: edits.move(CLOSER**n)),
+            Steps(
+                "move",
+                "Move the picture sideways.",
+                step=lambda n: edits.pan(n * PAN, 0),
+                signs=("<", ">"),
+            ),
+            Steps("lift", "Move the picture down or up.", step=lambda n: edits.pan(0, -n * PAN)),
+            Pair(
+                "rescale",
+                "Fill the picture with the object, or with the chosen surface.",
+                run=edits.rescale,
+                other="surface",
+                run_other=lambda: edits.rescale(True),
+            ),
+            Button(
+                "rescale part",
+                f"Fill the picture with {session.part_name}, the part that was clicked.",
+                "" if edits.chosen_parts else "click at a part in the picture first",
+                run=edits.rescale_part,
+            ),
+            Gap("leave gap"),
+            Button(
+                "leave", "Leave the program; changes that are not saved are told first.", run=session.leave
+            ),
+        ]
+
+    def _light_rows(self) -> list[Widget]:
+        session = self.session
+        switches: list[Widget] = [
+            Switch(
+                light.name,
+                f"Switch light {light.name} on or off; beside the box: choose it.",
+                is_on=light.on,
+                flip=partial(self.edits.switch_light, number),
+                choose=partial(self._choose_light, light.name),
+                is_chosen=light.name == session.light_name,
+            )
+            for number, light in enumerate(session.scene.lights)
+        ]
+        chosen = session.light_name
+        if not chosen:
+            return switches
+        alone = Pair(
+            "alone",
+            f"Light {chosen} alone; or all lights on.",
+            run=partial(session.light_alone, chosen),
+            other="all on",
+            run_other=session.all_lights_on,
+        )
+        return [*switches, alone]
+
+    def _choose_light(self, name: str) -> None:
+        self.session.choose_light(name)
+        self.session.tell(f"light {name}")
+
+    def _see_from(self, side: str) -> None:
+        self.edits.see_from(list(SIDES).index(side))

@@ -1,0 +1,374 @@
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from autocolor.screens.board.board import Board
+from autocolor.screens.board.message_line import MESSAGE
+from autocolor.screens.session import MESSAGE_SECONDS
+from autocolor.screens.viewer import Viewer
+from autocolor.widgets.colors import ORANGE, SLATE, WIDTH
+from autocolor.widgets.menu import MENU, WIDE_BAR
+from autocolor.widgets.sheet import Sheet
+from ramtek_emu import PRINCETON_9300, Ramtek9300
+from tests.autocolor.screens.boards import Desk, desk_viewer, middle_of, point
+from tests.autocolor.sessions import car
+
+
+@pytest.fixture
+def viewer(tmp_path: Path) -> Viewer:
+    return desk_viewer(tmp_path)
+
+
+@pytest.fixture
+def board(viewer: Viewer) -> Board:
+    return viewer.board
+
+
+def display_of(viewer: Viewer) -> Ramtek9300:
+    assert isinstance(viewer.display, Ramtek9300)
+    return viewer.display
+
+
+def is_drawn_whole(viewer: Viewer) -> bool:
+    """Whether the display has what the page alone gives."""
+    fresh = Ramtek9300(display_of(viewer).configuration)
+    Sheet(fresh).show(viewer.board.page())
+    display = display_of(viewer)
+    return np.array_equal(display.words, fresh.words) and np.array_equal(display.entries, fresh.entries)
+
+
+def test_the_row_under_the_pointer_is_lit_and_few_words_are_written(viewer: Viewer, board: Board) -> None:
+    place = middle_of(board, "ambient")
+    written = display_of(viewer).frame_buffer.written
+    point(viewer, "hover", *place)
+    assert display_of(viewer).words[place[1] - 6, place[0]] == SLATE
+    # A row, and the hint in the message line.
+    assert display_of(viewer).frame_buffer.written - written < 3 * (136 * 16 + WIDTH * 16)
+    assert board.message[0] == "The light from everywhere."
+    point(viewer, "hover", 100, 100)
+    assert display_of(viewer).words[place[1] - 6, place[0]] != SLATE
+    assert is_drawn_whole(viewer)
+
+
+def test_a_gap_says_nothing_and_a_dim_row_says_why(viewer: Viewer, board: Board) -> None:
+    point(viewer, "hover", *middle_of(board, "a gap"))
+    assert board.message[0] == "the desk"
+    point(viewer, "hover", *middle_of(board, "do it"))
+    assert board.message[0] == "not today"
+    point(viewer, "pick", *middle_of(board, "do it"))
+    assert board.message == ("do it: not today", ORANGE)
+
+
+def test_of_two_rows_with_one_name_the_one_under_the_pointer_is_lit(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = Desk.rows
+    monkeypatch.setattr(Desk, "rows", lambda desk: [*rows(desk), *rows(desk)])
+    first, second = [each.area for each in board.widgets() if each.label == "ambient"]
+    point(viewer, "hover", second.left + 9, second.top + 1)
+    words = display_of(viewer).words
+    assert words[second.top, second.left] == SLATE
+    assert words[first.top, first.left] != SLATE
+
+
+def test_a_second_pick_places_what_the_first_one_took(viewer: Viewer, board: Board) -> None:
+    before = viewer.studio.scene
+    element, line = board.screen.handles()[0][1:3]
+    point(viewer, "pick", element + 5, line)
+    assert board.mark == (element, line)
+    assert viewer.message == "the eye: pick its new place"
+    # The menu's own ground, and a hover, let it be held.
+    point(viewer, "pick", MENU.left + 50, MENU.bottom - 3)
+    point(viewer, "pick", 250, 170)
+    assert viewer.studio.scene.view.eye[:2] == (5.0, -3.0)
+    assert board.held is None
+    viewer.on_key("z", control=True)
+    assert viewer.studio.scene is before
+
+
+def test_a_place_that_is_refused_is_told_and_the_handle_still_held(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from autocolor import UsageError
+
+    def refuse(*_: object) -> None:
+        raise UsageError("an eye must be elsewhere")
+
+    element, line = board.screen.handles()[0][1:3]
+    point(viewer, "pick", element, line)
+    monkeypatch.setattr(board.screen, "place", refuse)
+    point(viewer, "pick", 250, 170)
+    assert board.message == ("an eye must be elsewhere", ORANGE)
+    assert board.held is not None
+    assert viewer.on_key("escape")
+    assert board.held is None
+
+
+def test_a_drag_of_a_handle_is_one_step_and_escape_takes_it_back(viewer: Viewer, board: Board) -> None:
+    before = viewer.studio.scene
+    element, line = board.screen.handles()[0][1:3]
+    for end in ("drop", "escape"):
+        point(viewer, "grab", element, line)
+        for step in range(1, 5):
+            point(viewer, "drag", element + 3 * step, line)
+        assert viewer.studio.scene is not before
+        if end == "drop":
+            point(viewer, "drop", element + 12, line)
+            viewer.on_key("z", control=True)
+        else:
+            viewer.on_key("escape")
+            point(viewer, "drag", element + 40, line)
+        assert viewer.studio.scene is before
+        assert not board.is_dragging
+    assert not viewer.studio.undo()
+
+
+def test_a_handle_below_the_menu_cannot_be_reached(viewer: Viewer, board: Board) -> None:
+    assert board.handle_at(508, 300) is None
+    assert board.handle_at(502, 300) is None
+    before = viewer.studio.scene
+    # Nor can the screen be dragged by the ground of the menu.
+    point(viewer, "grab", 508, MENU.bottom - 3)
+    assert not board.is_dragging
+    point(viewer, "drag", 300, 300)
+    assert viewer.studio.scene is before
+
+
+def test_enter_during_a_drag_does_not_end_its_step(viewer: Viewer, board: Board) -> None:
+    before = viewer.studio.scene
+    element, line = board.screen.handles()[0][1:3]
+    point(viewer, "grab", element, line)
+    point(viewer, "drag", element + 10, line)
+    point(viewer, "pick", element + 10, line)
+    point(viewer, "drag", element + 20, line)
+    point(viewer, "drop", element + 20, line)
+    viewer.on_key("z", control=True)
+    assert viewer.studio.scene is before
+
+
+def test_undo_by_a_key_during_a_drag_lets_go(viewer: Viewer, board: Board) -> None:
+    before = viewer.studio.scene
+    place = middle_of(board, "ambient")
+    point(viewer, "grab", *place)
+    point(viewer, "drag", place[0] + 20, place[1])
+    assert viewer.studio.scene is not before
+    viewer.on_key("z", control=True)
+    assert viewer.studio.scene is before
+    point(viewer, "drag", place[0] + 30, place[1])
+    assert viewer.studio.scene is before
+
+
+def test_a_widget_that_is_gone_is_dragged_no_more(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = middle_of(board, "ambient")
+    point(viewer, "grab", *place)
+    monkeypatch.setattr(Desk, "rows", lambda desk: [])
+    before = viewer.studio.scene
+    point(viewer, "drag", place[0] + 20, place[1])
+    assert viewer.studio.scene is before
+    assert not board.is_dragging
+
+
+def test_a_bar_goes_on_where_it_was_grabbed_though_rows_move(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = middle_of(board, "ambient")
+    point(viewer, "grab", *place)
+    rows = Desk.rows
+    monkeypatch.setattr(Desk, "rows", lambda desk: list(reversed(rows(desk))))
+    point(viewer, "drag", MENU.right, place[1])
+    assert viewer.studio.scene.ambient == 1.0
+
+
+def test_a_drag_beyond_the_screen_stays_at_its_edge(viewer: Viewer, board: Board) -> None:
+    element, line = board.screen.handles()[0][1:3]
+    point(viewer, "grab", element, line)
+    point(viewer, "drag", -300, -5)
+    point(viewer, "drop", -300, -5)
+    point(viewer, "pick", 3, 3)
+    assert viewer.studio.scene.view.eye[:2] == (-50.0, -20.5)
+    assert is_drawn_whole(viewer)
+
+
+def test_a_click_opens_the_wide_bar_and_a_second_one_closes_it(viewer: Viewer, board: Board) -> None:
+    place = middle_of(board, "ambient")
+    point(viewer, "pick", *place)
+    assert board.widget_at(300, WIDE_BAR.top + 5) is not None
+    point(viewer, "pick", WIDE_BAR.left + 3, WIDE_BAR.top + 5)
+    assert viewer.studio.scene.ambient == 0.0
+    assert is_drawn_whole(viewer)
+    point(viewer, "pick", *place)
+    assert board.widget_at(300, WIDE_BAR.top + 5) is None
+    point(viewer, "pick", *place)
+    assert viewer.on_key("escape")
+    assert board.widget_at(300, WIDE_BAR.top + 5) is None
+
+
+def test_a_number_is_typed_over_its_bar(viewer: Viewer, board: Board) -> None:
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    for sign in "0.25":
+        viewer.on_key(sign, typed=sign)
+    assert board.message[0] == "ambient: 0.25_"
+    viewer.on_key("return", typed="\r")
+    assert viewer.studio.scene.ambient == 0.25
+    viewer.on_key("z", control=True)
+    assert viewer.studio.scene.ambient == 0.0
+
+
+def test_a_number_that_is_none_is_told_in_one_sentence_and_can_be_mended(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = viewer.studio.scene
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    for sign in "0.x":
+        viewer.on_key(sign, typed=sign)
+    viewer.on_key("return", typed="\r")
+    assert board.message == ("ambient must be a number, not '0.x'; type one, such as 1.5", ORANGE)
+    assert (display_of(viewer).words[MESSAGE.top :] == ORANGE).any()
+    assert viewer.studio.scene is before
+    now = time.monotonic()
+    monkeypatch.setattr("time.monotonic", lambda: now + MESSAGE_SECONDS + 1)
+    assert board.message[0] == "ambient: 0.x_"
+    for name, typed in (("backspace", "\b"), ("5", "5"), ("return", "\r")):
+        viewer.on_key(name, typed=typed)
+    assert viewer.studio.scene.ambient == 0.5
+    assert not board.typing.is_on
+
+
+def test_a_click_elsewhere_takes_what_was_typed_unless_it_is_refused(viewer: Viewer, board: Board) -> None:
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    viewer.on_key("1", typed="1")
+    point(viewer, "pick", 100, 100)
+    assert viewer.studio.scene.ambient == 1.0
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    for sign in "-3":
+        viewer.on_key(sign, typed=sign)
+    point(viewer, "pick", 100, 100)
+    assert board.message[1] == ORANGE
+    assert board.typing.is_on
+    viewer.on_key("escape")
+    assert not board.typing.is_on
+    assert viewer.studio.scene.ambient == 1.0
+
+
+def test_an_entry_is_typed_after_a_pick_where_there_is_a_keyboard(viewer: Viewer, board: Board) -> None:
+    point(viewer, "pick", *middle_of(board, "name"))
+    assert board.message == ("name: typing needs a keyboard", ORANGE)
+    element, line = middle_of(board, "name")
+    viewer.on_pointer(element, line, "press", 1)
+    viewer.on_pointer(element, line, "release", 1)
+    for sign in "new":
+        viewer.on_key(sign, typed=sign)
+    viewer.on_key("return", typed="\r")
+    assert viewer.studio.scene.name == "new"
+
+
+def test_tab_and_arrows_and_return_do_what_a_pointer_does(viewer: Viewer, board: Board) -> None:
+    viewer.on_key("tab", typed="\t")
+    seen = [board.lit]
+    for _ in range(3):
+        viewer.on_key("down")
+        seen.append(board.lit)
+    assert seen == ["< picture", "ambient", "do it", "name"]
+    viewer.on_key("up")
+    viewer.on_key("up")
+    viewer.on_key("right")
+    assert viewer.studio.scene.ambient == 0.01
+    viewer.on_key("up")
+    viewer.on_key("return", typed="\r")
+    assert viewer.page == "picture"
+
+
+def test_the_edge_opens_the_menu_of_the_picture_and_leaving_closes_it(viewer: Viewer, board: Board) -> None:
+    viewer.session.turn_to("picture")
+    viewer.tell("")
+    assert not board.has_menu
+    point(viewer, "hover", 638, 100)
+    assert board.has_menu
+    point(viewer, "hover", MENU.left + 2, 100)
+    assert board.has_menu
+    point(viewer, "hover", MENU.left - 1, 100)
+    assert not board.has_menu
+    assert np.array_equal(display_of(viewer).words, viewer.studio.words)
+    point(viewer, "hover", 638, 100)
+    assert viewer.on_key("escape")
+    assert not board.has_menu
+
+
+def test_every_page_of_a_long_menu_is_reached_and_a_menu_that_shrinks_shows_its_last(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Desk, "rows_more", 70)
+    seen: set[str] = set()
+    for _ in range(3):
+        seen |= {each.label for each in board.widgets()}
+        point(viewer, "pick", *middle_of(board, "more"))
+    assert {f"row {number}" for number in range(70)} <= seen
+    # It is at the first page again.
+    assert "ambient" in {each.label for each in board.widgets()}
+    for _ in range(2):
+        point(viewer, "pick", *middle_of(board, "more"))
+    monkeypatch.setattr(Desk, "rows_more", 30)
+    assert {"row 29", "more"} <= {each.label for each in board.widgets()}
+    monkeypatch.setattr(Desk, "rows_more", 0)
+    assert "ambient" in {each.label for each in board.widgets()}
+
+
+def test_a_click_that_slips_along_the_undo_row_undoes_nothing(viewer: Viewer, board: Board) -> None:
+    viewer.on_key("c", typed="c")
+    viewer.session.turn_to("desk")
+    viewer.tell("")
+    scene = viewer.studio.scene
+    element, line = middle_of(board, " ")
+    point(viewer, "grab", element, line)
+    for step in range(10):
+        point(viewer, "drag", element - step, line)
+    point(viewer, "drop", element, line)
+    assert viewer.studio.scene is scene
+    point(viewer, "pick", element - 20, line)
+    assert viewer.studio.scene is not scene
+
+
+def test_without_a_pointer_the_hint_is_that_of_the_screen(viewer: Viewer, board: Board) -> None:
+    assert board.message[0] == "the desk"
+
+
+def test_the_whole_of_a_larger_display_shows_the_picture(tmp_path: Path) -> None:
+    viewer = desk_viewer(tmp_path, Ramtek9300(PRINCETON_9300))
+    point(viewer, "hover", *middle_of(viewer.board, "ambient"))
+    assert is_drawn_whole(viewer)
+    viewer.session.turn_to("picture")
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).words, viewer.studio.words)
+
+
+def test_entries_that_change_while_some_are_borrowed_are_there_afterwards(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    borrowed = np.full((64, 3), 77, np.uint8)
+    monkeypatch.setattr(board.screen, "loads", lambda: [(1, borrowed)])
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).entries[1:65], borrowed)
+    viewer.session.paint(object_color="red")
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).entries[1:65], borrowed)
+    assert np.array_equal(display_of(viewer).entries[65:], viewer.studio.entries[65:])
+    viewer.session.turn_to("picture")
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).entries, viewer.studio.entries)
+
+
+def test_the_mark_goes_when_the_pointer_is_exactly_on_it(tmp_path: Path) -> None:
+    viewer = Viewer(car(), Ramtek9300(), tmp_path)
+    viewer.session.turn_to("light and view")
+    viewer.on_tick()
+    handle = viewer.board.screen.handles()[-1]
+    viewer.on_pointer(handle.element + 3, handle.line + 3, "move")
+    assert viewer.board.mark is not None
+    viewer.on_pointer(*viewer.board.mark, "move")
+    assert viewer.board.mark is None

@@ -1,0 +1,242 @@
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from autocolor import Light, read_rig
+from autocolor.scene.columns.column import fields_of
+from autocolor.screens.lights.light_parameters import AIM, DIRECTION, POINT
+from autocolor.widgets.bars import Bar
+from tests.autocolor.screens.boxes import (
+    KEY,
+    boxes,
+    hand_at,
+    hint_of,
+    told,
+    undo,
+    words_are_those_of_the_scene,
+)
+from tests.autocolor.screens.hand import Hand
+
+NUMBERS: dict[str, Callable[[Light], object]] = {
+    **{f"position {axis}": lambda light, n=n: light.position[n] for n, axis in enumerate("xyz")},  # type: ignore[misc]
+    **{f"aim {axis}": lambda light, n=n: light.aim and light.aim[n] for n, axis in enumerate("xyz")},  # type: ignore[misc]
+    "intensity": lambda light: light.intensity,
+    "concentration": lambda light: light.concentration,
+    "cone angle": lambda light: light.cone_angle,
+    "x minimum": lambda light: light.flaps.x and light.flaps.x.minimum,
+    "x maximum": lambda light: light.flaps.x and light.flaps.x.maximum,
+    "z maximum": lambda light: light.flaps.z and light.flaps.z.maximum,
+}
+
+BOX = 0.95
+"""Where the box of a row is, as a share of its width."""
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Hand:
+    return hand_at(tmp_path, "lights")
+
+
+def light_of(hand: Hand, name: str = "key") -> Light:
+    return hand.viewer.studio.scene.light(name)
+
+
+@pytest.mark.parametrize("label", NUMBERS)
+def test_a_drag_along_a_number_sets_it_alone_and_is_one_step(hand: Hand, label: str) -> None:
+    before = hand.viewer.studio.scene
+    hand.pull(label, 0.3, 0.6)
+    row = hand.widget(label)
+    assert isinstance(row, Bar)
+    value = NUMBERS[label](light_of(hand))
+    assert value == row.value
+    assert 0 < row.share < 1
+    assert value != NUMBERS[label](KEY)
+    changed = [name for name, get in NUMBERS.items() if get(light_of(hand)) != get(KEY)]
+    assert changed == [label]
+    assert words_are_those_of_the_scene(hand)
+    undo(hand)
+    assert hand.viewer.studio.scene is before
+
+
+def test_every_parameter_of_a_light_has_a_row(hand: Hand) -> None:
+    labels = [row.label for row in hand.viewer.board.screen.rows()]
+    for name in fields_of(Light):
+        if name != "direction":
+            assert any(label.startswith(name.replace("_", " ")) for label in labels), name
+    hand.pick("kind")
+    labels = [row.label for row in hand.viewer.board.screen.rows()]
+    assert {"direction x", "direction y", "direction z"} <= set(labels)
+
+
+def test_a_wide_bar_sets_a_number_too(hand: Hand) -> None:
+    hand.pick("intensity")
+    hand.click(300, 450)
+    assert 0 < light_of(hand).intensity < 2
+    assert light_of(hand).intensity != 1
+
+
+def test_a_switch_turns_the_light_off_and_on(hand: Hand) -> None:
+    hand.pick("on")
+    assert not light_of(hand).on
+    hand.pick("on")
+    assert light_of(hand).on
+
+
+def test_the_cone_is_switched_off_and_on_again(hand: Hand) -> None:
+    hand.pick("cone angle", BOX)
+    assert light_of(hand).cone_angle is None
+    hand.pick("cone angle", BOX)
+    assert light_of(hand).cone_angle == 30
+
+
+def test_flaps_are_made_and_switched_and_keep_their_values(hand: Hand) -> None:
+    hand.pick("flaps x", BOX)
+    flap = light_of(hand).flaps.x
+    assert flap is not None
+    assert (flap.minimum, flap.maximum, flap.on) == (-0.5, 1.5, False)
+    hand.pick("flaps y", BOX)
+    flap = light_of(hand).flaps.y
+    assert flap is not None
+    assert (flap.minimum, flap.maximum, flap.on) == (-math.inf, math.inf, True)
+
+
+def test_the_ends_of_a_flap_are_endless_or_begin_at_the_object(hand: Hand) -> None:
+    hand.pick("x minimum", BOX)
+    assert light_of(hand).flaps.x.minimum == -math.inf  # type: ignore[union-attr]
+    assert hand.widget("x minimum").number == ""  # type: ignore[attr-defined]
+    hand.pick("x minimum", BOX)
+    assert light_of(hand).flaps.x.minimum == 0  # type: ignore[union-attr]
+    hand.pick("x maximum", BOX)
+    hand.pick("x maximum", BOX)
+    assert light_of(hand).flaps.x.maximum == 1  # type: ignore[union-attr]
+
+
+def test_a_point_source_has_neither_cone_nor_concentration_and_says_why(hand: Hand) -> None:
+    hand.pick("kind")
+    assert light_of(hand).direction == pytest.approx(KEY.axis)
+    hand.pick("kind")
+    light = light_of(hand)
+    assert (light.aim, light.direction, light.cone_angle, light.concentration) == (None, None, None, 0)
+    before = hand.viewer.studio.scene
+    for label in ("cone angle", "concentration"):
+        assert hint_of(hand, label) == "a point source has none; choose the kind aim first"
+        hand.pick(label, BOX)
+        assert told(hand) == (f"{label}: a point source has none; choose the kind aim first", True)
+        hand.pull(label, 0.2, 0.8)
+    assert hand.viewer.studio.scene is before
+    hand.pick("kind")
+    assert light_of(hand).aim == (0.5, 0.5, 0.5)
+    assert hand.widget("kind").present == AIM  # type: ignore[attr-defined]
+
+
+def test_the_kind_goes_back_at_the_left_end_of_its_row(hand: Hand) -> None:
+    hand.pick("kind", 0.05)
+    assert hand.widget("kind").present == POINT  # type: ignore[attr-defined]
+    hand.pick("kind", 0.05)
+    assert hand.widget("kind").present == DIRECTION  # type: ignore[attr-defined]
+
+
+def test_one_light_alone_and_all(hand: Hand) -> None:
+    hand.pick("alone")
+    assert [light.on for light in hand.viewer.studio.scene.lights] == [True, False]
+    assert told(hand) == ("light key alone", False)
+    hand.pick("alone", 0.75)
+    assert all(light.on for light in hand.viewer.studio.scene.lights)
+
+
+def test_one_light_alone_from_the_menu_of_the_picture(hand: Hand) -> None:
+    hand.pick("< picture")
+    hand.open_menu()
+    hand.pick("alone")
+    assert [light.on for light in hand.viewer.studio.scene.lights] == [True, False]
+
+
+def test_another_light_is_chosen(hand: Hand) -> None:
+    hand.pick("light")
+    hand.pull("intensity", 0.2, 0.4)
+    assert light_of(hand, "fill").intensity != 0.5
+    assert light_of(hand) == KEY
+
+
+@pytest.mark.parametrize(
+    ("label", "share", "name", "message"),
+    [
+        ("add", 0.25, "light", "light light added"),
+        ("add", 0.75, "key 2", "light key copied: key 2"),
+        ("mirror", 0.25, "key mirrored", "light key mirrored along x: key mirrored"),
+    ],
+)
+def test_a_light_is_added_and_chosen(hand: Hand, label: str, share: float, name: str, message: str) -> None:
+    before = hand.viewer.studio.scene
+    hand.pick(label, share)
+    assert [light.name for light in hand.viewer.studio.scene.lights] == ["key", "fill", name]
+    assert hand.viewer.session.light_name == name
+    assert told(hand) == (message, False)
+    undo(hand)
+    assert hand.viewer.studio.scene is before
+
+
+def test_a_light_is_mirrored_to_the_other_side_of_the_object(hand: Hand) -> None:
+    hand.pick("mirror")
+    assert light_of(hand, "key mirrored").position == (-1, -3, 4)
+
+
+def test_lights_are_removed_to_the_last_and_added_again(hand: Hand) -> None:
+    hand.pick("mirror", 0.75)
+    assert told(hand) == ("light key removed; undo brings it back", False)
+    hand.pick("mirror", 0.75)
+    assert not hand.viewer.studio.scene.lights
+    assert [row.label for row in hand.viewer.board.screen.rows()] == ["add a light"]
+    hand.pick("add a light")
+    assert [light.name for light in hand.viewer.studio.scene.lights] == ["light"]
+
+
+def test_a_light_is_renamed_where_there_is_a_keyboard(hand: Hand) -> None:
+    hand.pick("name")
+    assert told(hand) == ("name: typing needs a keyboard", True)
+    hand.viewer.session.has_keyboard = True
+    hand.pick("name")
+    for letter in "sun":
+        hand.viewer.on_key(letter, typed=letter)
+    hand.viewer.on_key("return")
+    assert [light.name for light in hand.viewer.studio.scene.lights] == ["sun", "fill"]
+    assert hand.viewer.session.light_name == "sun"
+
+
+def test_a_name_that_is_taken_is_refused(hand: Hand) -> None:
+    hand.viewer.session.has_keyboard = True
+    hand.pick("name")
+    for letter in "fill":
+        hand.viewer.on_key(letter, typed=letter)
+    hand.viewer.on_key("return")
+    message, is_warning = told(hand)
+    assert is_warning
+    assert "must be unique" in message
+    assert light_of(hand) == KEY
+
+
+def test_a_rig_is_saved_beside_the_one_before(hand: Hand, tmp_path: Path) -> None:
+    hand.pick("save the rig")
+    assert told(hand) == ("saved boxes-rig.toml", False)
+    hand.pick("save the rig")
+    assert told(hand) == ("saved boxes-rig-2.toml", False)
+    assert read_rig(tmp_path / "boxes-rig.toml").lights == boxes().lights
+
+
+def test_sixteen_lights_with_long_names_are_all_reached(tmp_path: Path) -> None:
+    lights = [KEY.replace(name=f"studio light above the roof, number {each}") for each in range(16)]
+    hand = hand_at(tmp_path, "lights", boxes().replace(lights=lights))
+    seen = []
+    for _ in range(len(lights)):
+        seen.append(hand.viewer.session.light_name)
+        hand.pick("light")
+    assert seen == [light.name for light in lights]
+    assert hand.viewer.session.light_name == lights[0].name
+    hand.pull("light", 0.0, 1.0)
+    assert hand.viewer.session.light_name == lights[-1].name
+    hand.pull("light", 1.0, 0.45)
+    assert hand.viewer.session.light_name == lights[7].name

@@ -1,0 +1,299 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from autocolor import Light, Scene, Studio
+from autocolor.lighting.light_drags import cone_placed, highlight_placed
+from autocolor.lighting.rims import rims
+from autocolor.screens.picture.light_handles import HandleKey
+from autocolor.widgets.colors import YELLOW
+from autocolor.widgets.menu import WORK
+from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
+from tests.autocolor.screens.hand import Hand
+
+REACH = 7
+"""Elements or lines from a handle within which it is grabbed."""
+
+PLACE = 335, 205
+"""An element and line of the ball to which things are put."""
+
+BACKGROUND = 20, 20
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Hand:
+    return hand_before(ball_scene(), tmp_path)
+
+
+@pytest.fixture
+def at_lights(hand: Hand) -> Hand:
+    hand.open_menu()
+    hand.pick("lights")
+    return hand
+
+
+def scene_of(hand: Hand) -> Scene:
+    return hand.viewer.studio.scene
+
+
+def key(hand: Hand) -> Light:
+    return scene_of(hand).light("key")
+
+
+def undo(hand: Hand) -> None:
+    if not hand.viewer.board.has_menu:
+        hand.open_menu()
+    hand.pick(" ", 0.1)
+
+
+def yellow(hand: Hand) -> set[tuple[int, int]]:
+    """The lines and elements of the yellow pixels beside the menu."""
+    display = hand.viewer.display
+    assert isinstance(display, Ramtek9300)
+    found = np.argwhere(display.words[: WORK.bottom + 1, : WORK.right + 1] == YELLOW)
+    return {(line, element) for line, element in found.tolist()}
+
+
+# The highlight.
+
+
+def test_a_highlight_that_is_picked_goes_where_the_second_pick_is(hand: Hand) -> None:
+    before = scene_of(hand)
+    hand.click(*hand.handle("highlight of key"))
+    assert hand.viewer.message == "highlight of key: pick its new place"
+    assert scene_of(hand) is before
+    hand.click(*PLACE)
+    studio = hand.viewer.studio
+    assert studio.highlight_of("key") == PLACE[::-1]
+    position = "  ".join(f"{axis} {place:.2f}" for axis, place in zip("xyz", key(hand).position, strict=True))
+    assert hand.viewer.message == f"key: {position}"
+    undo(hand)
+    assert scene_of(hand) is before
+
+
+def test_a_dragged_highlight_follows_in_one_step(at_lights: Hand) -> None:
+    hand, before = at_lights, scene_of(at_lights)
+    start = hand.handle("highlight of key")
+    hand.drag(start, (330, 240), (300, 220), PLACE)
+    studio = hand.viewer.studio
+    assert studio.highlight_of("key") == PLACE[::-1]
+    assert hand.handle("highlight of key") == PLACE
+    # Where it comes from does not matter but for the distance, which each place keeps.
+    seen = studio.seen_at(*PLACE[::-1])
+    assert key(hand).aim == highlight_placed(before, seen, "key").light("key").aim
+    undo(hand)
+    assert scene_of(hand) is before
+    assert hand.handle("highlight of key") == start
+
+
+def test_a_highlight_is_refused_on_the_background_and_still_held(hand: Hand) -> None:
+    before = scene_of(hand)
+    hand.click(*hand.handle("highlight of key"))
+    hand.click(*BACKGROUND)
+    assert scene_of(hand) is before
+    assert hand.viewer.message == (
+        "a highlight must be dragged to a surface, not to the background; choose another pixel"
+    )
+    hand.click(*PLACE)
+    assert hand.viewer.studio.highlight_of("key") == PLACE[::-1]
+
+
+def test_a_drag_over_the_background_keeps_the_last_good_place(hand: Hand) -> None:
+    hand.drag(hand.handle("highlight of key"), PLACE, BACKGROUND)
+    assert hand.viewer.studio.highlight_of("key") == PLACE[::-1]
+    assert hand.viewer.session.news.is_warning
+    assert len(hand.viewer.studio.history.to_undo) == 1
+
+
+def test_escape_takes_a_drag_back(hand: Hand) -> None:
+    before = scene_of(hand)
+    hand.move(*hand.handle("highlight of key"))
+    hand.joystick.track = True
+    hand.viewer.poll()
+    hand.move(*PLACE)
+    assert scene_of(hand) is not before
+    hand.viewer.on_key("escape")
+    assert scene_of(hand) is before
+    assert not hand.viewer.studio.history.to_undo
+
+
+def test_a_highlight_that_was_placed_is_where_it_was_placed_and_not_searched(
+    at_lights: Hand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hand = at_lights
+    start = hand.handle("highlight of key")
+
+    def search(studio: Studio, light: str) -> None:
+        raise AssertionError
+
+    monkeypatch.setattr(Studio, "highlight_of", search)
+    hand.drag(start, (330, 240), PLACE)
+    assert hand.handle("highlight of key") == PLACE
+    hand.drag(hand.handle("end of the cone of key"), (330, 240))
+    assert hand.handle("highlight of key") == PLACE
+
+
+def test_a_dragged_highlight_keeps_beside_the_menu(at_lights: Hand) -> None:
+    hand = at_lights
+    scene = scene_of(hand)
+    hand.viewer.session.edit(scene.replace(view=scene.view.replace(field_of_view=12.0)))
+    hand.viewer.tell("")
+    hand.drag(hand.handle("highlight of key"), MIDDLE, (WORK.right + 40, 240))
+    assert hand.handle("highlight of key") == (WORK.right, 240)
+
+
+def test_a_highlight_is_not_dragged_under_the_menu(hand: Hand) -> None:
+    scene = scene_of(hand)
+    hand.viewer.session.edit(scene.replace(view=scene.view.replace(field_of_view=12.0)))
+    hand.viewer.on_key("tab")
+    hand.drag(hand.handle("highlight of key"), MIDDLE, (WORK.right + 40, 450))
+    assert hand.handle("highlight of key") == MIDDLE
+    assert hand.viewer.message == (
+        "a highlight must be placed on the picture, not on what covers it; choose another pixel"
+    )
+
+
+# The rims.
+
+
+def test_a_cone_is_dragged_by_its_rim_to_where_it_is_to_end(at_lights: Hand) -> None:
+    hand, before = at_lights, scene_of(at_lights)
+    hand.drag(hand.handle("end of the cone of key"), (300, 230), PLACE)
+    seen = hand.viewer.studio.seen_at(*PLACE[::-1])
+    assert key(hand) == cone_placed(before, seen, "key").light("key")
+    assert hand.viewer.message == f"key: cone angle {key(hand).cone_angle:.1f} degrees"
+    assert near_rim(hand, "cone", PLACE)
+    assert len(hand.viewer.studio.history.to_undo) == 1
+    undo(hand)
+    assert scene_of(hand) is before
+
+
+def test_a_flap_is_put_by_two_picks_where_it_is_to_end(at_lights: Hand) -> None:
+    hand, before = at_lights, scene_of(at_lights)
+    hand.click(*hand.handle("end of the flap z, minimum, of key"))
+    hand.click(*PLACE)
+    seen = hand.viewer.studio.seen_at(*PLACE[::-1])
+    flap = key(hand).flaps.z
+    assert seen is not None
+    assert flap is not None
+    assert flap.minimum == pytest.approx(seen.point[2])
+    assert hand.viewer.message == f"key: flap z, minimum {flap.minimum:.2f}"
+    assert near_rim(hand, ("z", "minimum"), PLACE)
+    undo(hand)
+    assert scene_of(hand) is before
+
+
+def near_rim(hand: Hand, rim: object, place: tuple[int, int]) -> bool:
+    pixels = rims(hand.viewer.studio.sight, "key")[rim]  # type: ignore[index]
+    return int(np.abs(pixels - np.array(place[::-1])).max(axis=1).min()) <= 1
+
+
+def test_each_pixel_of_a_rim_is_within_reach_of_a_handle(at_lights: Hand) -> None:
+    hand = at_lights
+    handles = hand.viewer.board.screen.handles()
+    found = rims(hand.viewer.studio.sight, "key")
+    assert set(found) == {"cone", ("z", "minimum")}
+    for rim, pixels in found.items():
+        assert len(pixels)
+        places = [(each.line, each.element) for each in handles if key_of(each.key).what == rim]
+        assert set(places) <= set(map(tuple, pixels.tolist()))
+        seen = pixels[(pixels <= (WORK.bottom, WORK.right)).all(axis=1)]
+        assert len(places) < len(seen) / 2
+        apart = np.abs(seen[:, None] - np.array(places)[None]).max(axis=2).min(axis=1)
+        assert apart.max() <= REACH
+
+
+def key_of(value: object) -> HandleKey:
+    assert isinstance(value, HandleKey)
+    return value
+
+
+# The marks.
+
+
+def test_the_marks_are_at_the_handles_and_leave_the_picture_as_it_was(at_lights: Hand) -> None:
+    hand, studio = at_lights, at_lights.viewer.studio
+    marked = yellow(hand)
+    pixels = {tuple(each) for found in rims(studio.sight, "key").values() for each in found.tolist()}
+    on_rims = marked & pixels
+    assert 0.3 * len(pixels) < len(on_rims) < len(pixels)
+    highlight = studio.highlight_of("key")
+    assert highlight is not None
+    line, element = highlight
+    cross = {(line + down, element + across) for down in (-4, 4) for across in (-4, 4)}
+    assert cross <= marked
+    assert highlight not in marked
+    assert all(max(abs(a - line), abs(b - element)) <= 5 for a, b in marked - pixels)
+    hand.pick("on", 0.95)
+    assert not key(hand).on
+    assert not yellow(hand)
+    display = hand.viewer.display
+    assert isinstance(display, Ramtek9300)
+    beside = np.s_[: WORK.bottom + 1, : WORK.right + 1]
+    assert np.array_equal(display.words[beside], studio.words[beside])
+
+
+def test_while_something_is_dragged_the_rims_are_left_out(at_lights: Hand) -> None:
+    hand, marked = at_lights, len(yellow(at_lights))
+    hand.move(*hand.handle("end of the cone of key"))
+    hand.joystick.track = True
+    hand.viewer.poll()
+    hand.move(*PLACE)
+    assert len(yellow(hand)) < 40 < marked
+    hand.joystick.track = False
+    hand.viewer.poll()
+    hand.viewer.on_tick()
+    assert len(yellow(hand)) > 40
+
+
+def test_a_light_that_is_off_has_no_handles(hand: Hand) -> None:
+    hand.open_menu()
+    hand.pick("key", 0.95)
+    assert not hand.viewer.board.screen.handles()
+    hand.pick("key", 0.95)
+    assert hand.viewer.board.screen.handles()
+
+
+def test_the_picture_has_the_highlight_of_the_chosen_light_and_no_mark(hand: Hand) -> None:
+    assert [each.label for each in hand.viewer.board.screen.handles()] == ["highlight of key"]
+    assert not yellow(hand)
+    hand.open_menu()
+    hand.pick("fill", 0.1)
+    assert [each.label for each in hand.viewer.board.screen.handles()] == ["highlight of fill"]
+
+
+def test_beside_the_highlight_a_drag_turns_around_the_object(hand: Hand) -> None:
+    element, line = hand.handle("highlight of key")
+    lights = scene_of(hand).lights
+    hand.drag((element + REACH + 1, line), (element + 40, line))
+    assert scene_of(hand).lights == lights
+    assert scene_of(hand).view != ball_scene().view
+
+
+@pytest.mark.parametrize("held", [{"shift": True}, {"control": True}, {"button": 2}])
+def test_with_modifiers_or_the_middle_button_a_drag_at_the_highlight_moves_the_view(
+    hand: Hand, held: dict[str, int]
+) -> None:
+    element, line = hand.handle("highlight of key")
+    lights = scene_of(hand).lights
+    viewer, button = hand.viewer, held.pop("button", 1)
+    viewer.on_pointer(element, line, "press", button, **held)  # type: ignore[arg-type]
+    viewer.on_pointer(element + 30, line + 30, "move", **held)  # type: ignore[arg-type]
+    viewer.on_pointer(element + 30, line + 30, "release", button, **held)  # type: ignore[arg-type]
+    assert scene_of(hand).lights == lights
+    assert scene_of(hand).view != ball_scene().view
+
+
+def test_what_can_be_grabbed_is_marked_before(at_lights: Hand) -> None:
+    hand = at_lights
+    element, line = hand.handle("end of the cone of key")
+    hand.move(element + 2, line)
+    mark = hand.viewer.board.mark
+    assert mark is not None
+    assert max(abs(mark[0] - element - 2), abs(mark[1] - line)) <= REACH
+    assert mark[::-1] in {(a, b) for a, b in rims(hand.viewer.studio.sight, "key")["cone"].tolist()}
+    assert hand.viewer.board.message[0] == "end of the cone of key"

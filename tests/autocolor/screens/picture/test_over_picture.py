@@ -1,0 +1,96 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from autocolor import Scene, View
+from autocolor.screens.input.gestures import turn_between, wheel_ratio
+from autocolor.screens.picture.orbit import moved, panned, turned
+from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
+from tests.autocolor.screens.hand import Hand
+
+FLOOR = 320, 430
+BACKGROUND = 20, 20
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Hand:
+    return hand_before(ball_scene(), tmp_path)
+
+
+def level_at(hand: Hand, element: int, line: int) -> str:
+    studio = hand.viewer.studio
+    seen = studio.seen_at(line, element)
+    assert seen is not None
+    first, levels = studio.level_ranges[seen.surface]
+    return f"level {studio.words[line, element] - first} of {levels - 1}"
+
+
+def test_a_pick_names_and_chooses_part_and_surface(hand: Hand) -> None:
+    session = hand.viewer.session
+    hand.click(*FLOOR)
+    # A name that is both is told once.
+    assert hand.viewer.message == f"floor, {level_at(hand, *FLOOR)}"
+    assert (session.surface_name, session.part_name) == ("floor", "floor")
+    hand.click(*MIDDLE)
+    assert hand.viewer.message == f"ball - paint, {level_at(hand, *MIDDLE)}"
+    assert (session.surface_name, session.part_name) == ("paint", "ball")
+    assert hand.viewer.studio.scene is hand.viewer.studio.history.start
+
+
+def test_the_background_changes_no_choice(hand: Hand) -> None:
+    hand.click(*FLOOR)
+    hand.click(*BACKGROUND)
+    assert hand.viewer.message == "the background"
+    assert (hand.viewer.session.surface_name, hand.viewer.session.part_name) == ("floor", "floor")
+
+
+def test_beside_an_open_menu_what_is_pointed_at_is_named(hand: Hand) -> None:
+    hand.viewer.on_key("tab")
+    hand.viewer.tell("")
+    hand.move(*MIDDLE)
+    assert hand.viewer.board.message[0] == f"ball - paint, {level_at(hand, *MIDDLE)}"
+    hand.move(*BACKGROUND)
+    assert hand.viewer.board.message[0] == hand.viewer.board.screen.help
+
+
+def test_what_is_under_the_menu_or_a_message_is_not_the_picture(hand: Hand) -> None:
+    scene = hand.viewer.studio.scene
+    hand.viewer.session.edit(scene.replace(view=scene.view.replace(field_of_view=8.0)))
+    hand.click(*MIDDLE)
+    hand.viewer.on_key("tab")
+    for place in ((630, 460), (320, 475)):
+        seen = hand.viewer.studio.seen_at(place[1], place[0])
+        assert seen is not None
+        before = hand.viewer.session.part_name = "none"
+        hand.viewer.tell("a message")
+        hand.click(*place)
+        assert hand.viewer.session.part_name == before
+        assert "level" not in hand.viewer.board.message[0]
+
+
+HELD: dict[str, tuple[dict[str, bool], int, Callable[[Scene], View]]] = {
+    "plain": ({}, 1, lambda scene: turned(scene, *turn_between(400, 100, 430, 110))),
+    "Shift": ({"shift": True}, 1, lambda scene: panned(scene, 30, 10, 480)),
+    "middle": ({}, 2, lambda scene: panned(scene, 30, 10, 480)),
+    "Ctrl": ({"control": True}, 1, lambda scene: moved(scene, wheel_ratio(-10 / 8))),
+}
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_a_drag_turns_moves_or_comes_closer(hand: Hand, name: str) -> None:
+    held, button, view_of = HELD[name]
+    before, viewer = hand.viewer.studio.scene, hand.viewer
+    viewer.on_pointer(400, 100, "press", button, 1, **held)
+    viewer.on_pointer(430, 110, "move", 0, 1, **held)
+    viewer.on_pointer(430, 110, "release", button, 1, **held)
+    assert viewer.studio.scene.view == view_of(before)
+    assert viewer.studio.history.to_undo == (before,)
+
+
+def test_the_wheel_comes_closer(hand: Hand) -> None:
+    before = hand.viewer.studio.scene
+    hand.viewer.on_pointer(400, 100, "wheel up", steps=2)
+    assert hand.viewer.studio.scene.view == moved(before, wheel_ratio(2))

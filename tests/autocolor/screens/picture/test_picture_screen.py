@@ -1,0 +1,102 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from autocolor import Scene, View
+from autocolor.screens.picture.orbit import SIDES, moved, panned, seen_from, turned
+from autocolor.screens.picture.picture_screen import CLOSER, PAN, TURN
+from autocolor.widgets.widget import Choice, Switch
+from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
+from tests.autocolor.screens.hand import Hand
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Hand:
+    hand = hand_before(ball_scene(), tmp_path)
+    hand.open_menu()
+    return hand
+
+
+def scene_of(hand: Hand) -> Scene:
+    return hand.viewer.studio.scene
+
+
+ROWS: dict[str, tuple[float, Callable[[Scene], View]]] = {
+    "turn": (0.9, lambda scene: turned(scene, TURN, 0)),
+    "rise": (0.1, lambda scene: turned(scene, 0, -TURN)),
+    "closer": (0.9, lambda scene: moved(scene, CLOSER)),
+    "move": (0.9, lambda scene: panned(scene, PAN, 0, 480)),
+    "lift": (0.9, lambda scene: panned(scene, 0, -PAN, 480)),
+    "view": (0.9, lambda scene: seen_from(scene, "front")),
+}
+
+
+def test_the_row_of_the_view_goes_around_all_sides(hand: Hand) -> None:
+    start = scene_of(hand)
+    for side in (*SIDES, "front"):
+        hand.open_menu()
+        area = next(row.area for row in hand.viewer.board.menu_rows() if row.label == "view")
+        hand.click(area.right - 8, area.top + 8)
+        assert scene_of(hand).view == seen_from(start, side)
+        row = next(row for row in hand.viewer.board.menu_rows() if row.label == "view")
+        assert isinstance(row, Choice)
+        assert row.present == side
+    hand.viewer.session.undo()
+    assert hand.viewer.edits.side == ""
+
+
+@pytest.mark.parametrize("label", ROWS)
+def test_a_row_changes_the_view_by_a_step_that_is_undone(hand: Hand, label: str) -> None:
+    share, view_of = ROWS[label]
+    before = scene_of(hand)
+    hand.pick(label, share)
+    assert scene_of(hand).view == view_of(before) != before.view
+    hand.pick(" ", 0.1)
+    assert scene_of(hand) is before
+
+
+def test_the_surface_is_chosen_in_the_menu_as_in_the_picture(hand: Hand) -> None:
+    assert hand.viewer.session.surface_name == "paint"
+    hand.pick("surface", 0.9)
+    assert hand.viewer.session.surface_name == "floor"
+    hand.click(*MIDDLE)
+    hand.open_menu()
+    assert hand.viewer.session.surface_name == "paint"
+
+
+def test_a_light_is_switched_by_its_box_and_chosen_beside_it(hand: Hand) -> None:
+    before = scene_of(hand)
+
+    def chosen() -> list[str]:
+        rows = hand.viewer.board.menu_rows()
+        return [row.label for row in rows if isinstance(row, Switch) and row.is_chosen]
+
+    assert chosen() == ["key"]
+    hand.pick("fill", 0.2)
+    assert chosen() == ["fill"]
+    assert scene_of(hand) is before
+    hand.pick("key", 0.95)
+    assert [light.on for light in scene_of(hand).lights] == [False, True]
+    assert chosen() == ["fill"]
+
+
+def test_object_surface_and_part_fill_the_picture(hand: Hand) -> None:
+    start = scene_of(hand)
+    hand.pick("rescale part")
+    assert hand.viewer.message == "rescale part: click at a part in the picture first"
+    assert scene_of(hand) is start
+    hand.click(*MIDDLE)
+    views = []
+    for label, share in (("rescale", 0.2), ("rescale", 0.9), ("rescale part", 0.5)):
+        hand.open_menu()
+        hand.pick(label, share)
+        views.append(scene_of(hand).view)
+        hand.viewer.session.undo()
+    # The ball is a surface of its own, and nearer than with the floor.
+    assert views[1] == views[2] != views[0]
+    middle, (x, y, z) = start.view.eye, views[2].eye
+    assert (x, z) == pytest.approx((0, 0), abs=1e-6)
+    assert middle[1] < y < -1

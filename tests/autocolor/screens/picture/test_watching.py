@@ -1,0 +1,299 @@
+"""Watching the picture come in, through the viewer and without a window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from autocolor import Scene
+from autocolor.files.scene_writing import write_scene
+from autocolor.mapping.level_ranges import BACKGROUND
+from autocolor.screens.picture.watching import MESSAGE, PICTURE_SECONDS, TICK_SECONDS
+from autocolor.screens.viewer import Viewer
+from autocolor.studio import Studio
+from autocolor.widgets.areas import Area
+from autocolor.widgets.colors import WHITE
+from autocolor.widgets.items import filled
+from ramtek_emu import Ramtek9300
+from tests.autocolor.sessions import SMALL, car
+from tests.autocolor.strategies import scenes
+
+CLOSE = car().with_view(field_of_view=8.0)
+"""A scene that is seen on every line, so that each one that is not there is missed."""
+
+
+class Clock:
+    """A clock that goes on only when it is set, and by `step` whenever it is read."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+        self.step = 0.0
+
+    def __call__(self) -> float:
+        self.now += self.step
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    clock = Clock()
+    monkeypatch.setattr("time.monotonic", clock)
+    return clock
+
+
+@pytest.fixture
+def viewer(tmp_path: Path, clock: Clock) -> Viewer:
+    del clock
+    return Viewer(CLOSE, Ramtek9300(SMALL), folder=tmp_path)
+
+
+def display_of(viewer: Viewer) -> Ramtek9300:
+    assert isinstance(viewer.display, Ramtek9300)
+    return viewer.display
+
+
+def lines_there(viewer: Viewer) -> int:
+    """How many lines of the picture have come in; all others must be background."""
+    words, picture = display_of(viewer).words, viewer.studio.words
+    for count in range(len(picture), -1, -1):
+        if np.array_equal(words[:count], picture[:count]):
+            assert (words[count:] == BACKGROUND).all()
+            return count
+    raise AssertionError("no lines can be there before the first")
+
+
+def is_whole(viewer: Viewer) -> bool:
+    return np.array_equal(display_of(viewer).words, viewer.studio.words)
+
+
+def after(viewer: Viewer, clock: Clock, part: float) -> None:
+    """Tick once when a part of the time of a whole picture is over."""
+    clock.now += part * PICTURE_SECONDS
+    viewer.on_tick()
+
+
+@pytest.fixture
+def watching(viewer: Viewer, clock: Clock) -> Viewer:
+    """A viewer in which half of the picture has come in."""
+    viewer.on_key("w", typed="w")
+    after(viewer, clock, 0.5)
+    assert lines_there(viewer) == 12
+    return viewer
+
+
+def test_the_picture_is_blanked_and_comes_in_line_by_line(viewer: Viewer, clock: Clock) -> None:
+    assert (viewer.studio.words != BACKGROUND).any(axis=1).all()
+    viewer.on_key("w", typed="w")
+    assert lines_there(viewer) == 0
+    assert viewer.caption.endswith(MESSAGE)
+    after(viewer, clock, 0.5 / 24)
+    assert lines_there(viewer) == 1
+    for line in range(1, 24):
+        after(viewer, clock, 1 / 24)
+        assert lines_there(viewer) == line + 1
+    assert is_whole(viewer)
+    assert MESSAGE not in viewer.caption
+    written = display_of(viewer).frame_buffer.written
+    after(viewer, clock, 1)
+    assert display_of(viewer).frame_buffer.written == written
+
+
+def test_watching_sends_each_word_once_and_no_entry(viewer: Viewer, clock: Clock) -> None:
+    display = display_of(viewer)
+    viewer.on_key("w", typed="w")
+    written, entries = display.frame_buffer.written, display.lookup_table.written
+    for _ in range(30):
+        after(viewer, clock, 1 / 24)
+    assert is_whole(viewer)
+    assert display.frame_buffer.written - written == viewer.studio.words.size
+    assert display.lookup_table.written == entries
+
+
+def test_watching_changes_no_scene_no_step_and_no_level_range(viewer: Viewer, clock: Clock) -> None:
+    studio = viewer.studio
+    before = studio.scene, studio.words, studio.level_ranges, studio.picture
+    viewer.on_key("w", typed="w")
+    after(viewer, clock, 2)
+    assert (studio.scene, studio.level_ranges) == (before[0], before[2])
+    assert studio.words is before[1]
+    assert studio.picture is before[3]
+    assert not studio.is_changed
+    assert not studio.undo()
+    assert not studio.redo()
+
+
+def test_a_tick_begins_no_line_after_its_time(viewer: Viewer, clock: Clock) -> None:
+    viewer.on_key("w", typed="w")
+    clock.now += 10 * PICTURE_SECONDS
+    # Whatever is computed between two looks at the clock takes almost half of a tick.
+    clock.step = TICK_SECONDS * 0.49
+    counts = []
+    while not is_whole(viewer):
+        before = lines_there(viewer)
+        viewer.on_tick()
+        counts.append(lines_there(viewer) - before)
+    assert set(counts[:-1]) <= {1, 2, 3}
+    assert sum(counts) == 24
+
+
+def test_a_line_that_takes_long_still_comes_in(viewer: Viewer, clock: Clock) -> None:
+    viewer.on_key("w", typed="w")
+    clock.now += 10 * PICTURE_SECONDS
+    clock.step = TICK_SECONDS * 0.9
+    for line in range(24):
+        assert lines_there(viewer) >= line
+        viewer.on_tick()
+    assert is_whole(viewer)
+
+
+ENDINGS: dict[str, Callable[[Viewer], object]] = {
+    "escape": lambda viewer: viewer.on_key("escape"),
+    "w": lambda viewer: viewer.on_key("w", typed="w"),
+    "a key that does nothing": lambda viewer: viewer.on_key("q", typed="q"),
+    "a click": lambda viewer: viewer.on_pointer(5, 5, "press", 1),
+    "the right button": lambda viewer: viewer.on_pointer(5, 5, "press", 3),
+}
+EDITS: dict[str, Callable[[Viewer], object]] = {
+    "left": lambda viewer: viewer.on_key("left"),
+    "left held down": lambda viewer: viewer.on_key("left", repeated=True),
+    "a light": lambda viewer: viewer.on_key("1", typed="1"),
+    "color": lambda viewer: viewer.on_key("c", typed="c"),
+    "exposure": lambda viewer: viewer.on_key("e", typed="e"),
+    "the wheel": lambda viewer: viewer.on_pointer(5, 5, "wheel up"),
+}
+
+
+@pytest.mark.parametrize("name", ENDINGS)
+def test_the_whole_picture_is_shown_at_once(watching: Viewer, clock: Clock, name: str) -> None:
+    scene = watching.studio.scene
+    ENDINGS[name](watching)
+    assert is_whole(watching)
+    after(watching, clock, 0.1)
+    assert is_whole(watching)
+    assert MESSAGE not in watching.caption
+    assert watching.studio.scene is scene
+
+
+def test_escape_ends_watching_before_it_leaves(watching: Viewer) -> None:
+    assert watching.on_key("escape")
+    assert not watching.on_key("escape")
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_an_edit_shows_the_whole_picture_and_is_done(watching: Viewer, name: str) -> None:
+    before = watching.studio.scene
+    EDITS[name](watching)
+    watching.on_tick()
+    assert watching.studio.scene is not before
+    fresh = Ramtek9300(SMALL)
+    Studio(watching.studio.scene, fresh)
+    assert display_of(watching).words.tolist() == fresh.words.tolist()
+    assert display_of(watching).entries.tolist() == fresh.entries.tolist()
+    watching.on_key("z", control=True)
+    assert watching.studio.scene is before
+
+
+def test_a_drag_that_goes_on_ends_watching(viewer: Viewer, clock: Clock) -> None:
+    viewer.on_pointer(5, 5, "press", 1)
+    viewer.on_key("w", typed="w")
+    after(viewer, clock, 0.5)
+    before = viewer.studio.scene
+    viewer.on_pointer(9, 5, "move")
+    assert viewer.studio.scene is not before
+    viewer.on_pointer(9, 5, "release", 1)
+    viewer.on_tick()
+    assert is_whole(viewer)
+
+
+def test_the_mouse_moving_over_the_picture_does_not_end_watching(watching: Viewer) -> None:
+    watching.on_pointer(9, 5, "move")
+    assert lines_there(watching) == 12
+
+
+def test_the_key_held_down_goes_on_watching(watching: Viewer) -> None:
+    assert watching.on_key("w", typed="w", repeated=True)
+    assert lines_there(watching) == 12
+
+
+@pytest.mark.parametrize("page", ["f1", "f4"])
+def test_from_a_page_watching_returns_to_the_picture(viewer: Viewer, clock: Clock, page: str) -> None:
+    viewer.on_key(page)
+    viewer.on_key("w", typed="w")
+    assert viewer.page == "picture"
+    assert lines_there(viewer) == 0
+    after(viewer, clock, 2)
+    assert is_whole(viewer)
+    assert display_of(viewer).entries.tolist() == viewer.studio.entries.tolist()
+
+
+@pytest.mark.parametrize("page", ["f1", "f4"])
+def test_a_page_covers_all_of_a_picture_that_comes_in(watching: Viewer, clock: Clock, page: str) -> None:
+    watching.on_key(page)
+    words = display_of(watching).words.copy()
+    after(watching, clock, 0.3)
+    assert display_of(watching).words.tolist() == words.tolist()
+    watching.on_key(page)
+    assert is_whole(watching)
+
+
+def test_a_scene_dropped_while_another_comes_in_is_shown_whole(
+    watching: Viewer, clock: Clock, tmp_path: Path
+) -> None:
+    write_scene(tmp_path / "other.toml", car().with_view(angle=40))
+    watching.on_drop(tmp_path / "other.toml")
+    assert watching.studio.scene.view.angle == 40
+    after(watching, clock, 0.2)
+    assert is_whole(watching)
+
+
+def test_a_message_waits_until_the_picture_is_there(tmp_path: Path, clock: Clock) -> None:
+    viewer = Viewer(CLOSE, Ramtek9300(), folder=tmp_path)
+    assert not is_whole(viewer)
+    viewer.on_key("w", typed="w")
+    viewer.on_tick()
+    viewer.tell("a screenshot")
+    assert lines_there(viewer) == 0
+    clock.now += 2 * PICTURE_SECONDS
+    viewer.on_tick()
+    assert is_whole(viewer)
+    viewer.on_key("w", typed="w")
+    viewer.on_tick()
+    viewer.tell("a screenshot")
+    viewer.on_key("q", typed="q")
+    assert np.array_equal(display_of(viewer).words[:464], viewer.studio.words[:464])
+    assert not is_whole(viewer)
+
+
+def test_what_stands_over_the_picture_comes_back_after_watching(
+    viewer: Viewer, clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    items = [filled(Area(3, 3, 8, 8), WHITE)]
+    monkeypatch.setattr(viewer.board.screen, "items", lambda: items)
+    viewer.on_key("w", typed="w")
+    assert lines_there(viewer) == 0
+    after(viewer, clock, 2)
+    viewer.on_key("q", typed="q")
+    assert (display_of(viewer).words[3:9, 3:9] == WHITE).all()
+    assert np.array_equal(display_of(viewer).words[9:], viewer.studio.words[9:])
+
+
+@given(scenes(), st.lists(st.floats(0, 0.4), max_size=8))
+@settings(max_examples=25, deadline=None)
+def test_at_any_time_the_lines_that_are_there_are_those_of_the_picture(
+    scene: Scene, parts: list[float]
+) -> None:
+    clock = Clock()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("time.monotonic", clock)
+        viewer = Viewer(scene, Ramtek9300(SMALL))
+        viewer.on_key("w", typed="w")
+        for part in parts:
+            after(viewer, clock, part)
+            lines_there(viewer)
+        viewer.on_key("escape")
+        assert is_whole(viewer)
