@@ -13,7 +13,7 @@ from autocolor.widgets.items import Item, text
 TITLE: Final = "AUTOCOLOR"
 LEFT: Final = 24
 MIDDLE: Final = 220
-TOP: Final = 58
+TOP: Final = 50
 STEP: Final = 14
 
 LIMITS: Final = (
