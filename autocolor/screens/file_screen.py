@@ -58,12 +58,15 @@ class FileScreen(Screen):
         self._page = 0
 
     def enter(self) -> None:
-        recent = [Openable(path, kind_of(path)) for path in recent_files() if self._may_open(path)]
-        self._recent = [each for each in recent if each.kind]
+        self._look_up_recent()
         try:
             self._list(self._folder)
         except InputError as error:
             self.session.warn(error)
+
+    def _look_up_recent(self) -> None:
+        recent = [Openable(path, kind_of(path)) for path in recent_files() if self._may_open(path)]
+        self._recent = [each for each in recent if each.kind]
 
     def _list(self, folder: Path) -> None:
         """Show a folder as it is now. Raises InputError if it cannot be read."""
@@ -200,6 +203,7 @@ class FileScreen(Screen):
 
     def _save(self, save: Callable[[], object]) -> None:
         save()
+        self._look_up_recent()
         self._list(self._folder)
 
 

@@ -215,6 +215,12 @@ def test_saving_is_told_and_what_was_saved_is_listed(hand: Hand, folder: Path) -
     assert (folder / "boxes-2.png").read_bytes() == (folder / "boxes.png").read_bytes()
 
 
+def test_what_is_saved_is_among_the_recent_files_at_once(hand: Hand, folder: Path) -> None:
+    before = set(rows_of(hand, recent=True))
+    hand.pick("save")
+    assert set(rows_of(hand, recent=True)) - before
+
+
 def test_what_is_saved_can_be_opened_again(hand: Hand, folder: Path) -> None:
     hand.viewer.studio.recolor("low", object_color="#123456")
     hand.pick("save")
