@@ -72,13 +72,21 @@ def view(
         folder, session = chosen_session(recover)
         show(session.history, full_screen, fit, folder)
     elif source is not None:
+        from autocolor.files.recent import note_file
         from autocolor.journal.history import History
         from autocolor.journal.places import Source, place_of
 
         place = place_of(Source(source.path, source.up, source.surfaces))
         report = read(source)
         edited = created_again(report, with_settings(report.scene, settings))
-        show(History(edited, place), full_screen, fit)
+        note_file(source.path)
+        # What is opened after it has the same up axis.
+        show(
+            History(edited, place),
+            full_screen,
+            fit,
+            prepare=lambda viewer: setattr(viewer.session, "mesh_up", source.up),
+        )
         context.exit(ended(report, source))
 
 

@@ -101,6 +101,16 @@ class History:
         )
 
     @property
+    def unsaved_variants(self) -> tuple[str, ...]:
+        """The names of variants that are none of the scenes that were opened or saved last."""
+        saved = [each.scene for each in self._saved.values()]
+        return tuple(
+            name
+            for name, kept in self.variants.items()
+            if not any(scene.equals(kept.scene) for scene in saved)
+        )
+
+    @property
     def to_undo(self) -> tuple[Scene, ...]:
         """The scenes before each step that can be undone, the last one last."""
         return tuple(each.scene for each in self._done)

@@ -60,7 +60,9 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
         lambda viewer, _: viewer.toggle("entries"),
     ),
     Binding(
-        (Chord("tab"),), "the menu, and its keys: arrows, Return", lambda viewer, _: viewer.toggle_menu()
+        (Chord("tab"),),
+        "the menu (or the right edge); its keys: arrows, Return",
+        lambda viewer, _: viewer.toggle_menu(),
     ),
     Binding(
         (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
@@ -162,6 +164,7 @@ WINDOW_KEYS: Final = (
     ("Ctrl+Q", "leave"),
     ("mouse", "drag: turn; Shift, middle: move; Ctrl, wheel: closer"),
     ("mouse, highlight", "drag it, or click, and click where it goes"),
+    ("joystick unit", "ENTER picks and places; TRACK, held, drags"),
     ("a file dropped", "open it: a scene, a mesh or a picture file"),
 )
 """The keys that the window itself handles, and the mouse."""

@@ -16,6 +16,7 @@ from autocolor.errors import InputError, UsageError
 from autocolor.files.openable import FOLDER, Openable, kind_of, openables_of, stays_within
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.recent import recent_files
+from autocolor.files.repair.polygons import UPS
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
@@ -57,12 +58,15 @@ class FileScreen(Screen):
         self._page = 0
 
     def enter(self) -> None:
-        recent = [Openable(path, kind_of(path)) for path in recent_files() if self._may_open(path)]
-        self._recent = [each for each in recent if each.kind]
+        self._look_up_recent()
         try:
             self._list(self._folder)
         except InputError as error:
             self.session.warn(error)
+
+    def _look_up_recent(self) -> None:
+        recent = [Openable(path, kind_of(path)) for path in recent_files() if self._may_open(path)]
+        self._recent = [each for each in recent if each.kind]
 
     def _list(self, folder: Path) -> None:
         """Show a folder as it is now. Raises InputError if it cannot be read."""
@@ -169,6 +173,13 @@ class FileScreen(Screen):
                 other="home",
                 run_other=partial(self._go_to, self._root),
             ),
+            Choice(
+                "mesh up",
+                "The up axis of mesh files that are opened; other files give their own.",
+                names=UPS,
+                present=session.mesh_up,
+                choose=partial(setattr, session, "mesh_up"),
+            ),
         ]
 
     # What that does.
@@ -192,6 +203,7 @@ class FileScreen(Screen):
 
     def _save(self, save: Callable[[], object]) -> None:
         save()
+        self._look_up_recent()
         self._list(self._folder)
 
 

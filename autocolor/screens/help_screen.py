@@ -13,7 +13,7 @@ from autocolor.widgets.items import Item, text
 TITLE: Final = "AUTOCOLOR"
 LEFT: Final = 24
 MIDDLE: Final = 220
-TOP: Final = 58
+TOP: Final = 50
 STEP: Final = 14
 
 LIMITS: Final = (
@@ -28,7 +28,7 @@ class HelpScreen(Screen):
 
     name = "help"
     title = "help"
-    help = "What keys and the mouse do."
+    help = "What keys and the mouse do"
     has_menu = False
     shows_scene = False
 

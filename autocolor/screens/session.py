@@ -12,6 +12,7 @@ from typing import Final, NamedTuple, Unpack
 
 from autocolor.errors import InputError
 from autocolor.files.file_stem import file_stem, free_path
+from autocolor.files.openable import MESH, kind_of
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.recent import note_file
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
@@ -20,6 +21,7 @@ from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
+from autocolor.scene.view import View
 from autocolor.screens.comparing import NOW, Comparing
 from autocolor.studio import Studio
 from autocolor.widgets.column_rows import World
@@ -38,6 +40,8 @@ class News(NamedTuple):
     text: str
     is_warning: bool
     told_at: float
+    stands: bool = False
+    """Whether it stands until something is done, or the menu comes."""
 
 
 class Session:
@@ -61,8 +65,12 @@ class Session:
         """Whether something can be typed."""
         self.is_at_hand = False
         """Whether the user sits at this machine; a pointer from elsewhere keeps to the folder."""
+        self.mesh_up = "z"
+        """The up axis of mesh files that are opened; other files give their own."""
         self.surface = 0
         """The number of the chosen surface among those in use; see `surface_name`."""
+        self.named_view: tuple[View, str] | None = None
+        """The view from one of the sides that have names that was taken last, and that name."""
         self.part_name = ""
         """The part that was pointed at last, if any."""
         self._light = ""
@@ -113,11 +121,11 @@ class Session:
     def has_news(self) -> bool:
         """Whether there is a message whose time has not passed; while states are compared, it does not."""
         is_recent = time.monotonic() - self.news.told_at < MESSAGE_SECONDS
-        return bool(self.news.text) and (is_recent or self.comparing.is_on)
+        return bool(self.news.text) and (is_recent or self.news.stands or self.comparing.is_on)
 
-    def tell(self, message: str, is_warning: bool = False) -> None:
-        """Show a message; an empty one takes the last one away."""
-        self.news = News(message, is_warning, time.monotonic())
+    def tell(self, message: str, is_warning: bool = False, stands: bool = False) -> None:
+        """Show a message for some seconds, or one that `stands`; an empty one takes the last one away."""
+        self.news = News(message, is_warning, time.monotonic(), stands)
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first one and how many others there are."""
@@ -220,7 +228,8 @@ class Session:
             self.edit(self.scene.with_rig(read_rig(path)))
             self.tell(f"the lights of {path.name}, fitted to {self.scene.name}; undo goes back")
             return
-        self.studio.open(path)
+        up = self.mesh_up if kind_of(path) == MESH else "z"
+        self.studio.open(path, up=up)
         note_file(path.resolve())
         self.tell(f"opened {path.name}; undo goes back")
 
@@ -256,14 +265,22 @@ class Session:
     # The end.
 
     @property
-    def has_unsaved(self) -> bool:
-        """Whether the scene has changes that are not saved, or one that was open before."""
-        return self.studio.is_changed or bool(self.studio.history.left_unsaved)
+    def unsaved(self) -> str:
+        """What leaving the program would lose, and how that is saved; empty if there is nothing."""
+        history = self.studio.history
+        if history.is_changed:
+            return "not saved: Ctrl+S saves" if self.has_keyboard else "not saved: save it"
+        if history.left_unsaved:
+            return f"{history.left_unsaved[-1]} is not saved: undo goes back to it"
+        if history.unsaved_variants:
+            return f"variant {history.unsaved_variants[-1]} is not saved: come back to it and save it"
+        return ""
 
     def leave(self) -> None:
         """Ask to leave the program; changes that are not saved are told first, and the next time lost."""
-        if self.has_unsaved and self._refused_to_leave is not self.scene:
+        unsaved = self.unsaved
+        if unsaved and self._refused_to_leave is not self.scene:
             self._refused_to_leave = self.scene
-            self.warn("not saved: save it, or leave once more to discard the changes")
+            self.warn(f"{unsaved}, or leave once more to discard the changes")
         else:
             self.leaves = True

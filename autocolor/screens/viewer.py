@@ -57,7 +57,7 @@ class Viewer:
         self._mouse.forget()
         self._sheet.forget()
         self._unit.show()
-        self.session.tell("F1 help, Tab menu")
+        self.session.tell("F1: help; Tab or the right edge: the menu", stands=True)
         self._update()
 
     @property
@@ -147,9 +147,12 @@ class Viewer:
         elif (rests and self.board.screen.idle()) or self._had_news != self.session.has_news:
             self._update()
 
-    def tell(self, message: str) -> None:
-        """Show a message of the window; an empty one takes the last one away at once."""
-        self.session.tell(message)
+    def tell(self, message: str, stands: bool = False) -> None:
+        """Show a message of the window; an empty one takes the last one away at once.
+
+        One that `stands` does so until something is done.
+        """
+        self.session.tell(message, stands=stands)
         self._update()
 
     def _update(self) -> None:
@@ -236,8 +239,8 @@ class Viewer:
         if session.screen != PICTURE:
             session.turn_to(PICTURE)
             return True
-        if session.has_unsaved:
-            session.warn("not saved: Ctrl+S saves, Ctrl+Q twice discards the changes")
+        if session.unsaved:
+            session.warn(f"{session.unsaved}, Ctrl+Q twice discards the changes")
             return True
         return False
 

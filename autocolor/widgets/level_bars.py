@@ -16,7 +16,7 @@ import numpy as np
 from autocolor.arrays import Booleans, Numbers, Words
 from autocolor.mapping.rounding import half_up
 from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import BLACK, NIGHT, WHITE, YELLOW
+from autocolor.widgets.colors import GRAY, NIGHT, WHITE, YELLOW
 from autocolor.widgets.items import CHARACTER, Item, filled, image, text
 from autocolor.widgets.widget import Place, Widget
 
@@ -68,7 +68,8 @@ class LevelBar(Widget):
     def items(self, lit: bool) -> list[Item]:
         strip, ink = self.strip, YELLOW if lit else WHITE
         along = half_up(self.level * (self._length - 1) / (len(self.words) - 1))
-        found = [filled(strip.inset(-1), BLACK), level_strip(self.words.tobytes(), strip, self.upright)]
+        # A frame that is seen beside dark levels, over a picture whose background is dark, too.
+        found = [filled(strip.inset(-1), GRAY), level_strip(self.words.tobytes(), strip, self.upright)]
         if not self.upright:
             element = strip.left + along
             down, up = pointer(element, strip.top - 2, DOWN, ink), pointer(element, strip.bottom + 2, UP, ink)

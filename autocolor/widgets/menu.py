@@ -25,12 +25,17 @@ GAP_LINES: Final = 8
 MOST_LINES: Final = MENU.height
 
 
+def lines_of(row: Widget) -> int:
+    """The height of a row."""
+    return GAP_LINES if isinstance(row, Gap) else ROW_LINES
+
+
 def laid_out(rows: Sequence[Widget], area: Area = MENU) -> list[Widget]:
     """The rows with their areas, from the top; those that do not fit are left out."""
     found: list[Widget] = []
     top = area.top
     for row in rows:
-        height = GAP_LINES if isinstance(row, Gap) else ROW_LINES
+        height = lines_of(row)
         if top + height - 1 > area.bottom:
             break
         found.append(row.at(Area(area.left + 1, top, area.right, top + height - 1)))
@@ -48,18 +53,14 @@ def menu_items(rows: Sequence[Widget], lit: Widget | None, area: Area = MENU) ->
 
 def pages_of(rows: Sequence[Widget], lines: int = MOST_LINES) -> list[list[Widget]]:
     """The rows in pages that fit, each with room for one more row, by which the next is reached."""
-
-    def height(row: Widget) -> int:
-        return GAP_LINES if isinstance(row, Gap) else ROW_LINES
-
-    if sum(map(height, rows)) <= lines:
+    if sum(map(lines_of, rows)) <= lines:
         return [list(rows)]
     pages: list[list[Widget]] = [[]]
     used = 0
     for row in rows:
-        if used + height(row) > lines - ROW_LINES:
+        if used + lines_of(row) > lines - ROW_LINES:
             pages.append([])
             used = 0
         pages[-1].append(row)
-        used += height(row)
+        used += lines_of(row)
     return pages

@@ -13,7 +13,7 @@ from typing import Any, Final, NamedTuple, TypeVar
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import BLACK, GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
 from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
-from autocolor.widgets.labels import short_name
+from autocolor.widgets.labels import short_label, short_name
 
 ROW_LINES: Final = 16
 """The height of a row of a menu."""
@@ -113,6 +113,11 @@ class Widget:
             quiet = LIGHT_GRAY if value and ink == WHITE else ink
             found.append(text(label, left + MARGIN, top + TEXT_DOWN, quiet, background))
         return found
+
+    def labeled_row(self, lit: bool, value: str) -> list[Item]:
+        """A row with the widget's own label, whose words are shortened where the value needs the room."""
+        room = (self.area.width - 2 * MARGIN) // CHARACTER
+        return self.row(lit, short_label(self.label, room - len(value) - 1), value)
 
 
 @dataclass(frozen=True)
@@ -221,7 +226,7 @@ class Choice(Widget):
     choose: Callable[[str], object] = lambda _: None
 
     def items(self, lit: bool) -> list[Item]:
-        return self.row(lit, self.label, self.present)
+        return self.labeled_row(lit, self.present)
 
     def pick(self, place: Place) -> object:
         return self.nudge(-1 if place.element < self.area.left + 3 * MARGIN else 1)
@@ -253,4 +258,4 @@ class Entry(Widget):
         return Typed(self.value, self.take)
 
     def items(self, lit: bool) -> list[Item]:
-        return self.row(lit, self.label, self.value)
+        return self.labeled_row(lit, self.value)

@@ -72,4 +72,6 @@ def _tell_left(viewer: Viewer) -> None:
         f" `--sessions` lists {'them' if many else 'it'}, `--forget` removes {'one' if many else 'it'}",
         err=True,
     )
-    viewer.tell("a session did not end orderly: autocolor view --recover opens it")
+    viewer.tell(
+        "a session was left: autocolor view --recover opens it; the right edge: the menu", stands=True
+    )

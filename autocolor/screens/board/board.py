@@ -13,12 +13,12 @@ from typing import Final
 from autocolor.screens.board.composition import Composition
 from autocolor.screens.board.grip import Grip, place_of
 from autocolor.screens.board.layout import Layout
-from autocolor.screens.board.main_menu import page_of_menu, rows_of_menu
+from autocolor.screens.board.main_menu import last_rows, page_of_menu, rows_of_menu
 from autocolor.screens.board.message_line import MESSAGE
 from autocolor.screens.board.typing_line import TypingLine
 from autocolor.screens.input.gestures import Gesture
 from autocolor.screens.screen import Handle, Screen
-from autocolor.screens.session import Session
+from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.colors import WIDTH
 from autocolor.widgets.menu import MENU
@@ -89,7 +89,15 @@ class Board:
         self._light(None)
         self.close()
         self.screens[wanted].enter()
+        self._tell_the_way()
         return True
+
+    def _tell_the_way(self) -> None:
+        """Tell what to do on a screen beside which no menu stands, and how to come back from it."""
+        screen = self.screen
+        is_reached_by_menu = screen.is_in_menu and screen.name != PICTURE
+        if is_reached_by_menu and not screen.has_menu and not self.session.has_news:
+            self.session.tell(f"{screen.help}; the right edge: the menu")
 
     def layout(self) -> Layout:
         """What can be pointed at now."""
@@ -103,7 +111,8 @@ class Board:
         if not self.has_menu:
             return []
         rows = rows_of_menu(self.session, self.screen, self.screens.values())
-        return page_of_menu(rows, self._menu_page, partial(setattr, self, "_menu_page"))
+        last = last_rows(self.session, self.screen)
+        return page_of_menu(rows, last, self._menu_page, partial(setattr, self, "_menu_page"))
 
     def widgets(self) -> list[Widget]:
         """Everything that can be pointed at, the topmost first."""
@@ -151,6 +160,9 @@ class Board:
                 self._is_open = True
             elif not MENU.left <= element < WIDTH and layout.wide is None:
                 self._is_open = False
+            if self._is_open and not was_open and self.session.news.stands:
+                # Beside the menu, hints stand in its place.
+                self.session.tell("")
             layout = layout if self._is_open == was_open else self.layout()
         widget = layout.widget_at(element, line)
         self._light(widget)

@@ -11,7 +11,7 @@ from autocolor.screens.screen import Handle, Screen
 from autocolor.widgets.areas import Area
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.menu import WIDE_BAR
-from autocolor.widgets.widget import Gap, Widget
+from autocolor.widgets.widget import Gap, Heading, Widget
 
 REACH: Final = 7
 """Assumed: elements or lines from a handle within which it is grabbed."""
@@ -65,9 +65,9 @@ class Layout:
         return any(area.has(element, line) for area in covers)
 
     def widget_at(self, element: int, line: int) -> Widget | None:
-        """The widget at a place; gaps are none."""
+        """The widget at a place; headings and gaps are none."""
         at = (each for each in self.widgets if each.area.has(element, line))
-        return next((each for each in at if not isinstance(each, Gap)), None)
+        return next((each for each in at if not isinstance(each, (Heading, Gap))), None)
 
     def handle_at(self, element: int, line: int) -> Handle | None:
         """The nearest handle within reach of a place, the last of several at the same distance."""

@@ -31,6 +31,7 @@ class Chord:
             "left": "Left",
             "right": "Right",
             "space": "Space",
+            "tab": "Tab",
         }
         return "+".join([*held, names.get(self.name, self.name.upper())])
 

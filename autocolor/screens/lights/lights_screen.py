@@ -91,7 +91,7 @@ class LightsScreen(OverPicture):
         scene = self.session.scene
         self.session.edit(scene.replace(lights=(*scene.lights, light)))
         self.session.choose_light(light.name)
-        self.session.tell(f"light {light.name} added")
+        self.session.tell(f"light added: {light.name}")
 
     def _copy(self) -> None:
         self._append(self.session.scene.with_copied_light(self.session.light_name).lights, "copied")

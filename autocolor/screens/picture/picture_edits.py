@@ -48,8 +48,16 @@ class PictureEdits:
     def see_from(self, number: int) -> None:
         """Look at the object from one of the sides that have names, counted from 0."""
         side = list(SIDES)[number]
-        self.look(seen_from(self.session.scene, side))
+        view = seen_from(self.session.scene, side)
+        self.look(view)
+        self.session.named_view = view, side
         self.session.tell(f"view: {side}")
+
+    @property
+    def side(self) -> str:
+        """The side that `see_from` took the present view from; empty if it is another view."""
+        named = self.session.named_view
+        return named[1] if named is not None and named[0] == self.session.scene.view else ""
 
     def rescale(self, is_surface: bool = False) -> None:
         """Move the eye so that the object, or the selected surface, fills the picture.

@@ -44,8 +44,7 @@ class PictureScreen(OverPicture):
     def place(self, handle: Handle, element: int, line: int) -> None:
         if self.session.word_at(element, line) >= SCREENS.first:
             raise UsageError(
-                f"the {handle.label} must be placed on the picture, not on what covers it;"
-                " choose another pixel"
+                "a highlight must be placed on the picture, not on what covers it; choose another pixel"
             )
         self._handles.place(handle, element, line)
 
@@ -58,7 +57,13 @@ class PictureScreen(OverPicture):
             ),
             *self._light_rows(),
             Gap("view gap"),
-            Choice("view", "The view from a side.", names=tuple(SIDES), choose=self._see_from),
+            Choice(
+                "view",
+                "A click looks from the next side; at the left end, from the one before.",
+                names=tuple(SIDES),
+                present=edits.side,
+                choose=self._see_from,
+            ),
             Steps(
                 "turn", "Turn around the object.", step=lambda n: edits.turn(n * TURN, 0), signs=("<", ">")
             ),

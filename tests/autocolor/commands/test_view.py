@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from autocolor.files.recent import recent_files
 from tests.autocolor.commands.conftest import Run
 
 pygame = pytest.importorskip("pygame")
@@ -35,7 +36,7 @@ def monitors(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 def test_a_scene_is_shown_until_the_window_is_closed(folder: Path, run: Run, monitors: list[Any]) -> None:
     assert run("view", "scene") == (0, "", "")
     monitor = monitors[1]
-    assert monitor.caption == "autocolor - scene - [front.low] - F1 help, Tab menu"
+    assert monitor.caption == "autocolor - scene - [front.low] - F1: help; Tab or the right edge: the menu"
     assert not monitor.full_screen
     assert not monitor.fit
     assert monitor.display.words.any()
@@ -45,6 +46,14 @@ def test_options_of_the_window_reach_it(folder: Path, run: Run, monitors: list[A
     assert run("view", "two.obj", "--up", "y", "--full-screen", "--fit").code == 0
     assert monitors[1].full_screen
     assert monitors[1].fit
+
+
+def test_a_scene_that_is_viewed_is_among_the_recent_files(
+    folder: Path, run: Run, monitors: list[Any]
+) -> None:
+    assert run("view", "two.obj", "--up", "y").code == 0
+    assert run("view", "scene").code == 0
+    assert recent_files()[:2] == (folder / "scene", folder / "two.obj")
 
 
 def test_what_is_set_is_shown(folder: Path, run: Run, monitors: list[Any]) -> None:
@@ -178,7 +187,7 @@ def test_the_demo_is_saved_to_new_files_and_a_scene_that_was_named_to_its_own(
     from autocolor.commands import view
 
     shown: list[Any] = []
-    monkeypatch.setattr(view, "show", lambda history, *_: shown.append(history.first_place))
+    monkeypatch.setattr(view, "show", lambda history, *_, **__: shown.append(history.first_place))
     assert run().code == run("view", "scene").code == run("view", "two.obj").code == 0
     assert [place.stamp is None for place in shown] == [True, False, True]
     assert [Path(place.source.path).name for place in shown[1:]] == ["scene", "two.obj"]

@@ -215,6 +215,12 @@ def test_saving_is_told_and_what_was_saved_is_listed(hand: Hand, folder: Path) -
     assert (folder / "boxes-2.png").read_bytes() == (folder / "boxes.png").read_bytes()
 
 
+def test_what_is_saved_is_among_the_recent_files_at_once(hand: Hand, folder: Path) -> None:
+    before = set(rows_of(hand, recent=True))
+    hand.pick("save")
+    assert set(rows_of(hand, recent=True)) - before
+
+
 def test_what_is_saved_can_be_opened_again(hand: Hand, folder: Path) -> None:
     hand.viewer.studio.recolor("low", object_color="#123456")
     hand.pick("save")
@@ -270,3 +276,17 @@ def test_the_scene_of_a_session_is_not_changed_by_looking(hand: Hand) -> None:
     hand.pick("refresh")
     assert scene_of(hand) is before
     assert before.name == boxes().name
+
+
+def test_the_up_axis_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand, folder: Path) -> None:
+    row = next(each for each in hand.viewer.board.menu_rows() if each.label == "mesh up")
+    # From z to x and y.
+    for _ in range(2):
+        hand.click(row.area.right - 8, row.area.top + 8)
+    pick(hand, "deeper")
+    pick(hand, "triangle.obj")
+    # What was up to y is up to z now: z has become -y.
+    assert scene_of(hand).mesh.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [0, -1, 0]]
+    # Other files give their own.
+    hand.viewer.session.open(folder / "wall")
+    assert scene_of(hand).name == "wall"

@@ -31,6 +31,19 @@ def test_a_message_stands_for_some_seconds(session: Session, monkeypatch: pytest
     assert not session.has_news
 
 
+def test_a_message_that_stands_does_so_until_the_next_one(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = 100.0
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    session.tell("welcome", stands=True)
+    now += 100 * MESSAGE_SECONDS
+    assert (session.message, session.has_news) == ("welcome", True)
+    session.tell("saved")
+    now += MESSAGE_SECONDS
+    assert not session.has_news
+
+
 @pytest.mark.parametrize(
     ("error", "shown"),
     [
@@ -168,3 +181,25 @@ def test_what_cannot_be_saved_is_refused(session: Session) -> None:
 def test_a_pointer_is_from_elsewhere_unless_told(session: Session) -> None:
     assert not session.is_at_hand
     assert session.screen == PICTURE
+
+
+def test_leaving_tells_first_what_it_would_lose(session: Session, tmp_path: Path) -> None:
+    def asked() -> str:
+        session.leave()
+        assert not session.leaves
+        return session.message.removesuffix(", or leave once more to discard the changes")
+
+    session.edit(session.scene.replace(ambient=0.6))
+    assert asked() == "not saved: save it"
+    session.studio.keep_variant("dusk")
+    session.undo()
+    assert asked() == "variant dusk is not saved: come back to it and save it"
+    session.studio.show_variant("dusk")
+    session.save()
+    assert session.unsaved == ""
+    session.edit(session.scene.replace(ambient=0.8))
+    write_scene(tmp_path / "other", boxes().replace(name="other"))
+    session.open(tmp_path / "other")
+    assert asked().endswith(" is not saved: undo goes back to it")
+    session.leave()
+    assert session.leaves

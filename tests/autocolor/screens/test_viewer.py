@@ -12,7 +12,7 @@ import pytest
 from autocolor import InputError, Light, Mesh, Scene, Surface, View, read_picture, scene_of
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.defaults import framed
-from autocolor.screens.board.message_line import MESSAGE
+from autocolor.screens.board.message_line import MESSAGE, MOST_CHARACTERS
 from autocolor.screens.picture.orbit import panned
 from autocolor.screens.session import MESSAGE_SECONDS
 from autocolor.screens.viewer import Viewer
@@ -380,7 +380,7 @@ def test_a_mesh_without_anything_can_be_looked_at(tmp_path: Path) -> None:
 
 
 def test_the_caption_marks_what_is_not_saved(viewer: Viewer) -> None:
-    assert viewer.caption == "autocolor - box - [low] - F1 help, Tab menu"
+    assert viewer.caption == "autocolor - box - [low] - F1: help; Tab or the right edge: the menu"
     press_c(viewer)
     assert viewer.caption.startswith("autocolor - box* - [low]")
     control(viewer, "z")
@@ -692,6 +692,7 @@ def test_the_wheel_moves_closer_and_its_steps_are_one_step_to_undo(viewer: Viewe
 def test_on_a_page_the_mouse_changes_nothing(viewer: Viewer, page: str) -> None:
     before = viewer.studio.scene
     viewer.on_key(page)
+    viewer.tell("")
     words = display_of(viewer).words.copy()
     drag(viewer, (300, 200), (320, 220))
     viewer.on_pointer(300, 200, "wheel up")
@@ -713,6 +714,31 @@ def test_a_message_stands_over_the_picture_for_a_while(
     monkeypatch.setattr("autocolor.screens.session.time.monotonic", lambda: now + MESSAGE_SECONDS + 1)
     viewer.on_tick()
     assert np.array_equal(display_of(viewer).words, picture)
+
+
+def test_the_first_message_stands_until_the_menu_comes_or_something_is_done(
+    viewer: Viewer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    welcome = "F1: help; Tab or the right edge: the menu"
+    now = time.monotonic()
+    monkeypatch.setattr("autocolor.screens.session.time.monotonic", lambda: now + 100 * MESSAGE_SECONDS)
+    viewer.on_tick()
+    viewer.on_pointer(100, 100, "move")
+    assert viewer.board.message[0] == welcome
+    viewer.on_pointer(638, 0, "move")
+    assert viewer.board.message[0] == viewer.screens["picture"].help
+    viewer.tell(welcome, stands=True)
+    viewer.on_key("c", typed="c")
+    assert viewer.message != welcome
+
+
+@pytest.mark.parametrize("name", ["blending", "help"])
+def test_a_screen_without_a_menu_tells_how_to_bring_it(viewer: Viewer, name: str) -> None:
+    viewer.tell("")
+    viewer.session.turn_to(name)
+    viewer.on_pointer(100, 100, "move")
+    assert viewer.message == f"{viewer.screens[name].help}; the right edge: the menu"
+    assert len(viewer.message) <= MOST_CHARACTERS
 
 
 @pytest.mark.parametrize("page", ["f1", "f4"])

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from autocolor.mapping.rounding import half_up
 from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import WHITE, YELLOW
+from autocolor.widgets.colors import GRAY, WHITE, YELLOW
 from autocolor.widgets.level_bars import (
     DOWN,
     LANE,
@@ -143,3 +143,13 @@ def test_a_percentage_is_a_share_of_the_height() -> None:
     assert found == [75, 26, 0]
     words = drawn(bar).words
     assert np.flatnonzero(words[:, 602] == WHITE).tolist() == [150]
+
+
+@pytest.mark.parametrize("upright", [False, True])
+def test_a_bar_is_framed_so_that_its_ends_are_seen_on_a_dark_picture(upright: bool) -> None:
+    bar = bar_of(40, level=20, upright=upright)
+    words = drawn(bar).words
+    left, top, right, bottom = bar.strip
+    assert (words[[top - 1, bottom + 1], left - 1] == GRAY).all()
+    assert (words[[top - 1, bottom + 1], right + 1] == GRAY).all()
+    assert words[top - 1, left + 1] == words[bottom + 1, left + 1] == GRAY

@@ -3,6 +3,8 @@ from __future__ import annotations
 import pytest
 
 from autocolor.widgets.areas import Area
+from autocolor.widgets.colors import LIGHT_GRAY, NIGHT
+from autocolor.widgets.items import text
 from autocolor.widgets.widget import (
     Button,
     Choice,
@@ -125,3 +127,10 @@ def test_a_row_stays_in_its_area_and_fills_it(widget: Widget, lit: bool) -> None
     assert items[0].area == ROW
     assert items[0].is_solid
     assert all(ROW.covers(item.area) for item in items)
+
+
+def test_the_label_of_a_value_that_needs_the_room_is_shortened_by_its_words() -> None:
+    area = Area(505, 0, 639, 15)
+    for widget in (Entry("background", value="#000000"), Choice("background", present="#000000")):
+        expected = text("backgr.", area.left + 8, 3, LIGHT_GRAY, NIGHT)
+        assert expected in widget.at(area).items(lit=False)

@@ -49,6 +49,7 @@ def test_an_error_is_a_message_and_what_does_nothing_leaves_the_last_one(session
 
 def test_unsaved_changes_are_announced_once(session: Session) -> None:
     doing = Doing(session)
+    session.has_keyboard = True
     assert not doing.warns_of_changes("again")
     session.edit(session.scene.replace(ambient=0.5))
     assert doing.warns_of_changes("again")

@@ -10,6 +10,7 @@ from autocolor.screens.input.keys import Binding, Chord
     [
         (Chord("f1"), "F1"),
         (Chord("escape"), "Esc"),
+        (Chord("tab"), "Tab"),
         (Chord("left"), "Left"),
         (Chord("c", shift=True), "Shift+C"),
         (Chord("z", control=True, shift=True), "Ctrl+Shift+Z"),

@@ -165,7 +165,7 @@ def test_another_light_is_chosen(hand: Hand) -> None:
 @pytest.mark.parametrize(
     ("label", "share", "name", "message"),
     [
-        ("add", 0.25, "light", "light light added"),
+        ("add", 0.25, "light", "light added: light"),
         ("add", 0.75, "key 2", "light key copied: key 2"),
         ("mirror", 0.25, "key mirrored", "light key mirrored along x: key mirrored"),
     ],

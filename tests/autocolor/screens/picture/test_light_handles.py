@@ -153,7 +153,7 @@ def test_a_highlight_is_not_dragged_under_the_menu(hand: Hand) -> None:
     hand.drag(hand.handle("highlight of key"), MIDDLE, (WORK.right + 40, 450))
     assert hand.handle("highlight of key") == MIDDLE
     assert hand.viewer.message == (
-        "the highlight of key must be placed on the picture, not on what covers it; choose another pixel"
+        "a highlight must be placed on the picture, not on what covers it; choose another pixel"
     )
 
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from autocolor import Scene, View
-from autocolor.screens.picture.orbit import moved, panned, seen_from, turned
+from autocolor.screens.picture.orbit import SIDES, moved, panned, seen_from, turned
 from autocolor.screens.picture.picture_screen import CLOSER, PAN, TURN
-from autocolor.widgets.widget import Switch
+from autocolor.widgets.widget import Choice, Switch
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
 
@@ -32,6 +32,20 @@ ROWS: dict[str, tuple[float, Callable[[Scene], View]]] = {
     "lift": (0.9, lambda scene: panned(scene, 0, -PAN, 480)),
     "view": (0.9, lambda scene: seen_from(scene, "front")),
 }
+
+
+def test_the_row_of_the_view_goes_around_all_sides(hand: Hand) -> None:
+    start = scene_of(hand)
+    for side in (*SIDES, "front"):
+        hand.open_menu()
+        area = next(row.area for row in hand.viewer.board.menu_rows() if row.label == "view")
+        hand.click(area.right - 8, area.top + 8)
+        assert scene_of(hand).view == seen_from(start, side)
+        row = next(row for row in hand.viewer.board.menu_rows() if row.label == "view")
+        assert isinstance(row, Choice)
+        assert row.present == side
+    hand.viewer.session.undo()
+    assert hand.viewer.edits.side == ""
 
 
 @pytest.mark.parametrize("label", ROWS)
