@@ -116,8 +116,12 @@ class Session:
         return bool(self.news.text) and (is_recent or self.comparing.is_on)
 
     def tell(self, message: str, is_warning: bool = False) -> None:
-        """Show a message; an empty one takes the last one away."""
-        self.news = News(message, is_warning, time.monotonic())
+        """Show a message in one line; an empty one takes the last one away.
+
+        Letters that cannot be printed, as in names of files, become question marks.
+        """
+        line = "".join(letter if letter.isprintable() else "?" for letter in message)
+        self.news = News(line, is_warning, time.monotonic())
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first one and how many others there are."""
