@@ -266,6 +266,7 @@ class Viewer:
         """Leave the picture alone on the display, without menu, message and cursors."""
         self._watching.end()
         self.session.turn_to(PICTURE)
+        self.session.comparing.end()
         self.board.turn()
         self.board.close()
         self.session.tell("")

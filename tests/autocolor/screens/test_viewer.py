@@ -753,3 +753,11 @@ def test_rescale_fills_the_picture_with_the_chosen_surface(tmp_path: Path) -> No
     assert shown.studio.scene.view == framed(view, window.coordinates)
     shown.on_key("r", typed="r")
     assert shown.studio.scene.view == framed(view, Mesh.joined([cube(), window]).coordinates)
+
+
+def test_what_is_left_on_the_display_is_the_present_state_though_another_was_compared(viewer: Viewer) -> None:
+    viewer.on_key("left")
+    viewer.compare()
+    assert not is_true_to(viewer, viewer.studio.scene)
+    viewer.clear()
+    assert is_true_to(viewer, viewer.studio.scene)
