@@ -46,10 +46,11 @@ class Doing:
 
     def warns_of_changes(self, otherwise: str) -> bool:
         """Whether to stop because of unsaved changes. They are announced once; the next attempt succeeds."""
-        if not self._session.studio.is_changed or self.is_warned:
+        unsaved = self._session.unsaved("Ctrl+S saves")
+        if not unsaved or self.is_warned:
             return False
         self.is_warned = True
-        self._session.warn(f"not saved: Ctrl+S saves, {otherwise}")
+        self._session.warn(f"{unsaved}, {otherwise}")
         return True
 
     def do(self, source: object, run: Callable[[], object], continues: bool, moving: bool) -> bool:

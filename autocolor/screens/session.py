@@ -23,6 +23,7 @@ from autocolor.scene.surfaces import Part, Surface
 from autocolor.screens.comparing import NOW, Comparing
 from autocolor.studio import Studio
 from autocolor.widgets.column_rows import World
+from autocolor.widgets.labels import short_name
 from ramtek_emu import HostPort, instructions
 
 PICTURE: Final = "picture"
@@ -30,6 +31,9 @@ PICTURE: Final = "picture"
 
 MESSAGE_SECONDS: Final = 5.0
 """Assumed: how long a message stands."""
+
+LONGEST_SHOWN: Final = 24
+"""Assumed: letters of a scene's name in a message that must also tell what to do."""
 
 
 class News(NamedTuple):
@@ -259,11 +263,21 @@ class Session:
 
     # The end.
 
+    def unsaved(self, saving: str) -> str:
+        """That something is not saved and how it can be, for the message line; empty if all is saved.
+
+        `saving` tells how the present scene is saved. Scenes that others were opened after count, too.
+        """
+        if self.studio.is_changed:
+            return f"not saved: {saving}"
+        left = self.studio.history.left_unsaved
+        return f"not saved: undo goes back to {short_name(left[-1], LONGEST_SHOWN)}" if left else ""
+
     def leave(self) -> None:
         """Ask to leave the program; changes that are not saved are told first, and the next time lost."""
-        unsaved = self.studio.is_changed or self.studio.history.left_unsaved
+        unsaved = self.unsaved("save it")
         if unsaved and self._refused_to_leave is not self.scene:
             self._refused_to_leave = self.scene
-            self.warn("not saved: save it, or leave once more to discard the changes")
+            self.warn(f"{unsaved}, or leave once more to discard the changes")
         else:
             self.leaves = True

@@ -236,8 +236,9 @@ class Viewer:
         if session.screen != PICTURE:
             session.turn_to(PICTURE)
             return True
-        if self.studio.is_changed:
-            session.warn("not saved: Ctrl+S saves, Ctrl+Q twice discards the changes")
+        unsaved = session.unsaved("Ctrl+S saves")
+        if unsaved:
+            session.warn(f"{unsaved}, Ctrl+Q twice discards the changes")
             return True
         return False
 
