@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Bytes
+from autocolor.errors import InputError
 from autocolor.mapping.display_image import display_image
 from autocolor.mapping.level_ranges import BACKGROUND, SCREENS
 from autocolor.mapping.palette import in_palette
@@ -133,9 +134,13 @@ class KeptScreen(Screen):
         return False
 
     def _colors_of(self, scene: Scene) -> Bytes:
-        """The colors of a small picture, (84, 112, 3)."""
-        self._last = rendering(scene, 2 * LINES, 2 * ELEMENTS, self._last)
-        return thumbnail(display_image(scene, self._last.picture), LINES, ELEMENTS)
+        """The colors of a small picture, (84, 112, 3); one that is refused is black."""
+        try:
+            self._last = rendering(scene, 2 * LINES, 2 * ELEMENTS, self._last)
+            return thumbnail(display_image(scene, self._last.picture), LINES, ELEMENTS)
+        except InputError:
+            # At this size a surface can be seen that is not in the whole picture, and be too bright.
+            return np.zeros((LINES, ELEMENTS, 3), np.uint8)
 
     def enter(self) -> None:
         if self._present:

@@ -25,6 +25,7 @@ from autocolor.scene.view import View
 from autocolor.screens.comparing import NOW, Comparing
 from autocolor.studio import Studio
 from autocolor.widgets.column_rows import World
+from autocolor.widgets.labels import short_name
 from ramtek_emu import HostPort, instructions
 
 PICTURE: Final = "picture"
@@ -32,6 +33,9 @@ PICTURE: Final = "picture"
 
 MESSAGE_SECONDS: Final = 5.0
 """Assumed: how long a message stands."""
+
+LONGEST_SHOWN: Final = 24
+"""Assumed: letters of a scene's name in a message that must also tell what to do."""
 
 
 class News(NamedTuple):
@@ -124,8 +128,12 @@ class Session:
         return bool(self.news.text) and (is_recent or self.news.stands or self.comparing.is_on)
 
     def tell(self, message: str, is_warning: bool = False, stands: bool = False) -> None:
-        """Show a message for some seconds, or one that `stands`; an empty one takes the last one away."""
-        self.news = News(message, is_warning, time.monotonic(), stands)
+        """Show a message for some seconds, or one that `stands`; an empty one takes the last one away.
+
+        It is one line. Letters that cannot be printed, as in names of files, become question marks.
+        """
+        line = "".join(letter if letter.isprintable() else "?" for letter in message)
+        self.news = News(line, is_warning, time.monotonic(), stands)
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first one and how many others there are."""
@@ -271,7 +279,7 @@ class Session:
         if history.is_changed:
             return "not saved: Ctrl+S saves" if self.has_keyboard else "not saved: save it"
         if history.left_unsaved:
-            return f"{history.left_unsaved[-1]} is not saved: undo goes back to it"
+            return f"{short_name(history.left_unsaved[-1], LONGEST_SHOWN)} is not saved: undo goes back to it"
         if history.unsaved_variants:
             return f"variant {history.unsaved_variants[-1]} is not saved: come back to it and save it"
         return ""

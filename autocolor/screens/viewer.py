@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from autocolor.arrays import Words
 from autocolor.errors import AutocolorError
 from autocolor.journal.history import History
 from autocolor.scene.columns.column import Tier
@@ -54,6 +55,8 @@ class Viewer:
         self._pointing = Pointing(self.board, self._do)
         self._keyboard = Keyboard(self.board, self, self._do)
         self._had_news = True
+        self._base: Words | int | None = None
+        """What was below everything when it was shown last."""
         self._mouse.forget()
         self._sheet.forget()
         self._unit.show()
@@ -163,7 +166,12 @@ class Viewer:
         if self.board.turn():
             self._refine()
         self._had_news = self.session.has_news
-        self._sheet.show(self.board.page())
+        page = self.board.page()
+        self._sheet.show(page)
+        if page.base is not self._base and not self.board.is_dragging:
+            # What is pointed at is read back from the display, where it is only now.
+            self._sheet.show(self.board.page())
+        self._base = page.base
         self._unit.mark(self.board.mark)
 
     def _refine(self) -> None:
@@ -269,6 +277,7 @@ class Viewer:
         """Leave the picture alone on the display, without menu, message and cursors."""
         self._watching.end()
         self.session.turn_to(PICTURE)
+        self.session.comparing.end()
         self.board.turn()
         self.board.close()
         self.session.tell("")

@@ -103,9 +103,11 @@ class Glass:
             pygame.display.quit()
 
     def set_title(self, title: str) -> None:
-        """Change the text of the window's title bar."""
+        """Change the text of the window's title bar; what cannot be printed becomes question marks."""
         if self.is_open:
-            pygame.display.set_caption(title)
+            # Names of files may hold bytes that are not text, which pygame refuses.
+            printable = (letter if letter.isprintable() else "?" for letter in title)
+            pygame.display.set_caption("".join(printable))
 
     def set_full_screen(self, full_screen: bool) -> None:
         """Fill the screen, or go back to a window of the previous size; NoScreenError if that fails."""

@@ -6,13 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from autocolor import render
+from autocolor import InputError, Light, Mesh, Surface, View, render, scene_of
 from autocolor.mapping.display_image import display_image
 from autocolor.mapping.level_ranges import SCREENS
 from autocolor.mapping.thumbnail import thumbnail
 from autocolor.screens.kept_screen import ELEMENTS, FRAME, LINES, ON_PAGE, PLACES
 from autocolor.widgets.menu import WORK
 from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import grid
 from tests.autocolor.screens.boxes import hand_at, hint_of, told, undo
 from tests.autocolor.screens.hand import Hand
 
@@ -181,3 +182,30 @@ def test_a_long_name_is_cut_within_its_place(hand: Hand) -> None:
     for widget in hand.viewer.board.screen.widgets():
         for item in widget.items(lit=True):
             assert widget.area.covers(item.area)
+
+
+def test_a_small_picture_that_is_refused_is_black(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "kept")
+    # A strip between the middles of two pixels of the picture, where the small one has the middle of a pixel.
+    pixel = 2.0 / 480
+    left = (10.0 - 320) * pixel
+    meshes = [
+        grid(1, 1, (-2.0, 0, -2.0), (4.0, 0, 0), (0, 0, 4.0), "wall"),
+        grid(1, 1, (left - pixel / 4, -1e-4, -2.0), (pixel / 2, 0, 0), (0, 0, 4.0), "strip"),
+    ]
+    scene = scene_of(
+        Mesh.joined(meshes),
+        surface_of_part={"wall": "wall", "strip": "strip"},
+        surfaces=[Surface("wall"), Surface("strip")],
+        lights=[Light("key", (0, -5, 0), 3e38)],
+        view=View((0, -1, 0), target=(0, 0, 0), field_of_view=90.0),
+    )
+    scene = scene.with_surface("wall", diffuse=0.1, specular=0.1).with_surface("strip", diffuse=1, specular=1)
+    render(scene)
+    with pytest.raises(InputError, match="intensities must stay below"):
+        render(scene, lines=2 * LINES, elements=2 * ELEMENTS)
+    hand.viewer.studio.edit(scene)
+    hand.pick("keep")
+    rest(hand)
+    assert not shown_at(hand, 0).any()
+    assert told(hand) == ("kept as A", False)

@@ -58,6 +58,11 @@ def test_an_error_is_one_sentence(session: Session, error: object, shown: str) -
     assert (session.message, session.news.is_warning) == (shown, True)
 
 
+def test_a_message_is_one_line_that_can_be_printed(session: Session) -> None:
+    session.tell("opened a\nb\x1b[31m \udcff\0.obj")
+    assert session.message == "opened a?b?[31m ??.obj"
+
+
 def test_what_is_chosen_is_always_there(session: Session) -> None:
     session.choose_light("fill")
     session.choose_surface("high")

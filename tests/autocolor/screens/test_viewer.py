@@ -441,6 +441,24 @@ def test_closing_with_unsaved_work_takes_two_times_in_a_row(viewer: Viewer) -> N
     assert viewer.on_close()
 
 
+def test_changes_of_a_scene_that_another_was_opened_after_are_not_lost_by_closing(
+    viewer: Viewer, tmp_path: Path
+) -> None:
+    (tmp_path / "other.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
+    press_c(viewer)
+    viewer.on_drop(tmp_path / "other.obj")
+    assert not viewer.studio.is_changed
+    assert viewer.on_key("escape")
+    assert viewer.message == "not saved: undo goes back to box, Ctrl+Q twice discards the changes"
+    assert not viewer.on_close()
+    assert viewer.message == "not saved: undo goes back to box, close again to discard the changes"
+    assert viewer.on_close()
+    control(viewer, "z")
+    viewer.save()
+    control(viewer, "y")
+    assert viewer.on_close()
+
+
 def test_closing_after_undoing_everything_needs_no_question(viewer: Viewer) -> None:
     press_c(viewer)
     control(viewer, "z")
@@ -792,3 +810,11 @@ def test_closing_asks_also_for_a_scene_with_changes_that_was_open_before(
     assert "not saved" in viewer.message
     assert not viewer.on_close()
     assert viewer.on_close()
+
+
+def test_what_is_left_on_the_display_is_the_present_state_though_another_was_compared(viewer: Viewer) -> None:
+    viewer.on_key("left")
+    viewer.compare()
+    assert not is_true_to(viewer, viewer.studio.scene)
+    viewer.clear()
+    assert is_true_to(viewer, viewer.studio.scene)

@@ -43,6 +43,13 @@ def glass(monkeypatch: pytest.MonkeyPatch) -> Iterator[Glass]:
     opened.close()
 
 
+@pytest.mark.parametrize("title", ["\udcffcar", "car\0", "a\nb", "x" * 9000, "ünï→💥"])
+def test_a_title_of_any_text_is_shown(glass: Glass, title: str) -> None:
+    glass.set_title(title)
+    shown = "".join(letter if letter.isprintable() else "?" for letter in title)
+    assert pygame.display.get_caption()[0] == shown
+
+
 @pytest.mark.parametrize("scale", [1, 2])
 def test_after_a_cursor_moved_only_the_lines_of_its_places_are_sent_to_the_screen(
     glass: Glass, monkeypatch: pytest.MonkeyPatch, scale: int

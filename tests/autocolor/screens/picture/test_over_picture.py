@@ -3,11 +3,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from autocolor import Scene, View
 from autocolor.screens.input.gestures import turn_between, wheel_ratio
 from autocolor.screens.picture.orbit import moved, panned, turned
+from autocolor.widgets.sheet import Sheet
+from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
 from tests.autocolor.screens.hand import Hand
 
@@ -54,6 +57,20 @@ def test_beside_an_open_menu_what_is_pointed_at_is_named(hand: Hand) -> None:
     assert hand.viewer.board.message[0] == f"ball - paint, {level_at(hand, *MIDDLE)}"
     hand.move(*BACKGROUND)
     assert hand.viewer.board.message[0] == hand.viewer.board.screen.help
+
+
+def test_what_is_pointed_at_is_named_as_soon_as_the_picture_is_back(hand: Hand) -> None:
+    viewer = hand.viewer
+    viewer.session.turn_to("help")
+    viewer.tell("")
+    hand.move(*MIDDLE)
+    viewer.session.turn_to("reflectance")
+    viewer.on_key("a key that does nothing")
+    assert viewer.board.message[0] == f"ball - paint, {level_at(hand, *MIDDLE)}"
+    whole = Ramtek9300()
+    Sheet(whole).show(viewer.board.page())
+    assert isinstance(viewer.display, Ramtek9300)
+    assert np.array_equal(viewer.display.words, whole.words)
 
 
 def test_what_is_under_the_menu_or_a_message_is_not_the_picture(hand: Hand) -> None:
