@@ -449,9 +449,9 @@ def test_changes_of_a_scene_that_another_was_opened_after_are_not_lost_by_closin
     viewer.on_drop(tmp_path / "other.obj")
     assert not viewer.studio.is_changed
     assert viewer.on_key("escape")
-    assert viewer.message == "not saved: undo goes back to box, Ctrl+Q twice discards the changes"
+    assert viewer.message == "box is not saved: undo goes back to it, Ctrl+Q twice discards the changes"
     assert not viewer.on_close()
-    assert viewer.message == "not saved: undo goes back to box, close again to discard the changes"
+    assert viewer.message == "box is not saved: undo goes back to it, close again to discard the changes"
     assert viewer.on_close()
     control(viewer, "z")
     viewer.save()
