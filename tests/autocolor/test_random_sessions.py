@@ -1,0 +1,147 @@
+"""What is true after any session, whatever was done in it with the joystick unit on all screens."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from autocolor import Light, Mesh, Scene, Studio, Surface, read_journal, read_scene, scene_of, write_scene
+from autocolor.journal.autosave import JOURNAL, Autosave
+from autocolor.journal.history import History
+from autocolor.journal.places import Source, place_of
+from autocolor.screens.session import PICTURE
+from autocolor.screens.viewer import Viewer
+from autocolor.widgets.sheet import Sheet
+from ramtek_emu import HostPort, Ramtek9300, TcpPort, instructions
+from ramtek_emu.host.tcp_server import TcpServer
+from tests.autocolor.meshes import grid, wall_scene
+from tests.autocolor.random_hand import RandomHand
+from tests.autocolor.sessions import car, held
+from tests.ramtek_emu.serving import in_a_thread
+
+GESTURES = 120
+MANY = 60
+
+
+def many_surfaces() -> Scene:
+    names = [f"the surface number {number} of many" for number in range(MANY)]
+    rows = [
+        grid(1, 1, (number % 10, 0, number // 10), (0.8, 0, 0), (0, 0, 0.8), name)
+        for number, name in enumerate(names)
+    ]
+    lights = [Light(f"light {number}", (number, -5, 3), 0.1) for number in range(16)]
+    return scene_of(
+        Mesh.joined(rows),
+        surface_of_part={name: name for name in names},
+        surfaces=[Surface(name) for name in names],
+        lights=lights,
+    )
+
+
+SCENES = {
+    "car": car,
+    "one surface": wall_scene,
+    "no light": lambda: wall_scene(lights=[]),
+    "nothing in sight": lambda: car().with_view(eye=(90, 90, 90), target=(99, 99, 99)),
+    "an empty mesh": lambda: scene_of(Mesh(np.zeros((0, 3)), np.zeros((0, 4), int), np.zeros(0, int), ())),
+    "many surfaces": many_surfaces,
+}
+
+
+@pytest.fixture(autouse=True)
+def _no_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Messages stand, and pictures are never coarse, however slow the machine is."""
+    monkeypatch.setattr("autocolor.studio.perf_counter", lambda: 0.0)
+    monkeypatch.setattr("autocolor.screens.session.MESSAGE_SECONDS", float("inf"))
+
+
+def begun(name: str, folder: Path, port: HostPort) -> Viewer:
+    """A viewer with a scene that was read from a folder."""
+    source = Source(str(folder / "scene"))
+    write_scene(source.path, SCENES[name]())
+    history = History(read_scene(source.path), place_of(source))
+    return Viewer(history, port, folder / "scene")
+
+
+def held_by_a_fresh_display(history: History | Scene) -> tuple[bytes, bytes]:
+    display = Ramtek9300()
+    Studio(history, display)
+    return held(display)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_session_shows_what_it_says_is_undone_to_its_beginning_and_is_told_by_its_journal(
+    name: str, tmp_path: Path, state: Path
+) -> None:
+    display, autosave = Ramtek9300(), Autosave()
+    viewer = begun(name, tmp_path, display)
+    first = held_by_a_fresh_display(viewer.studio.scene)
+    hand = RandomHand(viewer, display, seed=len(name))
+    for number in range(GESTURES):
+        hand.do()
+        if number % 4 == 0:
+            # What was sent is what the whole page would be.
+            whole = Ramtek9300()
+            Sheet(whole).show(viewer.board.page())
+            assert held(display) == held(whole), f"on the screen {viewer.page}, gesture {number}"
+    hand.let_go()
+    viewer.clear()
+    studio = viewer.studio
+    assert viewer.page == PICTURE
+    last = held(display)
+    assert last == held_by_a_fresh_display(studio.scene)
+    assert studio.is_changed == (not studio.history.saved.scene.equals(studio.scene))
+    assert studio.history.steps
+
+    autosave.update(studio.history, at_once=True)
+    (kept,) = state.glob(f"sessions/*/{JOURNAL}")
+    written = tmp_path / "session.py"
+    written.write_text(studio.journal(beside=tmp_path / "beside"), "utf-8")
+    for path in (kept, written):
+        history = read_journal(path).history
+        assert held_by_a_fresh_display(history) == last
+        assert len(history.to_undo) == len(studio.history.to_undo)
+        assert len(history.to_redo) == len(studio.history.to_redo)
+        assert list(history.variants) == list(studio.variants)
+        assert history.is_changed == studio.is_changed
+    ran = runpy.run_path(str(written))["studio"]
+    assert (ran.words.tobytes(), ran.entries.tobytes()) == last
+    autosave.end()
+    assert list(state.glob("sessions/*")) == []
+
+    while studio.undo():
+        pass
+    viewer.clear()
+    assert held(display) == first
+    assert studio.scene is studio.history.start
+    while studio.redo():
+        pass
+    viewer.clear()
+    assert held(display) == last
+
+
+def test_a_session_over_tcp_gives_the_same_words_and_entries(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = []
+    for way in ("in process", "over TCP"):
+        folder, display, pages = tmp_path / way, Ramtek9300(), []
+        folder.mkdir()
+        # Each has colors and files of its own that were used lately.
+        monkeypatch.setenv("XDG_STATE_HOME", str(folder / "state"))
+        with in_a_thread(TcpServer(display)) as server, TcpPort(server.address) as port:
+            elsewhere = port if way == "over TCP" else display
+            viewer = begun("car", folder, elsewhere)
+            hand = RandomHand(viewer, display, seed=1)
+            for _ in range(GESTURES):
+                hand.do()
+                # Its reply comes after everything before was executed.
+                elsewhere.send(instructions.read_entries(0, 2))
+                elsewhere.receive(2)
+                pages.append((viewer.page, held(display)))
+        found.append(pages)
+    differing = [number for number, (one, other) in enumerate(zip(*found, strict=True)) if one != other]
+    assert differing == []
