@@ -54,9 +54,9 @@ class LightHandles:
         self.session = session
         self._area = area
         self._has_rims = has_rims
-        self._highlight: tuple[Vector, VisiblePoints, tuple[int, int] | None] | None = None
-        """The position of a light, the visible points, and the line and element of its highlight: those that
-        it was placed at, which need not be searched and may be one of several."""
+        self._highlight: tuple[Vector, VisiblePoints, str, tuple[int, int] | None] | None = None
+        """The position of a light, the visible points, the chosen surface, and the line and element of its
+        highlight: those that it was placed at, which need not be searched and may be one of several."""
         self._rims: tuple[Light, VisiblePoints, Sequence[Handle], Sequence[Item]] | None = None
         """A light, the visible points, and the handles and marks at its rims."""
 
@@ -98,7 +98,8 @@ class LightHandles:
         session.edit(scene)
         light = scene.light(key.light)
         if key.what == HIGHLIGHT:
-            self._highlight = light.position, session.studio.sight.points, (line, element)
+            points = session.studio.sight.points
+            self._highlight = light.position, points, session.surface_name, (line, element)
         session.tell(told(light, key.what))
 
     def _seen_light(self) -> Light | None:
@@ -108,17 +109,18 @@ class LightHandles:
         return light if is_seen and not session.studio.is_coarse and not session.comparing.is_on else None
 
     def _at_highlight(self, light: Light) -> list[Handle]:
-        """The handle at the highlight, if it is in the area."""
-        studio = self.session.studio
+        """The handle at the highlight on the chosen surface, else on any other, if it is in the area."""
+        studio, surface = self.session.studio, self.session.surface_name
         points = studio.sight.points
         known = self._highlight
-        if known is None or known[0] != light.position or known[1] is not points:
+        if known is None or known[0] != light.position or known[1] is not points or known[2] != surface:
             if self.session.moving:
                 return []
-            known = self._highlight = light.position, points, studio.highlight_of(light.name)
-        if known[2] is None:
+            place = (surface and studio.highlight_of(light.name, surface)) or studio.highlight_of(light.name)
+            known = self._highlight = light.position, points, surface, place
+        if known[3] is None:
             return []
-        line, element = known[2]
+        line, element = known[3]
         handle = Handle(HandleKey(light.name, HIGHLIGHT), element, line, f"highlight of {light.name}")
         return [handle] if self._area.has(element, line) else []
 
