@@ -59,6 +59,8 @@ class Session:
         """Another state that is shown in place of the present one."""
         self.screen = PICTURE
         """The name of the screen that is shown; setting it turns to another one."""
+        self.watches = False
+        """Whether the user asked to see the picture come in line by line."""
         self.leaves = False
         """Whether the user asked to leave the program."""
         self.same_step = False

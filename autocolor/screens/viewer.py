@@ -163,6 +163,9 @@ class Viewer:
         if self._watching.is_on:
             # The lines come in over everything, and what stands over the picture is drawn when all are there.
             return
+        if self.session.watches:
+            self.watch()
+            return
         if self.board.turn():
             self._refine()
         self._had_news = self.session.has_news
@@ -215,6 +218,7 @@ class Viewer:
 
     def watch(self) -> None:
         """Blank the picture and let it come in line by line as it is computed; any key shows it at once."""
+        self.session.watches = False
         self.session.turn_to(PICTURE)
         self.session.comparing.end()
         self.board.turn()

@@ -89,6 +89,7 @@ class PictureScreen(OverPicture):
                 "" if edits.chosen_parts else "click at a part in the picture first",
                 run=edits.rescale_part,
             ),
+            Button("watch", "Let the picture come in line by line, as in 1983.", run=self._watch),
             Gap("leave gap"),
             Button(
                 "leave", "Leave the program; changes that are not saved are told first.", run=session.leave
@@ -123,6 +124,9 @@ class PictureScreen(OverPicture):
     def _choose_light(self, name: str) -> None:
         self.session.choose_light(name)
         self.session.tell(f"light {name}")
+
+    def _watch(self) -> None:
+        self.session.watches = True
 
     def _see_from(self, side: str) -> None:
         self.edits.see_from(list(SIDES).index(side))

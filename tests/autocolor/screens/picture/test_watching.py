@@ -20,6 +20,7 @@ from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import WHITE
 from autocolor.widgets.items import filled
 from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.hand import Hand
 from tests.autocolor.sessions import SMALL, car
 from tests.autocolor.strategies import scenes
 
@@ -297,3 +298,17 @@ def test_at_any_time_the_lines_that_are_there_are_those_of_the_picture(
             lines_there(viewer)
         viewer.on_key("escape")
         assert is_whole(viewer)
+
+
+def test_the_picture_is_watched_by_a_row_of_the_menu_and_any_pick_shows_it(tmp_path: Path) -> None:
+    hand = Hand(Viewer(car(), Ramtek9300(), tmp_path))
+    viewer, display = hand.viewer, hand.viewer.display
+    assert isinstance(display, Ramtek9300)
+    hand.open_menu()
+    hand.pick("watch")
+    assert not np.array_equal(display.words, viewer.studio.words)
+    assert "line by line" in viewer.caption
+    hand.click(10, 10)
+    viewer.tell("")
+    assert "line by line" not in viewer.caption
+    assert np.array_equal(display.words, viewer.studio.words)
