@@ -160,7 +160,7 @@ def rounded_to(value: float, step: float) -> float:
     if step <= 0:
         return value
     digits = max(0, 2 - math.floor(math.log10(step)))
-    return round(math.floor(value / step + 0.5) * step, digits)
+    return float(round(math.floor(value / step + 0.5) * step, digits))
 
 
 def number_text(value: float, step: float) -> str:

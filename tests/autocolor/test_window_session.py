@@ -73,6 +73,9 @@ class Session:
         if name:
             self.viewer.on_key(name, control, typed=name if len(name) == 1 else "")
             self.viewer.on_tick()
+        else:
+            # Its first message stands until something is done.
+            self.viewer.tell("")
 
     def window(self) -> str:
         return self.tool("search", "--class", ".").split("\n")[0]
@@ -227,6 +230,7 @@ def test_after_a_key_is_released_nothing_goes_on(session: Session) -> None:
     session.wait_for(lambda: "box.npz" in session.caption())
     view = read_picture(session.folder / "box.npz").scene.view
     session.viewer.studio.edit(session.viewer.studio.scene.replace(view=view))
+    session.viewer.tell("")
     session.wait_for_the_field()
 
 
