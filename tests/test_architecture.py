@@ -236,7 +236,7 @@ def run(code: str, timeout: float = 60) -> str:
 
 
 def test_each_module_imports_alone_and_only_the_window_loads_pygame() -> None:
-    # One fresh interpreter forks for each module: loading numpy once is enough. It has a child on each processor.
+    # One fresh interpreter forks for each module, as loading numpy once is enough, one on each processor.
     names = [name for name in MODULES if not name.endswith("__main__")]
     code = f"""
 import importlib, os, sys
