@@ -176,7 +176,11 @@ class Glass:
             screen.blit(lines, target)
         else:
             enlarge = pygame.transform.smoothscale if self.fit else pygame.transform.scale
-            screen.blit(enlarge(lines, target.size), target)
+            if screen.get_masks() == FIELD_MASKS and screen.get_rect().contains(target):
+                # Measured: two thirds of the time of a copy more.
+                enlarge(lines, target.size, screen.subsurface(target))
+            else:
+                screen.blit(enlarge(lines, target.size), target)
 
     def collect(self, queue: InputQueue, wait: int = 0) -> None:
         """Let what the user did wait in a queue; wait up to so many milliseconds for something."""
