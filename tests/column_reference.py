@@ -15,6 +15,7 @@ from autocolor.scene.columns.column import WORLD_UNITS, Column, Kind, Row, Tier,
 from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.columns.rows import plain
 from autocolor.scene.lights import Flap, Light
+from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
@@ -43,6 +44,7 @@ typed numbers may be any that the value's own rule allows. The last column says 
 TABLES: tuple[tuple[str, str, type[Row]], ...] = (
     ("Keys outside of all tables", "", Scene),
     ("`[view]`", "", View),
+    ("`[scalar]`", "It colors the surfaces by a scalar of the mesh, or by a computed one.", Scalar),
     ("`[[mesh]]`", "One for each mesh: a `file`, or `nodes` and `polygons`.", MeshEntry),
     ("`[parts.NAME]`", "", Part),
     ("`[surfaces.NAME]`", "", Surface),
@@ -51,7 +53,7 @@ TABLES: tuple[tuple[str, str, type[Row]], ...] = (
 )
 
 LEFT_OUT = {
-    Scene: ("mesh", "parts", "surfaces", "lights", "view", "name"),
+    Scene: ("mesh", "parts", "surfaces", "lights", "view", "scalar", "name"),
     Part: ("name",),
     Surface: ("name",),
 }

@@ -14,7 +14,7 @@ BEARING_FORMULAS = [
     "autocolor.mapping.level_ranges",
     "autocolor.scene.defaults",
     "autocolor.scene.lights",
-    "autocolor.scene.node_normals",
+    "autocolor.scene.geometry.node_normals",
     "autocolor.scene.reflection_models",
     "autocolor.scene.scene",
     "autocolor.scene.surfaces",

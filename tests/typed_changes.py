@@ -10,6 +10,7 @@ from pathlib import Path
 
 from autocolor.scene.columns.column import Row, fields_of, keys_of
 from autocolor.scene.lights import Flap, Flaps, Light
+from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
 from autocolor.scene.view import View
@@ -17,7 +18,7 @@ from autocolor.scene.view import View
 ROOT = Path(__file__).resolve().parents[1]
 WRITTEN = ROOT / "autocolor" / "scene" / "changes.py"
 
-CLASSES: tuple[type[Row], ...] = (Flap, Flaps, Light, Part, Reflectance, Paint, Surface, View)
+CLASSES: tuple[type[Row], ...] = (Flap, Flaps, Light, Part, Reflectance, Paint, Surface, View, Scalar)
 
 HEAD = '''"""What a change of a row may say: its keys and their types, for editors and type checkers.
 

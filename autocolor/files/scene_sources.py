@@ -17,7 +17,7 @@ from autocolor.files.meshes.formats import (
     read_mesh,
 )
 from autocolor.files.reading import unnameable, unreadable
-from autocolor.files.repair.polygons import UPS
+from autocolor.files.repair.placement import UPS, Placement
 from autocolor.files.scenes.formats import (
     SceneFormat,
     scene_format_named,
@@ -123,6 +123,6 @@ def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
 
 def _bare_mesh(files: Mapping[str, Path], name: str, up: str, surfaces: SurfaceSource) -> SceneReport:
     """The scene of a mesh, with everything else created from defaults."""
-    read = read_mesh(files, up=up)
+    read = read_mesh(files, Placement(up))
     entry = {**{key: file.name for key, file in files.items()}, "up": up}
     return scene_report([read], mesh_files=(entry,), name=name or "scene", surfaces=surfaces)

@@ -33,7 +33,7 @@ from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of
 from autocolor.scene.columns.column import Row, row_label
-from autocolor.scene.node_normals import CREASE_ANGLE
+from autocolor.scene.geometry.node_normals import CREASE_ANGLE
 from autocolor.scene.scene import Scene, check_scene
 
 LOG: Final = logger_of(__name__)

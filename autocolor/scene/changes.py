@@ -99,6 +99,22 @@ class ViewChanges(TypedDict, total=False):
     field_of_view: float
 
 
+class ScalarChanges(TypedDict, total=False):
+    """Changes of a Scalar."""
+
+    name: str
+    limits: Sequence[float] | None
+    scale: str | Sequence[str | Sequence[int]]
+    bands: int
+    shades: int | None
+    below: str | Sequence[int] | None
+    above: str | Sequence[int] | None
+    missing: str | Sequence[int]
+    surfaces: Sequence[str] | None
+    direction: Sequence[float]
+    stripes: float
+
+
 class SceneFields(TypedDict, total=False):
     """Fields of a Scene besides its mesh, parts and surfaces."""
 
@@ -112,6 +128,7 @@ class SceneFields(TypedDict, total=False):
     dither: Literal["off", "ordered"]
     division: Literal["covered", "equal"]
     background: str | Sequence[int]
+    scalar: Row | ScalarChanges | None
     name: str
 
 

@@ -17,7 +17,7 @@ from autocolor.arrays import AnyArray, Indices
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.logs import logger_of
-from autocolor.scene.polygon_split import MOST_CORNERS, split_polygons
+from autocolor.scene.geometry.polygon_split import MOST_CORNERS, split_polygons
 
 LOG: Final = logger_of(__name__)
 

@@ -22,8 +22,9 @@ from autocolor.logs import logger_of, timed
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.columns.value_kinds import Number
 from autocolor.scene.foreign_meshes import foreign_tables
-from autocolor.scene.node_normals import CREASE_ANGLE, NodeNormals, node_normals
-from autocolor.scene.planes.shared_planes import SharedPlanes, shared_planes
+from autocolor.scene.geometry.node_normals import CREASE_ANGLE, NodeNormals, node_normals
+from autocolor.scene.geometry.planes.shared_planes import SharedPlanes, shared_planes
+from autocolor.scene.scalars.mesh_scalars import MeshScalar, joined_scalars, scalar_problems
 
 LOG: Final = logger_of(__name__)
 
@@ -44,7 +45,7 @@ class Mesh(Immutable):
     `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0; without them all polygons are of
     the first part. Polygons that meet at more than `crease_angle` degrees keep a sharp edge. The tables are
     copied and stored by columns (Fortran order), so that `.T` is the contiguous array that the renderer works
-    on. `Mesh.of` takes meshes of other programs.
+    on. `scalars` are those of its nodes and its polygons. `Mesh.of` takes meshes of other programs.
     """
 
     coordinates: Floats
@@ -52,6 +53,7 @@ class Mesh(Immutable):
     part_numbers: Indices = None  # type: ignore[assignment]
     part_names: tuple[str, ...] = (PART,)
     crease_angle: float = CREASE_ANGLE
+    scalars: tuple[MeshScalar, ...] = ()
 
     def __post_init__(self) -> None:
         problems: list[str] = []
@@ -91,6 +93,8 @@ class Mesh(Immutable):
             )
         if len(set(names)) != len(names):
             problems.append("part table: part names must differ, not repeat")
+        scalars = tuple(self.scalars)
+        problems.extend(scalar_problems(scalars, node_count, polygon_count))
         if problems:
             raise InputError(problems)
         for table in (coordinate_rows, node_rows, part_numbers):
@@ -101,6 +105,7 @@ class Mesh(Immutable):
             ("part_numbers", part_numbers),
             ("part_names", names),
             ("crease_angle", angle),
+            ("scalars", scalars),
         ):
             object.__setattr__(self, name, value)
 
@@ -174,6 +179,18 @@ class Mesh(Immutable):
         nodes, table = foreign_tables(source, polygons)
         return cls(nodes, table, None, (part,), crease_angle)  # type: ignore[arg-type]
 
+    def with_scalars(self, *scalars: MeshScalar) -> Mesh:
+        """The mesh with these scalars and no others; the tables, and what was computed of them, are shared.
+
+        Raises InputError if one does not fit the mesh.
+        """
+        problems = list(scalar_problems(scalars, len(self.coordinates), len(self.node_numbers)))
+        if problems:
+            raise InputError(problems)
+        copy = object.__new__(Mesh)
+        vars(copy).update({**vars(self), "scalars": scalars})
+        return copy
+
     @staticmethod
     def joined(meshes: Sequence[Mesh]) -> Mesh:
         """One mesh of several; parts of the same name become one part. The first crease angle is kept."""
@@ -191,6 +208,11 @@ class Mesh(Immutable):
             np.concatenate([row[mesh.part_numbers] for mesh, row in zip(meshes, rows, strict=True)]),
             names,
             meshes[0].crease_angle,
+            joined_scalars(
+                [mesh.scalars for mesh in meshes],
+                [len(mesh.coordinates) for mesh in meshes],
+                [len(mesh.node_numbers) for mesh in meshes],
+            ),
         )
 
     def __repr__(self) -> str:

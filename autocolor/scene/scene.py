@@ -38,6 +38,7 @@ from autocolor.scene.light_sets.light_copies import axis_number, free_name, mirr
 from autocolor.scene.light_sets.rigs import Rig
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
 
@@ -135,6 +136,10 @@ class Scene(Row):
         0,
         0,
     )
+    scalar: Annotated[
+        Scalar | None,
+        Column(Nested(Scalar), Tier.MIX, "The scalar that colors the surfaces, if any."),
+    ] = None
     name: Annotated[
         str,
         Column(Text(may_be_empty=True), Tier.NOTHING, "The name of the scene, that of its folder or file."),
@@ -162,6 +167,8 @@ class Scene(Row):
             kind, rows = field.column.kind, vars(self)[table]
             if isinstance(kind, Rows) and rows is not REFUSED:
                 tables.append((kind.row_class, rows))
+        if isinstance(self.scalar, Scalar):
+            tables.append((Scalar, (self.scalar,)))
         for row_class, rows in tables:
             for name, referring in references_of(row_class).items():
                 others = vars(self)[referring.table]
@@ -322,7 +329,7 @@ def _missing_names(
     found = set(known)
     for row in rows:
         value = vars(row)[name]
-        for wanted in () if value is REFUSED else referring.names_in(value):
+        for wanted in () if value is REFUSED or value is None else referring.names_in(value):
             if wanted not in found:
                 table = f"the {referring.table.removesuffix('s')} table"
                 label = f"{row_label(row)}: " if row_label(row) else ""

@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices
-from autocolor.scene.planes.shared_planes import SharedPlanes
+from autocolor.scene.geometry.planes.shared_planes import SharedPlanes
 from autocolor.visibility.camera_space import CameraPolygons, rotated
 
 MOST_OFF: Final = 0.05

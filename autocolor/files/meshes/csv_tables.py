@@ -29,6 +29,7 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
 from autocolor.files.repair.mesh_repair import repaired
+from autocolor.files.repair.placement import PLAIN, Placement
 from autocolor.files.repair.polygons import MeshReport, Polygons
 
 MOST_PROBLEMS: Final = 20
@@ -53,9 +54,7 @@ class Problems:
             raise InputError(self.found)
 
 
-def read_csv_tables(
-    nodes: Path, polygons: Path, *, up: str = "z", crease_angle: float | None = None
-) -> MeshReport:
+def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of a node table and a polygon table, and what was repaired.
 
     Raises InputError with every problem of both tables, each with its file and row.
@@ -72,7 +71,7 @@ def read_csv_tables(
         np.array(parts, np.intp),
         tuple(names),
     )
-    return repaired(table, polygons.name, up=up, crease_angle=crease_angle)
+    return repaired(table, polygons.name, placement)
 
 
 def _nodes(problems: Problems, path: Path) -> tuple[list[float], dict[int, int]]:

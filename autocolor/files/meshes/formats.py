@@ -15,6 +15,7 @@ from typing import Final
 from autocolor.errors import InputError
 from autocolor.files.modules import import_modules_of
 from autocolor.files.reading import read_head
+from autocolor.files.repair.placement import PLAIN, Placement
 from autocolor.files.repair.polygons import MeshReport
 from autocolor.logs import logger_of, timed
 
@@ -22,8 +23,7 @@ LOG: Final = logger_of(__name__)
 
 MeshReader = Callable[..., MeshReport]
 """A function that reads a mesh. Its positional arguments are the paths of the files, in the order of the
-format's keys; its keyword arguments are `up`, the files' up axis, and `crease_angle`, None for the default.
-It raises InputError."""
+format's keys, and a Placement. It raises InputError."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def format_of_folder(folder: Path) -> MeshFormat | None:
     )
 
 
-def read_mesh(files: Mapping[str, Path], *, up: str = "z", crease_angle: float | None = None) -> MeshReport:
+def read_mesh(files: Mapping[str, Path], placement: Placement = PLAIN) -> MeshReport:
     """The mesh of some files, given by their keys in `[[mesh]]`, and what was repaired. Raises InputError."""
     if tuple(files) == ("file",):
         found = format_of(files["file"])
@@ -100,7 +100,7 @@ def read_mesh(files: Mapping[str, Path], *, up: str = "z", crease_angle: float |
             " export it as one of these"
         )
     with timed(LOG, f"read {', '.join(path.name for path in files.values())}"):
-        report = found.read(*files.values(), up=up, crease_angle=crease_angle)
+        report = found.read(*files.values(), placement)
     LOG.info("%r", report.mesh)
     for repair in report.repairs:
         LOG.info("%s", repair)

@@ -14,9 +14,10 @@ from autocolor.errors import InputError
 from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
 from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.reading import LARGEST_MESH_FILE
-from autocolor.files.repair.polygons import MeshReport, upright
+from autocolor.files.repair.placement import PLAIN, Placement, placed
+from autocolor.files.repair.polygons import MeshReport
+from autocolor.scene.geometry.node_normals import CREASE_ANGLE
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.node_normals import CREASE_ANGLE
 
 SUFFIX: Final = ".tables"
 
@@ -36,19 +37,19 @@ def table_file_bytes(mesh: Mesh) -> bytes:
     return array_file_bytes(TABLE_FILE, {"part_names": mesh.part_names}, arrays)
 
 
-def read_table_file(path: Path, *, up: str = "z", crease_angle: float | None = None) -> MeshReport:
+def read_table_file(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of a table file, in which nothing is ever repaired. Raises InputError."""
     header, arrays = read_array_file(TABLE_FILE, path)
     names = header["part_names"]
     try:
         mesh = Mesh(
-            upright(arrays["coordinates"], up)
+            placed(arrays["coordinates"], placement)
             if arrays["coordinates"].shape[1] == 3
             else arrays["coordinates"],
             arrays["node_numbers"],
             arrays["part_numbers"],
             tuple(names) if isinstance(names, list) else (),
-            CREASE_ANGLE if crease_angle is None else crease_angle,
+            CREASE_ANGLE if placement.crease_angle is None else placement.crease_angle,
         )
     except InputError as error:
         raise InputError(

@@ -15,10 +15,13 @@ import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, lengths
 from autocolor.errors import InputError
-from autocolor.files.repair.polygons import MeshReport, Polygons, upright
+from autocolor.files.repair.placement import PLAIN, Placement, placed
+from autocolor.files.repair.polygons import MeshReport, Polygons
+from autocolor.immutable import read_only
+from autocolor.scene.geometry.node_normals import CREASE_ANGLE
+from autocolor.scene.geometry.polygon_split import split_polygons
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.node_normals import CREASE_ANGLE
-from autocolor.scene.polygon_split import split_polygons
+from autocolor.scene.scalars.mesh_scalars import NODE, POLYGON, MeshScalar
 
 AT_A_TIME: Final = 1 << 14
 """Polygons to check at once, so that the arrays fit in the processor cache."""
@@ -30,9 +33,8 @@ FLAT: Final = 1e-12
 def repaired(
     polygons: Polygons,
     place: str,
+    placement: Placement = PLAIN,
     *,
-    up: str = "z",
-    crease_angle: float | None = None,
     skipped: tuple[str, ...] = (),
 ) -> MeshReport:
     """The mesh of the polygons, with messages about what was repaired.
@@ -40,7 +42,7 @@ def repaired(
     `place` is the file's name in messages; `skipped` are messages to put before those of the repairs. Raises
     InputError if no polygon is left.
     """
-    coordinates = upright(polygons.coordinates, up)
+    coordinates = placed(polygons.coordinates, placement)
     repairs = list(skipped)
     corners, counts, shortened = _without_repeats(polygons.corners, polygons.corner_counts)
     too_few = counts < 3
@@ -72,12 +74,18 @@ def repaired(
             repairs.append(sentence.format(f"{count:,} {polygon}", was))
     if not len(node_numbers):
         raise InputError(f"{place}: a mesh must have a polygon with area, not none; add polygons")
+    # A piece of a polygon has the scalars of the whole.
+    scalars = tuple(
+        each if each.of == NODE else MeshScalar(each.name, read_only(each.values[owners]), POLYGON)
+        for each in polygons.scalars
+    )
     mesh = Mesh(
         coordinates,
         node_numbers,
         polygons.part_numbers[owners],
         polygons.part_names,
-        CREASE_ANGLE if crease_angle is None else crease_angle,
+        CREASE_ANGLE if placement.crease_angle is None else placement.crease_angle,
+        scalars,
     )
     return MeshReport(mesh, tuple(f"{place}: {repair}" for repair in repairs))
 

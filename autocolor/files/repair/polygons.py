@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Final
 
 from autocolor.arrays import Floats, Indices
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from autocolor.scene.surfaces import Surface
-
-UPS: Final = ("x", "y", "z")
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +17,7 @@ class Polygons:
 
     `coordinates` is (nodes, 3) float64. `corners` holds the rows in `coordinates` of all corners, polygon
     after polygon; they must be valid. `corner_counts` and `part_numbers`, indices of `part_names`, have one
-    element for each polygon.
+    element for each polygon. `scalars` are those of the nodes and of the polygons.
     """
 
     coordinates: Floats
@@ -27,6 +25,7 @@ class Polygons:
     corner_counts: Indices
     part_numbers: Indices
     part_names: tuple[str, ...]
+    scalars: tuple[MeshScalar, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -41,16 +40,3 @@ class MeshReport:
     repairs: tuple[str, ...] = ()
     material_of_part: Mapping[str, str] = field(default_factory=dict)
     materials: tuple[Surface, ...] = ()
-
-
-def upright(coordinates: Floats, up: str) -> Floats:
-    """The coordinates with the axis `up` of the file turned to the world's z axis.
-
-    Polygons keep their winding: with y up, (x, y, z) becomes (x, -z, y), a rotation about x; with x up it
-    becomes (y, z, x).
-    """
-    if up == "y":
-        turned = coordinates[:, [0, 2, 1]]
-        turned[:, 1] = 0.0 - turned[:, 1]
-        return turned
-    return coordinates[:, [1, 2, 0]] if up == "x" else coordinates

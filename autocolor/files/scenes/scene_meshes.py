@@ -12,16 +12,23 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.formats import read_mesh
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
-from autocolor.files.repair.polygons import UPS, MeshReport
+from autocolor.files.repair.placement import UPS, Placement
+from autocolor.files.repair.polygons import MeshReport
 from autocolor.files.scenes.problems import SceneProblems
 from autocolor.files.scenes.toml_text import KeyPath
+from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.column import Column, Row, Tier
 from autocolor.scene.columns.problems import Problem, RowError
 from autocolor.scene.columns.rows import made
-from autocolor.scene.columns.value_kinds import Choice, Text
+from autocolor.scene.columns.value_kinds import Choice, Number, Text
 from autocolor.scene.mesh import CREASE_ANGLES
 
 MOST_MESHES: Final = 1000
+
+SCALES: Final = Number(at_least=0, at_most=1e30, above=True)
+"""The factors that a mesh may be scaled by."""
+
+SCALE_BAR: Final = Bar(0.01, 10, 0.01)
 
 FILE_KEYS: Final = (("file",), ("nodes", "polygons"))
 """The keys that name the files of a mesh: one file, or a node table and a polygon table."""
@@ -29,7 +36,7 @@ FILE_KEYS: Final = (("file",), ("nodes", "polygons"))
 
 @dataclass(frozen=True)
 class MeshEntry(Row):
-    """One `[[mesh]]` table of a scene file: its files, their up axis, and the crease angle."""
+    """One `[[mesh]]` table of a scene file: its files, their up axis and scale, and the crease angle."""
 
     noun: ClassVar[str] = "mesh"
 
@@ -37,6 +44,7 @@ class MeshEntry(Row):
     nodes: Annotated[str | None, Column(Text(), Tier.FRAME, "A node table, with a polygon table.")] = None
     polygons: Annotated[str | None, Column(Text(), Tier.FRAME, "The polygon table.")] = None
     up: Annotated[str, Column(Choice(UPS), Tier.FRAME, "The file's up axis; the world's is z.")] = "z"
+    scale: Annotated[float, Column(SCALES, Tier.FRAME, "A factor for its coordinates.", bar=SCALE_BAR)] = 1.0
     crease_angle: Annotated[
         float | None,
         Column(
@@ -46,6 +54,10 @@ class MeshEntry(Row):
             "degrees",
         ),
     ] = None
+
+    def placement(self, crease_angle: float | None) -> Placement:
+        """How the mesh is placed; the crease angle is that of all meshes of the scene."""
+        return Placement(self.up, self.scale, crease_angle)
 
     def rules(self) -> Iterator[Problem]:
         """The given keys name either one file or two tables."""
@@ -87,7 +99,7 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
     reports = []
     for source in sources:
         try:
-            reports.append(read_mesh(source.files, up=source.entry.up, crease_angle=crease_angle))
+            reports.append(read_mesh(source.files, source.entry.placement(crease_angle)))
         except InputError as error:
             problems.note_file((*source.path, next(iter(source.files))), error)
     return reports
@@ -151,4 +163,4 @@ def _size(path: Path) -> int:
 
 def mesh_file(table: Mapping[str, Any]) -> dict[str, str]:
     """The keys of a `[[mesh]]` table that are needed to read the mesh again."""
-    return {key: table[key] for key in ("file", "nodes", "polygons", "up") if key in table}
+    return {key: table[key] for key in ("file", "nodes", "polygons", "up", "scale") if key in table}

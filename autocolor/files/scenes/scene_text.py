@@ -10,8 +10,9 @@ from typing import Any, Final
 from autocolor.scene.columns.column import Row, fields_of
 from autocolor.scene.columns.row_kinds import Nested, Rows
 from autocolor.scene.columns.rows import made, plain
+from autocolor.scene.geometry.node_normals import CREASE_ANGLE
 from autocolor.scene.lights import Flap, Light
-from autocolor.scene.node_normals import CREASE_ANGLE
+from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
@@ -19,7 +20,7 @@ from autocolor.scene.view import View
 BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
 
 
-FILE_TABLES: Final = ("view", "mesh", "parts", "surfaces", "lights")
+FILE_TABLES: Final = ("view", "scalar", "mesh", "parts", "surfaces", "lights")
 """The tables of a scene file, in the order in which they are written."""
 
 ALWAYS_WRITTEN: Final[dict[type[Row], tuple[str, ...]]] = {
@@ -29,6 +30,7 @@ ALWAYS_WRITTEN: Final[dict[type[Row], tuple[str, ...]]] = {
     Light: ("name", "position"),
     View: ("eye", "direction", "target"),
     Flap: (),
+    Scalar: ("name",),
 }
 """The keys that are written even if `without_defaults` leaves out others."""
 
@@ -49,7 +51,8 @@ def scene_text(
         if key != "name" and (not isinstance(kinds[key], (Nested, Rows)) or (key, value) == ("lights", []))
     }
     blocks = [table_text("", keys)] if keys else []
-    blocks.append(table_text("[view]", tables["view"]))
+    nested = [name for name, kind in kinds.items() if isinstance(kind, Nested) and name in tables]
+    blocks.extend(table_text(f"[{name}]", tables[name]) for name in nested)
     for row, files in enumerate(mesh_files):
         entry = {**files} if row else {**files, "crease_angle": scene.mesh.crease_angle}
         blocks.append(table_text("[[mesh]]", sparse_entry(entry) if without_defaults else entry))
@@ -66,7 +69,7 @@ def sparse_tables(scene: Scene) -> dict[str, Any]:
         value, kind = vars(scene)[name], field.column.kind
         if isinstance(kind, Rows):
             tables[name] = [sparse_row(row) for row in value]
-        elif isinstance(kind, Nested):
+        elif isinstance(kind, Nested) and value is not None:
             tables[name] = sparse_row(value)
         elif field.default is None or value != field.default():
             tables.update(kind.written(name, value))

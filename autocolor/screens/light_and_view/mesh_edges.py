@@ -14,9 +14,9 @@ import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, dot
 from autocolor.immutable import Immutable, read_only
-from autocolor.scene.fans import places_of_corners
+from autocolor.scene.geometry.fans import places_of_corners
+from autocolor.scene.geometry.planes.plane_cells import facet_normals
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.planes.plane_cells import facet_normals
 
 DRAWN_CREASE: Final = 30.0
 """Assumed: degrees; a larger angle between polygons is drawn as a crease.

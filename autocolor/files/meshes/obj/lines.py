@@ -16,7 +16,7 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.obj.statements import Statements
 from autocolor.files.meshes.obj.tables import LONGEST_LINE, ObjTables
 from autocolor.files.reading import shown
-from autocolor.scene.polygon_split import MOST_CORNERS
+from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 
 MOST_PROBLEMS: Final = 20
 """Assumed: problems reported for one mesh file; a file with more usually repeats the same one."""

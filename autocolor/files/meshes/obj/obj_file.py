@@ -26,14 +26,15 @@ from autocolor.files.meshes.obj.plain import read_plain_obj
 from autocolor.files.meshes.obj.statements import Statements
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
 from autocolor.files.repair.mesh_repair import repaired
+from autocolor.files.repair.placement import PLAIN, Placement
 from autocolor.files.repair.polygons import MeshReport, Polygons
 
 NODE_LINE: Final = re.compile(rb"^[ \t]*v([ \t]+[-+.0-9][^\s]*){3}", re.MULTILINE)
 """A line that defines a node."""
 
 
-def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) -> MeshReport:
-    """The mesh of an OBJ file, and what was repaired or skipped; `up` is the file's up axis.
+def read_obj(path: Path, placement: Placement = PLAIN) -> MeshReport:
+    """The mesh of an OBJ file, and what was repaired or skipped.
 
     Raises InputError with every problem, each with its line, MissingInputError if the file does not exist.
     """
@@ -57,7 +58,7 @@ def read_obj(path: Path, *, up: str = "z", crease_angle: float | None = None) ->
         tables.part_numbers,
         tuple(part.name for part in parts),
     )
-    report = repaired(polygons, path.name, up=up, crease_angle=crease_angle, skipped=statements.sentences)
+    report = repaired(polygons, path.name, placement, skipped=statements.sentences)
     material_of_part = {part.name: part.material for part in parts if part.material is not None}
     materials = read_materials(path, statements.libraries, tuple(dict.fromkeys(material_of_part.values())))
     return dataclasses.replace(

@@ -17,7 +17,7 @@ from autocolor.arrays import Booleans, Bytes, Floats, Numbers
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.files.meshes.obj.statements import Statements
 from autocolor.files.meshes.obj.tables import LONGEST_LINE, ObjTables
-from autocolor.scene.polygon_split import MOST_CORNERS
+from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 
 BLOCK: Final = 1 << 21
 """Bytes converted at a time: enough for numpy to be efficient, and few enough to save memory."""

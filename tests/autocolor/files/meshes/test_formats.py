@@ -16,8 +16,8 @@ ANOTHER = """
 from autocolor.files.meshes.csv_tables import read_csv_tables
 from autocolor.files.meshes.formats import MeshFormat, register
 
-def read(path, *, up="z", crease_angle=None):
-    return read_csv_tables(path.with_suffix(".n"), path.with_suffix(".p"), up=up, crease_angle=crease_angle)
+def read(path, placement):
+    return read_csv_tables(path.with_suffix(".n"), path.with_suffix(".p"), placement)
 
 register(MeshFormat("ANOTHER", read, (".another",), begins=lambda head: head.startswith(b"another")))
 """

@@ -10,6 +10,7 @@ from autocolor import InputError, Mesh
 from autocolor.files.array_file import array_file_bytes
 from autocolor.files.meshes.formats import read_mesh
 from autocolor.files.meshes.table_file import TABLE_FILE, table_file_bytes
+from autocolor.files.repair.placement import Placement
 from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import meshes
 
@@ -18,7 +19,7 @@ from tests.autocolor.strategies import meshes
 def test_any_mesh_reads_back_without_a_repair(tmp_path_factory: pytest.TempPathFactory, mesh: Mesh) -> None:
     path = tmp_path_factory.mktemp("mesh") / "mesh.tables"
     path.write_bytes(table_file_bytes(mesh))
-    report = read_mesh({"file": path}, crease_angle=mesh.crease_angle)
+    report = read_mesh({"file": path}, Placement(crease_angle=mesh.crease_angle))
     assert report.repairs == ()
     for name in ("coordinates", "node_numbers", "part_numbers"):
         assert np.array_equal(getattr(report.mesh, name), getattr(mesh, name))
@@ -36,7 +37,7 @@ def test_an_empty_mesh_and_odd_names_are_kept(tmp_path: Path) -> None:
 
 def test_the_up_axis_is_turned_as_in_other_formats(tmp_path: Path) -> None:
     (tmp_path / "mesh.tables").write_bytes(table_file_bytes(cube()))
-    low, high = read_mesh({"file": tmp_path / "mesh.tables"}, up="y").mesh.bounds
+    low, high = read_mesh({"file": tmp_path / "mesh.tables"}, Placement("y")).mesh.bounds
     assert (low.tolist(), high.tolist()) == ([0, -1, 0], [1, 0, 1])
 
 

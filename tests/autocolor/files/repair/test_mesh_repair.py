@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from autocolor.errors import InputError
 from autocolor.files.repair.mesh_repair import repaired
+from autocolor.files.repair.placement import Placement
 from autocolor.files.repair.polygons import MeshReport, Polygons
 
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [0, 0, 1]]
@@ -24,7 +25,7 @@ def mesh_of(*polygons: list[int], coordinates: Any = SQUARE, up: str = "z") -> M
             tuple(f"part {number}" for number in range(len(polygons))),
         ),
         "a.obj",
-        up=up,
+        Placement(up),
     )
 
 

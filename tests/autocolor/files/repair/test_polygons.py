@@ -1,38 +1,24 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from autocolor.files.repair.polygons import upright
-from tests.autocolor.strategies import vectors
+from autocolor.files.repair.mesh_repair import repaired
+from autocolor.files.repair.polygons import Polygons
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
 
 
-def test_the_up_axis_becomes_z_and_windings_stay() -> None:
-    axes = np.eye(3)
-    assert upright(axes, "z").tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-    assert upright(axes, "y").tolist() == [[1, 0, 0], [0, 0, 1], [0, -1, 0]]
-    assert upright(axes, "x").tolist() == [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
-    for up in "xyz":
-        assert np.linalg.det(upright(axes, up)) == 1
-
-
-def test_turning_makes_no_negative_zero() -> None:
-    assert not np.signbit(upright(np.zeros((1, 3)), "y")).any()
-
-
-@pytest.mark.parametrize("up", ["x", "y", "z"])
-@given(points=st.lists(vectors(), max_size=9))
-def test_the_coordinate_on_the_up_axis_becomes_the_height(up: str, points: list[tuple[float, ...]]) -> None:
-    coordinates = np.array(points).reshape(-1, 3)
-    turned = upright(coordinates, up)
-    assert turned[:, 2].tolist() == coordinates[:, "xyz".index(up)].tolist()
-    assert (np.sort(np.abs(turned), axis=1) == np.sort(np.abs(coordinates), axis=1)).all()
-
-
-@pytest.mark.parametrize("up", ["x", "y", "z"])
-def test_the_coordinates_that_were_given_stay_as_they_are(up: str) -> None:
-    coordinates = np.arange(6.0).reshape(2, 3)
-    upright(coordinates, up)
-    assert coordinates.tolist() == [[0, 1, 2], [3, 4, 5]]
+def test_a_piece_of_a_polygon_has_the_scalars_of_the_whole_and_nodes_keep_theirs() -> None:
+    hexagon = [[2, 0, 0], [1, 2, 0], [-1, 2, 0], [-2, 0, 0], [-1, -2, 0], [1, -2, 0]]
+    polygons = Polygons(
+        np.array(hexagon, np.float64),
+        np.array([0, 0, 1, 0, 1, 2, 3, 4, 5, 0, 1, 2]),
+        np.array([3, 6, 3]),
+        np.zeros(3, np.intp),
+        ("all",),
+        (MeshScalar("stress", np.arange(6.0)), MeshScalar("error", np.array([7.0, 8.0, 9.0]), "polygon")),
+    )
+    mesh = repaired(polygons, "a.ply").mesh
+    stress, error = mesh.scalars
+    assert stress.values.tolist() == [0, 1, 2, 3, 4, 5]
+    assert error.values.tolist() == [8, 8, 9]
+    assert len(mesh.node_numbers) == 3

@@ -93,7 +93,7 @@ def test_a_wrong_key_does_not_keep_the_file_from_being_read(folder: Path) -> Non
 def test_a_mesh_that_is_no_table_is_refused(folder: Path, rows: str) -> None:
     (sentence,) = refusal(folder, rows)
     assert sentence.startswith(
-        "scene.toml, line 1, mesh[1]: must be a table of file, nodes, polygons, up and"
+        "scene.toml, line 1, mesh[1]: must be a table of file, nodes, polygons, up, scale and"
     )
 
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.meshes.obj.obj_file import read_obj
+from autocolor.files.repair.placement import Placement
 from autocolor.files.repair.polygons import MeshReport
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -21,7 +22,7 @@ def path(tmp_path: Path) -> Path:
 
 def read(path: Path, text: str | bytes, up: str = "z") -> MeshReport:
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return read_obj(path, up=up)
+    return read_obj(path, Placement(up))
 
 
 def refusal(path: Path, text: str | bytes) -> str:

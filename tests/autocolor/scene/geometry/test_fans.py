@@ -11,9 +11,9 @@ from hypothesis import given
 
 from autocolor import Mesh
 from autocolor.arrays import Singles
-from autocolor.scene import fans, node_normals, union_find
-from autocolor.scene.fans import fans_of_corners, places_of_corners
-from autocolor.scene.node_normals import polygon_normals
+from autocolor.scene.geometry import fans, node_normals, union_find
+from autocolor.scene.geometry.fans import fans_of_corners, places_of_corners
+from autocolor.scene.geometry.node_normals import polygon_normals
 from tests.autocolor.meshes import grid, sphere
 from tests.autocolor.strategies import meshes
 

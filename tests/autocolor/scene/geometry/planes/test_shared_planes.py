@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh
-from autocolor.scene.planes.shared_planes import SharedPlanes, shared_planes
+from autocolor.scene.geometry.planes.shared_planes import SharedPlanes, shared_planes
 from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
 from tests.autocolor.strategies import meshes
 

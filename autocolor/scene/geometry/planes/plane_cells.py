@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, Numbers, chunks, cross, dot, lengths
-from autocolor.scene.union_find import unite
+from autocolor.scene.geometry.union_find import unite
 
 CELL: Final = 1 / 256
 """The size of a cell; measured: a fourth of it and four times as much find the same in random scenes."""

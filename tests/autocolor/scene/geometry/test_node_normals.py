@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh
 from autocolor.arrays import Singles
-from autocolor.scene.node_normals import node_normals, polygon_normals
+from autocolor.scene.geometry.node_normals import node_normals, polygon_normals
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import meshes
 

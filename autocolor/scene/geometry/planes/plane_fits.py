@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Indices
-from autocolor.scene.planes.plane_cells import Facets
+from autocolor.scene.geometry.planes.plane_cells import Facets
 
 
 class Fits(NamedTuple):

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, Indices, chunks
-from autocolor.scene.union_find import group_numbers, unite
+from autocolor.scene.geometry.union_find import group_numbers, unite
 
 AT_ONCE: Final = 1 << 15
 

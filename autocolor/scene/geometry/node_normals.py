@@ -16,8 +16,8 @@ import numpy as np
 
 from autocolor.arrays import Floats, Indices, Singles, chunks, cross, lengths
 from autocolor.immutable import Immutable, read_only
-from autocolor.scene.fans import fans_of_corners, places_of_corners
-from autocolor.scene.union_find import group_numbers, unite
+from autocolor.scene.geometry.fans import fans_of_corners, places_of_corners
+from autocolor.scene.geometry.union_find import group_numbers, unite
 
 CREASE_ANGLE: Final = 40.0
 """Assumed: degrees; edges of boxes stay sharp, and a cylinder of ten sides or more is smooth."""

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.scene.planes import plane_cells as room
-from autocolor.scene.planes.plane_cells import coplanar_groups, facets, plane_cells
-from autocolor.scene.union_find import group_numbers
+from autocolor.scene.geometry.planes import plane_cells as room
+from autocolor.scene.geometry.planes.plane_cells import coplanar_groups, facets, plane_cells
+from autocolor.scene.geometry.union_find import group_numbers
 from tests.autocolor.meshes import decal_on_ground
 
 

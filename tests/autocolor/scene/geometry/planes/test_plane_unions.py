@@ -4,9 +4,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from autocolor.scene.planes.plane_cells import plane_cells
-from autocolor.scene.planes.plane_unions import unite_in_fitted_planes
-from autocolor.scene.union_find import group_numbers
+from autocolor.scene.geometry.planes.plane_cells import plane_cells
+from autocolor.scene.geometry.planes.plane_unions import unite_in_fitted_planes
+from autocolor.scene.geometry.union_find import group_numbers
 from tests.autocolor.meshes import grid
 
 TOLERANCE = 2e-6

@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from autocolor.scene.planes.plane_cells import facets
-from autocolor.scene.planes.plane_fits import fitted, renumbered
+from autocolor.scene.geometry.planes.plane_cells import facets
+from autocolor.scene.geometry.planes.plane_fits import fitted, renumbered
 
 
 def test_a_plane_is_fitted_to_each_group() -> None:

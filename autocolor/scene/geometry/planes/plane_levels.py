@@ -11,9 +11,9 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices
-from autocolor.scene.planes.coordinate_rounding import EXACT, Rounding
-from autocolor.scene.planes.plane_cells import Facets, part_of
-from autocolor.scene.planes.plane_fits import fitted, renumbered
+from autocolor.scene.geometry.planes.coordinate_rounding import EXACT, Rounding
+from autocolor.scene.geometry.planes.plane_cells import Facets, part_of
+from autocolor.scene.geometry.planes.plane_fits import fitted, renumbered
 
 MOST_LEVELS: Final = 8
 """How many levels of a plane are found at most; what is left is one more."""

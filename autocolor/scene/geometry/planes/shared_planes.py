@@ -24,9 +24,9 @@ import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, cross, dot
 from autocolor.immutable import Immutable
-from autocolor.scene.fans import places_of_corners
-from autocolor.scene.planes.coordinate_rounding import coordinate_rounding
-from autocolor.scene.planes.plane_cells import (
+from autocolor.scene.geometry.fans import places_of_corners
+from autocolor.scene.geometry.planes.coordinate_rounding import coordinate_rounding
+from autocolor.scene.geometry.planes.plane_cells import (
     SHARPEST,
     Facets,
     coplanar_groups,
@@ -34,10 +34,10 @@ from autocolor.scene.planes.plane_cells import (
     facets,
     plane_cells,
 )
-from autocolor.scene.planes.plane_fits import Fits, fitted, renumbered
-from autocolor.scene.planes.plane_levels import MOST_LEVELS, levels
-from autocolor.scene.planes.plane_unions import unite_in_fitted_planes
-from autocolor.scene.union_find import group_numbers, unite
+from autocolor.scene.geometry.planes.plane_fits import Fits, fitted, renumbered
+from autocolor.scene.geometry.planes.plane_levels import MOST_LEVELS, levels
+from autocolor.scene.geometry.planes.plane_unions import unite_in_fitted_planes
+from autocolor.scene.geometry.union_find import group_numbers, unite
 
 TOLERANCE: Final = 2e-6
 """Assumed: the largest distance of a corner from its plane, as a fraction of the size of the mesh."""

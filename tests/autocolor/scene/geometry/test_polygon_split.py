@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.scene import polygon_split
-from autocolor.scene.polygon_split import clipped_ears, split_polygons
+from autocolor.scene.geometry import polygon_split
+from autocolor.scene.geometry.polygon_split import clipped_ears, split_polygons
 
 
 def area(points: np.ndarray, rows: object) -> float:

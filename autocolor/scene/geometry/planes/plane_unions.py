@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, Numbers, chunks, dot
-from autocolor.scene.planes.plane_cells import (
+from autocolor.scene.geometry.planes.plane_cells import (
     CELL,
     MOST_PLANES,
     POLYGONS_AT_ONCE,
@@ -19,8 +19,8 @@ from autocolor.scene.planes.plane_cells import (
     cells_of_planes,
     facets,
 )
-from autocolor.scene.planes.plane_fits import Fits, fitted
-from autocolor.scene.union_find import roots_of, unite
+from autocolor.scene.geometry.planes.plane_fits import Fits, fitted
+from autocolor.scene.geometry.union_find import roots_of, unite
 
 MOST_SAMPLES: Final = 256
 """To how many polygons of a group a plane is fitted at most, when groups are united."""

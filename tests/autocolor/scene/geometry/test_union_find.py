@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.scene import union_find
-from autocolor.scene.union_find import group_numbers, unite
+from autocolor.scene.geometry import union_find
+from autocolor.scene.geometry.union_find import group_numbers, unite
 
 COUNT = 30
 

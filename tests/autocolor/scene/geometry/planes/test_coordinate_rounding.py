@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.scene.planes.coordinate_rounding import EXACT, coordinate_rounding
+from autocolor.scene.geometry.planes.coordinate_rounding import EXACT, coordinate_rounding
 
 RANDOM = np.random.default_rng(7).uniform(-3, 3, (3, 30))
 LARGEST = float(np.abs(RANDOM).max())

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.scene.planes import plane_levels as room
-from autocolor.scene.planes.coordinate_rounding import EXACT, Rounding
-from autocolor.scene.planes.plane_cells import facets
-from autocolor.scene.planes.plane_levels import levels
+from autocolor.scene.geometry.planes import plane_levels as room
+from autocolor.scene.geometry.planes.coordinate_rounding import EXACT, Rounding
+from autocolor.scene.geometry.planes.plane_cells import facets
+from autocolor.scene.geometry.planes.plane_levels import levels
 from tests.autocolor.meshes import grid
 
 WALL = grid(4, 3, (-0.5, 0, -0.4), (1, 0, 0), (0, 0, 0.8))
