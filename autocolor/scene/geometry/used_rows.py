@@ -1,4 +1,4 @@
-"""Which rows of a table another table uses."""
+"""Which rows of a table another table uses, and how far they reach; no table is copied."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Indices, chunks
+from autocolor.arrays import Booleans, Floats, Indices, chunks
 
 AT_ONCE: Final = 1 << 16
 
@@ -21,3 +21,16 @@ def used_rows(numbers: Indices, count: int) -> Booleans:
     for chunk in chunks(numbers.shape[1], AT_ONCE):
         used[numbers[:, chunk]] = True
     return used
+
+
+def used_bounds(rows: Floats, numbers: Indices) -> tuple[Floats, Floats]:
+    """The least and the largest of each of some rows, (k, count), where numbers use it; infinite if none do.
+
+    >>> low, high = used_bounds(np.array([[5.0, 2.0, 3.0]]), np.array([[0, 2]]))
+    >>> low.tolist(), high.tolist()
+    ([3.0], [5.0])
+    """
+    used = used_rows(numbers, rows.shape[1])
+    low: Floats = rows.min(axis=1, where=used, initial=np.inf)
+    high: Floats = rows.max(axis=1, where=used, initial=-np.inf)
+    return low, high
