@@ -20,6 +20,7 @@ from autocolor.scene.changes import (
     LightChanges,
     PaintChanges,
     PartChanges,
+    ScalarChanges,
     SceneChanges,
     SurfaceChanges,
     ViewChanges,
@@ -223,6 +224,14 @@ class Scene(Row):
     def with_view(self, /, **changes: Unpack[ViewChanges]) -> Scene:
         """The scene with some fields of the view changed."""
         return with_values(self, {"view": self.view.replace(**changes)})
+
+    def with_scalar(self, /, **changes: Unpack[ScalarChanges]) -> Scene:
+        """The scene with some fields of its scalar changed; without one, it must be given a name."""
+        return changed(self, {"scalar": changes})
+
+    def without_scalar(self) -> Scene:
+        """The scene with its own colors."""
+        return with_values(self, {"scalar": None})
 
     def with_new_light(self, name: str, /, **fields: Unpack[LightChanges]) -> Scene:
         """The scene with another light after the others; it must have a position.
