@@ -39,6 +39,7 @@ from autocolor.scene.light_sets.light_copies import axis_number, free_name, mirr
 from autocolor.scene.light_sets.rigs import Rig
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalars.computed_names import name_problems
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
@@ -153,6 +154,8 @@ class Scene(Row):
             if names != list(self.mesh.part_names):
                 rule = "the part table must have the mesh's parts in their order"
                 yield Problem((), f"{rule} {list(self.mesh.part_names)}, not {names}")
+        if self.mesh is not REFUSED and isinstance(self.scalar, Scalar):
+            yield from name_problems(self.scalar.name, self.mesh.scalars)
         # Finding the closest valid name is slow, and a file may contain many invalid names.
         yield from islice(self._reference_problems(), MOST_PROBLEMS)
         if self.surfaces is not REFUSED and len(self.surfaces) > MOST_SURFACES:
