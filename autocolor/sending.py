@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 
 import numpy as np
@@ -14,7 +15,7 @@ from autocolor.mapping.display_image import DisplayImage, check_surfaces, displa
 from autocolor.mapping.legend import GROUND, INK, Legend, legend
 from autocolor.mapping.level_ranges import WORDS
 from autocolor.scene.scene import Scene
-from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
+from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, Ramtek9300, instructions
 
 EntryEncoder = Callable[[int, Bytes], Words]
 """Makes the instruction that loads entries, (n, 3) uint8, from a first one on."""
@@ -81,6 +82,16 @@ def send_image(display: HostPort, image: DisplayImage, before: DisplayImage | No
         display.send(instructions.write_image(image.words))
         if key is not None:
             display.send(drawn_legend(key))
+
+
+def shown_colors(image: DisplayImage) -> Bytes:
+    """The colors that a display of its size shows of an image, (lines, elements, 3) uint8, with the legend."""
+    if legend(image) is None:
+        return image.colors
+    lines, elements = image.words.shape
+    display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
+    send_image(display, image)
+    return display.field()
 
 
 def drawn_legend(key: Legend) -> Words:

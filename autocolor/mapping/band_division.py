@@ -76,8 +76,10 @@ def scalar_limits(scalar: Scalar, picture: Picture) -> tuple[float, float]:
 def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Bands]) -> int:
     """The shades of each band: as many as are asked for, else as many as the words suffice for.
 
-    The other surfaces have the levels that they ask for, and the others of them FEWEST_LEVELS, or
-    USEFUL_LEVELS where the shades can be chosen. Raises InputError if there are too few words.
+    Assumed: the levels that a colored surface asks for are those for its paint, and its bands take what they
+    need. The other surfaces have the levels that they ask for, and those that ask for none at least
+    FEWEST_LEVELS, or USEFUL_LEVELS where the shades can be chosen. Raises InputError if there are too few
+    words.
     """
     others = [surface.levels for surface in surfaces if surface.name not in bands]
     left = SURFACE_WORDS - sum(filter(None, others))
@@ -85,27 +87,28 @@ def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Ban
     if room < 0:
         # The other surfaces ask for too much; `level_ranges` refuses that.
         return 1
-    count = sum(each.total for each in bands.values())
-    # A surface that asks for a number of levels has no more.
-    own = {each.name: each.levels for each in surfaces if each.name in bands and each.levels is not None}
-    most = min(levels // bands[name].total for name, levels in own.items()) if own else SURFACE_WORDS
-    shades = scalar.shades or max(1, min(MOST_SHADES, useful // count, most))
-    for name, levels in own.items():
-        if bands[name].total * shades > levels:
-            raise InputError(_refusal(scalar, name, bands[name].total, shades, levels, "that it asks for"))
-    if count * shades > room:
+    total = sum(each.total for each in bands.values())
+    shades = scalar.shades or max(1, min(MOST_SHADES, useful // total))
+    if total * shades > room:
         first, *more = bands
-        whose = "that there are for it" + (f" and {len(more)} more that are colored" if more else "")
-        raise InputError(_refusal(scalar, first, count, shades, room, whose))
+        raise InputError(_refusal(scalar, first, len(more), total, shades, room))
     return shades
 
 
-def _refusal(scalar: Scalar, name: str, count: int, shades: int, room: int, whose: str) -> str:
-    """What is said of bands and shades for which a surface has too few words."""
-    most = room // count
-    fewer = f"choose at most {most} shade{'s' * (most > 1)}, or fewer bands"
-    none = f"at least {count} are needed with one shade; choose fewer bands, or color fewer surfaces"
+def _refusal(scalar: Scalar, name: str, others: int, total: int, shades: int, room: int) -> str:
+    """What is said of bands and shades for which there are too few words.
+
+    `total` bands are those of all surfaces that the scalar colors; `others` is how many these are besides the
+    named one, and `room` the number of words.
+    """
+    label = f"surface {name!r}" + (f" and {others} more" if others else "")
+    most = room // total
+    remedy = (
+        f"choose at most {most} shade{'s' * (most > 1)}, or fewer bands"
+        if most
+        else f"even one shade of each needs {total}; choose fewer bands, or let it color fewer surfaces"
+    )
     return (
-        f"surface {name!r}: the bands of scalar {scalar.name!r} times their shades must be at most the {room}"
-        f" words {whose}, not {count} x {shades} = {count * shades}; {fewer if most else none}"
+        f"{label}: the bands of scalar {scalar.name!r} times their shades must be at most the {room} words"
+        f" that are left for them, not {total} x {shades} = {total * shades}; {remedy}"
     )

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -41,7 +40,7 @@ class DisplayImage:
     ranges: Mapping[str, LevelRange]
     words: Words
     block: int = 1
-    bands: Mapping[str, Bands] = MappingProxyType({})
+    bands: Mapping[str, Bands] = field(default_factory=dict)
 
     @cached_property
     def entries(self) -> Bytes:
@@ -152,7 +151,7 @@ def display_image(
     ):
         words = before.words
     else:
-        words = words_of(picture, ranges, *(getattr(scene, name) for name in MAPPING), bands=bands)
+        words = words_of(picture, ranges, scene.scaling, scene.mapping, scene.exposure, scene.dither, bands)
         if block > 1:
             words = words.repeat(block, axis=0).repeat(block, axis=1)
             words.flags.writeable = False

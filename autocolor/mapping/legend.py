@@ -8,12 +8,12 @@ entries. Its ground and its letters are in words of the screens.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 from autocolor.mapping.display_image import DisplayImage
+from autocolor.mapping.legend_numbers import bands_apart, numbers_between
 from autocolor.mapping.level_ranges import SCREENS
 from autocolor.mapping.scalar_bands import Bands
 
@@ -29,18 +29,27 @@ MARGIN: Final = 8
 """Elements and lines between the legend and the edges of the picture, and around what stands in it."""
 
 BAR_ELEMENTS: Final = 16
-BESIDE: Final = 5
-"""Elements between the bar and its numbers."""
-
 BAR_LINES: Final = 224
-"""Assumed: the most lines of the bar while no band would have less than one."""
+"""Assumed: the most lines of the bar, unless there are more bands."""
 
 MOST_BAND_LINES: Final = 24
+BESIDE: Final = 6
+"""Elements between the bar and its numbers."""
+
+BAR_GAP: Final = 8
+"""Lines above and below the bar, beyond which its numbers reach."""
+
+TITLE_LINES: Final = 11
+TITLE_GAP: Final = 4
+ROW_LINES: Final = 12
+"""Lines from one line of the title, or of the other colors, to the next."""
+
 LEAST_APART: Final = 22
 """Assumed: lines from one number to the next."""
 
 MOST_TITLE: Final = 12
-"""Characters of a line of the title."""
+MOST_TITLES: Final = 3
+"""Characters of a line of the title, and lines of it."""
 
 MOST_SHARE: Final = 0.4
 """Assumed: the largest part of the width of the picture that the legend takes; a smaller picture has none."""
@@ -103,67 +112,57 @@ def legend(image: DisplayImage, right: int | None = None, bottom: int | None = N
 def _laid_out(name: str, bands: Bands, first: int, right: int, bottom: int) -> Legend | None:
     """The legend of a scalar with bands, to the left of an element and above a line."""
     title = title_lines(name)
-    step = step_of_numbers(bands.bands, band_lines(bands.bands))
-    numbers = [number_text(value, bands) for value in limits_of_bands(bands, step)]
-    ends = [("above", bands.above, bands.has_above), ("below", bands.below, bands.has_below)]
-    above, below = ([(label, band)] if has_it else [] for label, band, has_it in ends)
-    below += [("missing", bands.missing)] if bands.has_missing else []
+    height = lines_of_band(bands.bands)
+    step = bands_apart(bands.bands, height, LEAST_APART)
+    numbers = numbers_between(bands.low, bands.high, bands.bands // step)
+    above = [("above", bands.above)] * bands.has_above
+    below = [("below", bands.below)] * bands.has_below + [("missing", bands.missing)] * bands.has_missing
 
-    beside = max(len(each) for each in (*numbers, *(label for label, _ in (*above, *below))))
-    inner = max(BAR_ELEMENTS + BESIDE + CHARACTER * beside, CHARACTER * max(len(each) for each in title))
-    row = LETTER_LINES + 4
-    height = band_lines(bands.bands) * bands.bands
-    inner_lines = (LETTER_LINES + 1) * len(title) + 10 + height + 4 + row * (len(above) + len(below))
-    if right < (inner + 3 * MARGIN) / MOST_SHARE or bottom < inner_lines + 4 * MARGIN:
+    # The size of it all.
+    beside = max(map(len, (*numbers, *(label for label, _ in (*above, *below)))))
+    inner = max(BAR_ELEMENTS + BESIDE + CHARACTER * beside, CHARACTER * max(map(len, title)))
+    bar_lines = height * bands.bands
+    rows = ROW_LINES * (len(above) + len(below))
+    inside = TITLE_LINES * len(title) + TITLE_GAP + 2 * BAR_GAP + bar_lines + rows
+    if inner + 3 * MARGIN > MOST_SHARE * right or inside + 4 * MARGIN > bottom:
         return None
 
     left, top = right - 2 * MARGIN - inner, 2 * MARGIN
-    panel = (left - MARGIN, top - MARGIN, right - MARGIN - 1, top + inner_lines + MARGIN - 1)
-    swatches = [
-        Swatch(*panel, FRAME),
-        Swatch(*(each + inset for each, inset in zip(panel, (1, 1, -1, -1), strict=True)), GROUND),
-    ]
-    labels = []
+    frame = Swatch(left - MARGIN, top - MARGIN, right - MARGIN - 1, top + inside + MARGIN - 1, FRAME)
+    ground = Swatch(frame.left + 1, frame.top + 1, frame.right - 1, frame.bottom - 1, GROUND)
+    swatches, labels = [frame, ground], []
+
+    def put(band: int, top: int, lines: int) -> None:
+        word = first + bands.brightest(band)
+        swatches.append(Swatch(left, top, left + BAR_ELEMENTS - 1, top + lines - 1, word))
+
+    def put_text(middle: int, text: str) -> None:
+        labels.append(Label(left + BAR_ELEMENTS + BESIDE, middle - LETTER_LINES // 2, text))
+
+    # The title, what is above the limits, the bar with its numbers, and what else there is.
     for line in title:
         labels.append(Label(left, top, line))
-        top += LETTER_LINES + 1
-    top += 6
-
-    def put_row(label: str, band: int) -> None:
-        word = first + bands.brightest(band)
-        swatches.append(Swatch(left, top, left + BAR_ELEMENTS - 1, top + LETTER_LINES - 1, word))
-        labels.append(Label(left + BAR_ELEMENTS + BESIDE, top, label))
-
-    for each in above:
-        put_row(*each)
-        top += row
-    top += 4
-    lines = band_lines(bands.bands)
+        top += TITLE_LINES
+    top += TITLE_GAP
+    for label, band in above:
+        put(band, top, LETTER_LINES)
+        put_text(top + LETTER_LINES // 2, label)
+        top += ROW_LINES
+    foot = top + BAR_GAP + bar_lines
     for band in range(bands.bands):
-        low = top + height - band * lines
-        word = first + bands.brightest(band)
-        swatches.append(Swatch(left, low - lines, left + BAR_ELEMENTS - 1, low - 1, word))
+        put(band, foot - (band + 1) * height, height)
     for place, number in enumerate(numbers):
-        middle = top + height - place * step * lines
-        labels.append(Label(left + BAR_ELEMENTS + BESIDE, middle - LETTER_LINES // 2 - 1, number))
-        swatches.append(
-            Swatch(
-                left + BAR_ELEMENTS,
-                min(middle, top + height - 1),
-                left + BAR_ELEMENTS + 2,
-                min(middle, top + height - 1),
-                INK,
-            )
-        )
-    top += height + 8
-    for each in below:
-        put_row(*each)
-        top += row
+        put_text(foot - place * step * height, number)
+    top = foot + BAR_GAP
+    for label, band in below:
+        put(band, top, LETTER_LINES)
+        put_text(top + LETTER_LINES // 2, label)
+        top += ROW_LINES
     return Legend(tuple(swatches), tuple(labels))
 
 
 def title_lines(name: str) -> Sequence[str]:
-    """The name of a scalar in lines, broken between words; a line that is too long is cut.
+    """The name of a scalar in at most three lines, broken between words; what is too long is cut.
 
     >>> title_lines("gaussian curvature"), title_lines("stress")
     (['gaussian', 'curvature'], ['stress'])
@@ -173,46 +172,12 @@ def title_lines(name: str) -> Sequence[str]:
         if lines and len(lines[-1]) + 1 + len(word) <= MOST_TITLE:
             lines[-1] += f" {word}"
         else:
-            lines.append(word if len(word) <= MOST_TITLE else f"{word[: MOST_TITLE - 2]}..")
-    return lines if len(lines) <= 3 else [*lines[:2], f"{lines[2][: MOST_TITLE - 2]}.."]
+            lines.append(word)
+    if len(lines) > MOST_TITLES:
+        lines = [*lines[: MOST_TITLES - 1], " ".join(lines[MOST_TITLES - 1 :])]
+    return [line if len(line) <= MOST_TITLE else f"{line[: MOST_TITLE - 2]}.." for line in lines]
 
 
-def band_lines(bands: int) -> int:
+def lines_of_band(bands: int) -> int:
     """The lines of each band of the bar."""
     return max(1, min(MOST_BAND_LINES, BAR_LINES // bands))
-
-
-def step_of_numbers(bands: int, lines: int) -> int:
-    """The bands from one number to the next: the fewest that divide them all and leave room for a number.
-
-    >>> step_of_numbers(16, 14), step_of_numbers(5, 24), step_of_numbers(13, 17)
-    (2, 1, 13)
-    """
-    return next(
-        step
-        for step in range(1, bands + 1)
-        if bands % step == 0 and (step * lines >= LEAST_APART or step == bands)
-    )
-
-
-def limits_of_bands(bands: Bands, step: int) -> Sequence[float]:
-    """The limits of every so many bands, from the lowest."""
-    extent = bands.high - bands.low
-    return [bands.low + extent * number / bands.bands for number in range(0, bands.bands + 1, step)]
-
-
-def number_text(value: float, bands: Bands) -> str:
-    """A limit of a band in as few characters as tell it from the next ones, with at most four digits.
-
-    >>> number_text(62.5, Bands(0, 250, 16, 8)), number_text(0.1234567, Bands(-1e-7, 1, 4, 1))
-    ('62.5', '0.1235')
-    """
-    extent = bands.high - bands.low
-    # What is zero but for rounding is told as zero.
-    value = 0.0 if abs(value) < extent * 1e-9 else value
-    digits = 4
-    # Limits far from zero in comparison with their distance need more digits.
-    largest = max(abs(bands.low), abs(bands.high))
-    if largest > 0:
-        digits = min(7, max(4, 2 + math.ceil(math.log10(largest / extent * bands.bands))))
-    return f"{value:.{digits}g}"

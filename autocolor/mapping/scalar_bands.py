@@ -23,8 +23,9 @@ from autocolor.immutable import read_only
 from autocolor.mapping.color_blending import HALVES_UP
 from autocolor.scene.scalars.color_scales import scale_colors
 
-DARKEST: Final = 0.35
-"""Assumed: what the darkest shade keeps of a color, so that its band can be told; black tells nothing."""
+DARKEST: Final = 0.5
+"""Assumed: what the darkest shade keeps of a color, so that its band can be told; with less, most of
+a shiny surface is too dark for that."""
 
 ROUNDING: Final = 2.0**-20
 """Assumed: what interpolation may be off by, as a fraction of the larger limit."""

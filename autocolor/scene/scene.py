@@ -39,7 +39,7 @@ from autocolor.scene.light_sets.light_copies import axis_number, free_name, mirr
 from autocolor.scene.light_sets.rigs import Rig
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalars.computed_names import name_problems
+from autocolor.scene.scalars.computed_names import COMPUTED, name_problems
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
@@ -321,6 +321,11 @@ class Scene(Row):
     def object_coordinates(self) -> Floats:
         """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage."""
         return read_only(object_coordinates(self.mesh, self.parts))
+
+    @property
+    def scalar_names(self) -> tuple[str, ...]:
+        """The names of the scalars that can color it: those of its mesh, then the computed ones."""
+        return tuple(dict.fromkeys([*(scalar.name for scalar in self.mesh.scalars), *COMPUTED]))
 
     @property
     def object_bounds(self) -> tuple[Vector, Vector]:
