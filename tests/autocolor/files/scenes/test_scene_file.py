@@ -335,7 +335,7 @@ def test_windows_line_ends_and_a_byte_order_mark_are_no_matter(folder: Path) -> 
     assert read(folder, b"\xef\xbb\xbf" + MESH.replace("\n", "\r\n").encode()).repairs == ()
     assert refusal(folder, b"\xef\xbb\xbf" + MESH.replace("\n", "\r\n").encode() + b"uq = 1\r\n") == [
         "scene.toml, line 3, mesh[1]: there is no 'uq'; known are 'file', 'nodes', 'polygons', 'up',"
-        " 'crease_angle'"
+        " 'scale', 'crease_angle'"
     ]
 
 
