@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from autocolor.commands.options.settings import created_again, set_option, with_settings
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
-from autocolor.commands.settings import created_again, set_option, with_settings
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def view(
         folder, session = chosen_session(recover)
         show(session.history, full_screen, fit, folder)
     elif source is not None:
-        from autocolor.files.recent import note_file
+        from autocolor.files.state.recent import note_file
         from autocolor.journal.history import History
         from autocolor.journal.places import Source, place_of
 

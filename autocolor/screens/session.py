@@ -14,8 +14,8 @@ from autocolor.errors import InputError
 from autocolor.files.file_stem import file_stem, free_path
 from autocolor.files.openable import MESH, kind_of
 from autocolor.files.paths import SCENE_FILE
-from autocolor.files.recent import note_file
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
+from autocolor.files.state.recent import note_file
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
