@@ -153,5 +153,5 @@ def _scene(context: click.Context) -> Scene:
     files = [each for each in path.iterdir() if each.is_file()] if path.is_dir() else [path]
     if sum(each.stat().st_size for each in files) > LARGEST_SCENE:
         raise ValueError
-    options = {name: given[name] for name in ("up", "surfaces") if given.get(name)}
+    options = {name: given[name] for name in ("up", "scale", "surfaces") if given.get(name)}
     return read_scene_with_report(path, **options).scene

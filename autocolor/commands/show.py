@@ -74,7 +74,7 @@ def show(
         from autocolor.journal.history import History
         from autocolor.journal.places import Source, place_of
 
-        origin = Source(source.path, source.up, source.surfaces)
+        origin = Source(source.path, source.up, source.surfaces, source.scale)
         place = place_of(origin)
         report = read(source)
         scene = created_again(report, with_settings(report.scene, settings))

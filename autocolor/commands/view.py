@@ -76,16 +76,16 @@ def view(
         from autocolor.journal.history import History
         from autocolor.journal.places import Source, place_of
 
-        place = place_of(Source(source.path, source.up, source.surfaces))
+        place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
         report = read(source)
         edited = created_again(report, with_settings(report.scene, settings))
         note_file(source.path)
-        # What is opened after it has the same up axis.
+        # What is opened after it has the same up axis and scale.
         show(
             History(edited, place),
             full_screen,
             fit,
-            prepare=lambda viewer: setattr(viewer.session, "mesh_up", source.up),
+            prepare=lambda viewer: viewer.session.place_meshes(source.up, source.scale),
         )
         context.exit(ended(report, source))
 

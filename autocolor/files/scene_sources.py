@@ -17,7 +17,7 @@ from autocolor.files.meshes.formats import (
     read_mesh,
 )
 from autocolor.files.reading import unnameable, unreadable
-from autocolor.files.repair.placement import UPS, Placement
+from autocolor.files.repair.placement import SCALES, UPS, Placement
 from autocolor.files.scenes.formats import (
     SceneFormat,
     scene_format_named,
@@ -37,18 +37,20 @@ def read_scene(
     *,
     strict: bool = False,
     up: str = "z",
+    scale: float = 1.0,
     outside: bool = False,
     surfaces: SurfaceSource = MATERIALS,
 ) -> Scene:
     """The scene of a folder, a scene file (.toml), a mesh file (.obj) or a picture file (.npz).
 
     A folder must contain a `scene.toml`, or `nodes.csv` and `polygons.csv`. Whatever the source does not
-    define is created with defaults. `up` is the up axis of a mesh that is read without a scene file. With
-    `outside`, a scene file may name files outside its folder. With `strict`, a mesh that needs repair is
-    refused. Parts that are given no surface have that of their material; with `surfaces="parts"`, each has
-    one of its own. Raises InputError with every problem, MissingInputError if a file does not exist.
+    define is created with defaults. `up` and `scale` are the up axis of a mesh that is read without a scene
+    file, and a factor for its coordinates. With `outside`, a scene file may name files outside its folder.
+    With `strict`, a mesh that needs repair is refused. Parts that are given no surface have that of their
+    material; with `surfaces="parts"`, each has one of its own. Raises InputError with every problem,
+    MissingInputError if a file does not exist.
     """
-    report = read_scene_with_report(path, up=up, outside=outside, surfaces=surfaces)
+    report = read_scene_with_report(path, up=up, scale=scale, outside=outside, surfaces=surfaces)
     if strict and report.repairs:
         raise InputError(
             [f"{repair}; correct the file, or read it without strict" for repair in report.repairs]
@@ -60,12 +62,17 @@ def read_scene_with_report(
     path: PathLike,
     *,
     up: str = "z",
+    scale: float = 1.0,
     outside: bool = False,
     surfaces: SurfaceSource = MATERIALS,
 ) -> SceneReport:
     """Like `read_scene`, but also returns messages about what was repaired, skipped and created."""
     if up not in UPS:
         raise UsageError(f"up must be 'x', 'y' or 'z', not {up!r}")
+    try:
+        placement = Placement(up, SCALES.accepted(scale))
+    except (TypeError, ValueError, OverflowError):
+        raise UsageError(f"scale {SCALES.rule()}, not {shown(scale)}; give a factor such as 0.001") from None
     if surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     path = Path(path)
@@ -78,15 +85,18 @@ def read_scene_with_report(
 
     path, found = _format(path)
     if isinstance(found, SceneFormat):
-        if up != "z":
-            raise UsageError(f"up is for mesh files, not for {path}, which gives its own; leave it out")
+        for name, is_given in (("up", up != "z"), ("scale", scale != 1)):
+            if is_given:
+                raise UsageError(
+                    f"{name} is for mesh files, not for {path}, which gives its own; leave it out"
+                )
         report = found.read(path, outside=outside, surfaces=surfaces)
         return _with_source_kept(report, path.parent, path)
     if path.is_dir():
         names = dict(zip(found.keys, found.in_folder, strict=True))
         files = {key: path / name for key, name in names.items()}
-        return _with_source_kept(_bare_mesh(files, path.resolve().name, up, surfaces), path)
-    return _with_source_kept(_bare_mesh({"file": path}, path.stem, up, surfaces), path.parent)
+        return _with_source_kept(_bare_mesh(files, path.resolve().name, placement, surfaces), path)
+    return _with_source_kept(_bare_mesh({"file": path}, path.stem, placement, surfaces), path.parent)
 
 
 def _with_source_kept(report: SceneReport, folder: Path, scene_file: Path | None = None) -> SceneReport:
@@ -121,8 +131,11 @@ def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
     return path, found
 
 
-def _bare_mesh(files: Mapping[str, Path], name: str, up: str, surfaces: SurfaceSource) -> SceneReport:
+def _bare_mesh(
+    files: Mapping[str, Path], name: str, placement: Placement, surfaces: SurfaceSource
+) -> SceneReport:
     """The scene of a mesh, with everything else created from defaults."""
-    read = read_mesh(files, Placement(up))
-    entry = {**{key: file.name for key, file in files.items()}, "up": up}
+    read = read_mesh(files, placement)
+    scale = {} if placement.scale == 1 else {"scale": placement.scale}
+    entry = {**{key: file.name for key, file in files.items()}, "up": placement.up, **scale}
     return scene_report([read], mesh_files=(entry,), name=name or "scene", surfaces=surfaces)
