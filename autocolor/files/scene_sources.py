@@ -1,4 +1,4 @@
-"""Reading a scene from a folder, a scene file, a mesh file or a picture file."""
+"""Reading a scene from a folder, a scene file, a store, a mesh file or a picture file."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def read_scene(
     outside: bool = False,
     surfaces: SurfaceSource = MATERIALS,
 ) -> Scene:
-    """The scene of a folder, a scene file (.toml), a mesh file (.obj) or a picture file (.npz).
+    """The scene of a folder, a scene file (.toml), a store (.sqlite), a mesh file or a picture file (.npz).
 
     A folder must contain a `scene.toml`, or `nodes.csv` and `polygons.csv`. Whatever the source does not
     define is created with defaults. `up` is the up axis of a mesh that is read without a scene file. With

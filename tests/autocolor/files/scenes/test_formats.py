@@ -43,9 +43,9 @@ def name_within(path: Path, data: bytes) -> str | None:
 
 
 def test_every_format_has_a_name_and_a_way_to_be_chosen() -> None:
-    assert [each.name for each in scene_formats()] == ["picture file", "scene file"]
-    assert [each.in_folder for each in scene_formats()] == [None, "scene.toml"]
-    assert scene_suffixes() == (".npz", ".toml")
+    assert [each.name for each in scene_formats()] == ["picture file", "scene file", "store"]
+    assert [each.in_folder for each in scene_formats()] == [None, "scene.toml", None]
+    assert scene_suffixes() == (".npz", ".toml", ".sqlite", ".db")
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_a_module_that_is_put_beside_the_others_is_a_format(
     (tmp_path / "car.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
     for name in ("car.another", "car", "scene.another"):
         (tmp_path / name).write_text("another car.obj")
-    with pytest.raises(InputError, match=r"ends in \.npz, \.toml, \.obj or \.tables, not in '\.another'"):
+    with pytest.raises(InputError, match=r"ends in \.npz, \.toml, \.sqlite, \.db, \.obj or \.tables, not in '\.another'"):
         read_scene(tmp_path / "car.another")
     monkeypatch.setattr(scenes, "__path__", [*scenes.__path__, str(tmp_path)])
     monkeypatch.setattr(formats, "_REGISTERED", list(formats._REGISTERED))
