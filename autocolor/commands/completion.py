@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 LARGEST_SCENE: Final = 16 << 20
 """Assumed: bytes of the files of a scene that is read for completion; measured: less than a second."""
 
-SUFFIXES: Final = (".npz", ".obj", ".tables", ".toml")
+SUFFIXES: Final = (".db", ".npz", ".obj", ".sqlite", ".tables", ".toml")
 """The endings of files that are scenes. Measured: to ask the formats for them takes four times as long."""
 
 IN_FOLDERS: Final = (("scene.toml",), ("nodes.csv", "polygons.csv"))

@@ -85,13 +85,15 @@ def test_a_module_that_is_put_beside_the_others_is_a_format(
     (tmp_path / "car.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
     for name in ("car.another", "car", "scene.another"):
         (tmp_path / name).write_text("another car.obj")
-    with pytest.raises(InputError, match=r"ends in \.npz, \.toml, \.sqlite, \.db, \.obj or \.tables, not in '\.another'"):
+    with pytest.raises(
+        InputError, match=r"ends in \.npz, \.toml, \.sqlite, \.db, \.obj or \.tables, not in '\.another'"
+    ):
         read_scene(tmp_path / "car.another")
     monkeypatch.setattr(scenes, "__path__", [*scenes.__path__, str(tmp_path)])
     monkeypatch.setattr(formats, "_REGISTERED", list(formats._REGISTERED))
     scene_formats.cache_clear()
     try:
-        assert scene_suffixes() == (".another", ".npz", ".toml")
+        assert scene_suffixes() == (".another", ".npz", ".toml", ".sqlite", ".db")
         for path in (tmp_path / "car.another", tmp_path / "car", tmp_path):
             assert len(read_scene(path).mesh.node_numbers) == 1
     finally:
