@@ -17,7 +17,7 @@ from autocolor.files.meshes.obj.obj_text import obj_text
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
 from autocolor.files.repair.polygons import MeshReport
 from autocolor.files.scenes.problems import SceneProblems
-from autocolor.files.scenes.scene_meshes import meshes_of
+from autocolor.files.scenes.scene_meshes import MESH_FILE_KEYS, meshes_of
 from autocolor.files.scenes.toml_text import parsed_toml
 from autocolor.files.writing import write_atomically
 from autocolor.scene.mesh import Mesh
@@ -62,7 +62,7 @@ def _relative(entries: Entries, source: Path, folder: Path) -> Entries:
     found = []
     for entry in entries:
         keys = dict(entry)
-        for key in keys.keys() - {"up"}:
+        for key in keys.keys() & MESH_FILE_KEYS:
             try:
                 keys[key] = Path(os.path.normpath(source / keys[key])).relative_to(folder).as_posix()
             except ValueError:

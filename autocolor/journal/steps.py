@@ -22,7 +22,10 @@ from autocolor.scene.scene import AUTO, Scene
 from autocolor.scene.surfaces import Paint
 
 STUDIO_METHODS: Final = {**{short: method for method, short in SHORT.items()}, "recolor": "with_surface"}
-SCENE_METHODS: Final = ("replace", *ROW_METHODS.values(), *SHORT)
+SCENE_METHODS: Final = ("replace", *ROW_METHODS.values(), *SHORT, "without_scalar")
+
+SOURCE_OPTIONS: Final = frozenset(Source._fields) - {"path"}
+"""The keywords of a call that reads a scene."""
 
 NAMED: Final = frozenset((*ROW_METHODS.values(), "with_new_light", "without_light"))
 """The methods whose one argument without a keyword is the name of a row."""
@@ -31,7 +34,10 @@ NAMED: Final = frozenset((*ROW_METHODS.values(), "with_new_light", "without_ligh
 def source_in(arguments: Sequence[ast.expr], options: Mapping[str, Any], line: str) -> Source:
     """The source that the one argument of a call and its options give."""
     paths = [plain_value(value, line) for value in arguments]
-    if len(paths) != 1 or not all(isinstance(each, str) for each in (*paths, *options.values())):
+    scale = options.get("scale", 1.0)
+    words = [*paths, *(value for key, value in options.items() if key != "scale")]
+    is_number = isinstance(scale, (int, float)) and not isinstance(scale, bool)
+    if len(paths) != 1 or not is_number or not all(isinstance(each, str) for each in words):
         refuse(line)
     return Source(paths[0], **options)
 
@@ -96,7 +102,7 @@ class Steps:
     def _open(self, call: Called, line: str) -> None:
         options = {key: plain_value(value, line) for key, value in call.keywords.items()}
         tables, checksum = options.pop("tables", None), options.pop("checksum", None)
-        is_known = options.keys() <= {"up", "surfaces"} and isinstance(tables, (dict, type(None)))
+        is_known = options.keys() <= SOURCE_OPTIONS and isinstance(tables, (dict, type(None)))
         if not is_known or not all(isinstance(key, str) for key in tables or ()):
             refuse(line)
         source = source_in(call.arguments, options, line)
@@ -109,6 +115,8 @@ class Steps:
             return scene.replace(exposure=AUTO), False
         if name == "hold_exposure" and len(call.arguments) == 1 and not call.keywords:
             return scene.replace(exposure=plain_value(call.arguments[0], line)), False
+        if name == "scalar" and [plain_value(value, line) for value in call.arguments] == [None]:
+            return self._changed("without_scalar", call._replace(arguments=[]), line), False
         if name in STUDIO_METHODS:
             if name == "recolor" and not call.keywords.keys() <= fields_of(Paint).keys():
                 refuse(line)
@@ -131,7 +139,7 @@ class Steps:
             changes["mesh"] = self._mesh(mesh, line)
         if len(names) != (method in NAMED) or not all(isinstance(name, str) for name in names):
             refuse(line)
-        if method == "without_light" and changes:
+        if method in ("without_light", "without_scalar") and changes:
             refuse(line)
         scene: Scene = getattr(self._history.scene, method)(*names, **changes)
         return scene

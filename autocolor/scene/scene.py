@@ -20,6 +20,7 @@ from autocolor.scene.changes import (
     LightChanges,
     PaintChanges,
     PartChanges,
+    ScalarChanges,
     SceneChanges,
     SurfaceChanges,
     ViewChanges,
@@ -38,7 +39,7 @@ from autocolor.scene.light_sets.light_copies import axis_number, free_name, mirr
 from autocolor.scene.light_sets.rigs import Rig
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalars.computed_names import name_problems
+from autocolor.scene.scalars.computed_names import COMPUTED, name_problems
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
@@ -227,6 +228,14 @@ class Scene(Row):
         """The scene with some fields of the view changed."""
         return with_values(self, {"view": self.view.replace(**changes)})
 
+    def with_scalar(self, /, **changes: Unpack[ScalarChanges]) -> Scene:
+        """The scene with some fields of its scalar changed; without one, it must be given a name."""
+        return changed(self, {"scalar": changes})
+
+    def without_scalar(self) -> Scene:
+        """The scene with its own colors."""
+        return with_values(self, {"scalar": None})
+
     def with_new_light(self, name: str, /, **fields: Unpack[LightChanges]) -> Scene:
         """The scene with another light after the others; it must have a position.
 
@@ -312,6 +321,11 @@ class Scene(Row):
     def object_coordinates(self) -> Floats:
         """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage."""
         return read_only(object_coordinates(self.mesh, self.parts))
+
+    @property
+    def scalar_names(self) -> tuple[str, ...]:
+        """The names of the scalars that can color it: those of its mesh, then the computed ones."""
+        return tuple(dict.fromkeys([*(scalar.name for scalar in self.mesh.scalars), *COMPUTED]))
 
     @property
     def object_bounds(self) -> tuple[Vector, Vector]:

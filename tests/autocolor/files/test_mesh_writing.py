@@ -80,6 +80,15 @@ def test_the_files_that_a_scene_file_names_come_first(tmp_path: Path) -> None:
     assert found.entries == ({"file": "car.obj", "up": "z"},)
 
 
+def test_a_file_is_named_with_the_up_axis_and_the_scale_that_it_was_read_with(tmp_path: Path) -> None:
+    (tmp_path / "deeper").mkdir()
+    (tmp_path / "deeper" / "car.obj").write_text(CAR)
+    mesh = read_scene(tmp_path / "deeper" / "car.obj", up="y", scale=0.25).mesh
+    found = meshes_there(tmp_path, mesh, None)
+    assert found is not None
+    assert found.entries == ({"file": "deeper/car.obj", "up": "y", "scale": 0.25},)
+
+
 def test_files_that_hold_another_mesh_or_none_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "car.obj").write_text(CAR)
     mesh = read_scene(tmp_path / "car.obj").mesh
