@@ -100,7 +100,7 @@ def legend(image: DisplayImage, end: int | None = None, at_left: bool = False) -
     lines, elements = image.words.shape
     # A surface where a value is missing has all the bands that there are.
     name = max(found, key=lambda name: found[name].has_missing)
-    return _laid_out(
+    return laid_out(
         scalar.name,
         found[name],
         image.ranges[name].first,
@@ -109,7 +109,7 @@ def legend(image: DisplayImage, end: int | None = None, at_left: bool = False) -
     )
 
 
-def _laid_out(name: str, bands: Bands, first: int, size: tuple[int, int], at_left: bool) -> Legend | None:
+def laid_out(name: str, bands: Bands, first: int, size: tuple[int, int], at_left: bool) -> Legend | None:
     """The legend of a scalar with bands from a first word on, for a picture of a size."""
     title = title_lines(name)
     height = lines_of_band(bands.bands)
