@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import Flaps, Scene, Surface, read_scene
-from autocolor.commands.settings import created_again, reframed, value_of, with_settings
+from autocolor.commands.options.settings import created_again, reframed, value_of, with_settings
 from autocolor.errors import UsageError
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.defaults import default_lights, framed

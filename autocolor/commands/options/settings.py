@@ -43,7 +43,7 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
     together, so that their order does not matter, except that the last value of a field counts. Raises
     UsageError for an unknown key or an invalid value.
     """
-    from autocolor.commands.setting_keys import field_of, place_of
+    from autocolor.commands.options.setting_keys import field_of, place_of
 
     changes: dict[tuple[str, str], Changes] = {}
     for setting in settings:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import Scene, read_scene
-from autocolor.commands.setting_keys import Place, field_of, keys_after, place_of
+from autocolor.commands.options.setting_keys import Place, field_of, keys_after, place_of
 
 
 @pytest.fixture

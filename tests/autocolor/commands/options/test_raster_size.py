@@ -3,7 +3,7 @@ from __future__ import annotations
 import click
 import pytest
 
-from autocolor.commands.raster_size import LARGEST, size_of
+from autocolor.commands.options.raster_size import LARGEST, size_of
 from ramtek_emu import GMR_9300, Configuration, ConfigurationError
 
 
