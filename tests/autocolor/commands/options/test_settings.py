@@ -79,7 +79,7 @@ def test_a_scalar_is_set_where_there_was_none_in_any_order_and_unset(scene: Scen
     assert changed.scalar is not None
     assert (changed.scalar.name, changed.scalar.bands, changed.scalar.limits) == ("z", 8, (0.0, 250.0))
     other = with_settings(changed, ("scalar.scale=magma", "scalar.limits=none"))
-    assert other.scalar == changed.scalar.replace(scale="magma", limits=None)
+    assert other.scalar == changed.with_scalar(scale="magma", limits=None).scalar
     assert with_settings(other, ("scalar=none",)).scalar is None
 
 

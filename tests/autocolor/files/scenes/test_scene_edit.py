@@ -17,7 +17,7 @@ from autocolor.files.scenes.scene_edit import (
 )
 from autocolor.files.scenes.scene_file import report_of_text
 from autocolor.scene.columns.rows import with_values
-from tests.autocolor.strategies import scenes
+from tests.autocolor.strategies import of_mesh, scenes
 
 MESH = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\no part 0\nf 1 2 3 4\no part 1\nf 1 2 3\n"
 
@@ -107,7 +107,7 @@ def edited(text: str, scene: Scene, meshes: list[MeshReport]) -> str:
 def test_a_file_in_any_style_is_changed_to_any_scene(
     text: str, drawn: Scene, meshes: list[MeshReport]
 ) -> None:
-    scene = drawn.replace(mesh=meshes[0].mesh)
+    scene = of_mesh(drawn, meshes[0].mesh)
     after = edited(text, scene, meshes)
     assert with_values(read(after.encode(), meshes), {"mesh": scene.mesh, "name": scene.name}).equals(scene)
     assert after.count("# Mine.") == 1

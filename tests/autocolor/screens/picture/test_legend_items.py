@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from autocolor.mapping.legend import legend
@@ -24,7 +25,7 @@ def test_a_screen_draws_the_same_legend_as_a_studio(tmp_path: Path) -> None:
     drawn, by_items = Ramtek9300(), Ramtek9300()
     drawn.send(drawn_legend(found))
     for item in legend_items(found):
-        by_items.send(memoryview(item.stream).cast("H"))
+        by_items.send(np.frombuffer(item.stream, np.uint16))
     assert (drawn.words == by_items.words).all()
     assert drawn.words.any()
     viewer, display = Viewer(scene, Ramtek9300(), tmp_path), Ramtek9300()
