@@ -18,6 +18,7 @@ from autocolor.files.reading import read_head
 from autocolor.files.repair.placement import PLAIN, Placement
 from autocolor.files.repair.polygons import MeshReport
 from autocolor.logs import logger_of, timed
+from autocolor.scene.mesh import Mesh
 
 LOG: Final = logger_of(__name__)
 
@@ -32,7 +33,8 @@ class MeshFormat:
 
     `keys` are the keys of a `[[mesh]]` table that name its files; `suffixes` are the suffixes of the first
     file, in lower case. A folder that contains all the files `in_folder` is a mesh of this format. `begins`
-    tells from the first bytes of a file whether it may have this format.
+    tells from the first bytes of a file whether it may have this format. `written` is the content of a file
+    of this format that holds a mesh, where it can be written.
     """
 
     name: str
@@ -41,6 +43,7 @@ class MeshFormat:
     keys: tuple[str, ...] = ("file",)
     in_folder: tuple[str, ...] = ()
     begins: Callable[[bytes], bool] | None = None
+    written: Callable[[Mesh], bytes] | None = None
 
 
 _REGISTERED: Final[list[MeshFormat]] = []
