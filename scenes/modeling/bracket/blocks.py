@@ -31,7 +31,8 @@ class Plan:
         """The edges that belong to one quad only, (edges, 2), in the direction of that quad."""
         edges = np.stack([self.quads, np.roll(self.quads, -1, axis=1)], axis=2).reshape(-1, 2)
         _, place, count = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
-        return edges[place[count == 1]]
+        found: Indices = edges[place[count == 1]]
+        return found
 
 
 def plan_of(blocks: dict[str, Floats]) -> Plan:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from autocolor.arrays import Floats, Indices, chunks
 
-LUMPS_ALONG: Final = 10
+LUMPS_ALONG: Final = 8
 """The lumps along the longest side of the solid."""
 
 AT_ONCE: Final = 1024
@@ -61,4 +61,5 @@ class CoarseSpace:
             [np.bincount(self.lumps, component, len(self.inverse) // 6) for component in own.T], axis=1
         )
         answer = (self.inverse @ sums.reshape(-1)).reshape(-1, 6)
-        return np.einsum("nki,ni->nk", self.motions, answer[self.lumps]).reshape(-1)
+        moved: Floats = np.einsum("nki,ni->nk", self.motions, answer[self.lumps])
+        return moved.reshape(-1)

@@ -123,7 +123,7 @@ def _rise(plan: Plan) -> Floats:
 
 
 def _inward_of_outline(plan: Plan) -> tuple[Indices, Floats]:
-    """The points of the outline that y = 0 and the holes have no part in, and the directions into the plan."""
+    """The points of the outline but for y = 0 and the holes, and the directions into the plan, (n, 2)."""
     edges = plan.outline
     ends = plan.points[edges]
     rings = [plan.blocks[name][0] for name in ("front", "back", "bearing")]

@@ -1,7 +1,7 @@
 """Write the mesh files of the bracket: `python -m scenes.modeling.bracket.make [FOLDER]`.
 
-bracket.ply holds the bracket with its parts and, at each node, the stress in MPa under the load of its bearing;
-floor.obj is what it stands on. Each run makes the same files.
+bracket.ply holds the bracket with its parts and, at each node, the stress in MPa under the load of its
+bearing; floor.obj is what it stands on. Each run makes the same files.
 """
 
 from __future__ import annotations

@@ -6,7 +6,6 @@ the top of the upright; the second is y, from 0 in the middle to the right side.
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -19,7 +18,6 @@ from scenes.modeling.bracket.measures import (
     BOSS,
     CORNER,
     COUNTERBORE,
-    FILLET,
     HALF_WIDTH,
     HOLE,
     LENGTH,
@@ -29,13 +27,12 @@ from scenes.modeling.bracket.measures import (
     SEAT,
     TAPER,
     TOP,
-    UPRIGHT,
 )
 from scenes.modeling.bracket.profile import BEND, RIB_BEGINS, height_of_rib, s_of_x, s_of_z
 from scenes.modeling.bracket.roots import FOOT, FOOT_ANGLES, distances, scale_of_roots
 
 FLAT: Final = 2.0
-"""The width of the flat cells beyond a fillet: they belong to its part, so that its normals end as those of a plane."""
+"""The width of the flat cells beyond a fillet. They are of its part, so that its normals end as a plane's."""
 
 CENTER: Final = (float(s_of_z(AXIS)), 0.0)
 """The axis of the bearing."""
@@ -51,8 +48,11 @@ SIDE_CELLS: Final = 7
 TOP_CELLS: Final = 30
 
 RING_RADII: Final = np.array(
-    [BORE, (BORE + SEAT) / 2, SEAT, SEAT + 3, BOSS - 3]
-    + [*(BOSS + distances(FOOT_ANGLES)[::-1]), BOSS + ROOT + FLAT]
+    [
+        *(BORE, (BORE + SEAT) / 2, SEAT, SEAT + 3, BOSS - 3),
+        *(BOSS + distances(FOOT_ANGLES)[::-1]),
+        BOSS + ROOT + FLAT,
+    ]
 )
 """The rings around the bearing's axis: the bore, the seat of the bearing, the boss's foot and its fillet."""
 SEAT_RING: Final = 2
@@ -108,12 +108,12 @@ def _strip(s: Floats) -> Floats:
 
 
 def half_width(s: Floats) -> Floats:
-    """The y of the right side at places below the round top: it leans from `TAPER` on until it touches the top."""
+    """The y of the right side at places below the round top, which it leans to from `TAPER` on."""
     start = float(s_of_z(TAPER))
     across, up = HALF_WIDTH, CENTER[0] - start
     apart = np.hypot(across, up)
     lean = np.arctan2(across, up) - np.arcsin(TOP / apart)
-    return HALF_WIDTH - np.maximum(s - start, 0) * np.tan(lean)
+    return np.asarray(HALF_WIDTH - np.maximum(s - start, 0) * np.tan(lean))
 
 
 def _side_of_top() -> Floats:

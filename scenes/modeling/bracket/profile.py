@@ -38,7 +38,7 @@ def s_of_z(z: Floats | float) -> Floats:
 
 
 def inner(s: Floats) -> Floats:
-    """The points x, z of the inner curve, by its length: (..., 2). It is the top of the base and the front of the upright."""
+    """The points x, z of the inner curve by its length, (..., 2): top of the base, front of the upright."""
     angle = np.clip(s, 0, BEND) / FILLET
     x = UPRIGHT + FILLET - FILLET * np.sin(angle) - np.minimum(s, 0)
     z = BASE + FILLET - FILLET * np.cos(angle) + np.maximum(s - BEND, 0)
@@ -52,7 +52,7 @@ def inward(s: Floats) -> Floats:
 
 
 def outer(s: Floats) -> Floats:
-    """The points x, z of the outer curve across from those of the inner one: (..., 2). Its corner is sharp."""
+    """The points x, z of the outer curve across from those of the inner one, (..., 2); it has a corner."""
     turn = np.clip(s, 0, BEND) / BEND
     x = (UPRIGHT + FILLET) * (1 - np.minimum(2 * turn, 1)) - np.minimum(s, 0)
     z = (BASE + FILLET) * np.maximum(2 * turn - 1, 0) + np.maximum(s - BEND, 0)
@@ -67,10 +67,10 @@ def edge_of_rib(s: Floats) -> Floats:
     """The points x, z of the rib's edge across from places of the inner curve: (..., 2)."""
     share = ((s - RIB_BEGINS) / (RIB_ENDS - RIB_BEGINS))[..., None]
     first, second, third = LINE_OF_RIB
-    return (1 - share) ** 2 * first + 2 * share * (1 - share) * second + share**2 * third
+    return np.asarray((1 - share) ** 2 * first + 2 * share * (1 - share) * second + share**2 * third)
 
 
 def height_of_rib(s: Floats) -> Floats:
     """The distance from the inner curve to the rib's edge; in front of the rib that of its nose."""
     s = np.maximum(s, RIB_BEGINS)
-    return np.linalg.norm(edge_of_rib(s) - inner(s), axis=-1)
+    return np.asarray(np.linalg.norm(edge_of_rib(s) - inner(s), axis=-1))

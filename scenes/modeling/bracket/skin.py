@@ -8,15 +8,16 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, Indices
-from scenes.modeling.bracket.columns import PLATE, SEAT_LAYERS
-from scenes.modeling.bracket.measures import PROJECTION, UPRIGHT
+from scenes.modeling.bracket.measures import AXIS, BOSS, SEAT
+from scenes.modeling.bracket.plan import COUNTERBORE_RING
 from scenes.modeling.bracket.solid import Solid
 
 FACES: Final = np.array([(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)])
 """The faces of a hexahedron, the lower, the upper and the sides, each wound counterclockwise from outside."""
 
 PARTS: Final = (
-    "base", "upright", "fillet", "rib", "boss", "boss_faces", "bore", "seat", "counterbores", "holes", "underside",
+    "base", "upright", "fillet", "rib", "boss", "boss_faces", "bore", "seat", "counterbores", "holes",
+    "underside", "back",
 )  # fmt: skip
 
 
@@ -41,37 +42,35 @@ def half_skin(solid: Solid) -> Skin:
 
 
 def _parts(solid: Solid, hexahedra: Indices, faces: Indices, corners: Indices) -> Indices:
-    """The part of each face, by what its quad in the plan belongs to and where it looks."""
+    """The part of each face, by what its quad in the plan belongs to and by where it looks."""
     zone = np.array(solid.zones)[solid.quads[hexahedra]]
     layer = solid.layers[hexahedra]
-    part = zone.copy().astype("U12")
-    part[zone == "rib_foot"] = "rib"
-    part[zone == "boss_foot"] = "boss"
-
-    is_above, is_below = faces == 1, faces == 0
-    is_side = faces > 1
-    part[zone == "counterbore"] = "holes"
-    part[(zone == "counterbore") & is_above] = "counterbores"
-    # Faces beside a ring of the plan: the nodes of the walls of counterbores are its own.
-    ring = np.zeros(len(solid.plan.points), np.bool_)
-    for hole in ("front", "back"):
-        ring[solid.plan.blocks[hole][2]] = True
-    part[is_side & ring[solid.columns[corners]].all(axis=1)] = "counterbores"
-    # The boss: what looks forward or backward, and all chamfers, are machined.
-    is_boss = zone == "boss"
-    inside = np.hypot(solid.nodes[corners, 1], solid.nodes[corners, 2] - 92.0).max(axis=1) < 20
-    part[is_boss & (is_above | is_below)] = "boss_faces"
-    part[is_boss & is_side & (layer < 0)] = "boss_faces"
-    part[is_boss & is_side & (layer == layer.max())] = "boss_faces"
-    part[is_boss & is_side & inside] = "seat"
-    part[(zone == "seat")] = "bore"
-    part[(zone == "seat") & is_above] = "seat"
-    part[(zone == "seat") & is_below] = "boss_faces"
-    # What the bracket stands on, and the back.
     middle = solid.nodes[corners].mean(axis=1)
-    part[is_below & (layer == 0) & (middle[:, 2] < 1e-6)] = "underside"
-    part[is_below & (layer == 0) & (middle[:, 2] > 1e-6)] = "upright"
-    return np.array([PARTS.index(name) for name in part.tolist()])
+    is_below, is_above, is_side = faces == 0, faces == 1, faces > 1
+    rings = [solid.plan.blocks[hole][COUNTERBORE_RING] for hole in ("front", "back")]
+    is_ring = np.isin(solid.columns[corners], np.concatenate(rings)).all(axis=1)
+    is_boss, is_seat = zone == "boss", zone == "seat"
+    is_inside = np.hypot(middle[:, 1], middle[:, 2] - AXIS) < (SEAT + BOSS) / 2
+    # Later rules go before earlier ones.
+    rules = {
+        "base": zone == "base",
+        "upright": zone == "upright",
+        "fillet": zone == "fillet",
+        "rib": (zone == "rib") | (zone == "rib_foot"),
+        "boss": is_boss | (zone == "boss_foot"),
+        # What is cut of the boss: its faces with their chamfers, and all of it behind.
+        "boss_faces": (is_boss & (~is_side | (layer < 0) | (layer == layer.max()))) | (is_seat & is_below),
+        "bore": is_seat & is_side,
+        "seat": (is_boss & is_side & is_inside) | (is_seat & is_above),
+        "holes": zone == "counterbore",
+        "counterbores": ((zone == "counterbore") & is_above) | (is_side & is_ring),
+        "underside": is_below & (layer == 0) & (middle[:, 2] < 1e-6),
+        "back": is_below & (layer == 0) & (middle[:, 2] >= 1e-6),
+    }
+    parts = np.zeros(len(corners), np.intp)
+    for name, holds in rules.items():
+        parts[holds] = PARTS.index(name)
+    return parts
 
 
 def both_halves(nodes: Floats, skin: Skin) -> tuple[Floats, Indices, Indices, Indices]:

@@ -1,7 +1,7 @@
 """The stress in the bracket under its bearing, computed: bolts hold the base, a shaft loads the boss.
 
-Assumed: cast steel, a shaft that presses down and pushes back against the shoulder of its seat, and bolts whose
-heads and shanks do not move. The base may lift off what it stands on.
+Assumed: cast steel, a shaft that presses down and pushes back against the shoulder of its seat, and bolts
+whose heads do not move. Around them the base may lift off what it stands on.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats
-from scenes.modeling.bracket.elasticity import Material, displacements, node_stresses, von_mises
+from scenes.modeling.bracket.elasticity import displacements, node_stresses, von_mises
+from scenes.modeling.bracket.elements import Material
 from scenes.modeling.bracket.measures import AXIS, SEAT
 from scenes.modeling.bracket.skin import PARTS, Skin
 from scenes.modeling.bracket.solid import COUNTERBORE_LEVEL, Solid
@@ -29,7 +30,7 @@ def stress(solid: Solid, skin: Skin) -> Floats:
     # The other half pulls back what would cross the middle.
     held[np.abs(solid.nodes[:, 1]) < 1e-9, 1] = True
     is_floor = (solid.levels[skin.corners] == COUNTERBORE_LEVEL).all(axis=1)
-    is_bolted = (skin.parts == PARTS.index("holes")) | (skin.parts == PARTS.index("counterbores")) & is_floor
+    is_bolted = (skin.parts == PARTS.index("counterbores")) & is_floor
     held[skin.corners[is_bolted]] = True
     moved = displacements(solid.nodes, solid.corners, STEEL, bearing_load(solid, skin), held)
     return von_mises(node_stresses(solid.nodes, solid.corners, STEEL, moved))
