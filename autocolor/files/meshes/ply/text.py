@@ -47,7 +47,7 @@ class Block(NamedTuple):
 def read_text(data: bytes, header: Header, place: str) -> PlyTables:
     """The elements of a file; `place` is its name in messages. Raises InputError."""
     if problem := text_problem(data):
-        raise InputError(f"{place}: a PLY file in text {problem}")
+        raise InputError(f"{place}: an ascii PLY file {problem}")
     body = data[header.length :]
     if b"\r" in body:
         body = body.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
