@@ -162,7 +162,10 @@ def _element(words: list[bytes], where: str, before: list[str]) -> tuple[str, in
             f"{where}: the name of an element must be unique, not repeated: {name!r}; rename one"
         )
     if len(before) >= MOST_ELEMENTS:
-        raise InputError(f"{where}: a header must have at most {MOST_ELEMENTS} elements, not more; leave out what is not needed")
+        raise InputError(
+            f"{where}: a header must have at most {MOST_ELEMENTS} elements, not more; leave out what is not"
+            " needed"
+        )
     return name, int(words[2])
 
 

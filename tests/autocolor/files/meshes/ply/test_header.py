@@ -138,7 +138,8 @@ def test_a_header_without_a_line_at_its_end_is_read_where_there_are_no_data() ->
         ),
         (
             text("ply", *(f"element e{number} 1" for number in range(101))),
-            "a.ply, line 102: a header must have at most 100 elements, not more; leave out what is not needed",
+            "a.ply, line 102: a header must have at most 100 elements, not more; leave out what is not"
+            " needed",
         ),
         (
             text("ply", "element e 1", *(f"property int p{number}" for number in range(1001))),

@@ -22,12 +22,13 @@ TYPES = {"char": "b", "uint8": "B", "short": "h", "uint16": "H", "int": "i", "ui
 
 
 def cube(order: str = "", number: str = "double", corner: str = "int", feed: str = "\n") -> bytes:
-    """A cube with the stress x + y at its nodes, and the quality of its quads, which stands before corners."""
+    """A cube with the stress x + y at its nodes, and the quality of its quads before their corners."""
     name = {"": "ascii", "<": "binary_little_endian", ">": "binary_big_endian"}[order]
     lines = [
         "ply", f"format {name} 1.0", "element vertex 8",
         *(f"property {number} {axis}" for axis in "zyx"), "property short stress",
-        "element face 6", "property uchar quality", f"property list uchar {corner} vertex_indices", "end_header",
+        "element face 6", "property uchar quality",
+        f"property list uchar {corner} vertex_indices", "end_header",
     ]  # fmt: skip
     rows: list[tuple[str, tuple[int, ...]]] = [
         (TYPES[number] * 3 + "h", (z, y, x, x + y)) for x, y, z in NODES
@@ -56,11 +57,10 @@ def is_read_or_refused(path: Path, data: bytes) -> bool:
     begin = time.perf_counter()
     try:
         mesh = read(path, data).mesh
-        assert np.isfinite(mesh.coordinates).all()
-        assert not any(np.isinf(each.values).any() for each in mesh.scalars)
+        sound = np.isfinite(mesh.coordinates).all() and mesh.node_numbers.max() < len(mesh.coordinates)
     except InputError as error:
-        assert all(problem.startswith(path.name) for problem in error.problems)
-    return time.perf_counter() - begin < 2
+        sound = all(problem.startswith(path.name) for problem in error.problems)
+    return bool(sound) and time.perf_counter() - begin < 2
 
 
 @pytest.mark.parametrize("order", ["", "<", ">"])

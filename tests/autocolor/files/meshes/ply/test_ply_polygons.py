@@ -38,15 +38,16 @@ def read(
     return ply_polygons(PlyTables(tables), comments, "a.ply", "a")
 
 
-def refusal(**elements: dict[str, Any]) -> str:
+def refusal(elements: dict[str, dict[str, Any]]) -> str:
     with pytest.raises(InputError) as caught:
-        read(**elements)
+        read(NONE, **elements)
     return str(caught.value)
 
 
 def scalars(polygons: Polygons) -> list[tuple[str, str, list[float]]]:
     def shown(scalar: MeshScalar) -> list[float]:
-        return np.where(np.isnan(scalar.values), -9, scalar.values).tolist()
+        values: list[float] = np.where(np.isnan(scalar.values), -9, scalar.values).tolist()
+        return values
 
     return [(each.name, each.of, shown(each)) for each in polygons.scalars]
 
@@ -213,4 +214,4 @@ def test_numbers_that_are_no_parts_are_scalars(monkeypatch: pytest.MonkeyPatch) 
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_refused(elements: dict[str, Any], sentence: str) -> None:
-    assert refusal(**elements) == sentence
+    assert refusal(elements) == sentence
