@@ -108,11 +108,11 @@ def test_a_count_that_the_file_has_no_room_for_is_refused_before_anything_is_mad
     [("u1", b"\1\0\xff\0"), ("i4", b"\1\0\0\0\0\xff\xff\xff\x7f"), ("u8", b"\0" * 8 + b"\xff" * 8)],
 )
 def test_lists_that_the_file_has_no_room_for_are_refused(code: str, data: bytes) -> None:
-    element = Element("face", 2, (Property("of_it", "u1", code),))
+    element = Element("vertex", 2, (Property("of_it", "u1", code),))
     with pytest.raises(InputError) as refusal:
         table(element, data)
     assert str(refusal.value) == (
-        f"a.ply: 2 elements 'face' must have all their lists before the end, not after it; {ENDING}"
+        f"a.ply: 2 elements 'vertex' must have all their lists before the end, not after it; {ENDING}"
     )
 
 
@@ -131,3 +131,24 @@ def test_a_row_longer_than_a_type_of_numpy_is_walked(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(binary_module, "LONGEST_ROW", 2)
     element = Element("face", 2, (Property("of_it", "u1", "u1"),))
     assert values(table(element, b"\2\1\2\2\3\4").elements["face"].columns["of_it"]) == [[1, 2, 3, 4], [2, 2]]
+
+
+def test_lists_of_an_element_that_is_not_used_are_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(binary_module, "ROWS_AT_ONCE", 2)
+    other = Element("other", 5, (Property("of_it", "u1", "u1"),))
+    vertex = Element("vertex", 1, (Property("x", "u1"),))
+    data = b"\1\0\2\0\0\0\0\1\0\7"
+    found = read_binary(data, Header("<", (other, vertex), (), 0, 1), "a.ply")
+    assert found.elements["other"].columns == {}
+    assert values(found.elements["vertex"].columns["x"]) == [7]
+    assert found.skipped == ()
+
+
+def test_faces_without_corners_on_the_average_are_refused() -> None:
+    face = Element("face", 5, (Property("vertex_indices", "u1", "u1"),))
+    assert (
+        len(values(table(face, b"\0\0\0\0\5\0\1\2\3\4").elements["face"].columns["vertex_indices"])[1]) == 5
+    )
+    with pytest.raises(InputError) as refusal:
+        table(face, b"\0\0\0\0\4\0\1\2\3")
+    assert str(refusal.value) == f"a.ply: 5 elements 'face' must have at least 10 bytes, not 9; {ENDING}"

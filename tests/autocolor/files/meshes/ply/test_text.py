@@ -153,3 +153,17 @@ def test_what_is_written_in_text_is_read(rows: list[tuple[float, list[int]]], bl
         [number for _, of_it in rows for number in of_it],
         [len(of_it) for _, of_it in rows],
     ]
+
+
+def test_faces_without_corners_on_the_average_are_refused() -> None:
+    header = "ply\nformat ascii 1.0\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    assert values(tables(header + "0\n0\n0\n4 0 1 2 3\n").elements["face"].columns["vertex_indices"])[1] == [
+        0,
+        0,
+        0,
+        4,
+    ]
+    assert refusal(header + "0\n0\n0\n2 0 1") == (
+        "a.ply: 4 elements 'face' must have at least 16 bytes, not 12; the file is cut short or its header is"
+        " wrong, export it again"
+    )
