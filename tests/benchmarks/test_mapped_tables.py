@@ -30,9 +30,8 @@ def test_memory_that_was_given_back_still_counts_as_the_peak() -> None:
         assert peak() > 20
 
 
-@pytest.mark.parametrize(
-    ("times", "megabytes", "verdicts"), [(12, 600, "met met"), (12.1, 601, "MISSED MISSED")]
-)
-def test_a_target_is_missed_by_what_is_above_it(times: float, megabytes: float, verdicts: str) -> None:
-    rows = mapped_tables.targets(times, megabytes)
-    assert " ".join(row["verdict"] for row in rows) == verdicts
+def test_a_target_is_told_from_the_two_meshes_that_were_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps = [{"render": {"frame s": {"median": seconds}, "MB": 10 * seconds}} for seconds in (0.5, 2.0)]
+    monkeypatch.setattr(mapped_tables, "measured_once", lambda: {"steps": steps})
+    assert mapped_tables.mapped_times().median == 4
+    assert mapped_tables.mapped_memory().median == 20
