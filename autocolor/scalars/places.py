@@ -11,7 +11,7 @@ from autocolor.scalars.ranges import UNIT, Limits, ScalarValues, kept, widened, 
 from autocolor.scene.geometry.used_rows import used_rows
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalars.scalar import Scalar
-from autocolor.visibility.visible_points import PIXELS_AT_ONCE, VisiblePoints
+from autocolor.visibility.visible_points import PIXELS_AT_ONCE, POINT, VisiblePoints
 
 
 def coordinate(axis: int, mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
@@ -38,9 +38,12 @@ def unit_vector(scalar: Scalar) -> Floats:
 
 def _along(direction: Floats, points: VisiblePoints) -> Singles:
     """The component of each point along a unit vector."""
+    toward = points.camera_direction((direction[0], direction[1], direction[2])) * points.unit
+    start = toward @ points.middle + direction @ np.array(points.view.eye)
     values = np.empty(len(points.pixels), np.float32)
     for chunk in chunks(len(values), PIXELS_AT_ONCE):
-        values[chunk] = direction @ points.world_rows(chunk)
+        right, down, ahead = points.rows[POINT, chunk].astype(np.float64)
+        values[chunk] = toward[0] * right + toward[1] * down + toward[2] * ahead + start
     return values
 
 
