@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Final
 
 import numpy as np
 
 from autocolor.arrays import Floats, Singles, chunks
-from autocolor.scalars.ranges import UNIT, Limits, ScalarValues, kept, widened, within
+from autocolor.scalars.ranges import UNIT, Limits, ScalarValues, kept, size_of, widened, within
 from autocolor.scene.geometry.used_rows import used_rows
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.visibility.visible_points import PIXELS_AT_ONCE, POINT, VisiblePoints
 
+LEAST: Final = 1e-6
+"""Assumed: the share of an object's size that is rounding, as in the height of a level plate."""
+
 
 def coordinate(axis: int, mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
     """A world coordinate; the range is that of the nodes that polygons use."""
     low, high = mesh.bounds
-    return within(_along(np.eye(3)[axis], points), widened(float(low[axis]), float(high[axis])))
+    limits = widened(float(low[axis]), float(high[axis]), LEAST * size_of(mesh))
+    return within(_along(np.eye(3)[axis], points), limits)
 
 
 def distance(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
@@ -55,4 +60,4 @@ def _range_along(direction: Floats, mesh: Mesh) -> Limits:
         values = (direction @ mesh.coordinates.T[:, chunk])[used[chunk]]
         if len(values):
             ends.append((float(values.min()), float(values.max())))
-    return widened(min(low for low, _ in ends), max(high for _, high in ends))
+    return widened(min(low for low, _ in ends), max(high for _, high in ends), LEAST * size_of(mesh))
