@@ -19,7 +19,8 @@ from benchmarks.machine import heading, machine
 
 RESULTS = Path(__file__).parent / "results"
 PARTS = (
-    "targets", "scaling", "start", "steps", "movement", "events", "reading", "mapped_tables", "form",
+    "targets", "scaling", "start", "steps", "scalars", "movement", "events", "reading", "mapped_tables",
+    "form",
 )  # fmt: skip
 """Modules with `measure` and `text`."""
 PROGRAMS = {"display": "benchmarks.display", "ports": "benchmarks.host_ports"}
