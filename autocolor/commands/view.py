@@ -72,7 +72,7 @@ def view(
         folder, session = chosen_session(recover)
         show(session.history, full_screen, fit, folder)
     elif source is not None:
-        from autocolor.files.recent import note_file
+        from autocolor.files.state.recent import note_file
         from autocolor.journal.history import History
         from autocolor.journal.places import Source, place_of
 

@@ -15,9 +15,9 @@ from typing import Final
 from autocolor.errors import InputError, UsageError
 from autocolor.files.openable import FOLDER, Openable, kind_of, openables_of, stays_within
 from autocolor.files.paths import SCENE_FILE
-from autocolor.files.recent import recent_files
 from autocolor.files.repair.placement import UPS
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig
+from autocolor.files.state.recent import recent_files
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.areas import Area

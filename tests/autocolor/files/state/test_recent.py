@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import WriteError
-from autocolor.files import recent
-from autocolor.files.file_lock import lock_file
-from autocolor.files.recent import (
+from autocolor.files.state import recent
+from autocolor.files.state.file_lock import lock_file
+from autocolor.files.state.recent import (
     COLORS,
     FILES,
     LOCK,
@@ -25,7 +25,7 @@ from autocolor.files.recent import (
     recent_colors,
     recent_files,
 )
-from autocolor.files.state_folder import state_folder
+from autocolor.files.state.state_folder import state_folder
 
 ROOT = Path(__file__).parents[3]
 
@@ -162,7 +162,7 @@ def test_a_program_that_hangs_holds_no_other_up(state: Path) -> None:
 
 def test_two_programs_at_once_lose_nothing() -> None:
     code = (
-        "import sys; from autocolor.files.recent import note_color\n"
+        "import sys; from autocolor.files.state.recent import note_color\n"
         "for number in range(6): note_color((int(sys.argv[1]), number, 0))"
     )
     programs = [subprocess.Popen([sys.executable, "-c", code, each], cwd=ROOT) for each in ("1", "2")]

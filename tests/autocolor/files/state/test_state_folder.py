@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import OutputError
-from autocolor.files.state_folder import state_folder
+from autocolor.files.state.state_folder import state_folder
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.files.file_lock import lock_file
+from autocolor.files.state.file_lock import lock_file
 
 ROOT = Path(__file__).parents[3]
 
@@ -24,7 +24,7 @@ def test_one_has_the_lock_until_it_is_closed(tmp_path: Path) -> None:
 
 def test_a_program_that_is_killed_has_no_lock(tmp_path: Path) -> None:
     code = (
-        "import sys; from pathlib import Path; from autocolor.files.file_lock import lock_file;"
+        "import sys; from pathlib import Path; from autocolor.files.state.file_lock import lock_file;"
         "lock_file(Path(sys.argv[1])); print('locked', flush=True); sys.stdin.read()"
     )
     path = tmp_path / "lock"

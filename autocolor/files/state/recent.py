@@ -16,9 +16,9 @@ from typing import Final
 
 from autocolor.checks import Color
 from autocolor.errors import AutocolorError
-from autocolor.files.file_lock import lock_file
 from autocolor.files.reading import read_bytes
-from autocolor.files.state_folder import state_folder
+from autocolor.files.state.file_lock import lock_file
+from autocolor.files.state.state_folder import state_folder
 from autocolor.files.writing import write_atomically
 from autocolor.scene.columns.color_kinds import IN_FULL, ColorKind, in_digits
 
