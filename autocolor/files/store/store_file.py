@@ -25,11 +25,11 @@ from autocolor.files.store.connections import (
     refusals_of_writing,
 )
 from autocolor.files.store.foreign_keys import broken_references
-from autocolor.files.store.found_tables import found_tables
+from autocolor.files.store.found_tables import FoundTables, found_tables
 from autocolor.files.store.mesh_rows import insert_mesh
 from autocolor.files.store.permissions import authorizer, restoring
 from autocolor.files.store.scene_rows import insert_rows, report_of
-from autocolor.files.store.schema import APPLICATION, DEFINITIONS, ROW_TABLES, VERSION
+from autocolor.files.store.schema import APPLICATION, DEFINITIONS, ROW_TABLES, VALUES, VERSION
 from autocolor.files.store.sql_columns import quoted
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of, timed
@@ -65,10 +65,11 @@ def report_in(
     try:
         with refusals(file, clock):
             tables = found_tables(connection)
-            problems = broken_references(connection, tables)
-            if problems:
-                raise InputError(problems)
-            return report_of(connection, tables, name or "scene", surfaces)
+            _refuse_broken(connection, tables, ROW_TABLES)
+            report = report_of(connection, tables, name or "scene", surfaces)
+            # Of a node that is missing, the polygons tell first.
+            _refuse_broken(connection, tables, VALUES.values())
+            return report
     except InputError as error:
         prefix = f"{file}: "
         raise InputError(
@@ -77,6 +78,13 @@ def report_in(
     finally:
         connection.set_authorizer(None)
         connection.set_progress_handler(None, 0)
+
+
+def _refuse_broken(connection: sqlite3.Connection, tables: FoundTables, names: Iterable[str]) -> None:
+    """Raise InputError if a row of one of these tables refers to a row that is not there."""
+    problems = broken_references(connection, tables, names)
+    if problems:
+        raise InputError(problems)
 
 
 def store_of(scene: Scene) -> sqlite3.Connection:
