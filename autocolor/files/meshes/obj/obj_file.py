@@ -19,9 +19,10 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
+from autocolor.files.meshes.formats import PARTS, MeshFormat, register
 from autocolor.files.meshes.obj.lines import read_obj_lines
 from autocolor.files.meshes.obj.materials import read_materials
+from autocolor.files.meshes.obj.obj_text import obj_text
 from autocolor.files.meshes.obj.plain import read_plain_obj
 from autocolor.files.meshes.obj.statements import Statements
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
@@ -74,4 +75,6 @@ def _begins(head: bytes) -> bool:
     return NODE_LINE.search(head) is not None and b"\0" not in head
 
 
-OBJ: Final = register(MeshFormat("OBJ", read_obj, (".obj",), begins=_begins))
+OBJ: Final = register(
+    MeshFormat("OBJ", read_obj, (".obj",), begins=_begins, written=obj_text, holds=frozenset((PARTS,)))
+)
