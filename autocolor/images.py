@@ -12,12 +12,13 @@ from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import check_surfaces, display_image
 from autocolor.scene.scene import Scene
+from autocolor.sending import shown_colors
 
 
 def image(scene: Scene, picture: Picture) -> Bytes:
     """The picture in the colors of a scene, (lines, elements, 3) uint8: red, green, blue.
 
-    The colors are the same as on a display. Raises InputError if an intensity is not finite, or
+    The colors are the same as on a display, without the legend of a scalar. Raises InputError if an intensity is not finite, or
     if the surfaces of the picture are not those of the scene.
     """
     check_surfaces(scene, picture)
@@ -25,7 +26,9 @@ def image(scene: Scene, picture: Picture) -> Bytes:
 
 
 def save_image(path: str | PathLike[str], scene: Scene, picture: Picture, *, overwrite: bool = False) -> None:
-    """Write the picture in the colors of a scene to a PNG file, atomically.
+    """Write what a display shows of the picture to a PNG file, atomically: with the legend of a scalar.
+
+    Without a legend it is the same as `image`.
 
     Raises UsageError for a name that ends as another kind of file does; OutputError if the file exists and
     `overwrite` is false, or if it cannot be created; WriteError if writing fails.
@@ -33,4 +36,5 @@ def save_image(path: str | PathLike[str], scene: Scene, picture: Picture, *, ove
     from ramtek_emu.png import png_bytes
 
     check_suffix(path, ".png", "an image")
-    write_atomically(path, png_bytes(image(scene, picture)), overwrite=overwrite)
+    check_surfaces(scene, picture)
+    write_atomically(path, png_bytes(shown_colors(display_image(scene, picture))), overwrite=overwrite)

@@ -6,11 +6,13 @@
 | a light's position, aim, concentration, flaps, cone | that light's two planes, the sum |
 | a surface's reflection model | all lights, for the chunks of points that contain the surface; the sum |
 | a light's intensity or switch, ambient, D, S | the sum |
+| the scalar's name, direction, stripes | its values |
 | anything else | nothing |
 """
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -25,7 +27,10 @@ from autocolor.errors import UsageError
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.logs import logger_of, timed
+from autocolor.scalars.scalar_values import scalar_values
 from autocolor.scene.columns.column import Tier
+from autocolor.scene.columns.rows import cost, with_values
+from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.scene import Scene, check_scene, costs_at_least
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
@@ -103,11 +108,44 @@ def rendering(
             points = ALGORITHMS[algorithm](
                 scene.mesh, scene.view, scene.surface_number_of_part, lines, elements, one_sided
             )
-    previous = None if before is None else Previous(before.scene, before.picture)
-    with timed(LOG, "illumination"):
-        picture = illuminate(scene, points, previous)
+    if before is not None and _is_lit_the_same(before.scene, scene):
+        picture = before.picture
+    else:
+        previous = None if before is None else Previous(before.scene, before.picture)
+        with timed(LOG, "illumination"):
+            picture = illuminate(scene, points, previous)
+    picture = _with_scalar(picture, scene, points, before)
     LOG.debug("%r", picture)
     return Rendering(scene, points, picture)
+
+
+def _with_scalar(picture: Picture, scene: Scene, points: VisiblePoints, before: Rendering | None) -> Picture:
+    """The picture with the values of the scene's scalar, those of the earlier picture if they are the same.
+
+    `before` is None, or has the same visible points.
+    """
+    values, limits = None, None
+    if scene.scalar is not None:
+        old = None if before is None else before.scene.scalar
+        if before is not None and old is not None and _has_the_same_values(old, scene.scalar):
+            values, limits = before.picture.scalar_values, before.picture.scalar_limits
+        else:
+            with timed(LOG, "scalar values"):
+                values, limits = scalar_values(scene.mesh, scene.scalar, points)
+    if values is picture.scalar_values:
+        return picture
+    return dataclasses.replace(picture, scalar_values=values, scalar_limits=limits)
+
+
+def _has_the_same_values(old: Scalar, new: Scalar) -> bool:
+    """Whether two scalars have the same values at the same points of the same mesh."""
+    costs = cost(old, new)
+    return costs is None or costs < Tier.MIX
+
+
+def _is_lit_the_same(old: Scene, new: Scene) -> bool:
+    """Whether two scenes with the same visible points differ in no more than their scalars."""
+    return not costs_at_least(with_values(old, {"scalar": new.scalar}), new, Tier.MIX)
 
 
 def _sees_the_same(old: Scene, new: Scene) -> bool:

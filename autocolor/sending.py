@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
+
+import numpy as np
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import shown
 from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
+from autocolor.mapping.legend import GROUND, INK, Legend, legend
 from autocolor.mapping.level_ranges import WORDS
 from autocolor.scene.scene import Scene
-from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, instructions
+from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, Ramtek9300, instructions
 
 EntryEncoder = Callable[[int, Bytes], Words]
 """Makes the instruction that loads entries, (n, 3) uint8, from a first one on."""
@@ -64,11 +68,35 @@ def encoder_of_entries(display: HostPort) -> EntryEncoder:
 
 
 def send_image(display: HostPort, image: DisplayImage, before: DisplayImage | None = None) -> None:
-    """Send the entries and words that differ from `before`; without that, a reset and everything."""
+    """Send the entries and words that differ from `before`; without that, a reset and everything.
+
+    A legend is drawn over the words: again if they are sent, and with them if it is another one.
+    """
     encode = encoder_of_entries(display)
     if before is None:
         display.send(instructions.reset())
     for first, entries in [(0, image.entries)] if before is None else image.loads_after(before):
         display.send(encode(first, entries))
-    if before is None or before.words is not image.words:
+    key, known = legend(image), None if before is None else legend(before)
+    if before is None or before.words is not image.words or key != known:
         display.send(instructions.write_image(image.words))
+        if key is not None:
+            display.send(drawn_legend(key))
+
+
+def shown_colors(image: DisplayImage) -> Bytes:
+    """The colors that a display of its size shows of an image, (lines, elements, 3) uint8, with the legend."""
+    if legend(image) is None:
+        return image.colors
+    lines, elements = image.words.shape
+    display = Ramtek9300(dataclasses.replace(GMR_9300, lines=lines, elements=elements))
+    send_image(display, image)
+    return display.field()
+
+
+def drawn_legend(key: Legend) -> Words:
+    """The instructions that draw a legend."""
+    areas = [instructions.erase(swatch[:4], swatch.word) for swatch in key.swatches]
+    texts = [instructions.write_text(each.text, each.left, each.top, INK, GROUND) for each in key.labels]
+    drawn: Words = np.concatenate([*areas, *texts])
+    return drawn

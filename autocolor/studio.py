@@ -8,8 +8,14 @@ must be recomputed and sent.
 |---|---|
 | mesh, view, parts, lights, ambient, D, S, reflection model, two_sided | all words |
 | mapping, scaling, exposure, dither, numbers of levels | all words, the entries that differ |
+| the name of the scalar, what it is computed with | all words |
+| limits, bands and shades of the scalar, the surfaces that it colors | all words, the entries that differ |
 | object color, light color, blend, light percentage | the entries of one range, no words |
+| color scale, the colors below, above and of missing values | the entries of the colored surfaces, no words |
 | contrast, background | the entries that differ, no words |
+| the legend switched on or off | all words |
+
+The legend of a scalar is drawn over the words, after them and again whenever it changes.
 """
 
 from __future__ import annotations
@@ -28,15 +34,16 @@ from autocolor.lighting.light_drags import highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
+from autocolor.mapping.legend import Legend, legend
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.pacing import block_for, blocks_of
 from autocolor.rendering import rendering
 from autocolor.scan_lines import words_by_line
-from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges, ViewChanges
+from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns.column import Tier, fields_of
 from autocolor.scene.scene import AUTO, Scene, cost_of_edit
 from autocolor.scene.surfaces import Paint
-from autocolor.sending import configuration_of, send_image
+from autocolor.sending import configuration_of, send_image, shown_colors
 from autocolor.visibility.sight import Seen, Sight, seen_at
 from ramtek_emu import HostPort
 
@@ -88,6 +95,10 @@ class Studio(StudioSession):
     def entries(self) -> Bytes:
         """The entries of the lookup table, (1024, 3) uint8, read-only."""
         return self._shown.entries
+
+    def legend(self, right: int | None = None, bottom: int | None = None) -> Legend | None:
+        """The legend of the scalar that is shown, if there is one; `mapping.legend` tells where it stands."""
+        return legend(self._shown, right, bottom)
 
     def image_of(self, scene: Scene) -> DisplayImage:
         """What another scene would look like on the display; the present one stays, and nothing is sent.
@@ -148,6 +159,21 @@ class Studio(StudioSession):
     def view(self, /, **changes: Unpack[ViewChanges]) -> None:
         """Change fields of the view; everything is recomputed."""
         self.edit(self.scene.with_view(**changes))
+
+    def scalar(self, *none: None, **changes: Unpack[ScalarChanges]) -> None:
+        """Change fields of the scalar that colors the surfaces; `scalar(None)` gives them their own colors.
+
+        The first time it must be given a name: one of the mesh's, or a computed one. Another color scale
+        sends entries, but no words; limits, bands and shades render nothing.
+        """
+        if not none:
+            self.edit(self.scene.with_scalar(**changes))
+            return
+        if none != (None,) or changes:
+            raise UsageError(
+                "scalar takes fields of a Scalar, or None alone; write it as in scalar(name='z', bands=8)"
+            )
+        self.edit(self.scene.without_scalar())
 
     def hold_exposure(self, ranges: Mapping[str, Sequence[float]] | None = None) -> None:
         """Keep the intensity ranges of the current picture, so that less light looks darker from now on.
@@ -246,7 +272,7 @@ class Studio(StudioSession):
     def _repr_png_(self) -> bytes:
         from ramtek_emu.png import png_bytes
 
-        return png_bytes(self._shown.colors)
+        return png_bytes(shown_colors(self._shown))
 
     def __reduce__(self) -> NoReturn:
         raise TypeError(

@@ -34,8 +34,8 @@ PUBLIC_NAMES = {
 
 WINGS = {
     "autocolor": (
-        "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "lighting", "mapping",
-        "files", "rendering", "pacing", "sending", "scan_lines", "journal", "studio", "images", "widgets",
+        "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "scalars", "lighting",
+        "mapping", "files", "rendering", "pacing", "sending", "scan_lines", "journal", "studio", "images", "widgets",
         "screens", "commands", "__main__",
     ),
     "ramtek_emu": (

@@ -3,27 +3,34 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
+from autocolor.commands.options.settings import set_option, with_settings
 from autocolor.commands.usage import as_usage
 from autocolor.commands.verbosity import verbose_option
+from autocolor.errors import UsageError
+
+if TYPE_CHECKING:
+    from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = """\b
 Examples:
   autocolor render scenes/coupe --save coupe.npz
   autocolor recolor coupe.npz body --object "#1f3f8f" -o blue.png
   autocolor recolor coupe.npz body --object navy --source "#ffe9c0" --blend 0 -o metallic.png
+  autocolor recolor bracket.npz --set scalar.scale=turbo --set scalar.limits=[0,200] -o stress.png
 """
 
 
 @click.command(epilog=EXAMPLES)
 @click.argument("picture", type=click.Path(), shell_complete=complete_pictures)
-@click.argument("surface", shell_complete=complete_surfaces)
+@click.argument("surface", required=False, shell_complete=complete_surfaces)
 @click.option(
     "--object",
     "object_color",
@@ -50,6 +57,7 @@ Examples:
     metavar="PERCENT",
     help="Share of the light color at the highest level, 0 to 100.",
 )
+@set_option
 @click.option(
     "-o",
     "--output",
@@ -64,20 +72,32 @@ Examples:
 @verbose_option
 def recolor(
     picture: str,
-    surface: str,
+    surface: str | None,
     object_color: str | None,
     light_color: str | None,
     blend: float | None,
     percentage: float | None,
+    settings: tuple[str, ...],
     output: str | None,
     save: str | None,
     force: bool,
 ) -> None:
-    """Change the colors of SURFACE in PICTURE, a picture file, without rendering it again."""
+    """Change the colors of SURFACE in PICTURE, a picture file, without rendering it again.
+
+    --set takes what renders nothing: paints, the mapping, the color scale, limits and bands of a scalar.
+    """
+    changes: dict[str, Any] = {
+        "object_color": object_color,
+        "light_color": light_color,
+        "blend": blend,
+        "light_percentage": percentage,
+    }
+    given = {name: value for name, value in changes.items() if value is not None}
+    check_what_is_recolored(surface, given, settings)
     if output is None and save is None:
         from autocolor.files.file_stem import file_stem
 
-        output = f"{Path(picture).stem}-{file_stem(surface)}.png"
+        output = f"{Path(picture).stem}-{file_stem(surface or 'recolored')}.png"
     refuse_outputs(output, save, force)
 
     from autocolor.files.picture_file import read_picture, write_picture
@@ -89,15 +109,7 @@ def recolor(
     with timed(logger, f"read {picture}"):
         saved = read_picture(picture)
     logger.info("%r", saved.picture)
-    changes: dict[str, Any] = {
-        "object_color": object_color,
-        "light_color": light_color,
-        "blend": blend,
-        "light_percentage": percentage,
-    }
-    given = {name: value for name, value in changes.items() if value is not None}
-    with as_usage():
-        scene = saved.scene.with_surface(surface, **given)
+    scene = recolored(saved.scene, surface, given, settings)
     if save is not None:
         write_picture(save, saved.picture, scene, overwrite=force)
     if output is not None:
@@ -107,3 +119,29 @@ def recolor(
             send_picture(scene, saved.picture, display)
         write_png(output, display, force)
     tell_written(output, save)
+
+
+def check_what_is_recolored(surface: str | None, colors: Mapping[str, Any], settings: Sequence[str]) -> None:
+    """Raise UsageError for colors without a surface, and for neither a surface nor a setting."""
+    if surface is None and (colors or not settings):
+        raise UsageError(
+            "recolor needs a SURFACE for its colors, or --set KEY=VALUE; write it as in recolor PICTURE body"
+            " --object navy"
+        )
+
+
+def recolored(
+    scene: Scene, surface: str | None, colors: Mapping[str, Any], settings: tuple[str, ...]
+) -> Scene:
+    """The scene with other colors of a surface, and settings; UsageError for one that would render it again."""
+    from autocolor.scene.columns.column import Tier
+    from autocolor.scene.scene import costs_at_least
+
+    edited = with_settings(scene, settings)
+    if costs_at_least(scene, edited, Tier.MIX):
+        raise UsageError(
+            "what --set changes in a picture must render nothing, such as colors, the mapping, limits and bands;"
+            " render the scene with it"
+        )
+    with as_usage():
+        return edited if surface is None else edited.with_surface(surface, **colors)

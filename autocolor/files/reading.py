@@ -13,6 +13,10 @@ from autocolor.errors import InputError, MissingInputError, reason_of
 LARGEST_MESH_FILE: Final = 256 * 1024 * 1024
 """Assumed: in bytes, about three million polygons as OBJ; it bounds the memory that a reader needs."""
 
+LARGEST_BINARY_MESH_FILE: Final = 1024 * 1024 * 1024
+"""Assumed: in bytes, twenty million triangles as STL or fifty million polygons as PLY. A binary file is read
+at a hundred megabytes a second and more."""
+
 LEAST_READ: Final = 1 << 20
 """Bytes to request even if the file system reports a smaller file."""
 

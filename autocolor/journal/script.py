@@ -47,6 +47,7 @@ SHORT: Final = {
     "with_surface": "surface",
     "with_light": "light",
     "with_view": "view",
+    "with_scalar": "scalar",
     "with_new_light": "add_light",
     "without_light": "remove_light",
 }
@@ -119,6 +120,8 @@ def _edit_line(step: Edit, start: Scene, beside: MeshesBeside) -> str:
         return f"studio.recolor({arguments})"
     elif method in SHORT:
         return f"studio.{SHORT[method]}({arguments})"
+    elif method == "without_scalar":
+        return "studio.scalar(None)"
     elif changes == {"exposure": AUTO}:
         return "studio.release_exposure()"
     elif changes.keys() == {"exposure"}:
@@ -142,6 +145,11 @@ def call_between(before: Scene, after: Scene) -> Call:
         (table,) = changes
         if table == "view":
             return Call("with_view", (), difference(before.view, after.view))
+        if table == "scalar":
+            if after.scalar is None:
+                return Call("without_scalar", (), {})
+            row = after.scalar
+            return Call("with_scalar", (), difference(before.scalar, row) if before.scalar else plain(row))
         if table in ROW_METHODS:
             rows, others = vars(before)[table], vars(after)[table]
             call = _row_call(ROW_METHODS[table], rows, others)

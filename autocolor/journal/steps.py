@@ -22,7 +22,7 @@ from autocolor.scene.scene import AUTO, Scene
 from autocolor.scene.surfaces import Paint
 
 STUDIO_METHODS: Final = {**{short: method for method, short in SHORT.items()}, "recolor": "with_surface"}
-SCENE_METHODS: Final = ("replace", *ROW_METHODS.values(), *SHORT)
+SCENE_METHODS: Final = ("replace", *ROW_METHODS.values(), *SHORT, "without_scalar")
 
 SOURCE_OPTIONS: Final = frozenset(Source._fields) - {"path"}
 """The keywords of a call that reads a scene."""
@@ -115,6 +115,8 @@ class Steps:
             return scene.replace(exposure=AUTO), False
         if name == "hold_exposure" and len(call.arguments) == 1 and not call.keywords:
             return scene.replace(exposure=plain_value(call.arguments[0], line)), False
+        if name == "scalar" and [plain_value(value, line) for value in call.arguments] == [None]:
+            return self._changed("without_scalar", call._replace(arguments=[]), line), False
         if name in STUDIO_METHODS:
             if name == "recolor" and not call.keywords.keys() <= fields_of(Paint).keys():
                 refuse(line)
@@ -137,7 +139,7 @@ class Steps:
             changes["mesh"] = self._mesh(mesh, line)
         if len(names) != (method in NAMED) or not all(isinstance(name, str) for name in names):
             refuse(line)
-        if method == "without_light" and changes:
+        if method in ("without_light", "without_scalar") and changes:
             refuse(line)
         scene: Scene = getattr(self._history.scene, method)(*names, **changes)
         return scene

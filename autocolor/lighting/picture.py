@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from autocolor.arrays import AnyArray, Bytes, Indices, Singles
-from autocolor.immutable import Immutable
+from autocolor.immutable import Immutable, read_only
 from autocolor.lighting.light_planes import DIFFUSE, SPECULAR, LightPlanes
 from autocolor.visibility.visible_points import SurfaceSlice, surface_slices
 
@@ -53,6 +53,9 @@ class Picture(Immutable):
     The visible pixels are sorted by surface, as `slices` tells: `pixels` are their flat places in the raster,
     `relative` the intensities in proportion to `scale`, both (n,). `light_planes` has the planes of each
     light that was computed.
+
+    `scalar_values`, (n,) float32 in the order of `pixels` with NaN for missing values, are those of the
+    scalar that colors the scene, and `scalar_limits` are its own range; both are None if there is none.
     """
 
     lines: int
@@ -63,19 +66,41 @@ class Picture(Immutable):
     relative: Singles
     scale: float
     light_planes: Mapping[str, LightPlanes] = field(default_factory=dict, repr=False)
+    scalar_values: Singles | None = field(default=None, repr=False)
+    scalar_limits: tuple[float, float] | None = None
 
     @classmethod
     def from_rasters(
-        cls, relative: Singles, surface_number: Bytes, surfaces: tuple[str, ...], scale: float
+        cls,
+        relative: Singles,
+        surface_number: Bytes,
+        surfaces: tuple[str, ...],
+        scale: float,
+        scalar: Singles | None = None,
+        scalar_limits: tuple[float, float] | None = None,
     ) -> Picture:
-        """A picture of relative intensities and surface numbers, both (lines, elements), without planes."""
+        """A picture of relative intensities and surface numbers, both (lines, elements), without planes.
+
+        `scalar`, (lines, elements), are the values of a scalar where polygons are visible.
+        """
         lines, elements = relative.shape
         numbers = surface_number.ravel()
         pixels = np.flatnonzero(numbers)
         pixels = pixels[np.argsort(numbers[pixels], kind="stable")]
         slices = surface_slices(np.bincount(numbers[pixels], minlength=1))
         intensities = relative.ravel()[pixels].astype(np.float32)
-        return cls(lines, elements, surfaces, pixels, slices, intensities, scale)
+        values = None if scalar is None else read_only(scalar.ravel()[pixels].astype(np.float32))
+        return cls(
+            lines,
+            elements,
+            surfaces,
+            pixels,
+            slices,
+            intensities,
+            scale,
+            scalar_values=values,
+            scalar_limits=scalar_limits,
+        )
 
     @cached_property
     def intensity(self) -> Singles:
@@ -90,6 +115,14 @@ class Picture(Immutable):
             numbers[surface.pixels] = surface.surface_number
         raster: Bytes = self._raster(numbers)
         return raster
+
+    @cached_property
+    def scalar(self) -> Singles | None:
+        """The scalar, (lines, elements) float32, NaN where nothing is visible or no value is; read-only.
+
+        None for a picture whose scene shows no scalar.
+        """
+        return None if self.scalar_values is None else self._raster(self.scalar_values, np.nan)
 
     @cached_property
     def relative_ranges(self) -> Mapping[int, IntensityRange]:
@@ -119,9 +152,9 @@ class Picture(Immutable):
             for name, planes in self.light_planes.items()
         }
 
-    def _raster(self, values: AnyArray) -> AnyArray:
-        """A raster with the values at the visible pixels and 0 elsewhere; read-only."""
-        flat = np.zeros(self.lines * self.elements, values.dtype)
+    def _raster(self, values: AnyArray, elsewhere: float = 0) -> AnyArray:
+        """A raster with the values at the visible pixels and another number elsewhere; read-only."""
+        flat = np.full(self.lines * self.elements, elsewhere, values.dtype)
         flat[self.pixels] = values
         flat.flags.writeable = False
         return flat.reshape(self.lines, self.elements)

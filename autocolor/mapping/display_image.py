@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
@@ -13,10 +13,12 @@ from autocolor.arrays import Bytes, Words
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.lighting.picture import Picture
+from autocolor.mapping.band_division import bands_by_surface
 from autocolor.mapping.color_blending import entries_of
 from autocolor.mapping.exposure import mapped_ranges
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
+from autocolor.mapping.scalar_bands import DARKEST, Bands, band_entries
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import Scene, check_scene, costs_at_least
 from autocolor.scene.surfaces import Surface
@@ -29,7 +31,8 @@ MAPPING: Final = ("scaling", "mapping", "exposure", "dither")
 class DisplayImage:
     """The words and entries for a scene and its picture, and the level range of each surface by name.
 
-    Each pixel of the picture is shown as a block of `block` x `block` words.
+    `bands` are those of the surfaces that a scalar colors. Each pixel of the picture is shown as a block of
+    `block` x `block` words.
     """
 
     scene: Scene
@@ -37,6 +40,7 @@ class DisplayImage:
     ranges: Mapping[str, LevelRange]
     words: Words
     block: int = 1
+    bands: Mapping[str, Bands] = field(default_factory=dict)
 
     @cached_property
     def entries(self) -> Bytes:
@@ -57,7 +61,12 @@ class DisplayImage:
 
     def entries_of(self, surface: Surface) -> Bytes:
         """The entries of one surface, (levels, 3) uint8, read-only."""
-        floor = self._floors.get(surface.name, 0.0) if self.scene.contrast == "floor" else 0.0
+        has_floor = self.scene.contrast == "floor"
+        floor = self._floors.get(surface.name, 0.0) if has_floor else 0.0
+        scalar, bands = self.scene.scalar, self.bands.get(surface.name)
+        if scalar is not None and bands is not None:
+            ends = scalar.below if bands.has_below else None, scalar.above if bands.has_above else None
+            return band_entries(scalar.scale, ends, scalar.missing, bands, floor if has_floor else DARKEST)
         return entries_of(surface.paint, self.ranges[surface.name].levels, floor)
 
     @cached_property
@@ -73,23 +82,37 @@ class DisplayImage:
     def loads_after(self, before: DisplayImage) -> Iterator[tuple[int, Bytes]]:
         """The runs of entries, as (first entry, colors), to load into a table that holds those of `before`.
 
-        When the two images can differ in paints only, these are the ranges of the repainted surfaces, and
-        neither table is built. Otherwise it is one run from the first to the last entry that differs.
+        When the two images can differ in paints and color scales only, these are the ranges of the surfaces
+        with other ones, and neither table is built. Otherwise it is one run from the first to the last entry
+        that differs.
         """
         if (
             self.ranges is before.ranges
+            and self.bands == before.bands
             and self.scene.background == before.scene.background
             and self._has_floors_of(before)
         ):
-            paints = {surface.name: surface.paint for surface in before.scene.surfaces}
+            befores = {surface.name: surface for surface in before.scene.surfaces}
+            has_scale_of_before = self._scale == before._scale
             for surface in self.scene.surfaces:
-                if surface.name in self.ranges and surface.paint != paints.get(surface.name):
-                    yield self.ranges[surface.name].first, self.entries_of(surface)
+                name = surface.name
+                if name in self.bands:
+                    is_same = has_scale_of_before
+                else:
+                    is_same = name in befores and surface.paint == befores[name].paint
+                if name in self.ranges and not is_same:
+                    yield self.ranges[name].first, self.entries_of(surface)
             return
         differing = np.flatnonzero((before.entries != self.entries).any(axis=1))
         if len(differing):
             first, last = int(differing[0]), int(differing[-1])
             yield first, self.entries[first : last + 1]
+
+    @property
+    def _scale(self) -> tuple[object, ...]:
+        """The colors of bands."""
+        scalar = self.scene.scalar
+        return () if scalar is None else (scalar.scale, scalar.below, scalar.above, scalar.missing)
 
     def _has_floors_of(self, other: DisplayImage) -> bool:
         """Whether the floors equal those of another image that has the same ranges."""
@@ -112,28 +135,45 @@ def display_image(
     blocks, as a coarse picture is soon followed by a finer one. Raises InputError if an intensity is not
     finite.
     """
-    ranges = None if before is None else _kept_ranges(before, scene, block)
+    bands = _bands(scene, picture, before)
+    ranges = None if before is None else _kept_ranges(before, scene, bands, block)
     if ranges is None:
-        ranges = level_ranges(scene.surfaces, _covered(scene, picture), scene.division)
+        fixed = {name: each.levels for name, each in bands.items()}
+        ranges = level_ranges(scene.surfaces, _covered(scene, picture), scene.division, fixed)
         if before is not None and before.ranges == ranges:
             ranges = before.ranges
     if (
         before is not None
         and before.picture is picture
         and before.ranges is ranges
+        and before.bands == bands
         and all(getattr(before.scene, name) == getattr(scene, name) for name in MAPPING)
     ):
         words = before.words
     else:
-        words = words_of(picture, ranges, *(getattr(scene, name) for name in MAPPING))
+        words = words_of(picture, ranges, scene.scaling, scene.mapping, scene.exposure, scene.dither, bands)
         if block > 1:
             words = words.repeat(block, axis=0).repeat(block, axis=1)
             words.flags.writeable = False
-    return DisplayImage(scene, picture, ranges, words, block)
+    return DisplayImage(scene, picture, ranges, words, block, bands)
 
 
-def _kept_ranges(before: DisplayImage, scene: Scene, block: int) -> Mapping[str, LevelRange] | None:
+def _bands(scene: Scene, picture: Picture, before: DisplayImage | None) -> Mapping[str, Bands]:
+    """The bands of the surfaces that the scalar colors; those of an earlier image if they are the same."""
+    is_same_picture = before is not None and before.picture is picture
+    if before is not None and is_same_picture and not costs_at_least(before.scene, scene, Tier.LEVELS):
+        return before.bands
+    return bands_by_surface(scene, picture)
+
+
+def _kept_ranges(
+    before: DisplayImage, scene: Scene, bands: Mapping[str, Bands], block: int
+) -> Mapping[str, LevelRange] | None:
     """The ranges of an earlier image if they are those of the scene, too; None if they must be divided."""
+    if {name: each.levels for name, each in bands.items()} != {
+        name: each.levels for name, each in before.bands.items()
+    }:
+        return None
     if block > 1:
         return before.ranges if _claims(before.scene) == _claims(scene) else None
     # The ranges of a coarse picture are those of the picture before it, in which other pixels were visible.

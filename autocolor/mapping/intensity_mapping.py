@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
+from types import MappingProxyType
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from autocolor.lighting.picture import IntensityRange, Picture
 from autocolor.mapping.exposure import WHOLE, has_extent, mapped_ranges
 from autocolor.mapping.level_ranges import BACKGROUND, LevelRange
 from autocolor.mapping.rounding import HALF, halves_up
+from autocolor.mapping.scalar_bands import Bands, band_numbers
 from autocolor.scene.curves import CurvePoints, Fractions, mapping_curve
 from autocolor.scene.scene import AUTO, Exposure
 from autocolor.visibility.visible_points import point_chunks
@@ -30,13 +32,15 @@ def words_of(
     mapping: str | CurvePoints = "linear",
     exposure: Exposure = AUTO,
     dither: str = "off",
+    bands: Mapping[str, Bands] = MappingProxyType({}),
 ) -> Words:
     """The words of a picture, (lines, elements) uint16, read-only; BACKGROUND where nothing is visible.
 
     The minimum and the maximum of the range that is mapped for a surface (see `mapped_ranges`) become its
     lowest and its highest level; intensities beyond it become the nearest of these. Where no range has an
     extent, as with all lights off, every pixel gets the middle level, which is neither black nor a highlight.
-    Raises InputError if an intensity is not finite.
+    On a surface with `bands`, the intensity tells the shade and the scalar the band. Raises InputError if an
+    intensity is not finite.
     """
     words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
     for surface in picture.slices:
@@ -51,7 +55,10 @@ def words_of(
         intensities, pixels = picture.relative[chunk.pixels], picture.pixels[chunk.pixels]
         here = np.empty(len(pixels), np.uint16)
         for surface in chunk.slices:
-            first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
+            name = picture.surfaces[surface.surface_number - 1]
+            first, levels = ranges[name]
+            if name in bands:
+                levels = bands[name].shades
             fractions = fractions_of[surface.surface_number](intensities[surface.pixels])
             if thresholds is None or not has_extent(extents[surface.surface_number]):
                 here_levels = levels_of(fractions, levels, out=fractions)
@@ -59,6 +66,9 @@ def words_of(
                 here_levels = dithered_levels(fractions, levels, thresholds.take(pixels[surface.pixels]))
             np.copyto(here[surface.pixels], here_levels, casting="unsafe")
             here[surface.pixels] += np.uint16(first)
+            if name in bands and picture.scalar_values is not None:
+                values = picture.scalar_values[chunk.pixels][surface.pixels]
+                here[surface.pixels] += band_numbers(values, bands[name]) * np.uint16(levels)
         words[pixels] = here
     words.flags.writeable = False
     return words.reshape(picture.lines, picture.elements)

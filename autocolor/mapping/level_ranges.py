@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Final, NamedTuple
 
 from autocolor.errors import InputError
@@ -42,6 +43,9 @@ class LevelRange(NamedTuple):
 SCREENS: Final = LevelRange(WORDS - SCREEN_LEVELS, SCREEN_LEVELS)
 """The words that the interactive screens draw with."""
 
+SURFACE_WORDS: Final = SCREENS.first - BACKGROUND - 1
+"""How many words the surfaces share."""
+
 SCREEN_COLORS: Final = (
     (0, 0, 0), (255, 255, 255), (192, 192, 192), (128, 128, 128), (72, 76, 84), (36, 39, 46),
     (255, 214, 90), (255, 140, 60), (235, 70, 70), (110, 200, 110), (90, 170, 240), (170, 130, 230),
@@ -51,24 +55,27 @@ SCREEN_COLORS: Final = (
 
 
 def level_ranges(
-    surfaces: Sequence[Surface], covered: Mapping[str, int], division: str = "covered"
+    surfaces: Sequence[Surface],
+    covered: Mapping[str, int],
+    division: str = "covered",
+    fixed: Mapping[str, int] = MappingProxyType({}),
 ) -> Mapping[str, LevelRange]:
     """The level range of each surface in use, by name.
 
     `covered` has the number of pixels that each surface in use covers in the picture, 0 for one that is not
-    seen. A surface gets the number of levels that it asks for; the others share the rest, equally or by what
-    they cover. Raises InputError if that would leave fewer than two levels for one of them.
+    seen. A surface gets the number of levels that is `fixed` for it, as by its bands, else the number that it
+    asks for; the others share the rest, equally or by what they cover. Raises InputError if that would leave
+    fewer than two levels for one of them.
     """
     used = [surface for surface in surfaces if surface.name in covered]
-    room = SCREENS.first - BACKGROUND - 1
-    asked = sum(surface.levels for surface in used if surface.levels is not None)
-    sharing = [surface.name for surface in used if surface.levels is None]
+    levels_of = {surface.name: fixed.get(surface.name, surface.levels) for surface in used}
+    room = SURFACE_WORDS
+    asked = sum(levels for levels in levels_of.values() if levels is not None)
+    sharing = [name for name, levels in levels_of.items() if levels is None]
     if asked > room or (sharing and (room - asked) // len(sharing) < FEWEST_LEVELS):
-        largest = max(
-            (surface for surface in used if surface.levels), key=lambda surface: surface.levels or 0
-        )
+        largest = max(levels_of, key=lambda name: levels_of[name] or 0)
         raise InputError(
-            f"surface {largest.name!r}: the levels must be at most {room} in all, {FEWEST_LEVELS} of them for"
+            f"surface {largest!r}: the levels must be at most {room} in all, {FEWEST_LEVELS} of them for"
             f" each surface that asks for none, not {asked} and {len(sharing)} such surfaces; ask for fewer"
             " levels"
         )
@@ -79,9 +86,9 @@ def level_ranges(
     share_of = dict(zip(sharing, shares, strict=True))
     ranges = {}
     first = BACKGROUND + 1
-    for surface in used:
-        levels = share_of[surface.name] if surface.levels is None else surface.levels
-        ranges[surface.name] = LevelRange(first, levels)
+    for name, given in levels_of.items():
+        levels = share_of[name] if given is None else given
+        ranges[name] = LevelRange(first, levels)
         first += levels
     return ranges
 

@@ -110,6 +110,7 @@ class ScalarChanges(TypedDict, total=False):
     below: str | Sequence[int] | None
     above: str | Sequence[int] | None
     missing: str | Sequence[int]
+    legend: bool
     surfaces: Sequence[str] | None
     direction: Sequence[float]
     stripes: float

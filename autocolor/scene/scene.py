@@ -20,6 +20,7 @@ from autocolor.scene.changes import (
     LightChanges,
     PaintChanges,
     PartChanges,
+    ScalarChanges,
     SceneChanges,
     SurfaceChanges,
     ViewChanges,
@@ -38,6 +39,7 @@ from autocolor.scene.light_sets.light_copies import axis_number, free_name, mirr
 from autocolor.scene.light_sets.rigs import Rig
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalars.computed_names import COMPUTED, name_problems
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
@@ -152,6 +154,8 @@ class Scene(Row):
             if names != list(self.mesh.part_names):
                 rule = "the part table must have the mesh's parts in their order"
                 yield Problem((), f"{rule} {list(self.mesh.part_names)}, not {names}")
+        if self.mesh is not REFUSED and isinstance(self.scalar, Scalar):
+            yield from name_problems(self.scalar.name, self.mesh.scalars)
         # Finding the closest valid name is slow, and a file may contain many invalid names.
         yield from islice(self._reference_problems(), MOST_PROBLEMS)
         if self.surfaces is not REFUSED and len(self.surfaces) > MOST_SURFACES:
@@ -223,6 +227,14 @@ class Scene(Row):
     def with_view(self, /, **changes: Unpack[ViewChanges]) -> Scene:
         """The scene with some fields of the view changed."""
         return with_values(self, {"view": self.view.replace(**changes)})
+
+    def with_scalar(self, /, **changes: Unpack[ScalarChanges]) -> Scene:
+        """The scene with some fields of its scalar changed; without one, it must be given a name."""
+        return changed(self, {"scalar": changes})
+
+    def without_scalar(self) -> Scene:
+        """The scene with its own colors."""
+        return with_values(self, {"scalar": None})
 
     def with_new_light(self, name: str, /, **fields: Unpack[LightChanges]) -> Scene:
         """The scene with another light after the others; it must have a position.
@@ -309,6 +321,11 @@ class Scene(Row):
     def object_coordinates(self) -> Floats:
         """The coordinates of the nodes of the object, (nodes, 3): of all parts that are not stage."""
         return read_only(object_coordinates(self.mesh, self.parts))
+
+    @property
+    def scalar_names(self) -> tuple[str, ...]:
+        """The names of the scalars that can color it: those of its mesh, then the computed ones."""
+        return tuple(dict.fromkeys([*(scalar.name for scalar in self.mesh.scalars), *COMPUTED]))
 
     @property
     def object_bounds(self) -> tuple[Vector, Vector]:

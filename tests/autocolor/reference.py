@@ -227,3 +227,20 @@ def specular_factor(model: ReflectionModel, light: Vector, normal: Vector, eye: 
     # No silhouette is divided by less than three tenths.
     factor = fresnel(v_h) * beckmann(n_h) * attenuation / max(n_v, 0.3)
     return factor / (fresnel(1.0) * beckmann(1.0))
+
+
+def weights_in(corners: Sequence[Vector], point: Vector) -> list[float]:
+    """The weights of a convex polygon's corners at a point in it, by Wachspress' quotient of areas."""
+    count = len(corners)
+    normal = cross(minus(corners[2], corners[0]), minus(corners[-1], corners[1]))
+
+    def area(a: Vector, b: Vector, c: Vector) -> float:
+        return dot(normal, cross(minus(b, a), minus(c, a)))
+
+    quotients = [
+        area(corners[at - 1], corners[at], corners[(at + 1) % count])
+        / area(corners[at - 1], corners[at], point)
+        / area(corners[at], corners[(at + 1) % count], point)
+        for at in range(count)
+    ]
+    return times(1 / math.fsum(quotients), quotients)

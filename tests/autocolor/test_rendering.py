@@ -59,6 +59,16 @@ KEY_LIGHT = [
     lambda scene: scene.with_light("key", flaps={"x": {"minimum": 0.3}}),
     lambda scene: scene.with_light("key", name="lamp"),
 ]
+SCALARS = [
+    lambda scene: scene.replace(scalar={"name": "x"}),
+    lambda scene: scene.replace(scalar={"direction": (1, 0, 0)}),
+    lambda scene: scene.replace(scalar={"stripes": 5}),
+]
+SCALAR_COLORS = [
+    lambda scene: scene.replace(scalar={"limits": (0, 1)}),
+    lambda scene: scene.replace(scalar={"scale": "grays", "bands": 7, "shades": 3}),
+    lambda scene: scene.replace(scalar={"below": "#000000", "missing": "#ffffff", "surfaces": ["cube"]}),
+]
 EVERYTHING = [
     lambda scene: scene.with_view(angle=10),
     lambda scene: scene.with_part("cube", surface="sphere"),
@@ -71,6 +81,71 @@ EVERYTHING = [
 def test_what_only_colors_computes_no_picture_again(edit: Any) -> None:
     before, after = edited(two_surfaces(), edit)
     assert after.picture is before.picture
+
+
+def in_color(scene: Scene) -> Scene:
+    """The scene with a scalar."""
+    return scene.replace(scalar={"name": "z"})
+
+
+def test_a_scalar_has_a_raster_and_a_range() -> None:
+    scene = in_color(two_surfaces())
+    picture = render(scene, 24, 32)
+    assert picture.scalar is not None
+    assert picture.scalar.dtype == np.float32
+    assert np.array_equal(np.isnan(picture.scalar), picture.surface_number == 0)
+    assert picture.scalar_limits == pytest.approx((-1, 1.2))
+    assert not picture.scalar.flags.writeable
+    without = render(two_surfaces(), 24, 32)
+    assert without.scalar is without.scalar_values is without.scalar_limits is None
+    assert picture.intensity.tobytes() == without.intensity.tobytes()
+
+
+@pytest.mark.parametrize("edit", SCALARS)
+def test_another_scalar_computes_its_values_and_no_light(edit: Any) -> None:
+    before, after = edited(in_color(two_surfaces()), edit)
+    assert after.points is before.points
+    assert after.picture.relative is before.picture.relative
+    assert after.picture.light_planes is before.picture.light_planes
+    assert after.picture.scalar_values is not before.picture.scalar_values
+
+
+@pytest.mark.parametrize("edit", SCALAR_COLORS)
+def test_the_colors_of_a_scalar_compute_nothing(edit: Any) -> None:
+    before, after = edited(in_color(two_surfaces()), edit)
+    assert after.picture is before.picture
+
+
+@pytest.mark.parametrize("edit", [*MIXES, *KEY_LIGHT])
+def test_lights_keep_the_values_of_a_scalar(edit: Any) -> None:
+    before, after = edited(in_color(two_surfaces()), edit)
+    assert after.picture.scalar_values is before.picture.scalar_values
+    assert after.picture.scalar_limits == before.picture.scalar_limits
+
+
+def test_a_scalar_that_comes_and_goes_leaves_the_light() -> None:
+    before, colored = edited(two_surfaces(), in_color)
+    assert colored.picture.relative is before.picture.relative
+    gone = rendering(colored.scene.replace(scalar=None), 24, 32, colored)
+    assert gone.picture.scalar is None
+    assert gone.picture.relative is before.picture.relative
+
+
+@pytest.mark.parametrize("edit", [*SCALARS, *SCALAR_COLORS, *MIXES, *KEY_LIGHT, *EVERYTHING])
+def test_a_scalar_that_is_kept_is_that_of_a_fresh_picture(edit: Any) -> None:
+    _, after = edited(in_color(two_surfaces()), edit)
+    fresh = render(edit(in_color(two_surfaces())), 24, 32)
+    assert after.picture.scalar is not None
+    assert fresh.scalar is not None
+    assert after.picture.scalar.tobytes() == fresh.scalar.tobytes()
+    assert after.picture.scalar_limits == fresh.scalar_limits
+
+
+def test_a_coarse_picture_has_its_own_scalar() -> None:
+    scene = in_color(two_surfaces())
+    coarse = rendering(scene, 12, 16, rendering(scene, 24, 32)).picture
+    assert coarse.scalar is not None
+    assert coarse.scalar.tobytes() == rendering(scene, 12, 16).picture.scalar.tobytes()  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize("edit", MIXES)

@@ -12,10 +12,13 @@ from autocolor.scene.columns.column import Field, Kind, Row, fields_of, keys_of
 from autocolor.scene.columns.row_kinds import Nested, Rows, Variant
 from autocolor.scene.columns.rows import plain
 from autocolor.scene.columns.value_kinds import Choice, Instance
+from autocolor.scene.scalars.color_scales import COLOR_SCALES
+from autocolor.scene.scalars.scalar_kinds import ScaleKind
 from autocolor.scene.scene import Scene
 
 EXAMPLES: Final = {
     "view": "view.angle=10",
+    "scalar": "scalar.name=z",
     "lights": "lights.key.intensity=2",
     "surfaces": "surfaces.body.blend=0.3",
     "parts": "parts.hood.surface=body",
@@ -54,9 +57,12 @@ def place_of(scene: Scene, key: str) -> Place:
         name, field = (None, "") if start is None else (names[start], rest[len(start) + 1 :])
     else:
         name, field = "", rest
+    if key == table and fields_of(Scene)[table].is_optional:
+        # The whole row, which can be unset.
+        return Place("", "", (table,))
     if name is None or not field:
         raise UsageError(f"--set {key}: it must name one field; write it as in {EXAMPLES[table]}")
-    if field == "name":
+    if field == "name" and isinstance(kind, Rows):
         raise UsageError(f"--set {key}: a name cannot be set; change it in the scene file")
     path = tuple(field.split("."))
     if len(path) > MOST_PARTS:
@@ -113,17 +119,17 @@ def keys_after(scene: Scene, start: str) -> list[str]:
         if not rest:
             return [f"{start}{name}." for name in names]
         if rest in names:
-            return _fields_after(start, kind.row_class, ())
+            return _fields_after(start, kind.row_class, leave_out=("name",))
     elif not rest and isinstance(kind, Nested):
-        return _fields_after(start, kind.row_class, ())
+        return _fields_after(start, kind.row_class)
     place = place_of(scene, start[:-1])
     field = field_of(place)
     inner = None if field is None else field.column.kind
-    return _fields_after(start, inner.row_class, place.path) if isinstance(inner, Nested) else []
+    return _fields_after(start, inner.row_class) if isinstance(inner, Nested) else []
 
 
-def _fields_after(start: str, cls: type[Row], path: Sequence[str]) -> list[str]:
-    keys = {key: _field_at(cls, (key,)) for key in keys_of(cls) if path or key != "name"}
+def _fields_after(start: str, cls: type[Row], leave_out: Sequence[str] = ()) -> list[str]:
+    keys = {key: _field_at(cls, (key,)) for key in keys_of(cls) if key not in leave_out}
     return [
         f"{start}{key}{'.' if isinstance(field.column.kind, Nested) else '='}"
         for key, field in keys.items()
@@ -142,11 +148,15 @@ def _values(scene: Scene, key: str) -> list[str]:
         return list(kind.names)
     if isinstance(kind, Variant):
         return list(kind.classes)
+    if isinstance(kind, ScaleKind):
+        return list(COLOR_SCALES)
+    if (place.table, place.path) == ("scalar", ("name",)):
+        return list(scene.scalar_names)
     row: Any = scene
     if place.table:
         rows = vars(scene)[place.table]
         row = next((each for each in rows if each.name == place.name), None) if place.name else rows
-    value: Any = plain(row)
+    value: Any = {} if row is None else plain(row)
     for part in place.path:
         value = value.get(part) if isinstance(value, dict) else None
     if isinstance(value, bool):

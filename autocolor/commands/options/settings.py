@@ -105,6 +105,8 @@ def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
         return scene.with_surface(name, **fields)
     if table == "parts":
         return scene.with_part(name, **fields)
+    if table == "scalar":
+        return scene.with_scalar(**fields)
     return scene.with_view(**fields)
 
 

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, cross, lengths
+from autocolor.arrays import Booleans, Floats, Indices, cross, dot, lengths
 from autocolor.errors import InputError
 from autocolor.files.repair.placement import PLAIN, Placement, placed
 from autocolor.files.repair.polygons import MeshReport, Polygons
@@ -28,6 +28,13 @@ AT_A_TIME: Final = 1 << 14
 
 FLAT: Final = 1e-12
 """Assumed: a triangle has no area if twice its area is below this fraction of the squared polygon size."""
+
+SURE: Final = 16 * (10 * FLAT) ** 2
+"""A triangle has area if its cross product, squared, exceeds this fraction of its squared edges, squared: the
+size of a polygon is at most twice the longest way from its first corner to another."""
+
+LEAST_SQUARE: Final = 1e-250
+"""Squares below have lost digits."""
 
 
 def repaired(
@@ -54,7 +61,7 @@ def repaired(
     # Drop pieces without area, and so the polygons of which no piece is left.
     has_area = np.concatenate(
         [
-            _have_area(coordinates[node_numbers[first : first + AT_A_TIME]])
+            _have_area(coordinates, node_numbers[first : first + AT_A_TIME])
             for first in range(0, max(len(node_numbers), 1), AT_A_TIME)
         ]
     )
@@ -92,6 +99,12 @@ def repaired(
 
 def _without_repeats(corners: Indices, counts: Indices) -> tuple[Indices, Indices, Booleans]:
     """The corners and counts without corners that equal the next one, and which polygons had such corners."""
+    sides = int(counts[0]) if len(counts) else 0
+    if sides > 0 and (counts == sides).all():
+        # Measured: where all polygons have the same number of sides, half the time of what follows.
+        table = corners.reshape(-1, sides).T
+        if not any((table[at] == table[at - 1]).any() for at in range(sides)):
+            return corners, counts, np.zeros(len(counts), np.bool_)
     following = np.arange(1, len(corners) + 1)
     ends = np.cumsum(counts)
     filled = counts > 0
@@ -104,11 +117,41 @@ def _without_repeats(corners: Indices, counts: Indices) -> tuple[Indices, Indice
     return corners[kept], kept_counts, kept_counts != counts
 
 
-def _have_area(corners: Floats) -> Booleans:
-    """Whether each polygon of (n, 4, 3) has area: neither diagonal splits it into two flat triangles.
+def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
+    """Whether each polygon of (n, 4) has area: neither diagonal splits it into two flat triangles.
 
     A bow-tie whose halves cancel has area; a polygon that runs forth and back along one path has none.
+    Measured: to look closely only at those that are not sure to have area takes a quarter of the time.
     """
+    have_area = _surely_have_area(coordinates, node_numbers.T)
+    others = np.flatnonzero(~have_area)
+    if len(others):
+        have_area[others] = ~_are_flat(coordinates[node_numbers[others]])
+    return have_area
+
+
+def _surely_have_area(coordinates: Floats, corners: Indices) -> Booleans:
+    """Which polygons, given by (4, n), are far from flat, whichever diagonal splits them."""
+    first = coordinates.take(corners[0], axis=0).T
+    one, two = (coordinates.take(row, axis=0).T - first for row in corners[1:3])
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        if (corners[2] == corners[3]).all():
+            return _far_from_flat(one, two, dot(two, two))
+        three = coordinates.take(corners[3], axis=0).T - first
+        squares = np.maximum(dot(two, two), dot(three, three))
+        return _far_from_flat(one, two, squares) & _far_from_flat(one, three, squares)
+
+
+def _far_from_flat(one: Floats, other: Floats, squares: Floats) -> Booleans:
+    """Whether the triangles of two edges, (3, n), have area for sure; `squares` are at least the other's."""
+    normals = cross(one, other)
+    sizes = np.maximum(dot(one, one), squares)
+    found: Booleans = dot(normals, normals) > np.maximum(SURE * sizes * sizes, LEAST_SQUARE)
+    return found
+
+
+def _are_flat(corners: Floats) -> Booleans:
+    """Whether each polygon of (n, 4, 3) has no area."""
     rows = np.ascontiguousarray(corners.T)
     size = np.ptp(rows, axis=1).max(axis=0)
     size[size == 0] = 1.0
@@ -119,4 +162,5 @@ def _have_area(corners: Floats) -> Booleans:
         is_flat: Booleans = lengths(cross(one, other)) < FLAT
         return is_flat
 
-    return ~((flat(0, 1, 2) & flat(0, 2, 3)) | (flat(0, 1, 3) & flat(1, 2, 3)))
+    are_flat: Booleans = (flat(0, 1, 2) & flat(0, 2, 3)) | (flat(0, 1, 3) & flat(1, 2, 3))
+    return are_flat

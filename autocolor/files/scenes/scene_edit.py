@@ -52,6 +52,8 @@ def completed(data: bytes, scene: Scene) -> bytes:
     tables: dict[str, Any] = plain(scene)
     _complete(text, (), document, {key: tables[key] for key in tables if key not in (*FILE_TABLES, "name")})
     _complete(text, ("view",), document.get("view", {}), tables["view"])
+    if "scalar" in tables:
+        _complete(text, ("scalar",), document.get("scalar", {}), tables["scalar"])
     for table in ("parts", "surfaces"):
         for row in tables[table]:
             name = row.pop("name")
@@ -127,6 +129,12 @@ def _changed(data: bytes, old: Scene, new: Scene) -> bytes:
         _change(text, ("view",), before["view"], after["view"], told["view"])
     elif before["view"] != after["view"]:
         _set_all(text, ("view",), told["view"])
+    if "scalar" not in after:
+        text.remove(("scalar",))
+    elif "scalar" in before:
+        _change(text, ("scalar",), before["scalar"], after["scalar"], told["scalar"])
+    else:
+        _set_all(text, ("scalar",), told["scalar"])
     for key in ("parts", "surfaces"):
         _change_named(text, document, key, before[key], after[key], told[key])
     if before["lights"] != after["lights"]:

@@ -29,6 +29,13 @@ def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> tu
     with fewer than three corners have none. Raises InputError if there are too many large polygons with
     reflex corners.
     """
+    for sides in (3, 4):
+        if len(counts) and (counts == sides).all():
+            # Measured: where all polygons have the same number of sides, a third of the time of what follows.
+            by_column = np.empty((4, len(counts)), np.intp)
+            by_column[:sides] = corners.reshape(-1, sides).T
+            by_column[3] = by_column[sides - 1]
+            return by_column.T, np.arange(len(counts))
     starts = np.cumsum(counts) - counts
     small = np.flatnonzero((counts == 3) | (counts == 4))
     pieces = [corners[starts[small, None] + np.minimum(np.arange(4), counts[small, None] - 1)]]

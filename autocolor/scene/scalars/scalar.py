@@ -14,7 +14,7 @@ from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Column, Row, Tier
 from autocolor.scene.columns.reference_kinds import References
-from autocolor.scene.columns.value_kinds import Number, Text, VectorKind, Whole
+from autocolor.scene.columns.value_kinds import Number, Switch, Text, VectorKind, Whole
 from autocolor.scene.scalars.scalar_kinds import EndColor, Limits, ScaleKind
 
 MOST_BANDS: Final = 256
@@ -76,6 +76,9 @@ class Scalar(Row):
         128,
         128,
         128,
+    )
+    legend: Annotated[bool, Column(Switch(), Tier.NOTHING, "Whether the legend is drawn on the display.")] = (
+        True
     )
     surfaces: Annotated[
         tuple[str, ...] | None,

@@ -136,3 +136,19 @@ def test_a_picture_from_its_own_rasters_is_the_same_picture(scene: Scene) -> Non
     assert [(each.surface_number, each.start, each.stop) for each in again.slices] == [
         (each.surface_number, each.start, each.stop) for each in picture.slices
     ]
+
+
+def test_a_picture_from_its_rasters_has_the_scalar() -> None:
+    picture = render(wall_scene(sphere(), scalar={"name": "z"}), 9, 13)
+    assert picture.scalar is not None
+    again = Picture.from_rasters(
+        picture.intensity,
+        picture.surface_number,
+        picture.surfaces,
+        1.0,
+        picture.scalar,
+        picture.scalar_limits,
+    )
+    assert again.scalar is not None
+    assert again.scalar.tobytes() == picture.scalar.tobytes()
+    assert again.scalar_limits == picture.scalar_limits

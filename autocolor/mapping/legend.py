@@ -1,0 +1,183 @@
+"""The legend: what the colors of a scalar mean, as areas of words and lines of text beside the picture.
+
+It is drawn by instructions over the picture, by `sending` or by a screen, and is no part of the picture: the
+words of an image are those of the scene alone. Its bar is in the words of a surface that the scalar colors,
+in the brightest shade of each band; so another color scale changes the legend with the surface, by the same
+entries. Its ground and its letters are in words of the screens.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+from autocolor.mapping.display_image import DisplayImage
+from autocolor.mapping.legend_numbers import bands_apart, numbers_between
+from autocolor.mapping.level_ranges import SCREENS
+from autocolor.mapping.scalar_bands import Bands
+
+CHARACTER: Final = 7
+LETTER_LINES: Final = 9
+"""Hardware: the cell of a character of the smallest size, in elements and lines."""
+
+INK: Final = SCREENS.first + 1
+GROUND: Final = SCREENS.first + 5
+FRAME: Final = SCREENS.first + 4
+
+MARGIN: Final = 8
+"""Elements and lines between the legend and the edges of the picture, and around what stands in it."""
+
+BAR_ELEMENTS: Final = 16
+BAR_LINES: Final = 224
+"""Assumed: the most lines of the bar, unless there are more bands."""
+
+MOST_BAND_LINES: Final = 24
+BESIDE: Final = 6
+"""Elements between the bar and its numbers."""
+
+BAR_GAP: Final = 8
+"""Lines above and below the bar, beyond which its numbers reach."""
+
+TITLE_LINES: Final = 11
+TITLE_GAP: Final = 4
+ROW_LINES: Final = 12
+"""Lines from one line of the title, or of the other colors, to the next."""
+
+LEAST_APART: Final = 22
+"""Assumed: lines from one number to the next."""
+
+MOST_TITLE: Final = 12
+MOST_TITLES: Final = 3
+"""Characters of a line of the title, and lines of it."""
+
+MOST_SHARE: Final = 0.4
+"""Assumed: the largest part of the width of the picture that the legend takes; a smaller picture has none."""
+
+
+class Swatch(NamedTuple):
+    """An area of one word; its edges are included."""
+
+    left: int
+    top: int
+    right: int
+    bottom: int
+    word: int
+
+
+class Label(NamedTuple):
+    """A line of text in words INK and GROUND, with its upper left corner."""
+
+    left: int
+    top: int
+    text: str
+
+
+@dataclass(frozen=True)
+class Legend:
+    """The areas and the texts of a legend, from the lowest; the first area is the whole of it."""
+
+    swatches: tuple[Swatch, ...]
+    labels: tuple[Label, ...]
+
+    def has(self, element: int, line: int) -> bool:
+        """Whether it covers a pixel."""
+        left, top, right, bottom, _ = self.swatches[0]
+        return left <= element <= right and top <= line <= bottom
+
+
+def legend(image: DisplayImage, right: int | None = None, bottom: int | None = None) -> Legend | None:
+    """The legend of an image; None without a scalar, where that has none, and where it would not fit.
+
+    It stands in the upper right corner of the picture, or of what is to the left of an element and above a
+    line.
+    """
+    scalar = image.scene.scalar
+    seen = {image.picture.surfaces[each.surface_number - 1] for each in image.picture.slices}
+    found = {name: bands for name, bands in image.bands.items() if name in seen}
+    if scalar is None or not scalar.legend or not found:
+        return None
+    lines, elements = image.words.shape
+    # A surface where a value is missing has all the bands that there are.
+    name = max(found, key=lambda name: found[name].has_missing)
+    return _laid_out(
+        scalar.name,
+        found[name],
+        image.ranges[name].first,
+        elements if right is None else min(right, elements),
+        lines if bottom is None else min(bottom, lines),
+    )
+
+
+def _laid_out(name: str, bands: Bands, first: int, right: int, bottom: int) -> Legend | None:
+    """The legend of a scalar with bands, to the left of an element and above a line."""
+    title = title_lines(name)
+    height = lines_of_band(bands.bands)
+    step = bands_apart(bands.bands, height, LEAST_APART)
+    numbers = numbers_between(bands.low, bands.high, bands.bands // step)
+    above = [("above", bands.above)] * bands.has_above
+    below = [("below", bands.below)] * bands.has_below + [("missing", bands.missing)] * bands.has_missing
+
+    # The size of it all.
+    beside = max(map(len, (*numbers, *(label for label, _ in (*above, *below)))))
+    inner = max(BAR_ELEMENTS + BESIDE + CHARACTER * beside, CHARACTER * max(map(len, title)))
+    bar_lines = height * bands.bands
+    rows = ROW_LINES * (len(above) + len(below))
+    inside = TITLE_LINES * len(title) + TITLE_GAP + 2 * BAR_GAP + bar_lines + rows
+    if inner + 3 * MARGIN > MOST_SHARE * right or inside + 4 * MARGIN > bottom:
+        return None
+
+    left, top = right - 2 * MARGIN - inner, 2 * MARGIN
+    frame = Swatch(left - MARGIN, top - MARGIN, right - MARGIN - 1, top + inside + MARGIN - 1, FRAME)
+    ground = Swatch(frame.left + 1, frame.top + 1, frame.right - 1, frame.bottom - 1, GROUND)
+    swatches, labels = [frame, ground], []
+
+    def put(band: int, top: int, lines: int) -> None:
+        word = first + bands.brightest(band)
+        swatches.append(Swatch(left, top, left + BAR_ELEMENTS - 1, top + lines - 1, word))
+
+    def put_text(middle: int, text: str) -> None:
+        labels.append(Label(left + BAR_ELEMENTS + BESIDE, middle - LETTER_LINES // 2, text))
+
+    # The title, what is above the limits, the bar with its numbers, and what else there is.
+    for line in title:
+        labels.append(Label(left, top, line))
+        top += TITLE_LINES
+    top += TITLE_GAP
+    for label, band in above:
+        put(band, top, LETTER_LINES)
+        put_text(top + LETTER_LINES // 2, label)
+        top += ROW_LINES
+    foot = top + BAR_GAP + bar_lines
+    for band in range(bands.bands):
+        put(band, foot - (band + 1) * height, height)
+    for place, number in enumerate(numbers):
+        put_text(foot - place * step * height, number)
+    top = foot + BAR_GAP
+    for label, band in below:
+        put(band, top, LETTER_LINES)
+        put_text(top + LETTER_LINES // 2, label)
+        top += ROW_LINES
+    return Legend(tuple(swatches), tuple(labels))
+
+
+def title_lines(name: str) -> Sequence[str]:
+    """The name of a scalar in at most three lines, broken between words; what is too long is cut.
+
+    >>> title_lines("gaussian curvature"), title_lines("stress")
+    (['gaussian', 'curvature'], ['stress'])
+    """
+    lines: list[str] = []
+    for word in name.split() or [name]:
+        if lines and len(lines[-1]) + 1 + len(word) <= MOST_TITLE:
+            lines[-1] += f" {word}"
+        else:
+            lines.append(word)
+    if len(lines) > MOST_TITLES:
+        lines = [*lines[: MOST_TITLES - 1], " ".join(lines[MOST_TITLES - 1 :])]
+    return [line if len(line) <= MOST_TITLE else f"{line[: MOST_TITLE - 2]}.." for line in lines]
+
+
+def lines_of_band(bands: int) -> int:
+    """The lines of each band of the bar."""
+    return max(1, min(MOST_BAND_LINES, BAR_LINES // bands))
