@@ -16,6 +16,7 @@ from autocolor.files.meshes.obj.obj_file import OBJ
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.registry import format_named, suffix_rule, suffixes_of
 from autocolor.files.scene_writing import write_scene_with_tables
+from autocolor.files.scenes.store_scene import STORE
 from autocolor.files.writing import write_atomically
 from autocolor.scene.scene import Scene
 
@@ -24,13 +25,21 @@ def _write_scene(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
     return write_scene_with_tables(path, scene, overwrite=overwrite, complete=False)
 
 
+def _write_store(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    from autocolor.files.store.store_file import write_store
+
+    write_store(path, scene, overwrite=overwrite)
+    return [path]
+
+
+STORE_OUTPUT: Final = Output(STORE.name, STORE.suffixes, _write_store)
 SCENE: Final = Output("scene", (".toml",), _write_scene, in_folder=(SCENE_FILE,))
 
 
 def outputs() -> tuple[Output, ...]:
     """All formats that a scene can be written in, sorted by name without regard to capitals."""
     meshes = [_mesh_output(each) for each in mesh_formats() if each.written or each.write]
-    return tuple(sorted([*meshes, SCENE], key=lambda each: each.name.casefold()))
+    return tuple(sorted([*meshes, SCENE, STORE_OUTPUT], key=lambda each: each.name.casefold()))
 
 
 def _mesh_output(mesh_format: MeshFormat) -> Output:
