@@ -26,7 +26,8 @@ from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.scalars.mesh_scalars import MeshScalar
 
 NUMBERS = (
-    b"4294967296", b"4294967295", b"2147483648", b"2147483647", b"-1", b"0", b"nan", b"inf", b"1e999", b"-1e39",
+    b"4294967296", b"4294967295", b"2147483648", b"2147483647", b"-1", b"0", b"nan", b"inf", b"1e999",
+    b"-1e39",
     b"99999999999999999999", b"1.5", b"0x10", b"1_0", b"", b"\xd9\xa3", b"1,5", b"1e", b"\0", b"9" * 400,
 )  # fmt: skip
 """Words that readers of numbers in text must take or refuse."""
@@ -180,8 +181,8 @@ def small_mesh() -> Mesh:
 STL_TEXT = (
     b"solid plate\n"
     + b"".join(
-        b"facet normal 0 0 1\nouter loop\nvertex %d 0 0\nvertex %d 0 0.5\nvertex 0 %d 1e-3\nendloop\nendfacet\n"
-        % (at, at + 1, at + 1)
+        b"facet normal 0 0 1\nouter loop\nvertex %d 0 0\nvertex %d 0 0.5\nvertex 0 %d 1e-3\nendloop\n"
+        b"endfacet\n" % (at, at + 1, at + 1)
         for at in range(4)
     )
     + b"endsolid plate\n"
@@ -198,8 +199,8 @@ PLY_TEXT = (
     b"0 0 0 255 1.5\n1 0 0 0 2\n1 1 0 1 3\n0 1 0.5 2 -4e3\n4 0 1 2 3\n3 0 1 2\n"
 )
 PLY_BITS = (
-    b"ply\nformat binary_big_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-    b"property uchar red\nelement face 2\nproperty list uchar uint vertex_indices\nproperty short load\n"
+    b"ply\nformat binary_big_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    b"property float z\nproperty uchar red\nelement face 2\nproperty list uchar uint vertex_indices\nproperty short load\n"
     b"end_header\n"
     + b"".join(struct.pack(">3fB", *place, 9) for place in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.5)))
     + struct.pack(">B4IhB3Ih", 4, 0, 1, 2, 3, 7, 3, 0, 1, 2, -7)
@@ -231,7 +232,8 @@ BYU_TEXT = (
     b"       1       2       3      -4       2       5      -3       3       5       6\n      -4\n"
 )
 OBJ_TEXT = (
-    b"# by hand\nmtllib car.mtl\no hood\nusemtl red\nv 0 0 0\nv 1.5e0 0 0 1\nv 1 1 0\nv 0 1 .5\nvt 0 0\nvn 0 0 1\n"
+    b"# by hand\nmtllib car.mtl\no hood\nusemtl red\nv 0 0 0\nv 1.5e0 0 0 1\nv 1 1 0\nv 0 1 .5\n"
+    b"vt 0 0\nvn 0 0 1\n"
     b"f 1/1/1 2/1/1 3/1/1 4/1/1\ng roof wide\ns 1\nv 2 2 2\nf -1 -3 2\nf 1 2 3 \\\n4 5\nl 1 2\n"
 )
 MTL_TEXT = b"newmtl red\nKd 0.8 0.1 0.1\nKs 0.5 0.5 0.5\nNs 20\nmap_Kd car.png\nd 0.5\n"

@@ -35,8 +35,8 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "scalars", "lighting",
-        "mapping", "files", "rendering", "pacing", "sending", "scan_lines", "journal", "studio", "images", "widgets",
-        "screens", "commands", "__main__",
+        "mapping", "files", "rendering", "sending", "scan_lines", "journal", "studio", "images",
+        "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
         "errors", "arrays", "checks", "timing", "configuration", "writing", "png",

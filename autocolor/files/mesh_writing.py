@@ -21,7 +21,6 @@ from autocolor.files.scenes.scene_meshes import MESH_FILE_KEYS, meshes_of
 from autocolor.files.scenes.toml_text import parsed_toml
 from autocolor.files.writing import write_atomically
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalars.mesh_scalars import MeshScalar
 
 MESH_STEM: Final = "mesh"
 """The name, without its ending, of the mesh file that is written beside a scene file."""
@@ -81,25 +80,25 @@ def reports_of(folder: Path, entries: Entries) -> list[MeshReport]:
 
 def _is_same(one: Mesh, other: Mesh) -> bool:
     """Whether all tables and scalars of two meshes are equal; the crease angle is not one of them."""
+    kinds, others = ([(scalar.name, scalar.of) for scalar in mesh.scalars] for mesh in (one, other))
     return (
         one.part_names == other.part_names
+        and kinds == others
         and all(np.array_equal(vars(one)[name], vars(other)[name]) for name in ARRAYS)
-        and len(one.scalars) == len(other.scalars)
-        and all(_are_same_scalars(*pair) for pair in zip(one.scalars, other.scalars, strict=True))
+        and all(
+            np.array_equal(scalar.values, same.values, equal_nan=True)
+            for scalar, same in zip(one.scalars, other.scalars, strict=True)
+        )
     )
 
 
-def _are_same_scalars(one: MeshScalar, other: MeshScalar) -> bool:
-    is_named_so = (one.name, one.of) == (other.name, other.of)
-    return is_named_so and np.array_equal(one.values, other.values, equal_nan=True)
-
-
 def written_mesh(folder: Path, mesh: Mesh, written: list[Path]) -> Meshes:
-    """Write a mesh to a new file, as OBJ or, if that does not give the same mesh, as arrays.
+    """Write a mesh to a new file, as OBJ or, if that does not give the same mesh, scalars too, as arrays.
 
     The file is added to `written`. Raises OutputError or WriteError.
     """
-    for suffix, content in ((".obj", obj_text), (SUFFIX, table_file_bytes)):
+    as_obj = () if mesh.scalars else ((".obj", obj_text),)
+    for suffix, content in (*as_obj, (SUFFIX, table_file_bytes)):
         path = _written_to_a_free_name(folder, suffix, content(mesh))
         written.append(path)
         try:

@@ -17,22 +17,29 @@ from autocolor.arrays import Floats, Indices, cross
 def corner_weights(corners: Floats, counts: Indices, points: Floats) -> Floats:
     """The weights of the four corners at each point, (4, points); each column adds up to 1.
 
-    `corners` is (3, 4, polygons), and a triangle repeats its last corner; `points`, (3, points), has those in
+    `corners` is (3, 4, polygons), and a triangle repeats a corner; `points`, (3, points), has those in
     each polygon one after the other, as many as `counts`, (polygons,), says.
     """
     weights = np.zeros((4, points.shape[1]))
-    triangles = (corners[:, 2] == corners[:, 3]).all(axis=0)
+    # A side without length makes a triangle; it should be the one between the last two corners.
+    no_side = (corners == np.roll(corners, -1, axis=1)).all(axis=0)
+    triangles = no_side.any(axis=0)
     if not triangles.any():
         return _normalized(_weights_in_quads(corners, counts, points, weights))
-    if triangles.all():
+    if no_side[2].all():
         weights[:3] = _weights_in_triangles(corners[:, :3], counts, points)
         return _normalized(weights)
-    for chosen, is_triangle in ((np.flatnonzero(triangles), True), (np.flatnonzero(~triangles), False)):
-        columns = np.flatnonzero(np.repeat(triangles == is_triangle, counts))
-        within = np.take(points, columns, axis=1)
-        of_these = corner_weights(np.take(corners, chosen, axis=2), counts[chosen], within)
-        weights[:, columns] = of_these
-    return weights
+    columns = np.flatnonzero(np.repeat(~triangles, counts))
+    quads, within = np.compress(~triangles, corners, axis=2), np.take(points, columns, axis=1)
+    weights[:, columns] = _weights_in_quads(quads, counts[~triangles], within, np.zeros((4, len(columns))))
+    columns = np.flatnonzero(np.repeat(triangles, counts))
+    counts, column = counts[triangles], np.arange(np.count_nonzero(triangles))
+    three = (no_side[:, triangles].argmax(axis=0) + np.arange(2, 5)[:, None]) % 4
+    in_triangles = np.compress(triangles, corners, axis=2)[:, three, column]
+    weights[np.repeat(three, counts, axis=1), columns] = _weights_in_triangles(
+        in_triangles, counts, np.take(points, columns, axis=1)
+    )
+    return _normalized(weights)
 
 
 def _normalized(weights: Floats) -> Floats:

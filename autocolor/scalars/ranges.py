@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Callable, Hashable
+from typing import Final, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from autocolor.arrays import Floats
+from autocolor.arrays import Floats, Singles
+from autocolor.scene.mesh import Mesh
 
 Limits = tuple[float, float]
 
@@ -15,6 +18,24 @@ UNIT: Final = (0.0, 1.0)
 
 LEAST_EXTENT: Final = 1e-6
 """Assumed: a range that is shorter than this share of its numbers is noise of float32, and has no extent."""
+
+SMALLEST: Final = 1e-36
+"""Below this, float32 has no room for the half of a number."""
+
+MOST_KEPT: Final = 64
+"""Assumed: ranges that are kept of one mesh; while a direction is dragged, each has one of its own."""
+
+
+class ScalarValues(NamedTuple):
+    """A scalar at the visible points, (n,) float32 in their order, NaN where missing, and its own range."""
+
+    values: Singles
+    limits: Limits
+
+
+def within(values: Singles, limits: Limits) -> ScalarValues:
+    """The values, in their own array, with those that rounding put beyond the limits put on them."""
+    return ScalarValues(np.clip(values, *limits, out=values), limits)
 
 
 def widened(low: float, high: float) -> Limits:
@@ -30,11 +51,31 @@ def widened(low: float, high: float) -> Limits:
     most = max(abs(low), abs(high))
     if high - low > LEAST_EXTENT * most:
         return low, high
-    half = most / 2 if most > float(np.finfo(np.float32).tiny) * 4 else 0.5
+    half = most / 2 if most > SMALLEST else 0.5
     return float(np.float32(low - half)), float(np.float32(high + half))
 
 
-def range_of(values: Floats) -> Limits:
-    """The least and the largest of the values that are not missing, widened; UNIT if all are."""
+def range_of(values: Floats, cut: float = 0) -> Limits:
+    """The least and the largest of the values that are not missing, widened; UNIT if all are.
+
+    `cut` percent of the values are beyond either end.
+    """
     found = values[np.isfinite(values)]
-    return widened(float(found.min()), float(found.max())) if len(found) else UNIT
+    if not len(found):
+        return UNIT
+    if cut:
+        return widened(*np.percentile(found, [cut, 100 - cut]).tolist())
+    return widened(float(found.min()), float(found.max()))
+
+
+_KEPT: Final[WeakKeyDictionary[Mesh, dict[Hashable, Limits]]] = WeakKeyDictionary()
+
+
+def kept(mesh: Mesh, key: Hashable, compute: Callable[[], Limits]) -> Limits:
+    """A range that depends on nothing but the mesh and the key; computed once, and not for each picture."""
+    ranges = _KEPT.setdefault(mesh, {})
+    if key not in ranges:
+        if len(ranges) >= MOST_KEPT:
+            ranges.clear()
+        ranges[key] = compute()
+    return ranges[key]

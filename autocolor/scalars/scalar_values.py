@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from autocolor.arrays import Floats, Indices
 from autocolor.immutable import read_only
-from autocolor.scalars.computed import COMPUTING, ScalarValues
+from autocolor.scalars.computed import COMPUTING
 from autocolor.scalars.interpolation import interpolated
-from autocolor.scalars.ranges import range_of
+from autocolor.scalars.ranges import Limits, ScalarValues, kept, range_of, within
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalars.mesh_scalars import POLYGON, MeshScalar
 from autocolor.scene.scalars.scalar import Scalar
@@ -17,33 +19,33 @@ from autocolor.visibility.visible_points import VisiblePoints
 
 def scalar_values(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
     """The values of a scalar at the visible points; the scalars of the mesh come before computed ones."""
-    for of_mesh in mesh.scalars:
-        if of_mesh.name == scalar.name:
-            found = _of_polygons if of_mesh.of == POLYGON else _of_nodes
-            found_values, limits = found(mesh, of_mesh, points)
-            break
+    of_mesh = {each.name: each for each in mesh.scalars}.get(scalar.name)
+    if of_mesh is None:
+        values, limits = COMPUTING[scalar.name](mesh, scalar, points)
     else:
-        found_values, limits = COMPUTING[scalar.name](mesh, scalar, points)
-    return ScalarValues(read_only(found_values), limits)
+        values, limits = (_of_polygons if of_mesh.of == POLYGON else _of_nodes)(mesh, of_mesh, points)
+    return ScalarValues(read_only(values), limits)
 
 
 def _of_polygons(mesh: Mesh, scalar: MeshScalar, points: VisiblePoints) -> ScalarValues:
-    """The values of the polygons that are seen."""
-    values = scalar.values[points.span_polygons].astype(np.float32)
-    return ScalarValues(np.repeat(values, points.span_lengths), range_of(scalar.values))
+    """The values of the polygons that are seen; the range is that of all polygons."""
+    values = scalar.values.take(points.span_polygons).astype(np.float32)
+    limits = kept(mesh, ("of mesh", scalar.name), partial(range_of, scalar.values))
+    return ScalarValues(np.repeat(values, points.span_lengths), limits)
 
 
 def _of_nodes(mesh: Mesh, scalar: MeshScalar, points: VisiblePoints) -> ScalarValues:
     """The values between those of the nodes; the range is that of the nodes that polygons use."""
     node_rows = mesh.node_numbers.T
-    used = np.zeros(len(scalar.values), np.bool_)
-    used[node_rows] = True
 
     def corner_values(polygons: Indices) -> Floats:
         return scalar.values.take(np.take(node_rows, polygons, axis=1))
 
-    limits = range_of(scalar.values[used])
-    values = interpolated(mesh, points, corner_values)
-    # A sum may be rounded to a little beyond the largest of its numbers.
-    np.clip(values, *limits, out=values)
-    return ScalarValues(values, limits)
+    limits = kept(mesh, ("of mesh", scalar.name), partial(_range_of_nodes, mesh, scalar))
+    return within(interpolated(mesh, points, corner_values), limits)
+
+
+def _range_of_nodes(mesh: Mesh, scalar: MeshScalar) -> Limits:
+    used = np.zeros(len(scalar.values), np.bool_)
+    used[mesh.node_numbers.T] = True
+    return range_of(scalar.values[used])

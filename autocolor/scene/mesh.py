@@ -23,6 +23,7 @@ from autocolor.logs import logger_of, timed
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.columns.value_kinds import Number
 from autocolor.scene.foreign_meshes import foreign_tables
+from autocolor.scene.geometry.curvature import Curvatures, curvatures
 from autocolor.scene.geometry.node_normals import CREASE_ANGLE, NodeNormals, node_normals
 from autocolor.scene.geometry.planes.shared_planes import SharedPlanes, shared_planes
 from autocolor.scene.geometry.used_rows import used_bounds, used_rows
@@ -118,6 +119,12 @@ class Mesh(Immutable):
         """Unit normals at the corners of the polygons, computed from the adjoining polygons."""
         with timed(LOG, "node normals"):
             return node_normals(self.coordinates, self.node_numbers, self.part_numbers, self.crease_angle)
+
+    @cached_property
+    def curvatures(self) -> Curvatures:
+        """Mean and Gaussian curvature at each of the normals."""
+        with timed(LOG, "curvatures"):
+            return curvatures(self.coordinates, self.node_numbers, self.normals)
 
     @cached_property
     def shared_planes(self) -> SharedPlanes | None:

@@ -97,7 +97,7 @@ def test_a_scalar_has_a_raster_and_a_range() -> None:
     assert picture.scalar_limits == pytest.approx((-1, 1.2))
     assert not picture.scalar.flags.writeable
     without = render(two_surfaces(), 24, 32)
-    assert without.scalar is without.scalar_values is without.scalar_limits is None
+    assert (without.scalar, without.scalar_values, without.scalar_limits) == (None, None, None)
     assert picture.intensity.tobytes() == without.intensity.tobytes()
 
 

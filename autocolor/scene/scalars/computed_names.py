@@ -9,7 +9,19 @@ from autocolor.checks import nearest, shown
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.scalars.mesh_scalars import MeshScalar
 
-COMPUTED: Final = ("x", "y", "z")
+COMPUTED: Final = (
+    "x",
+    "y",
+    "z",
+    "distance",
+    "slope",
+    "draft angle",
+    "mean curvature",
+    "gaussian curvature",
+    "largest curvature",
+    "smallest curvature",
+    "zebra",
+)
 """Assumed: a scalar of the mesh hides a computed one of its name, since the file's own numbers are meant."""
 
 

@@ -9,6 +9,7 @@ import pytest
 from autocolor import Mesh, OutputError, read_scene
 from autocolor.files import mesh_writing
 from autocolor.files.mesh_writing import entries_of, meshes_there, reports_of, written_mesh
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from tests.autocolor.meshes import cube
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nf 1 2 3 4\n"
@@ -39,6 +40,23 @@ def test_what_obj_does_not_hold_is_written_as_arrays(tmp_path: Path, mesh: Mesh)
     assert meshes.entries == ({"file": "mesh.tables"},)
     assert list(tmp_path.iterdir()) == written == [tmp_path / "mesh.tables"]
     assert np.array_equal(meshes.reports[0].mesh.node_numbers, mesh.node_numbers)
+
+
+def test_a_mesh_with_scalars_is_written_as_arrays_and_is_there_again(tmp_path: Path) -> None:
+    mesh = cube().with_scalars(MeshScalar("stress", np.array([np.nan, *range(7)])))
+    written: list[Path] = []
+    meshes = written_mesh(tmp_path, mesh, written)
+    assert meshes.entries == ({"file": "mesh.tables"},)
+    assert np.array_equal(meshes.reports[0].mesh.scalars[0].values, mesh.scalars[0].values, equal_nan=True)
+    text = b'[[mesh]]\nfile = "mesh.tables"\n'
+    assert meshes_there(tmp_path, mesh, text) is not None
+    for other in (
+        cube(),
+        cube().with_scalars(MeshScalar("strain", mesh.scalars[0].values)),
+        cube().with_scalars(MeshScalar("stress", np.arange(8.0))),
+        cube().with_scalars(MeshScalar("stress", np.arange(6.0), "polygon")),
+    ):
+        assert meshes_there(tmp_path, other, text) is None
 
 
 def test_a_mesh_that_no_format_holds_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

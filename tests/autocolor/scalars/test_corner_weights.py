@@ -20,13 +20,15 @@ def weights_at(corners: object, points: object) -> Array:
     table = np.array(corners, np.float64)
     table = table[[0, 1, 2, 2]] if len(table) == 3 else table
     within = np.array(points, np.float64).T
-    return corner_weights(table.T[:, :, None], np.array([within.shape[1]]), within).T
+    weights: Array = corner_weights(table.T[:, :, None], np.array([within.shape[1]]), within).T
+    return weights
 
 
 def on_a_circle(turns: list[float]) -> Array:
     """A convex quad in an oblique plane, far from the origin."""
     places = np.array([(math.cos(turn), 3 * math.sin(turn)) for turn in turns])
-    return places @ np.array([(1.0, 0.25, -0.5), (-0.25, 1.0, 2.0)]) + (5.0, -7.0, 11.0)
+    corners: Array = places @ np.array([(1.0, 0.25, -0.5), (-0.25, 1.0, 2.0)]) + (5.0, -7.0, 11.0)
+    return corners
 
 
 shares = st.lists(numbers(0.02, 1), min_size=4, max_size=4)
@@ -37,7 +39,9 @@ turns = shares.map(lambda gaps: [2 * math.pi * sum(gaps[:count]) / sum(gaps) for
 def test_weights_in_a_convex_quad_are_those_of_wachspress(around: list[float], share: list[float]) -> None:
     corners = on_a_circle(around)
     point = np.array(share) @ corners / sum(share)
-    assert weights_at(corners, [point])[0] == pytest.approx(weights_in(corners, point), abs=1e-9)
+    assert weights_at(corners, [point])[0] == pytest.approx(
+        weights_in(corners.tolist(), point.tolist()), abs=1e-9
+    )
 
 
 @given(turns, shares)
@@ -53,6 +57,15 @@ def test_weights_in_a_triangle_are_barycentric(corners: list[tuple[float, ...]],
     assume(np.linalg.norm(np.cross(table[1] - table[0], table[2] - table[0])) > 1e-3)
     wanted = np.array(share[:3]) / sum(share[:3])
     assert weights_at(table, [wanted @ table])[0] == pytest.approx([*wanted, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("place", range(4))
+def test_a_triangle_may_repeat_any_corner(place: int) -> None:
+    triangle = np.array([(0.0, 0.0, 1.0), (4.0, 0.0, 1.0), (0.0, 4.0, 3.0)])
+    order = np.roll([0, 1, 2, 2], place)
+    wanted = np.array([0.2, 0.3, 0.5])
+    found = weights_at(triangle[order], [wanted @ triangle])[0]
+    assert np.bincount(order, found) == pytest.approx(wanted)
 
 
 def test_each_corner_has_all_the_weight_at_itself_and_none_on_the_sides_across() -> None:

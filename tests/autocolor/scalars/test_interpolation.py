@@ -28,7 +28,8 @@ def test_values_do_not_depend_on_the_chunks(monkeypatch: pytest.MonkeyPatch) -> 
     points = rendering(scene, 24, 32).points
     node_rows = scene.mesh.node_numbers.T
     heights = scene.mesh.coordinates[:, 2]
-    in_one, in_many = [], []
+    in_one: list[float] = []
+    in_many: list[float] = []
     for found, most in ((in_one, 1 << 14), (in_many, 7)):
         monkeypatch.setattr(interpolation, "POINTS_AT_ONCE", most)
         found.extend(

@@ -3,7 +3,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.pacing import BLOCKS, PICTURE_SECONDS, block_for, blocks_of
+from autocolor.mapping.pacing import BLOCKS, PICTURE_SECONDS, block_for, blocks_of
 
 SECONDS = st.floats(0, 10)
 

@@ -1,0 +1,199 @@
+"""Curvature: how much the surface bends at each node normal.
+
+Assumed: at each normal a quadric is fitted to the nodes next to it in the polygons that share the normal, by
+least squares: h = p x + q y - (a x x + 2 b x y + c y y) / 2, where x and y are in the tangent plane and h is
+along the normal. So there is no curvature across a crease, and that of a curved surface comes out at any
+density of its nodes. Every neighbor counts the same, near or far, and the normals of the neighbors count a
+little, too: they decide where there are few neighbors. Mean curvature is positive where the surface bends
+away from its normal: a sphere of radius r that faces outward has 1/r.
+
+Assumed: at the rim of a fan, where neighbors are on one side only, it is the mean of that of the neighbors
+around which the surface is closed, if there are any.
+
+Measured and rejected: a fit to the normals alone, which on a regular mesh is as good; but with triangles of
+random density it was 7 % off at half of the nodes of a sphere, and no less with more of them; this is less
+than 1 % off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from autocolor.arrays import Booleans, Floats, Indices, Singles, chunks_of_runs, cross, dot
+from autocolor.immutable import Immutable, read_only
+from autocolor.scene.geometry.node_normals import NodeNormals
+
+CORNERS_AT_ONCE: Final = 1 << 14
+
+NORMAL_WEIGHT: Final = 0.01
+"""Assumed: how much the normal of a neighbor counts in proportion to its place."""
+
+RIDGE: Final = 1e-9
+"""What is added to the equations, in proportion, so that what nothing decides becomes 0."""
+
+UNKNOWNS: Final = 5
+"""The slopes p and q, and a, b and c."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Curvatures(Immutable):
+    """Mean and Gaussian curvature at each row of `NodeNormals.vectors`, (normals,) float64, read-only.
+
+    They are in the inverse of the world unit, and in its square.
+    """
+
+    mean: Floats
+    gaussian: Floats
+
+
+class Corners(NamedTuple):
+    """The corners of polygons at some normals.
+
+    `rows` are these normals, and `counts` how many corners each has. Of each corner there is the normal at
+    it, `own`; the columns of the node at it and at the corner after, across and before, `nodes` (4, corners);
+    and the normals at the latter, `neighbors` (3, corners).
+    """
+
+    rows: slice
+    counts: Indices
+    own: Indices
+    nodes: Indices
+    neighbors: Indices
+
+
+def curvatures(coordinates: Floats, node_numbers: Indices, normals: NodeNormals) -> Curvatures:
+    """The curvatures at the normals of a mesh; 0 where a normal has no polygon with area.
+
+    Arguments are as in `Mesh`. Worked on in chunks, with 5 more numbers a polygon.
+    """
+    count = len(normals.vectors)
+    numbers = np.ascontiguousarray(normals.numbers.T)
+    node_rows, coordinate_rows = np.ascontiguousarray(node_numbers.T), np.ascontiguousarray(coordinates.T)
+    order = np.argsort(numbers.ravel(), kind="stable")
+    corner_counts = np.bincount(numbers.ravel(), minlength=count)
+    found, closed = np.empty((2, count)), np.empty(count, np.bool_)
+    for corners in _corners(order, corner_counts, node_rows, numbers):
+        local = np.repeat(np.arange(len(corners.counts)), corners.counts)
+        equations = _equations(coordinate_rows, normals.vectors.T, corners)
+        sums = [np.bincount(local, row, len(corners.counts)) for row in equations]
+        found[:, corners.rows] = _curvatures_of(_solved(np.stack(sums)))
+        # Each edge within a fan leads to one corner after and to one before.
+        ends = (corners.neighbors[0] - corners.neighbors[2]).astype(np.float64)
+        closed[corners.rows] = np.bincount(local, ends, len(corners.counts)) == 0
+    if not closed.all():
+        inner = found.copy()
+        for corners in _corners(order, corner_counts, node_rows, numbers):
+            if not closed[corners.rows].all():
+                _take_from_closed(found, inner, closed, corners)
+    return Curvatures(read_only(found[0]), read_only(found[1]))
+
+
+def _corners(order: Indices, counts: Indices, node_rows: Indices, numbers: Indices) -> Iterator[Corners]:
+    """The corners, which `order` sorts by their normals, in chunks of normals."""
+    polygons = node_rows.shape[1]
+    for rows, places in chunks_of_runs(counts, CORNERS_AT_ONCE):
+        corner, polygon = np.divmod(order[places], polygons)
+        around = (corner + np.arange(4)[:, None]) % 4 * polygons + polygon
+        there = numbers.ravel().take(around)
+        yield Corners(rows, counts[rows], there[0], node_rows.ravel().take(around), there[1:])
+
+
+def _equations(coordinate_rows: Floats, vector_rows: Singles, corners: Corners) -> Floats:
+    """What each corner adds to the equations of its normal, (20, corners).
+
+    They are the upper triangle of the matrix by rows, and the right side.
+    """
+    normal = np.take(vector_rows, corners.own, axis=1).astype(np.float64)
+    across, upward = _tangents(normal)
+    points = np.take(coordinate_rows, corners.nodes, axis=1)
+    sums = np.zeros((UNKNOWNS * (UNKNOWNS + 3) // 2, len(corners.own)))
+    triangles = (points == np.roll(points, 1, axis=1)).all(axis=0).any(axis=0)
+    for step, neighbor in enumerate(corners.neighbors, start=1):
+        edge = points[:, step] - points[:, 0]
+        turn = np.take(vector_rows, neighbor, axis=1) - normal
+        square = dot(edge, edge)
+        counts = square > 0
+        if step == 2:
+            # What is across in a triangle is a neighbor already.
+            counts &= ~triangles
+        square[~counts] = 1.0
+        weight = counts / (square * square)
+        of_normal = NORMAL_WEIGHT * counts / square
+        x, y, height = dot(edge, across), dot(edge, upward), dot(edge, normal)
+        # The rows of the equations: height, then how the normal turns along both tangents.
+        quadratic = (x, y, -0.5 * x * x, -x * y, -0.5 * y * y)
+        _add(sums, dict(enumerate(quadratic)), height, weight)
+        _add(sums, {0: -1.0, 2: x, 3: y}, dot(turn, across), of_normal)
+        _add(sums, {1: -1.0, 3: x, 4: y}, dot(turn, upward), of_normal)
+    return sums
+
+
+def _add(sums: Floats, factors: dict[int, Floats | float], right: Floats, weight: Floats) -> None:
+    """Add a weighted equation, the sum of factors times unknowns = right, to the normal equations."""
+    for first, factor in factors.items():
+        weighted = weight * factor
+        sums[first - UNKNOWNS] += weighted * right
+        # Where the row of the triangle begins, less its first column.
+        start = first * (2 * UNKNOWNS - first - 1) // 2
+        for second, other in factors.items():
+            if second >= first:
+                sums[start + second] += weighted * other
+
+
+def _solved(sums: Floats) -> Floats:
+    """The unknowns, (5, n), of symmetrical equations as `_equations` adds them up: by elimination."""
+    count = sums.shape[1]
+    matrix = np.empty((UNKNOWNS, UNKNOWNS + 1, count))
+    for place, (row, column) in enumerate(zip(*np.triu_indices(UNKNOWNS), strict=True)):
+        matrix[row, column] = matrix[column, row] = sums[place]
+    matrix[:, UNKNOWNS] = sums[-UNKNOWNS:]
+    # Measure each unknown so that the diagonal is 1: then the size of the mesh does not matter.
+    scale = np.sqrt(np.einsum("kkn->kn", matrix[:, :UNKNOWNS]))
+    scale[scale == 0] = 1.0
+    matrix /= scale[:, None]
+    matrix[:, :UNKNOWNS] /= scale
+    for pivot in range(UNKNOWNS):
+        matrix[pivot, pivot] += RIDGE
+    for pivot in range(UNKNOWNS):
+        matrix[pivot, pivot + 1 :] /= matrix[pivot, pivot]
+        for other in range(UNKNOWNS):
+            if other != pivot:
+                matrix[other, pivot + 1 :] -= matrix[other, pivot] * matrix[pivot, pivot + 1 :]
+    unknowns: Floats = matrix[:, UNKNOWNS] / scale
+    return unknowns
+
+
+def _curvatures_of(unknowns: Floats) -> Floats:
+    """Mean and Gaussian curvature, (2, n), of quadrics with the slopes p and q where they are taken."""
+    p, q, a, b, c = unknowns
+    square = 1 + p * p + q * q
+    mean = ((1 + q * q) * a - 2 * p * q * b + (1 + p * p) * c) / (2 * square * np.sqrt(square))
+    return np.stack([mean, (a * c - b * b) / (square * square)])
+
+
+def _take_from_closed(found: Floats, inner: Floats, closed: Booleans, corners: Corners) -> None:
+    """Give each normal of a fan with a rim the mean of its neighbors `inner` of closed fans, if any."""
+    count = len(corners.counts)
+    local = np.repeat(np.arange(count), corners.counts)
+    having, sums = np.zeros(count), np.zeros((2, count))
+    for neighbor in corners.neighbors:
+        weight = closed[neighbor].astype(np.float64)
+        having += np.bincount(local, weight, count)
+        for sum_row, values in zip(sums, inner, strict=True):
+            sum_row += np.bincount(local, weight * values[neighbor], count)
+    changed = np.flatnonzero(~closed[corners.rows] & (having > 0))
+    found[:, changed + corners.rows.start] = sums[:, changed] / having[changed]
+
+
+def _tangents(normals: Floats) -> tuple[Floats, Floats]:
+    """Two unit vectors across each unit normal, (3, n), and each other."""
+    least = np.abs(normals).argmin(axis=0)
+    along = np.zeros_like(normals)
+    along[least, np.arange(len(least))] = 1.0
+    across = cross(normals, along)
+    across /= np.sqrt(dot(across, across))
+    return across, cross(normals, across)
