@@ -200,8 +200,8 @@ PLY_TEXT = (
 )
 PLY_BITS = (
     b"ply\nformat binary_big_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
-    b"property float z\nproperty uchar red\nelement face 2\nproperty list uchar uint vertex_indices\nproperty short load\n"
-    b"end_header\n"
+    b"property float z\nproperty uchar red\nelement face 2\nproperty list uchar uint vertex_indices\n"
+    b"property short load\nend_header\n"
     + b"".join(struct.pack(">3fB", *place, 9) for place in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.5)))
     + struct.pack(">B4IhB3Ih", 4, 0, 1, 2, 3, 7, 3, 0, 1, 2, -7)
 )

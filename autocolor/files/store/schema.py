@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from autocolor.checks import LARGEST_COORDINATE
-from autocolor.files.store.sql_columns import NUMBER, SqlColumn, columns_of, quoted
+from autocolor.files.store.sql_columns import NUMBER, SqlColumn, checked, columns_of, quoted
 from autocolor.scene.columns.column import Row, fields_of
 from autocolor.scene.columns.row_kinds import Nested, Rows
 from autocolor.scene.scalars.mesh_scalars import NODE, POLYGON
@@ -28,6 +28,8 @@ MESH: Final = "mesh"
 NODES: Final = "nodes"
 POLYGONS: Final = "polygons"
 SCALARS: Final = "mesh_scalars"
+IN_DEGREES: Final = "crease_angle BETWEEN 0 AND 180"
+
 VALUES: Final = {NODE: "node_scalars", POLYGON: "polygon_scalars"}
 """The tables of the values of scalars, by what they are of."""
 
@@ -62,11 +64,13 @@ def _vector_checks(columns: tuple[SqlColumn, ...]) -> list[str]:
         if column.component is not None:
             vectors.setdefault(column.path, []).append(column)
     for x, y, z in vectors.values():
+        name = ".".join(x.path)
         a, b, c = (quoted(column.name) for column in (x, y, z))
         if x.may_be_null:
-            checks.append(f"CHECK (({a} IS NULL) = ({b} IS NULL) AND ({a} IS NULL) = ({c} IS NULL))")
+            all_or_none = f"({a} IS NULL) = ({b} IS NULL) AND ({a} IS NULL) = ({c} IS NULL)"
+            checks.append(checked(f"{name} must have all of x, y and z, or none of them", all_or_none))
         if getattr(x.kind, "has_length", False):
-            checks.append(f"CHECK ({a} <> 0 OR {b} <> 0 OR {c} <> 0)")
+            checks.append(checked(f"{name} must not be zero", f"{a} <> 0 OR {b} <> 0 OR {c} <> 0"))
     return checks
 
 
@@ -97,7 +101,8 @@ def _definition(name: str, lines: list[str], end: str = "STRICT") -> str:
 
 
 def _number(name: str, rest: str = " NOT NULL") -> str:
-    return f"{name} REAL{rest} CHECK (abs({name}) <= {LARGEST_COORDINATE!r})"
+    rule = f"{name} must be finite and at most {LARGEST_COORDINATE:g} in size"
+    return f"{name} REAL{rest} {checked(rule, f'abs({name}) <= {LARGEST_COORDINATE!r}')}"
 
 
 def _values(of: str, table: str) -> str:
@@ -129,7 +134,7 @@ DEFINITIONS: Final[Mapping[str, str]] = {
         MESH,
         [
             f"{NUMBER} INTEGER PRIMARY KEY DEFAULT 1 CHECK ({NUMBER} = 1)",
-            "crease_angle REAL NOT NULL CHECK (crease_angle BETWEEN 0 AND 180)",
+            f"crease_angle REAL NOT NULL {checked('crease_angle must be from 0 to 180', IN_DEGREES)}",
         ],
     ),
     SCALARS: _definition(

@@ -103,7 +103,10 @@ class SqlColumn:
             parts.append(f"DEFAULT {literal(self.default)}")
         if self.references:
             parts.append(f"REFERENCES {quoted(self.references)} (name) ON UPDATE CASCADE")
-        parts.extend(f"CHECK ({check})" for check in self.checks)
+        checks = list(self.checks)
+        if checks:
+            # The name of a check is what any tool says when it fails.
+            parts.append(checked(f"{'.'.join(self.path)} {self.kind.rule()}", " AND ".join(checks)))
         return " ".join(parts)
 
 
@@ -114,6 +117,11 @@ def quoted(name: str) -> str:
     '"on"'
     """
     return '"' + name.replace('"', '""') + '"'
+
+
+def checked(rule: str, condition: str) -> str:
+    """A check of a table, whose name is the rule in words."""
+    return f"CONSTRAINT {quoted(rule)} CHECK ({condition})"
 
 
 def literal(value: SqlValue) -> str:
