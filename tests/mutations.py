@@ -20,7 +20,8 @@ import numpy as np
 
 from autocolor import Mesh, scene_of
 from autocolor.errors import InputError
-from autocolor.files.conversion.outputs import Output, outputs
+from autocolor.files.conversion.output import Output
+from autocolor.files.conversion.outputs import outputs
 from autocolor.files.meshes.formats import mesh_formats
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.scalars.mesh_scalars import MeshScalar
