@@ -85,7 +85,7 @@ def changes_of(
     def note(action: int, first: str | None, *rest: str | None) -> int:
         if action in CHANGES and first is not None:
             found.setdefault(first.lower(), set()).add(action)
-        return check(action, first, *rest)  # type: ignore[call-arg]
+        return check(action, first, *rest)
 
     if not statement.strip().rstrip(";").strip():
         raise UsageError("a statement must not be empty; write one, as in SELECT * FROM lights")

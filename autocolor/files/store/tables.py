@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import UsageError
+from autocolor.files.registry import recognized
 from autocolor.files.scene_sources import PathLike, read_scene_with_report
-from autocolor.files.scenes.formats import scene_format_named, scene_format_within
+from autocolor.files.scenes.formats import scene_formats
 from autocolor.files.store.connections import closed, connected
 from autocolor.files.store.schema import MESH_TABLES, NODES, POLYGONS, VALUES
 from autocolor.files.store.sql_columns import quoted
@@ -52,7 +53,7 @@ def is_store(path: Path) -> bool:
     """Whether a path is that of a store, by its name or its first bytes."""
     if os.path.isdir(path):
         return False
-    found = scene_format_named(path) or scene_format_within(path)
+    found = recognized(path, scene_formats())
     return found is not None and found.name == "store"
 
 
