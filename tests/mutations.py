@@ -44,7 +44,7 @@ BITS = tuple(
 
 MOST_SECONDS = 2.0
 LONGEST_SENTENCE = 2000
-MOST_SENTENCES = 100
+MOST_SENTENCES = 101
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ def outcome_of(seed: Seed, folder: Path) -> Outcome:
             warnings.simplefilter("error")
             mesh = read_scene_with_report(folder / seed.read).scene.mesh
     except InputError as refusal:
-        outcome = Outcome("refused", _fault_of_refusal(refusal, [*seed.files, folder.name]))
+        outcome = Outcome("refused", _fault_of_refusal(refusal, seed.files, folder))
     except Exception as error:
         outcome = Outcome("raised", f"{type(error).__name__}: {error}"[:300])
     else:
@@ -136,13 +136,16 @@ def outcome_of(seed: Seed, folder: Path) -> Outcome:
     return outcome
 
 
-def _fault_of_refusal(refusal: InputError, names: list[str]) -> str:
+def _fault_of_refusal(refusal: InputError, files: Mapping[str, bytes], folder: Path) -> str:
     if not 0 < len(refusal.problems) <= MOST_SENTENCES:
         return f"a refusal of {len(refusal.problems)} sentences"
     for sentence in refusal.problems:
         if len(sentence) > LONGEST_SENTENCE or not sentence.isprintable():
             return f"a refusal that cannot be read: {sentence[:300]!r}"
-        if not any(Path(name).stem in sentence for name in names):
+        place = sentence.partition(":")[0].partition(",")[0].encode()
+        is_named = any(Path(name).stem in sentence for name in files) or folder.name in sentence
+        # A damaged scene file may name any other file.
+        if not is_named and not any(place in data for data in files.values()):
             return f"a refusal that names no file: {sentence}"
     return ""
 
