@@ -28,6 +28,7 @@ class AutocolorGroup(CommandGroup):
         "view": "show a scene in an interactive window",
         "info": "print the counts, sizes and ranges of a scene",
         "validate": "list every problem of a scene",
+        "convert": "write a mesh or a scene in another format",
         "show": "show a scene in the interactive system on a display elsewhere",
         "tutorial": "learn the interactive system step by step on the built-in demo",
         "tables": "print or write the tables of a scene, including created ones",

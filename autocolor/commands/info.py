@@ -38,9 +38,9 @@ def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
 
 def facts_of(report: SceneReport) -> dict[str, Any]:
     """The facts about a scene, as values that JSON can hold; the scene is rendered for them."""
-    from autocolor.files.repair.quad_shapes import quad_shapes
     from autocolor.mapping.display_image import display_image
     from autocolor.rendering import render
+    from autocolor.scene.geometry.faults.quad_shapes import quad_shapes
 
     scene = report.scene
     mesh = scene.mesh

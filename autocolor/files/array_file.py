@@ -40,6 +40,10 @@ ArrayType = tuple[str, int]
 HEADER_TYPE: Final[ArrayType] = ("|u1", 1)
 
 
+LONGEST_REASON: Final = 300
+"""Letters of what is said of a damaged file."""
+
+
 @dataclass(frozen=True)
 class Series:
     """Arrays of one type, as many as a list in the header has rows, which describe them.
@@ -125,8 +129,10 @@ def read_array_file(kind: ArrayFileKind, source: Path) -> ArrayFile:
 
 
 def _damaged(kind: ArrayFileKind, source: Path, found: str) -> InputError:
+    # Names in the file may be anything.
+    told = "".join(letter if letter.isprintable() else "?" for letter in found[:LONGEST_REASON])
     return InputError(
-        f"{source.name}: a {kind.noun} must be whole and as autocolor wrote it, not {found}; {kind.advice}"
+        f"{source.name}: a {kind.noun} must be whole and as autocolor wrote it, not {told}; {kind.advice}"
     )
 
 

@@ -16,12 +16,12 @@ from typing import Generic, Protocol, TypeVar
 from autocolor.files.reading import read_head
 
 
-class Format(Protocol):
-    """What is asked of every format: its suffixes, in lower case, and how its files begin."""
+class Named(Protocol):
+    """What has suffixes, in lower case, and a name that is said in messages."""
 
     @property
     def name(self) -> str:
-        """The name, as it is said in messages."""
+        """The name."""
         ...
 
     @property
@@ -29,12 +29,17 @@ class Format(Protocol):
         """The suffixes of its files."""
         ...
 
+
+class Format(Named, Protocol):
+    """What is asked of every format that is read: also how its files begin."""
+
     @property
     def begins(self) -> Callable[[bytes], bool] | None:
         """Whether a file that begins with these bytes may have the format; None if nothing can be told."""
         ...
 
 
+SomeNamed = TypeVar("SomeNamed", bound=Named)
 SomeFormat = TypeVar("SomeFormat", bound=Format)
 
 
@@ -66,12 +71,12 @@ def import_modules_of(name: str) -> None:
         import_module(module.name)
 
 
-def suffixes_of(formats: Iterable[Format]) -> tuple[str, ...]:
+def suffixes_of(formats: Iterable[Named]) -> tuple[str, ...]:
     """The suffixes of some formats, sorted, each once."""
     return tuple(sorted({suffix for each in formats for suffix in each.suffixes}))
 
 
-def format_named(path: Path, formats: Iterable[SomeFormat]) -> SomeFormat | None:
+def format_named(path: Path, formats: Iterable[SomeNamed]) -> SomeNamed | None:
     """The format with the suffix of the path; None if there is none."""
     suffix = path.suffix.lower()
     return next((each for each in formats if suffix in each.suffixes), None)

@@ -28,6 +28,9 @@ ASPECT: Final = 640 / 480
 POINT: Final = 1e-12
 """Assumed: an object smaller than this fraction of its distance from the origin is treated as a point."""
 
+LEAST_EXTENT: Final = 1e-290
+"""Assumed: a smaller object is a point, as the reciprocals of its distances are too large for numbers."""
+
 MOST_STEPS: Final = 8
 """Steps to center an object; three are usually enough."""
 
@@ -185,8 +188,8 @@ def _at_borders(camera_points: Floats, distance: float, shifts: Floats) -> Indic
 
 
 def _is_a_point(low: Floats, high: Floats) -> bool:
-    """Whether an object is so small relative to its distance from the origin that it is a point."""
-    return float((high - low).max()) <= POINT * float(np.abs([low, high]).max())
+    """Whether an object is so small, or so small for its distance from the origin, that it is a point."""
+    return float((high - low).max()) <= max(POINT * float(np.abs([low, high]).max()), LEAST_EXTENT)
 
 
 def sphere_around(low: Floats, high: Floats) -> tuple[Floats, float]:

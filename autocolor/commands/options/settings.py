@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from autocolor.commands.completion import complete_settings
-from autocolor.commands.usage import as_usage
+from autocolor.commands.options.usage import as_usage
 from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from autocolor.commands.options.usage import as_usage
 from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.commands.store.answers import FORMATS, lines_of
-from autocolor.commands.usage import as_usage
 from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:

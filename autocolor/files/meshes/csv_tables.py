@@ -38,7 +38,6 @@ from autocolor.files.meshes.csv_rows import (
     Problems,
     WholeCells,
 )
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.reading import shown
 from autocolor.files.repair.found_scalars import FoundScalars
 from autocolor.files.repair.mesh_repair import repaired
@@ -222,8 +221,3 @@ def _is_mistake(cell: str, columns: tuple[str, ...], missing: list[str]) -> bool
     if not cell or cell.casefold() in columns or ("node1" in columns and CORNER.fullmatch(cell) is not None):
         return True
     return bool(difflib.get_close_matches(cell[:60], missing, n=1, cutoff=ALIKE))
-
-
-CSV_TABLES: Final = register(
-    MeshFormat("CSV", read_csv_tables, keys=("nodes", "polygons"), in_folder=("nodes.csv", "polygons.csv"))
-)

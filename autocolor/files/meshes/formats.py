@@ -24,6 +24,12 @@ LOG: Final = logger_of(__name__)
 FILE: Final = ("file",)
 """The keys of a mesh that is one file."""
 
+PARTS: Final = "parts"
+NODE_SCALARS: Final = "node scalars"
+POLYGON_SCALARS: Final = "polygon scalars"
+HELD: Final = (PARTS, NODE_SCALARS, POLYGON_SCALARS)
+"""What a mesh may have beside nodes and polygons, and not every format holds."""
+
 MeshReader = Callable[..., MeshReport]
 """A function that reads a mesh. Its positional arguments are the paths of the files, in the order of the
 format's keys, and a Placement. It raises InputError."""
@@ -51,15 +57,9 @@ class MeshFormat:
     begins: Callable[[bytes], bool] | None = None
     written: Callable[[Mesh], bytes] | None = None
     write: Callable[[Path, Mesh], object] | None = None
-    holds: frozenset[str] = frozenset()
+    holds: frozenset[str] = frozenset(HELD)
     mapped: bool = False
 
-
-PARTS: Final = "parts"
-NODE_SCALARS: Final = "node scalars"
-POLYGON_SCALARS: Final = "polygon scalars"
-HELD: Final = (PARTS, NODE_SCALARS, POLYGON_SCALARS)
-"""What a mesh may have beside nodes and polygons, and not every format holds."""
 
 REGISTRY: Final = Registry[MeshFormat](__name__.rpartition(".")[0])
 

@@ -70,4 +70,4 @@ def read_table_file(path: Path, placement: Placement = PLAIN) -> MeshReport:
     return MeshReport(mesh)
 
 
-TABLES: Final = register(MeshFormat("tables", read_table_file, (SUFFIX,)))
+TABLES: Final = register(MeshFormat("tables", read_table_file, (SUFFIX,), written=table_file_bytes))

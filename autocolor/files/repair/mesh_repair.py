@@ -4,7 +4,7 @@
 - A polygon with fewer than three corners left, or without area, is dropped.
 - A polygon with more than four corners is split into quads and triangles.
 - Warped, concave and crossed quads (bow-ties) are kept, since the renderer fills them scan line by scan line;
-  `quad_shapes.py` counts them. Unused nodes are kept.
+  `geometry/faults` finds them. Unused nodes are kept.
 """
 
 from __future__ import annotations

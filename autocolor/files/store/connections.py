@@ -199,7 +199,7 @@ def refusals_of_writing(name: str) -> Iterator[None]:
 def reason(error: Exception, clock: Clock | None = None) -> str:
     """What is wrong with a store by an error of SQLite, and what to do."""
     code = getattr(error, "sqlite_errorcode", None)
-    text = reason_of(error)
+    text = "".join(letter if letter.isprintable() else "?" for letter in reason_of(error)[:300])
     primary: Any = None if code is None else code & 0xFF
     if clock is not None and clock.ended:
         return f"a store must be read within {clock.seconds:g} seconds, not longer; leave rows out"

@@ -213,3 +213,9 @@ def test_the_bounds_of_the_object_are_those_of_its_coordinates(mesh: Mesh, stage
 def test_the_bounds_of_an_object_without_stage_are_found_once() -> None:
     mesh = cube()
     assert object_bounds(mesh, staged(mesh)) is mesh.bounds
+
+
+@pytest.mark.parametrize("size", [5e-324, 1e-317, 1e-300])
+def test_a_scene_of_an_object_without_extent_worth_a_number_is_created(size: float) -> None:
+    scene = scene_of(Mesh(np.eye(3) * size, np.array([[0, 1, 2]])))
+    assert np.isfinite(scene.view.eye).all()

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
+from autocolor.files.meshes.formats import PARTS, MeshFormat, register
 from autocolor.files.meshes.obj.lines import read_obj_lines
 from autocolor.files.meshes.obj.materials import read_materials
 from autocolor.files.meshes.obj.obj_text import obj_text
@@ -75,4 +75,6 @@ def _begins(head: bytes) -> bool:
     return NODE_LINE.search(head) is not None and b"\0" not in head
 
 
-OBJ: Final = register(MeshFormat("OBJ", read_obj, (".obj",), begins=_begins, written=obj_text))
+OBJ: Final = register(
+    MeshFormat("OBJ", read_obj, (".obj",), begins=_begins, written=obj_text, holds=frozenset((PARTS,)))
+)

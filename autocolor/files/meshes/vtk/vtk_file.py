@@ -22,7 +22,7 @@ from autocolor.files.meshes.vtk.attributes import Attributes
 from autocolor.files.meshes.vtk.cells import Cells, add_polygons, add_strips, add_typed, read_cell_lists
 from autocolor.files.meshes.vtk.cursor import VtkCursor
 from autocolor.files.meshes.vtk.layers import LAYERS, read_layer
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown
+from autocolor.files.reading import HEAD, LARGEST_MESH_FILE, read_bytes, shown
 from autocolor.files.repair.cells import Flats, cell_surface, used_nodes
 from autocolor.files.repair.mesh_repair import repaired
 from autocolor.files.repair.placement import PLAIN, Placement
@@ -45,7 +45,10 @@ class Grid(NamedTuple):
 
 def read_vtk(path: Path, placement: Placement = PLAIN) -> MeshReport:
     """The mesh of a legacy VTK file with its scalars, and what was repaired. Raises InputError."""
-    cursor = VtkCursor(read_bytes(path, LARGEST_MESH_FILE), path.name)
+    data = read_bytes(path, LARGEST_MESH_FILE)
+    if b"\n" not in data[:HEAD] and b"ASCII" in data[:HEAD]:
+        data = data.replace(b"\r", b"\n")
+    cursor = VtkCursor(data, path.name)
     dataset = _dataset(cursor)
     grid = read_layer(cursor, dataset) if dataset in LAYERS else _grid(cursor, dataset)
     coordinates, cells = grid

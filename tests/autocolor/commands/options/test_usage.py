@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from autocolor.commands.usage import as_usage
+from autocolor.commands.options.usage import as_usage
 from autocolor.errors import InputError, MissingInputError, UsageError
 
 

@@ -1,0 +1,102 @@
+"""`autocolor convert`: write a mesh or a scene in another format."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+import click
+
+from autocolor.commands.outputs import tell_written
+from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read, scene_options
+from autocolor.errors import UsageError
+
+EXAMPLES: Final = """\b
+Examples:
+  autocolor convert car.ply car.obj                 with the materials in car.mtl
+  autocolor convert bracket.vtk bracket.ply         with its scalars
+  autocolor convert car.stl car --up y --scale 0.001
+                                                    a scene, in the folder car
+  autocolor convert scenes/coupe coupe.csv          tables, in the folder coupe.csv
+  autocolor convert car.obj tables --to npy         tables that are mapped, not read
+  autocolor convert --formats                       list what can be read and written
+"""
+
+
+def _show_formats(context: click.Context, _: click.Parameter, asked: bool) -> None:
+    if not asked or context.resilient_parsing:
+        return
+    click.echo("\n".join(format_lines()))
+    context.exit()
+
+
+@click.command(epilog=EXAMPLES)
+@scene_options
+@click.argument("out", type=click.Path())
+@click.option(
+    "--to",
+    metavar="FORMAT",
+    help="The format of OUT, where its name does not tell: csv, npy, obj, ply, scene and others.",
+)
+@click.option("--force", is_flag=True, help="Overwrite existing files.")
+@click.option(
+    "--formats",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_show_formats,
+    help="List the formats that are read and written, and leave.",
+)
+@click.pass_context
+def convert(context: click.Context, source: SceneSource, out: str, to: str | None, force: bool) -> None:
+    """Write SCENE, a mesh or a whole scene, to OUT in the format that its name tells.
+
+    A name without an ending becomes the folder of a scene. What the format does not hold is told, and makes
+    the exit code 1 with --strict.
+    """
+    if out in ("", "-"):
+        raise UsageError(f"OUT must be a file or a folder, not {out!r}; give it a name")
+    from autocolor.files.conversion.left_out import left_out
+    from autocolor.files.conversion.outputs import output_named, output_of
+    from autocolor.files.meshes.formats import MeshFormat
+    from autocolor.files.scene_sources import source_format
+    from autocolor.files.writing import refuse_output
+
+    path = Path(out)
+    output = output_of(path) if to is None else output_named(to)
+    if not output.in_folder:
+        # Fail before reading if it cannot be written.
+        refuse_output(path, overwrite=force)
+    report = read(source)
+    is_bare = isinstance(source_format(Path(source.path))[1], MeshFormat)
+    written = output.write(path, report.scene, force)
+    lost = left_out(report.scene, output, is_bare=is_bare)
+    for phrase in lost:
+        click.echo(f"autocolor: {path.name}: left out, as {output.name} does not hold it: {phrase}", err=True)
+    tell_written(*map(str, written))
+    context.exit(REPAIRED if source.strict and lost else ended(report, source))
+
+
+def format_lines() -> list[str]:
+    """A line for each format: its name, the endings of its files, and whether it is read and written."""
+    from autocolor.files.conversion.outputs import outputs
+    from autocolor.files.meshes.formats import mesh_formats
+    from autocolor.files.scenes.formats import scene_formats
+
+    rows: dict[str, tuple[str, str]] = {}
+    for each in scene_formats():
+        rows[each.name.removesuffix(" file")] = (
+            " ".join([*each.suffixes, *([f"a folder of {each.in_folder}"] if each.in_folder else [])]),
+            "read",
+        )
+    for mesh_format in mesh_formats():
+        folder = [f"a folder of {', '.join(mesh_format.in_folder)}"] if mesh_format.in_folder else []
+        rows[mesh_format.name] = (" ".join([*mesh_format.suffixes, *folder]), "read")
+    for output in outputs():
+        endings, _ = rows.get(output.name, (" ".join(output.suffixes), ""))
+        rows[output.name] = (endings, "read, written")
+    name_width, ending_width = (max(map(len, column)) for column in (rows, [row[0] for row in rows.values()]))
+    return [
+        f"{name:{name_width}}  {endings:{ending_width}}  {done}"
+        for name, (endings, done) in sorted(rows.items(), key=lambda row: row[0].casefold())
+    ]

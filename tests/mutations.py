@@ -1,0 +1,300 @@
+"""Damaged copies of files, and what readers do with them: for the tests of all formats and `fuzz_readers`.
+
+A seed is a file that is read, or a folder of files. Its mutations are the same for the same number. A reader
+must give a mesh that holds what it promises, or refuse in short sentences that name a file.
+"""
+
+from __future__ import annotations
+
+import random
+import shutil
+import struct
+import tempfile
+import time
+import warnings
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from autocolor import Mesh, scene_of
+from autocolor.errors import InputError
+from autocolor.files.conversion.output import Output
+from autocolor.files.conversion.outputs import outputs
+from autocolor.files.meshes.formats import mesh_formats
+from autocolor.files.scene_sources import read_scene_with_report
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
+
+NUMBERS = (
+    b"4294967296", b"4294967295", b"2147483648", b"2147483647", b"-1", b"0", b"nan", b"inf", b"1e999",
+    b"-1e39",
+    b"99999999999999999999", b"1.5", b"0x10", b"1_0", b"", b"\xd9\xa3", b"1,5", b"1e", b"\0", b"9" * 400,
+)  # fmt: skip
+"""Words that readers of numbers in text must take or refuse."""
+
+BITS = tuple(
+    struct.pack(layout, number)
+    for layout, number in (
+        ("<I", 2**32 - 1), (">I", 2**31), ("<I", 2**31 - 1), ("<q", -1), ("<q", 2**62), (">q", 2**40),
+        ("<f", float("nan")), (">f", float("inf")), ("<d", 1e300), (">d", float("nan")), ("<H", 65535),
+    )
+)  # fmt: skip
+"""The same for readers of numbers in bits."""
+
+MOST_SECONDS = 2.0
+LONGEST_SENTENCE = 2000
+MOST_SENTENCES = 101
+
+
+@dataclass(frozen=True)
+class Seed:
+    """Files to be damaged, by their names, and the one that is read; "" for their folder."""
+
+    name: str
+    files: Mapping[str, bytes]
+    read: str = ""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of reading: "mesh" or "refused", and what was wrong with that, empty if nothing was."""
+
+    kind: str
+    fault: str = ""
+
+
+def mutated(seed: Seed, number: int) -> Seed:
+    """The mutation of that number of a seed; number 0 is the seed itself."""
+    if number == 0:
+        return seed
+    chance = random.Random(f"{seed.name} {number}")
+    name = chance.choice(sorted(seed.files))
+    data = bytearray(seed.files[name])
+    others = [each for each in seed.files.values() if each]
+    for _ in range(chance.randint(1, 4)):
+        _damage(data, chance, others)
+    return Seed(seed.name, {**seed.files, name: bytes(data)}, seed.read)
+
+
+def _damage(data: bytearray, chance: random.Random, others: list[bytes]) -> None:
+    """Damage the data at one place."""
+    at = chance.randrange(len(data) + 1)
+    end = min(len(data), at + chance.choice((1, 1, 2, 4, 8, 40, 400)))
+    kind = chance.randrange(9)
+    if kind == 0 and at < len(data):
+        data[at] ^= 1 << chance.randrange(8)
+    elif kind == 1:
+        del data[at:end]
+    elif kind == 2:
+        data[at:at] = chance.randbytes(chance.randint(1, 8))
+    elif kind == 3:
+        del data[at:]
+    elif kind == 4:
+        data[at:at] = data[at:end] * chance.choice((1, 1, 3, 50))
+    elif kind == 5:
+        other = chance.choice(others) if others else b""
+        start = chance.randrange(len(other) + 1)
+        data[at:end] = other[start : start + chance.randint(1, 60)]
+    elif kind == 6:
+        word = chance.choice(BITS)
+        data[at : at + len(word)] = word
+    else:
+        _replace_word(data, chance, at)
+
+
+def _replace_word(data: bytearray, chance: random.Random, at: int) -> None:
+    """Put another number in place of the word that is next to a place."""
+    spaces = b" \t\r\n,/"
+    start = at
+    while start < len(data) and data[start] in spaces:
+        start += 1
+    end = start
+    while end < len(data) and data[end] not in spaces and end < start + 40:
+        end += 1
+    data[start:end] = chance.choice(NUMBERS)
+
+
+def outcome_of(seed: Seed, folder: Path) -> Outcome:
+    """What comes of reading the files of a seed, which are written to a folder."""
+    for name, data in seed.files.items():
+        (folder / name).write_bytes(data)
+    began = time.process_time()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            mesh = read_scene_with_report(folder / seed.read).scene.mesh
+    except InputError as refusal:
+        outcome = Outcome("refused", _fault_of_refusal(refusal, seed.files, folder))
+    except Exception as error:
+        outcome = Outcome("raised", f"{type(error).__name__}: {error}"[:300])
+    else:
+        outcome = Outcome("mesh", fault_of_mesh(mesh))
+    seconds = time.process_time() - began
+    if seconds > MOST_SECONDS:
+        return Outcome(outcome.kind, f"it took {seconds:.1f} s; {outcome.fault}")
+    return outcome
+
+
+def _fault_of_refusal(refusal: InputError, files: Mapping[str, bytes], folder: Path) -> str:
+    if not 0 < len(refusal.problems) <= MOST_SENTENCES:
+        return f"a refusal of {len(refusal.problems)} sentences"
+    for sentence in refusal.problems:
+        if len(sentence) > LONGEST_SENTENCE or not sentence.isprintable():
+            return f"a refusal that cannot be read: {sentence[:300]!r}"
+        place = sentence.partition(":")[0].partition(",")[0].encode()
+        is_named = any(Path(name).stem in sentence for name in files) or folder.name in sentence
+        # A damaged scene file may name any other file.
+        if not is_named and not any(place in data for data in files.values()):
+            return f"a refusal that names no file: {sentence}"
+    return ""
+
+
+def fault_of_mesh(mesh: Mesh) -> str:
+    """What is wrong with the tables of a mesh that was handed on; empty if nothing is."""
+    nodes, polygons = len(mesh.coordinates), len(mesh.node_numbers)
+    if not np.isfinite(mesh.coordinates).all():
+        return "a coordinate that is not finite"
+    if polygons and not (mesh.node_numbers.min() >= 0 and mesh.node_numbers.max() < nodes):
+        return "a node number that is not in the node table"
+    if polygons and not (mesh.part_numbers.min() >= 0 and mesh.part_numbers.max() < len(mesh.part_names)):
+        return "a part number that is not in the part table"
+    for scalar in mesh.scalars:
+        if np.isinf(scalar.values).any() or len(scalar.values) not in (nodes, polygons):
+            return f"scalar {scalar.name!r} with an infinite value, or too many or few"
+    if polygons and not np.isfinite(mesh.normals.vectors).all():
+        return "a normal that is not finite"
+    return ""
+
+
+def small_mesh() -> Mesh:
+    """A small mesh of two parts with quads, a triangle and scalars of both kinds."""
+    places = [[x, y, 0.25 * x * y] for y in range(3) for x in range(3)]
+    return Mesh(
+        np.array(places),
+        np.array([[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 8]]),
+        np.array([0, 0, 1, 1]),
+        ("hood", "roof"),
+        scalars=(
+            MeshScalar("stress", np.array([0.5, 1, 2, 3, np.nan, 5, 6, 7, 8e10])),
+            MeshScalar("load", np.array([1.0, 2, 3, 4]), "polygon"),
+        ),
+    )
+
+
+STL_TEXT = (
+    b"solid plate\n"
+    + b"".join(
+        b"facet normal 0 0 1\nouter loop\nvertex %d 0 0\nvertex %d 0 0.5\nvertex 0 %d 1e-3\nendloop\n"
+        b"endfacet\n" % (at, at + 1, at + 1)
+        for at in range(4)
+    )
+    + b"endsolid plate\n"
+)
+STL_BITS = (
+    b"\0" * 80
+    + struct.pack("<I", 4)
+    + b"".join(struct.pack("<12fH", 0, 0, 1, at, 0, 0, at + 1, 0, 0.5, 0, at + 1, 1e-3, 0) for at in range(4))
+)
+PLY_TEXT = (
+    b"ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty float y\n"
+    b"property float z\nproperty uchar red\nproperty double stress\nelement face 2\n"
+    b"property list uchar int vertex_indices\nend_header\n"
+    b"0 0 0 255 1.5\n1 0 0 0 2\n1 1 0 1 3\n0 1 0.5 2 -4e3\n4 0 1 2 3\n3 0 1 2\n"
+)
+PLY_BITS = (
+    b"ply\nformat binary_big_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    b"property float z\nproperty uchar red\nelement face 2\nproperty list uchar uint vertex_indices\n"
+    b"property short load\nend_header\n"
+    + b"".join(struct.pack(">3fB", *place, 9) for place in ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.5)))
+    + struct.pack(">B4IhB3Ih", 4, 0, 1, 2, 3, 7, 3, 0, 1, 2, -7)
+)
+VTK_TEXT = (
+    b"# vtk DataFile Version 3.0\nnotched\nASCII\nDATASET POLYDATA\nPOINTS 5 float\n"
+    b"0 0 0 1 0 0 1 1 0\n0 1 0.5 2 2 2\nPOLYGONS 2 9\n4 0 1 2 3\n3 1 4 2\n"
+    b"CELL_DATA 2\nSCALARS load double 1\nLOOKUP_TABLE default\n1 2\n"
+    b"POINT_DATA 5\nSCALARS stress float\nLOOKUP_TABLE default\n1 2 3 4 5e3\nVECTORS move float\n"
+    + b"0 0 1 " * 5
+    + b"\n"
+)
+VTK_GRID = (
+    b"# vtk DataFile Version 2.0\ngrid\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
+    + struct.pack(">12d", 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5)
+    + b"\nCELLS 2 9\n"
+    + struct.pack(">9i", 4, 0, 1, 2, 3, 3, 0, 1, 2)
+    + b"\nCELL_TYPES 2\n"
+    + struct.pack(">2i", 9, 5)
+    + b"\nPOINT_DATA 4\nSCALARS stress float 1\nLOOKUP_TABLE default\n"
+    + struct.pack(">4f", 1, 2, 3, 4)
+    + b"\n"
+)
+BYU_TEXT = (
+    b"       2       6       3      11\n       1       2       3       3\n"
+    b" 0.00000E+00 0.00000E+00 0.00000E+00 1.00000E+00 0.00000E+00 0.00000E+00\n"
+    b" 1.00000E+00 1.00000E+00 0.00000E+00 0.00000E+00 1.00000E+00 5.00000E-01\n"
+    b" 2.00000E+00 1.00000E+00 0.00000E+00 2.00000E+00 2.00000E+00 1.00000E+00\n"
+    b"       1       2       3      -4       2       5      -3       3       5       6\n      -4\n"
+)
+OBJ_TEXT = (
+    b"# by hand\nmtllib car.mtl\no hood\nusemtl red\nv 0 0 0\nv 1.5e0 0 0 1\nv 1 1 0\nv 0 1 .5\n"
+    b"vt 0 0\nvn 0 0 1\n"
+    b"f 1/1/1 2/1/1 3/1/1 4/1/1\ng roof wide\ns 1\nv 2 2 2\nf -1 -3 2\nf 1 2 3 \\\n4 5\nl 1 2\n"
+)
+MTL_TEXT = b"newmtl red\nKd 0.8 0.1 0.1\nKs 0.5 0.5 0.5\nNs 20\nmap_Kd car.png\nd 0.5\n"
+TOML_TEXT = (
+    b'ambient = 0.1\n[[mesh]]\nfile = "car.obj"\nscale = 2\n[parts.hood]\nsurface = "red"\n'
+    b'[surfaces.red]\nobject_color = "#b01020"\n[[lights]]\nname = "key"\nposition = [4, -6, 5]\n'
+    b'[scalar]\nname = "z"\nbands = 4\n'
+)
+
+BY_HAND = (
+    Seed("OBJ by hand", {"car.obj": OBJ_TEXT, "car.mtl": MTL_TEXT}, "car.obj"),
+    Seed("STL in text", {"plate.stl": STL_TEXT}, "plate.stl"),
+    Seed("STL in bits", {"plate.stl": STL_BITS}, "plate.stl"),
+    Seed("PLY in text", {"plate.ply": PLY_TEXT}, "plate.ply"),
+    Seed("PLY in bits", {"plate.ply": PLY_BITS}, "plate.ply"),
+    Seed("VTK in text", {"plate.vtk": VTK_TEXT}, "plate.vtk"),
+    Seed("VTK in bits", {"plate.vtk": VTK_GRID}, "plate.vtk"),
+    Seed("Movie.BYU", {"plate.g": BYU_TEXT}, "plate.g"),
+    Seed("scene file", {"scene.toml": TOML_TEXT, "car.obj": OBJ_TEXT, "car.mtl": MTL_TEXT}),
+)
+"""Samples of what is only read, and of kinds of files that are read and not written."""
+
+
+def written_seed(output: Output) -> Seed:
+    """A small mesh as a format writes it."""
+    with tempfile.TemporaryDirectory() as name:
+        suffix = output.suffixes[0] if output.suffixes else ""
+        target = Path(name) / f"small{'' if output.in_folder else suffix}"
+        mesh = small_mesh()
+        output.write(target, scene_of(mesh), False)
+        if not output.in_folder:
+            return Seed(f"{output.name} as written", {target.name: target.read_bytes()}, target.name)
+        files = {path.name: path.read_bytes() for path in sorted(target.iterdir())}
+        return Seed(f"{output.name} as written", files)
+
+
+def seeds() -> Iterator[Seed]:
+    """Samples of all formats: those by hand, and one for each format that is written."""
+    yield from BY_HAND
+    for output in outputs():
+        yield written_seed(output)
+
+
+def formats_without_seeds() -> list[str]:
+    """The names of mesh formats of which there is no sample, so that nobody forgets one."""
+    given = list(seeds())
+    suffixes = {Path(name).suffix for seed in given for name in seed.files}
+    names = {name for seed in given for name in seed.files}
+    return [
+        each.name
+        for each in mesh_formats()
+        if not suffixes & set(each.suffixes) and not (each.in_folder and set(each.in_folder) <= names)
+    ]
+
+
+def read_fresh(seed: Seed, folder: Path) -> Outcome:
+    """The outcome of a seed in a folder that is emptied before."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    return outcome_of(seed, folder)
