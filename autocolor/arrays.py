@@ -6,7 +6,7 @@ Vectors stand in three rows, one for each axis, so that numpy works on long rows
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -93,6 +93,18 @@ def chunks_of_runs(count: Numbers, most: int) -> Iterator[tuple[slice, slice]]:
         end = int(ends[last - 1])
         yield slice(first, last), slice(base, end)
         first, base = last, end
+
+
+def least_of_four(rows: AnyArray | Sequence[AnyArray]) -> AnyArray:
+    """The least of four rows; measured: a tenth of the time of a reduction over the short axis."""
+    least: AnyArray = np.minimum(np.minimum(rows[0], rows[1]), np.minimum(rows[2], rows[3]))
+    return least
+
+
+def most_of_four(rows: AnyArray) -> AnyArray:
+    """The most of four rows."""
+    most: AnyArray = np.maximum(np.maximum(rows[0], rows[1]), np.maximum(rows[2], rows[3]))
+    return most
 
 
 def dot(one: RealArray[Real], other: RealArray[Real]) -> RealArray[Real]:

@@ -35,7 +35,7 @@ from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import LevelRange
-from autocolor.pacing import block_for, blocks_of
+from autocolor.mapping.pacing import block_for, blocks_of
 from autocolor.rendering import rendering
 from autocolor.scan_lines import words_by_line
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges

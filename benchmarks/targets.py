@@ -105,8 +105,6 @@ TARGETS = (
     Target("memory, ten million polygons", "MB beyond the tables", 600),
     Target("1,000 recolorings to PNG", "of it is the encoder", 0.85, at_least=True),
     Target("1,000 recolorings, two processes", "times one's speed", 1.7, at_least=True),
-    Target("reading a million, OBJ, PLY, STL", "of trimesh's time", 1),
-    Target("reading a million, OBJ, PLY, STL", "of meshio's time", 1),
 )  # fmt: skip
 """In the order of what they are about: the display, edits beside peers, size, start, being right, to come."""
 

@@ -20,8 +20,8 @@ PUBLIC_NAMES = {
         "AutocolorError", "BlinnPhong", "CookTorrance", "Flap", "Flaps", "InputError", "LevelRange", "Light",
         "Mesh", "MissingInputError", "OutputError", "Paint", "Part", "Phong", "Picture", "Reflectance",
         "Rig", "Scene", "Studio", "Surface", "UnavailableError", "UsageError", "View", "WriteError", "demo",
-        "image", "read_journal", "read_picture", "read_rig", "read_scene", "render", "save_image", "scene_of",
-        "send_picture", "write_picture", "write_rig", "write_scene",
+        "image", "open_tables", "read_journal", "read_picture", "read_rig", "read_scene", "render",
+        "save_image", "scene_of", "send_picture", "write_picture", "write_rig", "write_scene",
     ],
     "ramtek_emu": [
         "ColorsError", "Configuration", "ConfigurationError", "EntryFormat", "GMR_9300", "HostPort",
@@ -35,7 +35,7 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "scalars", "lighting",
-        "mapping", "files", "rendering", "pacing", "sending", "scan_lines", "journal", "studio", "images",
+        "mapping", "files", "rendering", "sending", "scan_lines", "journal", "studio", "images",
         "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (

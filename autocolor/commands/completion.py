@@ -21,12 +21,6 @@ if TYPE_CHECKING:
 LARGEST_SCENE: Final = 16 << 20
 """Assumed: bytes of the files of a scene that is read for completion; measured: less than a second."""
 
-SUFFIXES: Final = (".npz", ".obj", ".tables", ".toml")
-"""The endings of files that are scenes. Measured: to ask the formats for them takes four times as long."""
-
-IN_FOLDERS: Final = (("scene.toml",), ("nodes.csv", "polygons.csv"))
-"""The files of folders that are scenes."""
-
 MOST_ENTRIES: Final = 10_000
 """Assumed: entries of a folder that are looked at."""
 
@@ -51,13 +45,24 @@ def _silent(complete: Complete) -> Complete:
 @_silent
 def complete_scenes(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """Folders with a scene, scene files, mesh files and picture files."""
-    return narrowed(incomplete, _folder_of(incomplete), lambda start: _entries(start, SUFFIXES))
+    from autocolor.files.openable import FOLDER, kind_of
+    from autocolor.files.scene_sources import scene_and_mesh_suffixes
+
+    def is_scene(folder: str) -> bool:
+        return kind_of(Path(folder)) != FOLDER
+
+    suffixes = scene_and_mesh_suffixes()
+    return narrowed(incomplete, _folder_of(incomplete), lambda start: _entries(start, suffixes, is_scene))
 
 
 @_silent
 def complete_pictures(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """Picture files."""
-    return narrowed(incomplete, _folder_of(incomplete), lambda start: _entries(start, (".npz",)))
+
+    def pictures(start: str) -> list[str]:
+        return _entries(start, (".npz",), lambda _: False)
+
+    return narrowed(incomplete, _folder_of(incomplete), pictures)
 
 
 @_silent
@@ -75,7 +80,7 @@ def complete_surfaces(context: click.Context, parameter: click.Parameter, incomp
 @_silent
 def complete_settings(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """The keys of `--set` for the scene on the line, and the values of a whole key."""
-    from autocolor.commands.setting_keys import keys_after
+    from autocolor.commands.options.setting_keys import keys_after
 
     scene = _scene(context)
 
@@ -125,7 +130,7 @@ def _folder_of(incomplete: str) -> str:
     return incomplete[: incomplete.rfind("/") + 1]
 
 
-def _entries(start: str, suffixes: tuple[str, ...]) -> list[str]:
+def _entries(start: str, suffixes: tuple[str, ...], is_scene: Callable[[str], bool]) -> list[str]:
     """The files with one of the suffixes in a folder, and its folders: scenes, and others that end in "/"."""
     found = []
     with os.scandir(start or ".") as entries:
@@ -133,11 +138,7 @@ def _entries(start: str, suffixes: tuple[str, ...]) -> list[str]:
             if entry.name.startswith("."):
                 continue
             if entry.is_dir():
-                is_scene = ".toml" in suffixes and any(
-                    all(os.path.exists(os.path.join(entry.path, name)) for name in names)
-                    for names in IN_FOLDERS
-                )
-                found.append(f"{start}{entry.name}{'' if is_scene else '/'}")
+                found.append(f"{start}{entry.name}{'' if is_scene(entry.path) else '/'}")
             elif entry.name.lower().endswith(suffixes):
                 found.append(f"{start}{entry.name}")
     return sorted(found)
@@ -153,5 +154,5 @@ def _scene(context: click.Context) -> Scene:
     files = [each for each in path.iterdir() if each.is_file()] if path.is_dir() else [path]
     if sum(each.stat().st_size for each in files) > LARGEST_SCENE:
         raise ValueError
-    options = {name: given[name] for name in ("up", "surfaces") if given.get(name)}
+    options = {name: given[name] for name in ("up", "scale", "surfaces") if given.get(name)}
     return read_scene_with_report(path, **options).scene

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
+from autocolor.commands.options.settings import set_option, with_settings
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
-from autocolor.commands.settings import set_option, with_settings
 from autocolor.commands.usage import as_usage
 from autocolor.commands.verbosity import verbose_option
 from autocolor.errors import UsageError

@@ -11,10 +11,10 @@ from typing import Final
 import click
 
 from autocolor.commands.completion import complete_lights
+from autocolor.commands.options.raster_size import size_option
+from autocolor.commands.options.settings import created_again, reframed, set_option, with_settings
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
-from autocolor.commands.raster_size import size_option
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
-from autocolor.commands.settings import created_again, reframed, set_option, with_settings
 
 EXAMPLES: Final = """\b
 Examples:

@@ -26,6 +26,7 @@ class SceneSource(NamedTuple):
     up: str = "z"
     surfaces: SurfaceSource = "materials"
     strict: bool = False
+    scale: float = 1.0
 
 
 def scene_options(command: Callable[..., Any], required: bool = True) -> Callable[..., Any]:
@@ -36,9 +37,15 @@ def scene_options(command: Callable[..., Any], required: bool = True) -> Callabl
 
     @wraps(command)
     def with_source(
-        *arguments: Any, scene: str | None, up: str, surfaces: SurfaceSource, strict: bool, **options: Any
+        *arguments: Any,
+        scene: str | None,
+        up: str,
+        scale: float,
+        surfaces: SurfaceSource,
+        strict: bool,
+        **options: Any,
     ) -> Any:
-        source = None if scene is None else SceneSource(scene, up, surfaces, strict)
+        source = None if scene is None else SceneSource(scene, up, surfaces, strict, scale)
         return command(*arguments, source=source, **options)
 
     decorated: Callable[..., Any] = with_source
@@ -51,6 +58,13 @@ def scene_options(command: Callable[..., Any], required: bool = True) -> Callabl
             default="z",
             show_default=True,
             help="Up axis of a mesh file; scene files give their own.",
+        ),
+        click.option(
+            "--scale",
+            type=float,
+            default=1.0,
+            metavar="FACTOR",
+            help="Factor for the coordinates of a mesh file, as 0.001 for one in millimeters.",
         ),
         click.option(
             "--surfaces",
@@ -69,7 +83,7 @@ def read(source: SceneSource) -> SceneReport:
     """Read a scene, and print a line on stderr for each repair."""
     from autocolor.files.scene_sources import read_scene_with_report
 
-    report = read_scene_with_report(source.path, up=source.up, surfaces=source.surfaces)
+    report = read_scene_with_report(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
     for repair in report.repairs:
         click.echo(f"autocolor: {repair}", err=True)
     return report

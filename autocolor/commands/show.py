@@ -10,8 +10,8 @@ import click
 
 from autocolor.commands.demo import PLACES
 from autocolor.commands.displays_elsewhere import port_to, refuse_address, session_elsewhere
+from autocolor.commands.options.settings import created_again, set_option, with_settings
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
-from autocolor.commands.settings import created_again, set_option, with_settings
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def show(
         from autocolor.journal.history import History
         from autocolor.journal.places import Source, place_of
 
-        origin = Source(source.path, source.up, source.surfaces)
+        origin = Source(source.path, source.up, source.surfaces, source.scale)
         place = place_of(origin)
         report = read(source)
         scene = created_again(report, with_settings(report.scene, settings))

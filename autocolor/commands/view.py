@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from autocolor.commands.options.settings import created_again, set_option, with_settings
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
-from autocolor.commands.settings import created_again, set_option, with_settings
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -72,20 +72,20 @@ def view(
         folder, session = chosen_session(recover)
         show(session.history, full_screen, fit, folder)
     elif source is not None:
-        from autocolor.files.recent import note_file
+        from autocolor.files.state.recent import note_file
         from autocolor.journal.history import History
         from autocolor.journal.places import Source, place_of
 
-        place = place_of(Source(source.path, source.up, source.surfaces))
+        place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
         report = read(source)
         edited = created_again(report, with_settings(report.scene, settings))
         note_file(source.path)
-        # What is opened after it has the same up axis.
+        # What is opened after it has the same up axis and scale.
         show(
             History(edited, place),
             full_screen,
             fit,
-            prepare=lambda viewer: setattr(viewer.session, "mesh_up", source.up),
+            prepare=lambda viewer: viewer.session.place_meshes(source.up, source.scale),
         )
         context.exit(ended(report, source))
 

@@ -1,8 +1,8 @@
 """Files of arrays, as .npz archives that numpy can open: picture files and table files.
 
-Each has a member `header`, JSON in UTF-8, and arrays of given types. They are stored without compression: the
-size of each array is checked against the size of its member before anything is allocated, so a small file
-cannot take much memory. Nothing is ever unpickled.
+Each has a member `header`, JSON in UTF-8, and arrays of given types, some of them in series whose lengths the
+header tells. They are stored without compression: the size of each array is checked against the size of its
+member before anything is allocated, so a small file cannot take much memory. Nothing is ever unpickled.
 """
 
 from __future__ import annotations
@@ -14,15 +14,16 @@ import re
 import struct
 import zipfile
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, NamedTuple, NoReturn
 
 import numpy as np
 
 from autocolor.arrays import AnyArray
+from autocolor.checks import shown
 from autocolor.errors import InputError
-from autocolor.files.reading import read_bytes, shown
+from autocolor.files.reading import read_bytes
 
 LARGEST_HEADER: Final = 16 << 20
 MOST_VALUES: Final = 1_000_000
@@ -33,7 +34,22 @@ ARRAY_HEADER: Final = re.compile(
 )
 """The array header exactly as numpy writes it; it is matched, never evaluated."""
 
-HEADER_TYPE: Final = ("|u1", 1)
+ArrayType = tuple[str, int]
+"""The dtype of an array and the number of its dimensions."""
+
+HEADER_TYPE: Final[ArrayType] = ("|u1", 1)
+
+
+@dataclass(frozen=True)
+class Series:
+    """Arrays of one type, as many as a list in the header has rows, which describe them.
+
+    The member of the first is named like "scalar_0".
+    """
+
+    member: str
+    type: ArrayType
+    most: int
 
 
 @dataclass(frozen=True)
@@ -41,8 +57,9 @@ class ArrayFileKind:
     """One kind of array file.
 
     `noun` is what messages call it, and `advice` what they say to do about a damaged one. `formats` are the
-    values of `format` in the header that can be read, `keys` the other keys that the header has. `arrays` are
-    the dtype and the number of dimensions of each member but the header.
+    values of `format` in the header that can be read, the one that is written first; `keys` are the other
+    keys that the header has. `arrays` has the types of the members, and `series` those of series of members,
+    each by the key of its list in the header. The `plain` formats have no series and none of their lists.
     """
 
     noun: str
@@ -50,7 +67,17 @@ class ArrayFileKind:
     largest: int
     formats: tuple[str, ...]
     keys: frozenset[str]
-    arrays: Mapping[str, tuple[str, int]]
+    arrays: Mapping[str, ArrayType]
+    series: Mapping[str, Series] = field(default_factory=dict)
+    plain: tuple[str, ...] = ()
+
+    def types(self, header: Mapping[str, Any]) -> dict[str, ArrayType]:
+        """The types of all members but the header of a file with this one."""
+        types = dict(self.arrays)
+        for key, series in self.series.items():
+            for number in range(len(header.get(key, ()))):
+                types[f"{series.member}_{number}"] = series.type
+        return types
 
 
 class ArrayFile(NamedTuple):
@@ -64,7 +91,7 @@ def array_file_bytes(kind: ArrayFileKind, header: Mapping[str, Any], arrays: Map
     """The content of an array file of the first format of its kind; the same for the same values."""
     text = json.dumps({"format": kind.formats[0], **header}, allow_nan=False).encode()
     members = {"header": np.frombuffer(text, np.uint8), **arrays}
-    types = {"header": HEADER_TYPE, **kind.arrays}
+    types = {"header": HEADER_TYPE, **kind.types(header)}
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
         for name, array in members.items():
@@ -81,31 +108,13 @@ def array_file_bytes(kind: ArrayFileKind, header: Mapping[str, Any], arrays: Map
 
 
 def read_array_file(kind: ArrayFileKind, source: Path) -> ArrayFile:
-    """The header and the arrays of a file. Raises InputError if the file is damaged or incomplete."""
-    types = {"header": HEADER_TYPE, **kind.arrays}
-    arrays = _arrays(kind, source, types)
-    return ArrayFile(_header(kind, source, arrays.pop("header")), arrays)
+    """The header and the arrays of a file, each member checked before its array is made.
 
-
-def _damaged(kind: ArrayFileKind, source: Path, found: str) -> InputError:
-    return InputError(
-        f"{source.name}: a {kind.noun} must be whole and as autocolor wrote it, not {found}; {kind.advice}"
-    )
-
-
-def _arrays(kind: ArrayFileKind, source: Path, types: Mapping[str, tuple[str, int]]) -> dict[str, AnyArray]:
-    """The members of the file as arrays, each checked before its array is made."""
+    Raises InputError if the file is damaged or incomplete.
+    """
     try:
         with zipfile.ZipFile(io.BytesIO(read_bytes(source, kind.largest))) as archive:
-            found = [member.filename for member in archive.infolist()]
-            if sorted(found) != sorted(f"{name}.npy" for name in types):
-                listed = ", ".join(map(shown, found[:3])) or "none"
-                raise _damaged(kind, source, f"with members like {listed}")
-            if any(member.compress_type != zipfile.ZIP_STORED for member in archive.infolist()):
-                raise _damaged(kind, source, "compressed")
-            return {
-                name: _array(kind, source, name, types[name], archive.read(f"{name}.npy")) for name in types
-            }
+            return _read(kind, source, archive)
     except InputError:
         raise
     except (zipfile.BadZipFile, EOFError, RuntimeError, ValueError, OSError) as error:
@@ -115,7 +124,32 @@ def _arrays(kind: ArrayFileKind, source: Path, types: Mapping[str, tuple[str, in
         raise _damaged(kind, source, f"damaged ({error})") from None
 
 
-def _array(kind: ArrayFileKind, source: Path, name: str, wanted: tuple[str, int], data: bytes) -> AnyArray:
+def _damaged(kind: ArrayFileKind, source: Path, found: str) -> InputError:
+    return InputError(
+        f"{source.name}: a {kind.noun} must be whole and as autocolor wrote it, not {found}; {kind.advice}"
+    )
+
+
+def _read(kind: ArrayFileKind, source: Path, archive: zipfile.ZipFile) -> ArrayFile:
+    """The header, and then the arrays that it tells of. Raises InputError if there are any other members."""
+    found = [member.filename for member in archive.infolist()]
+    listed = ", ".join(map(shown, found[:3])) or "none"
+    if "header.npy" not in found:
+        raise _damaged(kind, source, f"with members like {listed}")
+    if any(member.compress_type != zipfile.ZIP_STORED for member in archive.infolist()):
+        raise _damaged(kind, source, "compressed")
+
+    def array(name: str, wanted: ArrayType) -> AnyArray:
+        return _array(kind, source, name, wanted, archive.read(f"{name}.npy"))
+
+    header = _header(kind, source, array("header", HEADER_TYPE))
+    types = kind.types(header)
+    if sorted(found) != sorted(f"{name}.npy" for name in ("header", *types)):
+        raise _damaged(kind, source, f"with members like {listed}")
+    return ArrayFile(header, {name: array(name, wanted) for name, wanted in types.items()})
+
+
+def _array(kind: ArrayFileKind, source: Path, name: str, wanted: ArrayType, data: bytes) -> AnyArray:
     """One member as an array. Raises InputError if its dtype, dimensions or size is not the wanted one."""
     dtype, dimensions = wanted
     start = 10 + int.from_bytes(data[8:10], "little")
@@ -132,7 +166,7 @@ def _array(kind: ArrayFileKind, source: Path, name: str, wanted: tuple[str, int]
 
 
 def _header(kind: ArrayFileKind, source: Path, data: AnyArray) -> dict[str, Any]:
-    """The parsed header. Raises InputError if it is not JSON or lacks a key."""
+    """The parsed header. Raises InputError if it is not JSON, or has other keys than its format."""
     place = f"{source.name}, header"
 
     def refuse(constant: str) -> NoReturn:
@@ -148,7 +182,16 @@ def _header(kind: ArrayFileKind, source: Path, data: AnyArray) -> dict[str, Any]
             f"{place}: it must be JSON of at most {LARGEST_HEADER >> 20} MiB and {MOST_VALUES:,} values, not"
             f" {error}; {kind.advice}"
         ) from None
-    keys = {"format", *kind.keys}
-    if not isinstance(header, dict) or set(header) != keys or header["format"] not in kind.formats:
+    formats = (*kind.formats, *kind.plain)
+    if not isinstance(header, dict) or header.get("format") not in formats:
         raise InputError(f"{place}: its format must be {kind.formats[0]!r}, not another; {kind.advice}")
+    series = {} if header["format"] in kind.plain else kind.series
+    if set(header) != {"format", *kind.keys, *series}:
+        raise InputError(f"{place}: it must have the keys of its format, not others; {kind.advice}")
+    for key, each in series.items():
+        if not isinstance(header[key], list) or len(header[key]) > each.most:
+            raise InputError(
+                f"{place}: {key} must be a list of at most {each.most:,} rows, not"
+                f" {shown(header[key])}; {kind.advice}"
+            )
     return header

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 from weakref import WeakKeyDictionary
 
 from autocolor.scene.mesh import Mesh
@@ -23,7 +23,7 @@ class MeshSource:
     """
 
     folder: Path
-    entries: tuple[Mapping[str, str], ...]
+    entries: tuple[Mapping[str, Any], ...]
     scene_file: Path | None = None
 
 

@@ -17,7 +17,7 @@ from autocolor.files.meshes.obj.obj_text import obj_text
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
 from autocolor.files.repair.polygons import MeshReport
 from autocolor.files.scenes.problems import SceneProblems
-from autocolor.files.scenes.scene_meshes import meshes_of
+from autocolor.files.scenes.scene_meshes import MESH_FILE_KEYS, meshes_of
 from autocolor.files.scenes.toml_text import parsed_toml
 from autocolor.files.writing import write_atomically
 from autocolor.scene.mesh import Mesh
@@ -62,7 +62,7 @@ def _relative(entries: Entries, source: Path, folder: Path) -> Entries:
     found = []
     for entry in entries:
         keys = dict(entry)
-        for key in keys.keys() - {"up"}:
+        for key in keys.keys() & MESH_FILE_KEYS:
             try:
                 keys[key] = Path(os.path.normpath(source / keys[key])).relative_to(folder).as_posix()
             except ValueError:
@@ -79,18 +79,26 @@ def reports_of(folder: Path, entries: Entries) -> list[MeshReport]:
 
 
 def _is_same(one: Mesh, other: Mesh) -> bool:
-    """Whether all tables of two meshes are equal; the crease angle is not one of them."""
-    return one.part_names == other.part_names and all(
-        np.array_equal(vars(one)[name], vars(other)[name]) for name in ARRAYS
+    """Whether all tables and scalars of two meshes are equal; the crease angle is not one of them."""
+    kinds, others = ([(scalar.name, scalar.of) for scalar in mesh.scalars] for mesh in (one, other))
+    return (
+        one.part_names == other.part_names
+        and kinds == others
+        and all(np.array_equal(vars(one)[name], vars(other)[name]) for name in ARRAYS)
+        and all(
+            np.array_equal(scalar.values, same.values, equal_nan=True)
+            for scalar, same in zip(one.scalars, other.scalars, strict=True)
+        )
     )
 
 
 def written_mesh(folder: Path, mesh: Mesh, written: list[Path]) -> Meshes:
-    """Write a mesh to a new file, as OBJ or, if that does not give the same mesh, as arrays.
+    """Write a mesh to a new file, as OBJ or, if that does not give the same mesh, scalars too, as arrays.
 
     The file is added to `written`. Raises OutputError or WriteError.
     """
-    for suffix, content in ((".obj", obj_text), (SUFFIX, table_file_bytes)):
+    as_obj = () if mesh.scalars else ((".obj", obj_text),)
+    for suffix, content in (*as_obj, (SUFFIX, table_file_bytes)):
         path = _written_to_a_free_name(folder, suffix, content(mesh))
         written.append(path)
         try:

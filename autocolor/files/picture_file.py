@@ -2,13 +2,16 @@
 
 The members are `header` (the scene without its mesh, as JSON in UTF-8), `relative_intensity` (lines,
 elements) float32, to be multiplied by the header's scale, `surface_number` (lines, elements) uint8, and the
-mesh: `coordinates` (nodes, 3) float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32.
+mesh: `coordinates` (nodes, 3) float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32, and
+`mesh_scalar_0` and so on, the values of each of its scalars, float64. If the scene shows a scalar, its values
+at the pixels are `scalar_0`, (lines, elements) float32; NaN is a missing one.
 
 `array_file` reads and writes them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -16,15 +19,28 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import LARGEST_SINGLE, AnyArray
-from autocolor.errors import InputError
-from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
+from autocolor.errors import InputError, UsageError
+from autocolor.files.array_file import ArrayFileKind, Series, array_file_bytes, read_array_file
+from autocolor.files.meshes.scalar_members import (
+    KEY,
+    MESH_SCALARS,
+    scalar_members,
+    scalar_rows,
+    scalars_of,
+)
 from autocolor.files.plain_scene import plain_scene, scene_of_plain
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
+from autocolor.scene.columns.problems import Problem, RowError
+from autocolor.scene.scalars.scalar_kinds import Limits
 from autocolor.scene.scene import Scene
 
-FORMATS_READ: Final = ("autocolor picture 2", "autocolor picture 1")
-"""In version 1 the reflectance and the paint of a surface were nested tables."""
+PLAIN_FORMATS: Final = ("autocolor picture 2", "autocolor picture 1")
+"""Before version 3 there were no scalars; in version 1 the reflectance and the paint of a surface were nested
+tables."""
+
+SHOWN: Final = "shown_scalars"
+"""The key of the list in the header whose row, if any, is a table of the own `limits` of the scalar shown."""
 
 MOST_PROBLEMS: Final = 20
 LONGEST_PROBLEM: Final = 400
@@ -33,7 +49,8 @@ PICTURE_FILE: Final = ArrayFileKind(
     noun="picture file",
     advice="save the picture again",
     largest=4 << 30,
-    formats=FORMATS_READ,
+    formats=("autocolor picture 3",),
+    plain=PLAIN_FORMATS,
     keys=frozenset(("scale", "surfaces", "scene")),
     arrays={
         "relative_intensity": ("<f4", 2),
@@ -42,6 +59,7 @@ PICTURE_FILE: Final = ArrayFileKind(
         "node_numbers": ("<i4", 2),
         "part_numbers": ("<i4", 1),
     },
+    series={KEY: MESH_SCALARS, SHOWN: Series("scalar", ("<f4", 2), most=1)},
 )
 
 
@@ -57,13 +75,20 @@ def write_picture(
 ) -> None:
     """Write a picture file atomically.
 
-    Raises UsageError for a name that does not end in .npz, OutputError or WriteError if it cannot be written.
+    Raises UsageError for a name that does not end in .npz, or for a picture that is not that of the scene in
+    that only one of them has a scalar; OutputError or WriteError if it cannot be written.
     """
     check_suffix(path, ".npz", "a picture with its scene")
+    if (picture.scalar_values is None) != (scene.scalar is None):
+        raise UsageError(
+            "a picture and its scene must both have a scalar or neither, not one alone; render the scene"
+        )
     header = {
         "scale": picture.scale,
         "surfaces": list(picture.surfaces),
         "scene": plain_scene(scene),
+        KEY: scalar_rows(scene.mesh.scalars),
+        SHOWN: [] if picture.scalar is None else [{"limits": picture.scalar_limits}],
     }
     relative = np.zeros(picture.lines * picture.elements, np.float32)
     relative[picture.pixels] = picture.relative
@@ -73,6 +98,8 @@ def write_picture(
         "coordinates": scene.mesh.coordinates,
         "node_numbers": scene.mesh.node_numbers,
         "part_numbers": scene.mesh.part_numbers,
+        **scalar_members(scene.mesh.scalars),
+        **({} if picture.scalar is None else {"scalar_0": picture.scalar}),
     }
     write_atomically(path, array_file_bytes(PICTURE_FILE, header, arrays), overwrite=overwrite)
 
@@ -83,8 +110,8 @@ def read_picture(path: str | PathLike[str]) -> SavedPicture:
     header, arrays = read_array_file(PICTURE_FILE, source)
     try:
         mesh = (arrays["coordinates"], arrays["node_numbers"], arrays["part_numbers"])
-        scene = scene_of_plain(header["scene"], *mesh)
-        picture = _picture(header, scene, arrays["relative_intensity"], arrays["surface_number"])
+        scene = scene_of_plain(header["scene"], *mesh, scalars_of(header, arrays))
+        picture = _picture(header, scene, arrays)
     except InputError as error:
         raise InputError(
             f"{source.name}: {problem[:LONGEST_PROBLEM]}; {PICTURE_FILE.advice}"
@@ -93,9 +120,9 @@ def read_picture(path: str | PathLike[str]) -> SavedPicture:
     return SavedPicture(picture, scene)
 
 
-def _picture(header: dict[str, Any], scene: Scene, relative: AnyArray, numbers: AnyArray) -> Picture:
+def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyArray]) -> Picture:
     """The picture of the rasters and the header. Raises InputError if they or the scene do not match."""
-    scale = header["scale"]
+    scale, relative, numbers = header["scale"], arrays["relative_intensity"], arrays["surface_number"]
     names = [surface.name for surface in scene.surfaces]
     if isinstance(scale, bool) or not isinstance(scale, (int, float)) or not 0 < scale < LARGEST_SINGLE:
         raise InputError(f"its scale must be a number above 0, not {scale!r}")
@@ -111,8 +138,32 @@ def _picture(header: dict[str, Any], scene: Scene, relative: AnyArray, numbers: 
         )
     in_use = set(scene.mesh.parts_in_use)
     owned = {number for part, number in enumerate(scene.surface_number_of_part) if part in in_use}
-    picture = Picture.from_rasters(relative, numbers, tuple(names), float(scale))
+    scalar = _shown_scalar(header.get(SHOWN, ()), scene, arrays)
+    picture = Picture.from_rasters(relative, numbers, tuple(names), float(scale), *scalar)
     invalid = {each.surface_number for each in picture.slices} - owned
     if invalid:
         raise InputError(f"a surface number must be that of a surface with polygons, not {min(invalid)}")
     return picture
+
+
+def _shown_scalar(
+    rows: Sequence[object], scene: Scene, arrays: Mapping[str, AnyArray]
+) -> tuple[AnyArray, tuple[float, float]] | tuple[None, None]:
+    """The raster and the own range of the scalar that a picture shows. Raises InputError."""
+    if len(rows) != (scene.scalar is not None):
+        rule = "there must be a scalar at the pixels if the scene shows one, and none if it does not"
+        raise InputError(f"{rule}, not {len(rows)}")
+    if not rows:
+        return None, None
+    row, values = rows[0], arrays["scalar_0"]
+    found: list[Problem] = []
+    given = row["limits"] if isinstance(row, Mapping) and row.keys() == {"limits"} else row
+    limits: Any = Limits().held(given, (SHOWN, 0, "limits"), found)
+    if found:
+        raise RowError(found)
+    if values.shape != arrays["surface_number"].shape or np.isinf(values).any():
+        raise InputError(
+            f"a scalar must have a finite number or NaN at each of {arrays['surface_number'].shape} pixels,"
+            f" not {values.shape} with others"
+        )
+    return values, limits

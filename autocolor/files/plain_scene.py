@@ -11,6 +11,7 @@ from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.scene.columns.rows import made, plain
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from autocolor.scene.scene import Scene
 
 
@@ -24,9 +25,13 @@ def plain_scene(scene: Scene) -> dict[str, Any]:
 
 
 def scene_of_plain(
-    values: object, coordinates: AnyArray, node_numbers: AnyArray, part_numbers: AnyArray
+    values: object,
+    coordinates: AnyArray,
+    node_numbers: AnyArray,
+    part_numbers: AnyArray,
+    scalars: tuple[MeshScalar, ...] = (),
 ) -> Scene:
-    """The scene of values as from `plain_scene` and of the mesh's arrays. Raises InputError."""
+    """The scene of values as from `plain_scene` and of the mesh's arrays and scalars. Raises InputError."""
     if not isinstance(values, Mapping) or not isinstance(values.get("mesh"), Mapping):
         raise InputError(f"scene: it must be tables, its mesh among them, not {shown(values)}")
     described = values["mesh"]
@@ -36,5 +41,6 @@ def scene_of_plain(
         part_numbers,
         described.get("part_names", ()),
         described.get("crease_angle", math.nan),
+        scalars,
     )
     return made(Scene, {**values, "mesh": mesh})

@@ -1,4 +1,4 @@
-"""Reading a scene from a folder, a scene file, a mesh file or a picture file."""
+"""Reading a scene from a folder, a scene file, a store, a mesh file or a picture file."""
 
 from __future__ import annotations
 
@@ -11,20 +11,16 @@ from autocolor.errors import InputError, UsageError
 from autocolor.files.mesh_sources import MeshSource, keep_source
 from autocolor.files.meshes.formats import (
     MeshFormat,
-    format_of,
+    file_formats,
+    files_of_folder,
     format_of_folder,
-    mesh_suffixes,
+    mesh_formats,
     read_mesh,
 )
 from autocolor.files.reading import unnameable, unreadable
-from autocolor.files.repair.placement import UPS, Placement
-from autocolor.files.scenes.formats import (
-    SceneFormat,
-    scene_format_named,
-    scene_format_within,
-    scene_formats,
-    scene_suffixes,
-)
+from autocolor.files.registry import recognized, suffix_rule, suffixes_of
+from autocolor.files.repair.placement import SCALES, UPS, Placement
+from autocolor.files.scenes.formats import SceneFormat, scene_formats
 from autocolor.files.scenes.scene_report import SceneReport, scene_report
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.scene import Scene
@@ -37,18 +33,21 @@ def read_scene(
     *,
     strict: bool = False,
     up: str = "z",
+    scale: float = 1.0,
     outside: bool = False,
     surfaces: SurfaceSource = MATERIALS,
 ) -> Scene:
-    """The scene of a folder, a scene file (.toml), a mesh file (.obj) or a picture file (.npz).
+    """The scene of a folder, a scene file (.toml), a store (.sqlite), a mesh file or a picture file (.npz).
 
-    A folder must contain a `scene.toml`, or `nodes.csv` and `polygons.csv`. Whatever the source does not
-    define is created with defaults. `up` is the up axis of a mesh that is read without a scene file. With
-    `outside`, a scene file may name files outside its folder. With `strict`, a mesh that needs repair is
-    refused. Parts that are given no surface have that of their material; with `surfaces="parts"`, each has
-    one of its own. Raises InputError with every problem, MissingInputError if a file does not exist.
+    A folder must contain a `scene.toml`, or the tables of a mesh such as `nodes.csv` and `polygons.csv`;
+    `autocolor convert --formats` lists all that can be read. Whatever the source does not define is created
+    with defaults. `up` and `scale` are the up axis of a mesh that is read without a scene
+    file, and a factor for its coordinates. With `outside`, a scene file may name files outside its folder.
+    With `strict`, a mesh that needs repair is refused. Parts that are given no surface have that of their
+    material; with `surfaces="parts"`, each has one of its own. Raises InputError with every problem,
+    MissingInputError if a file does not exist.
     """
-    report = read_scene_with_report(path, up=up, outside=outside, surfaces=surfaces)
+    report = read_scene_with_report(path, up=up, scale=scale, outside=outside, surfaces=surfaces)
     if strict and report.repairs:
         raise InputError(
             [f"{repair}; correct the file, or read it without strict" for repair in report.repairs]
@@ -60,12 +59,17 @@ def read_scene_with_report(
     path: PathLike,
     *,
     up: str = "z",
+    scale: float = 1.0,
     outside: bool = False,
     surfaces: SurfaceSource = MATERIALS,
 ) -> SceneReport:
     """Like `read_scene`, but also returns messages about what was repaired, skipped and created."""
     if up not in UPS:
         raise UsageError(f"up must be 'x', 'y' or 'z', not {up!r}")
+    try:
+        placement = Placement(up, SCALES.accepted(scale))
+    except (TypeError, ValueError, OverflowError):
+        raise UsageError(f"scale {SCALES.rule()}, not {shown(scale)}; give a factor such as 0.001") from None
     if surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     path = Path(path)
@@ -76,17 +80,20 @@ def read_scene_with_report(
     except ValueError:
         raise unnameable(path) from None
 
-    path, found = _format(path)
+    path, found = source_format(path)
     if isinstance(found, SceneFormat):
-        if up != "z":
-            raise UsageError(f"up is for mesh files, not for {path}, which gives its own; leave it out")
+        for name, is_given in (("up", up != "z"), ("scale", scale != 1)):
+            if is_given:
+                raise UsageError(
+                    f"{name} is for mesh files, not for {path}, which gives its own; leave it out"
+                )
         report = found.read(path, outside=outside, surfaces=surfaces)
         return _with_source_kept(report, path.parent, path)
     if path.is_dir():
-        names = dict(zip(found.keys, found.in_folder, strict=True))
-        files = {key: path / name for key, name in names.items()}
-        return _with_source_kept(_bare_mesh(files, path.resolve().name, up, surfaces), path)
-    return _with_source_kept(_bare_mesh({"file": path}, path.stem, up, surfaces), path.parent)
+        files, name = files_of_folder(path, found), path.resolve().name
+        folder = next(iter(files.values())).parent
+        return _with_source_kept(_bare_mesh(files, name, placement, surfaces), folder)
+    return _with_source_kept(_bare_mesh({"file": path}, path.stem, placement, surfaces), path.parent)
 
 
 def _with_source_kept(report: SceneReport, folder: Path, scene_file: Path | None = None) -> SceneReport:
@@ -97,32 +104,53 @@ def _with_source_kept(report: SceneReport, folder: Path, scene_file: Path | None
     return report
 
 
-def _format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
-    """The path to read and its format; the path of a folder with a scene file is that of the scene file."""
+def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
+    """The path to read for that of a source, and its format.
+
+    For a folder with a scene file it is the path of that, and for one of the files of a mesh that is a folder
+    it is the folder. Raises InputError if the format is unknown.
+    """
     found: SceneFormat | MeshFormat | None
     if path.is_dir():
         for each in scene_formats():
             if each.in_folder is not None and (path / each.in_folder).exists():
                 return path / each.in_folder, each
         found = format_of_folder(path)
-        rule = (
-            "a scene's folder must contain a scene.toml, or nodes.csv and polygons.csv, not neither; name a"
-            " mesh file to read it alone"
-        )
-    else:
-        found = scene_format_named(path) or format_of(path) or scene_format_within(path)
-        *others, last = (*scene_suffixes(), *mesh_suffixes())
-        rule = (
-            f"a scene must be a folder, or a file that ends in {', '.join(others)} or {last}, not in"
-            f" {path.suffix!r}; name one of these"
-        )
-    if found is None:
-        raise InputError(f"{path}: {rule}")
-    return path, found
+        if found is None:
+            raise InputError(
+                f"{path}: a scene's folder must contain {' or '.join(folder_contents())}, and this one does"
+                " not; name a mesh file to read it alone"
+            )
+        return path, found
+    known: tuple[SceneFormat | MeshFormat, ...] = (*scene_formats(), *file_formats())
+    found = recognized(path, known)
+    if found is not None:
+        return path, found
+    within = format_of_folder(path.parent)
+    if within is not None and path.name in within.in_folder:
+        return path.parent, within
+    raise InputError(
+        f"{path}: a scene must be a folder, or {suffix_rule(path, scene_and_mesh_suffixes())};"
+        " name one of these"
+    )
 
 
-def _bare_mesh(files: Mapping[str, Path], name: str, up: str, surfaces: SurfaceSource) -> SceneReport:
+def scene_and_mesh_suffixes() -> tuple[str, ...]:
+    """The suffixes of all files that are scenes or meshes, sorted."""
+    return suffixes_of((*scene_formats(), *file_formats()))
+
+
+def folder_contents() -> tuple[str, ...]:
+    """What a folder contains that is a scene or a mesh, as part of a message."""
+    scenes = [f"a {each.in_folder}" for each in scene_formats() if each.in_folder]
+    return (*scenes, *(" and ".join(each.in_folder) for each in mesh_formats() if each.in_folder))
+
+
+def _bare_mesh(
+    files: Mapping[str, Path], name: str, placement: Placement, surfaces: SurfaceSource
+) -> SceneReport:
     """The scene of a mesh, with everything else created from defaults."""
-    read = read_mesh(files, Placement(up))
-    entry = {**{key: file.name for key, file in files.items()}, "up": up}
+    read = read_mesh(files, placement)
+    scale = {} if placement.scale == 1 else {"scale": placement.scale}
+    entry = {**{key: file.name for key, file in files.items()}, "up": placement.up, **scale}
     return scene_report([read], mesh_files=(entry,), name=name or "scene", surfaces=surfaces)

@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import AutocolorError, WriteError, reason_of
-from autocolor.files.file_lock import lock_file
 from autocolor.files.scene_writing import write_scene
-from autocolor.files.state_folder import state_folder
+from autocolor.files.state.file_lock import lock_file
+from autocolor.files.state.state_folder import state_folder
 from autocolor.files.writing import write_atomically
 from autocolor.journal.history import History, Step
 from autocolor.journal.meshes_beside import MeshesBeside

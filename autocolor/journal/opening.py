@@ -24,7 +24,7 @@ def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: st
     the scene is not that of the checksum, and as `read_scene`.
     """
     place = place_of(source)
-    read = read_scene(source.path, up=source.up, surfaces=source.surfaces)
+    read = read_scene(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
     scene = read if tables is None else read.replace(**tables)
     if checksum is not None:
         check_sum(scene, checksum, source)

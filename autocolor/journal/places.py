@@ -25,6 +25,7 @@ class Source(NamedTuple):
     path: str
     up: str = "z"
     surfaces: SurfaceSource = "materials"
+    scale: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)

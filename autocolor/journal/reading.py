@@ -21,7 +21,7 @@ from autocolor.journal.lines import Called, called, plain_value, refuse, value_o
 from autocolor.journal.opening import check_sum, place_again
 from autocolor.journal.places import Source, place_of
 from autocolor.journal.script import HEADER, STUDIO
-from autocolor.journal.steps import Steps, source_in
+from autocolor.journal.steps import SOURCE_OPTIONS, Steps, source_in
 from autocolor.scene.scene import Scene
 
 LARGEST_JOURNAL: Final = 64 << 20
@@ -73,7 +73,7 @@ def session_of(text: str, name: str = "journal") -> Session:
     with _in_line(name, first):
         source = _source(called(value_of(made, "scene"), made), made)
         place = place_of(source)
-        read = read_scene(source.path, up=source.up, surfaces=source.surfaces)
+        read = read_scene(source.path, up=source.up, scale=source.scale, surfaces=source.surfaces)
     with _in_line(name, second):
         start = _with_tables(read, replaced)
     with _in_line(name, third):
@@ -100,7 +100,7 @@ def _in_line(name: str, number: int) -> Iterator[None]:
 def _source(call: Called, line: str) -> Source:
     """What the first scene is read from."""
     options = {key: plain_value(value, line) for key, value in call.keywords.items()}
-    if call.name != "autocolor.read_scene" or not options.keys() <= {"up", "surfaces"}:
+    if call.name != "autocolor.read_scene" or not options.keys() <= SOURCE_OPTIONS:
         refuse(line)
     return source_in(call.arguments, options, line)
 

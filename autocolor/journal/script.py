@@ -200,4 +200,5 @@ def _arguments(names: tuple[str, ...], changes: Mapping[str, object]) -> str:
 
 
 def _options(source: Source) -> dict[str, object]:
-    return {"up": source.up, "surfaces": source.surfaces}
+    scale = {} if source.scale == 1 else {"scale": source.scale}
+    return {"up": source.up, "surfaces": source.surfaces, **scale}

@@ -24,6 +24,9 @@ from autocolor.scene.surfaces import Paint
 STUDIO_METHODS: Final = {**{short: method for method, short in SHORT.items()}, "recolor": "with_surface"}
 SCENE_METHODS: Final = ("replace", *ROW_METHODS.values(), *SHORT, "without_scalar")
 
+SOURCE_OPTIONS: Final = frozenset(Source._fields) - {"path"}
+"""The keywords of a call that reads a scene."""
+
 NAMED: Final = frozenset((*ROW_METHODS.values(), "with_new_light", "without_light"))
 """The methods whose one argument without a keyword is the name of a row."""
 
@@ -31,7 +34,10 @@ NAMED: Final = frozenset((*ROW_METHODS.values(), "with_new_light", "without_ligh
 def source_in(arguments: Sequence[ast.expr], options: Mapping[str, Any], line: str) -> Source:
     """The source that the one argument of a call and its options give."""
     paths = [plain_value(value, line) for value in arguments]
-    if len(paths) != 1 or not all(isinstance(each, str) for each in (*paths, *options.values())):
+    scale = options.get("scale", 1.0)
+    words = [*paths, *(value for key, value in options.items() if key != "scale")]
+    is_number = isinstance(scale, (int, float)) and not isinstance(scale, bool)
+    if len(paths) != 1 or not is_number or not all(isinstance(each, str) for each in words):
         refuse(line)
     return Source(paths[0], **options)
 
@@ -96,7 +102,7 @@ class Steps:
     def _open(self, call: Called, line: str) -> None:
         options = {key: plain_value(value, line) for key, value in call.keywords.items()}
         tables, checksum = options.pop("tables", None), options.pop("checksum", None)
-        is_known = options.keys() <= {"up", "surfaces"} and isinstance(tables, (dict, type(None)))
+        is_known = options.keys() <= SOURCE_OPTIONS and isinstance(tables, (dict, type(None)))
         if not is_known or not all(isinstance(key, str) for key in tables or ()):
             refuse(line)
         source = source_in(call.arguments, options, line)

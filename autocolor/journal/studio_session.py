@@ -66,6 +66,7 @@ class StudioSession(ABC):
         path: str | PathLike[str],
         *,
         up: str = "z",
+        scale: float = 1.0,
         surfaces: SurfaceSource = "materials",
         tables: SceneChanges | None = None,
         checksum: str | None = None,
@@ -79,7 +80,7 @@ class StudioSession(ABC):
         from autocolor.journal.opening import opened
         from autocolor.journal.places import Source
 
-        source = Source(fspath(path), up, surfaces)
+        source = Source(fspath(path), up, surfaces, scale)
         scene = opened(source, tables, checksum)
         self._show_scene(scene.scene)
         self._history.open(scene, source)
@@ -141,20 +142,23 @@ class StudioSession(ABC):
         path: str | PathLike[str] | None = None,
         *,
         up: str = "z",
+        scale: float = 1.0,
         surfaces: SurfaceSource = "materials",
         beside: str | PathLike[str] | None = None,
     ) -> str:
         """The session as a Python script, one line a step, which `read_journal` reads without running it.
 
-        `path` is what the scene of the first step was read from, and `up` and `surfaces` are how; a session
-        that was recovered knows it. A mesh that was changed by an edit is saved to a folder of its own in the
-        folder `beside`; without that, InputError is raised for one.
+        `path` is what the scene of the first step was read from, and `up`, `scale` and `surfaces` are how; a
+        session that was recovered knows it. A mesh that was changed by an edit is saved to a folder of its
+        own in the folder `beside`; without that, InputError is raised for one.
         """
         from autocolor.journal.meshes_beside import MeshesBeside
         from autocolor.journal.places import Source
         from autocolor.journal.script import journal_text
 
-        source = self._history.first_place.source if path is None else Source(fspath(path), up, surfaces)
+        source = (
+            self._history.first_place.source if path is None else Source(fspath(path), up, surfaces, scale)
+        )
         if source is None:
             raise UsageError("a journal must name what its first scene was read from; give its path")
         return journal_text(self._history, source, MeshesBeside(None if beside is None else Path(beside)))

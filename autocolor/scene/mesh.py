@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import EllipsisType
 from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices, bounds_of
+from autocolor.arrays import AnyArray, Floats, Indices, chunks
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
@@ -25,6 +26,7 @@ from autocolor.scene.foreign_meshes import foreign_tables
 from autocolor.scene.geometry.curvature import Curvatures, curvatures
 from autocolor.scene.geometry.node_normals import CREASE_ANGLE, NodeNormals, node_normals
 from autocolor.scene.geometry.planes.shared_planes import SharedPlanes, shared_planes
+from autocolor.scene.geometry.used_rows import used_bounds, used_rows
 from autocolor.scene.scalars.mesh_scalars import MeshScalar, joined_scalars, scalar_problems
 
 LOG: Final = logger_of(__name__)
@@ -35,6 +37,8 @@ CREASE_ANGLES: Final = Number(at_least=0, at_most=180)
 
 PART: Final = "mesh"
 """The name of the part of a mesh without parts."""
+
+POLYGONS_AT_ONCE: Final = 1 << 16
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -139,14 +143,15 @@ class Mesh(Immutable):
         return self._coordinates_of(self.node_numbers[chosen[self.part_numbers]])
 
     def _coordinates_of(self, node_numbers: Indices) -> Floats:
-        used = np.zeros(len(self.coordinates), np.bool_)
-        used[node_numbers.T] = True
-        return self.coordinates if used.all() else self.coordinates.T[:, used].T
+        used = used_rows(node_numbers.T, len(self.coordinates))
+        return self.coordinates if used.all() else np.compress(used, self.coordinates.T, axis=1).T
 
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
         """The least and the largest coordinates of the nodes that polygons use; zeros for an empty mesh."""
-        low, high = bounds_of(self.used_coordinates)
+        if not len(self.node_numbers):
+            return read_only(np.zeros(3)), read_only(np.zeros(3))
+        low, high = used_bounds(self.coordinates.T, self.node_numbers.T)
         return read_only(low), read_only(high)
 
     @cached_property
@@ -158,11 +163,17 @@ class Mesh(Immutable):
     @property
     def edge_count(self) -> int:
         """How many distinct edges the polygons have (the paper counts 17,940 for its car)."""
-        start = self.node_numbers.T
-        end = np.roll(start, -1, axis=0)
-        keys = np.minimum(start, end) * len(self.coordinates) + np.maximum(start, end)
-        sorted_keys = np.sort(keys[start != end])
-        return int(np.count_nonzero(np.diff(sorted_keys, prepend=-1)))
+        keys = np.empty((4, len(self.node_numbers)), np.int64)
+        for chunk in chunks(keys.shape[1], POLYGONS_AT_ONCE):
+            start = self.node_numbers.T[:, chunk]
+            end = np.roll(start, -1, axis=0)
+            keys[:, chunk] = np.minimum(start, end) * len(self.coordinates) + np.maximum(start, end)
+            # A triangle repeats a node: count that once, and not at all in the end.
+            keys[:, chunk][start == end] = -1
+        in_order = keys.ravel()
+        in_order.sort()
+        changes = np.count_nonzero(in_order[1:] != in_order[:-1])
+        return int(changes) + bool(len(in_order) and in_order[0] >= 0)
 
     @property
     def triangle_count(self) -> int:
@@ -185,6 +196,39 @@ class Mesh(Immutable):
             return source
         nodes, table = foreign_tables(source, polygons)
         return cls(nodes, table, None, (part,), crease_angle)  # type: ignore[arg-type]
+
+    @classmethod
+    def of_tables(
+        cls,
+        coordinates: Floats,
+        node_numbers: Indices,
+        part_numbers: Indices,
+        part_names: tuple[str, ...],
+        crease_angle: float = CREASE_ANGLE,
+        scalars: tuple[MeshScalar, ...] = (),
+        *,
+        normals: NodeNormals | None = None,
+        shared_planes: SharedPlanes | EllipsisType | None = ...,
+    ) -> Mesh:
+        """The mesh that holds these tables themselves, such as files that are mapped into memory.
+
+        For readers that have checked them: they are of the types of the fields, stored by columns and
+        read-only, and so are the normals. What is given of normals and planes is not computed.
+        """
+        mesh = object.__new__(cls)
+        vars(mesh).update(
+            coordinates=coordinates,
+            node_numbers=node_numbers,
+            part_numbers=part_numbers,
+            part_names=part_names,
+            crease_angle=crease_angle,
+            scalars=scalars,
+        )
+        if normals is not None:
+            vars(mesh)["normals"] = normals
+        if shared_planes is not ...:
+            vars(mesh)["shared_planes"] = shared_planes
+        return mesh
 
     def with_scalars(self, *scalars: MeshScalar) -> Mesh:
         """The mesh with these scalars and no others; the tables, and what was computed of them, are shared.

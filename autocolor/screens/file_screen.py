@@ -15,9 +15,9 @@ from typing import Final
 from autocolor.errors import InputError, UsageError
 from autocolor.files.openable import FOLDER, Openable, kind_of, openables_of, stays_within
 from autocolor.files.paths import SCENE_FILE
-from autocolor.files.recent import recent_files
 from autocolor.files.repair.placement import UPS
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig
+from autocolor.files.state.recent import recent_files
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
 from autocolor.widgets.areas import Area
@@ -34,6 +34,9 @@ RIGHT: Final = Area(256, 40, 495, 455)
 MOST_ROWS: Final = LEFT.height // ROW_LINES
 CHARACTERS: Final = (LEFT.width - 2 * MARGIN) // CHARACTER
 ACROSS: Final = (RIGHT.right - LEFT.left - 2 * MARGIN) // CHARACTER
+
+MESH_SCALES: Final = ("0.001", "0.01", "0.0254", "0.3048", "1", "10", "100", "1000")
+"""The factors for the coordinates of mesh files that can be pointed at."""
 
 UP: Final = ".."
 RIG: Final = "rig"
@@ -148,6 +151,8 @@ class FileScreen(Screen):
     def rows(self) -> Sequence[Widget]:
         session = self.session
         changed = "changed" if session.studio.is_changed else ""
+        scale = f"{session.mesh_scale:g}"
+        scales = tuple(sorted({*MESH_SCALES, scale}, key=float))
         return [
             Button(
                 "save",
@@ -179,6 +184,13 @@ class FileScreen(Screen):
                 names=UPS,
                 present=session.mesh_up,
                 choose=partial(setattr, session, "mesh_up"),
+            ),
+            Choice(
+                "mesh scale",
+                "A factor for mesh files that are opened: 0.001 from millimeters, 0.0254 from inches.",
+                names=scales,
+                present=scale,
+                choose=lambda name: setattr(session, "mesh_scale", float(name)),
             ),
         ]
 

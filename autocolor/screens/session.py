@@ -14,8 +14,8 @@ from autocolor.errors import InputError
 from autocolor.files.file_stem import file_stem, free_path
 from autocolor.files.openable import MESH, kind_of
 from autocolor.files.paths import SCENE_FILE
-from autocolor.files.recent import note_file
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
+from autocolor.files.state.recent import note_file
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
@@ -71,8 +71,8 @@ class Session:
         """Whether something can be typed."""
         self.is_at_hand = False
         """Whether the user sits at this machine; a pointer from elsewhere keeps to the folder."""
-        self.mesh_up = "z"
-        """The up axis of mesh files that are opened; other files give their own."""
+        self.mesh_up, self.mesh_scale = "z", 1.0
+        """The up axis and the scale of mesh files that are opened; other files give their own."""
         self.surface = 0
         """The number of the chosen surface among those in use; see `surface_name`."""
         self.named_view: tuple[View, str] | None = None
@@ -229,6 +229,10 @@ class Session:
 
     # Files.
 
+    def place_meshes(self, up: str, scale: float) -> None:
+        """Take this up axis and scale for the mesh files that are opened from now on."""
+        self.mesh_up, self.mesh_scale = up, scale
+
     def open(self, path: Path) -> None:
         """Open a file or a folder as one step to undo: a scene, a mesh, a picture, or a rig of lights.
 
@@ -238,8 +242,10 @@ class Session:
             self.edit(self.scene.with_rig(read_rig(path)))
             self.tell(f"the lights of {path.name}, fitted to {self.scene.name}; undo goes back")
             return
-        up = self.mesh_up if kind_of(path) == MESH else "z"
-        self.studio.open(path, up=up)
+        if kind_of(path) == MESH:
+            self.studio.open(path, up=self.mesh_up, scale=self.mesh_scale)
+        else:
+            self.studio.open(path)
         note_file(path.resolve())
         self.tell(f"opened {path.name}; undo goes back")
 

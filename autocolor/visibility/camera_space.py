@@ -42,11 +42,12 @@ class CameraPolygons:
 
     `positions` is (3, nodes) float64, `normals` (3, normals) float32. `corners` and `corner_normals` are (4,
     polygons) intp: the node and the normal at each corner. `polygon_numbers` are rows of the mesh's polygon
-    table. The near plane is at depth `near`.
+    table. The near plane is at depth `near`; `nearest` is the least depth of a node of the mesh.
     """
 
     unit: float
     near: float
+    nearest: float
     positions: Floats
     normals: Singles
     corners: Indices
@@ -56,24 +57,38 @@ class CameraPolygons:
 
 def camera_space(mesh: Mesh, view: View) -> CameraPolygons:
     """All polygons of the mesh in the camera space of a view."""
-    axes, eye = view.axes, np.array(view.eye)
-    box = (np.array(list(itertools.product(*np.stack(mesh.bounds, axis=1)))) - eye) @ axes.T
-    unit = max(2.0 ** math.frexp(float(np.abs(box).max()))[1], LEAST_UNIT)
-    near = max(NEAR * float(box[:, 2].max()) / unit, LEAST_NEAR)
-    positions = rotated(axes / unit, mesh.coordinates.T, view.eye)
-    if positions[2].min(initial=near) < near:
-        # Nothing needs to be clipped where all corners lie before the eye.
-        nearest = float(positions[2].take(mesh.node_numbers.T).min(initial=near))
-        near = max(nearest, LEAST_NEAR) if nearest > 0 else near
+    unit, near = unit_and_near(mesh, view)
+    positions = rotated(view.axes / unit, mesh.coordinates.T, view.eye)
+    nearest = float(positions[2].min(initial=np.inf))
+    if nearest < near:
+        near = near_of(near, float(positions[2].take(mesh.node_numbers.T).min(initial=near)))
     return CameraPolygons(
         unit,
         near,
+        nearest,
         positions,
-        rotated(axes, mesh.normals.vectors.T),
+        rotated(view.axes, mesh.normals.vectors.T),
         mesh.node_numbers.T,
         mesh.normals.numbers.T,
         np.arange(len(mesh.node_numbers)),
     )
+
+
+def unit_and_near(mesh: Mesh, view: View) -> tuple[float, float]:
+    """The unit of a view of a mesh, and the depth of the near plane if the mesh reaches behind it."""
+    box = (
+        np.array(list(itertools.product(*np.stack(mesh.bounds, axis=1)))) - np.array(view.eye)
+    ) @ view.axes.T
+    unit = max(2.0 ** math.frexp(float(np.abs(box).max()))[1], LEAST_UNIT)
+    return unit, max(NEAR * float(box[:, 2].max()) / unit, LEAST_NEAR)
+
+
+def near_of(near: float, nearest_corner: float) -> float:
+    """The depth of the near plane, given the depth of the nearest corner of a polygon.
+
+    Nothing needs to be clipped where all corners lie before the eye.
+    """
+    return max(nearest_corner, LEAST_NEAR) if nearest_corner > 0 else near
 
 
 def rotated(axes: Floats, points: RealArray[Real], origin: Vector = (0.0, 0.0, 0.0)) -> RealArray[Real]:

@@ -13,9 +13,9 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Indices, Numbers
+from autocolor.arrays import Indices, Numbers, least_of_four, most_of_four
 from autocolor.visibility.depth import DepthScale, plane_rounding
-from autocolor.visibility.projection import Projection, least_of_four, most_of_four
+from autocolor.visibility.projection import Projection
 
 FITTING: Final = 0.9
 """The fraction of the polygons that are to be no larger than a tile."""

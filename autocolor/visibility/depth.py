@@ -17,9 +17,9 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Numbers, chunks_of_runs
+from autocolor.arrays import Floats, Indices, Numbers, chunks_of_runs, most_of_four
 from autocolor.visibility.extents import extents_of_polygons
-from autocolor.visibility.projection import Projection, most_of_four
+from autocolor.visibility.projection import Projection
 
 KEY_BITS: Final = 62
 """One less than the 63 bits of a positive number, because rounding may add to the nearest depth."""

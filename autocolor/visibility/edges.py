@@ -13,8 +13,8 @@ from typing import Final, Literal
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices
-from autocolor.visibility.projection import Projection, least_of_four
+from autocolor.arrays import Floats, Indices, least_of_four
+from autocolor.visibility.projection import Projection
 
 Side = Literal[1, -1]
 

@@ -14,6 +14,7 @@ import numpy as np
 from autocolor.arrays import Booleans, Floats, Indices
 from autocolor.scene.geometry.planes.shared_planes import SharedPlanes
 from autocolor.visibility.camera_space import CameraPolygons, rotated
+from autocolor.visibility.raster import Raster
 
 MOST_OFF: Final = 0.05
 """Assumed: how far a plane's depth may be from that of its polygons' corners, as a fraction.
@@ -54,8 +55,7 @@ def planes_on_raster(
     camera: CameraPolygons,
     origin: tuple[float, float, float],
     axes: Floats,
-    focal: float,
-    raster: tuple[int, int],
+    raster: Raster,
     polygon_numbers: Indices,
 ) -> tuple[PlanesOnRaster, Indices, Booleans]:
     """The planes on the raster; the polygons in them, and whether each is seen from behind."""
@@ -66,8 +66,8 @@ def planes_on_raster(
     used = np.abs(offsets) * MOST_OFF > np.maximum(shared.distances / camera.unit, ROUNDING)
     # The inverse depth is proportional to the product of the normal and the ray.
     a, b, c = normals / np.where(used, offsets, 1.0)
-    a, b = a / focal, b / focal
-    linear = np.stack([a, b, c - a * (raster[1] / 2) - b * (raster[0] / 2)])
+    a, b = a / raster.focal_length, b / raster.focal_length
+    linear = np.stack([a, b, c - a * (raster.elements / 2) - b * (raster.lines / 2)])
     columns = shared.plane_of_polygon.take(polygon_numbers)
     polygons = np.flatnonzero(columns >= 0)
     polygons = polygons[used[columns[polygons]]]

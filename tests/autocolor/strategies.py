@@ -6,6 +6,7 @@ plane, in the eye's plane, at a pixel's center.
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -212,3 +213,9 @@ def scenes(draw: st.DrawFn) -> Scene:
         background=draw(colors),
         scalar=draw(st.none() | scalars()),
     )
+
+
+def of_mesh(scene: Scene, mesh: Mesh) -> Scene:
+    """The scene with another mesh, colored by a scalar that any mesh has."""
+    row = scene.scalar and dataclasses.replace(scene.scalar, name="z")
+    return scene.replace(mesh=mesh, scalar=row)

@@ -5,7 +5,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.arrays import chunks, chunks_of_runs, cross, dot, lengths, power, runs
+from autocolor.arrays import (
+    chunks,
+    chunks_of_runs,
+    cross,
+    dot,
+    least_of_four,
+    lengths,
+    most_of_four,
+    power,
+    runs,
+)
 
 whole = st.integers(-(2**63), 2**63 - 1)
 
@@ -86,3 +96,12 @@ def test_powers_are_written_to_out_which_may_be_the_cosines_themselves(
 @given(exponents)
 def test_a_cosine_that_rounding_left_above_1_stays_1(exponent: float) -> None:
     assert power(np.array([1.0000002], np.float32), exponent).tolist() == [1.0]
+
+
+@given(st.lists(st.tuples(*[st.integers(-9, 9)] * 4), min_size=1))
+def test_the_least_and_the_most_of_four_rows_are_those_of_each_column(
+    columns: list[tuple[int, int, int, int]],
+) -> None:
+    rows = np.array(columns).T
+    assert least_of_four(rows).tolist() == list(map(min, columns))
+    assert most_of_four(rows).tolist() == list(map(max, columns))

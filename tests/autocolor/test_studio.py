@@ -124,7 +124,7 @@ level_edits = st.tuples(
 scalar_choices = st.tuples(
     st.just("scalar"), st.just(""), st.fixed_dictionaries({"name": st.sampled_from(["stress", "z"])})
 )
-any_edits = (
+any_edits: st.SearchStrategy[Edit] = (
     recolorings
     | surface_edits
     | light_edits

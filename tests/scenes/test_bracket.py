@@ -57,7 +57,7 @@ def volumes_at(solid: Solid, places: NDArray[np.float64]) -> NDArray[np.float64]
 
 
 def enclosed(nodes: NDArray[np.float64], quads: NDArray[np.intp]) -> float:
-    """The volume that quads enclose; one that is not plane as the mean of its two pairs of triangles."""
+    """The volume that quads enclose; a warped one counts as the mean of its two pairs of triangles."""
     a, b, c, d = (nodes[quads[:, corner]] for corner in range(4))
     fans = ((a, b, c), (a, c, d), (b, c, d), (b, d, a))
     return float(sum((p * np.cross(q, r)).sum() for p, q, r in fans) / 12)

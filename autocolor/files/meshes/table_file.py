@@ -1,7 +1,8 @@
 """A mesh as arrays, an .npz archive that numpy can open, for meshes that no text format holds as they are.
 
-The members are `header` (the part names, as JSON in UTF-8), `coordinates` (nodes, 3) float64, `node_numbers`
-(polygons, 4) and `part_numbers` (polygons,) int32. What the other formats repair, drop or rename is kept:
+The members are `header` (the part names and what the scalars are, as JSON in UTF-8), `coordinates` (nodes, 3)
+float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32, and `mesh_scalar_0` and so on, the
+values of each scalar, (nodes,) or (polygons,) float64. What the other formats repair, drop or rename is kept:
 polygons without area, parts without polygons, and names of any characters.
 """
 
@@ -13,6 +14,13 @@ from typing import Final
 from autocolor.errors import InputError
 from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
 from autocolor.files.meshes.formats import MeshFormat, register
+from autocolor.files.meshes.scalar_members import (
+    KEY,
+    MESH_SCALARS,
+    scalar_members,
+    scalar_rows,
+    scalars_of,
+)
 from autocolor.files.reading import LARGEST_MESH_FILE
 from autocolor.files.repair.placement import PLAIN, Placement, placed
 from autocolor.files.repair.polygons import MeshReport
@@ -25,16 +33,19 @@ TABLE_FILE: Final = ArrayFileKind(
     noun="table file",
     advice="write the scene again",
     largest=LARGEST_MESH_FILE,
-    formats=("autocolor tables 1",),
+    formats=("autocolor tables 2",),
+    plain=("autocolor tables 1",),
     keys=frozenset(("part_names",)),
     arrays={"coordinates": ("<f8", 2), "node_numbers": ("<i4", 2), "part_numbers": ("<i4", 1)},
+    series={KEY: MESH_SCALARS},
 )
 
 
 def table_file_bytes(mesh: Mesh) -> bytes:
     """The content of the table file of a mesh, without its crease angle."""
     arrays = {name: vars(mesh)[name] for name in TABLE_FILE.arrays}
-    return array_file_bytes(TABLE_FILE, {"part_names": mesh.part_names}, arrays)
+    header = {"part_names": mesh.part_names, KEY: scalar_rows(mesh.scalars)}
+    return array_file_bytes(TABLE_FILE, header, {**arrays, **scalar_members(mesh.scalars)})
 
 
 def read_table_file(path: Path, placement: Placement = PLAIN) -> MeshReport:
@@ -50,6 +61,7 @@ def read_table_file(path: Path, placement: Placement = PLAIN) -> MeshReport:
             arrays["part_numbers"],
             tuple(names) if isinstance(names, list) else (),
             CREASE_ANGLE if placement.crease_angle is None else placement.crease_angle,
+            scalars_of(header, arrays),
         )
     except InputError as error:
         raise InputError(

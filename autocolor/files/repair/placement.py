@@ -6,8 +6,12 @@ from dataclasses import dataclass
 from typing import Final
 
 from autocolor.arrays import Floats
+from autocolor.scene.columns.value_kinds import Number
 
 UPS: Final = ("x", "y", "z")
+
+SCALES: Final = Number(at_least=0, at_most=1e30, above=True)
+"""The factors that a mesh may be scaled by."""
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Final, Protocol
 
-from autocolor.files.modules import import_modules_of
-from autocolor.files.reading import read_head
+from autocolor.files.registry import Registry, format_named, suffixes_of
 from autocolor.files.scenes.scene_report import SceneReport
 from autocolor.scene.creation import MATERIALS, SurfaceSource
 
@@ -45,33 +43,24 @@ class SceneFormat:
     begins: Callable[[bytes], bool] | None = None
 
 
-_REGISTERED: Final[list[SceneFormat]] = []
+REGISTRY: Final = Registry[SceneFormat](__name__.rpartition(".")[0])
 
 
 def register(scene_format: SceneFormat) -> SceneFormat:
     """Add a format to the registry; returns it."""
-    _REGISTERED.append(scene_format)
-    return scene_format
+    return REGISTRY.register(scene_format)
 
 
-@cache
 def scene_formats() -> tuple[SceneFormat, ...]:
     """All registered formats, sorted by name."""
-    import_modules_of(__name__.rpartition(".")[0])
-    return tuple(sorted(_REGISTERED, key=lambda each: each.name))
+    return REGISTRY.formats()
 
 
 def scene_suffixes() -> tuple[str, ...]:
     """The suffixes of all formats."""
-    return tuple(suffix for each in scene_formats() for suffix in each.suffixes)
+    return suffixes_of(scene_formats())
 
 
 def scene_format_named(path: Path) -> SceneFormat | None:
     """The format with the suffix of the path; None if there is none."""
-    return next((each for each in scene_formats() if path.suffix.lower() in each.suffixes), None)
-
-
-def scene_format_within(path: Path) -> SceneFormat | None:
-    """The format that the first bytes of the file indicate; None if there is none."""
-    head = read_head(path)
-    return next((each for each in scene_formats() if each.begins is not None and each.begins(head)), None)
+    return format_named(path, scene_formats())

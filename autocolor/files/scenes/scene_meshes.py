@@ -12,7 +12,7 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.formats import read_mesh
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
-from autocolor.files.repair.placement import UPS, Placement
+from autocolor.files.repair.placement import SCALES, UPS, Placement
 from autocolor.files.repair.polygons import MeshReport
 from autocolor.files.scenes.problems import SceneProblems
 from autocolor.files.scenes.toml_text import KeyPath
@@ -20,18 +20,19 @@ from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.column import Column, Row, Tier
 from autocolor.scene.columns.problems import Problem, RowError
 from autocolor.scene.columns.rows import made
-from autocolor.scene.columns.value_kinds import Choice, Number, Text
+from autocolor.scene.columns.value_kinds import Choice, Text
 from autocolor.scene.mesh import CREASE_ANGLES
 
 MOST_MESHES: Final = 1000
-
-SCALES: Final = Number(at_least=0, at_most=1e30, above=True)
-"""The factors that a mesh may be scaled by."""
 
 SCALE_BAR: Final = Bar(0.01, 10, 0.01)
 
 FILE_KEYS: Final = (("file",), ("nodes", "polygons"))
 """The keys that name the files of a mesh: one file, or a node table and a polygon table."""
+
+
+MESH_FILE_KEYS: Final = frozenset(key for keys in FILE_KEYS for key in keys)
+"""The keys of a `[[mesh]]` table whose values are paths; the others tell how the files are read."""
 
 
 @dataclass(frozen=True)

@@ -25,13 +25,13 @@ class SceneReport:
     scene: Scene
     repairs: tuple[str, ...] = ()
     created: tuple[str, ...] = ()
-    mesh_files: tuple[Mapping[str, str], ...] = ()
+    mesh_files: tuple[Mapping[str, Any], ...] = ()
     is_view_created: bool = False
     are_lights_created: bool = False
 
 
 def scene_report(
-    reports: Sequence[MeshReport], *, mesh_files: tuple[Mapping[str, str], ...] = (), **fields: Any
+    reports: Sequence[MeshReport], *, mesh_files: tuple[Mapping[str, Any], ...] = (), **fields: Any
 ) -> SceneReport:
     """The report for a scene of the meshes that were read; `fields` are passed to `scene_of`."""
     mesh = Mesh.joined([report.mesh for report in reports])

@@ -78,7 +78,7 @@ def sparse_tables(scene: Scene) -> dict[str, Any]:
 
 def sparse_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
     """A `[[mesh]]` table without keys whose values are their defaults."""
-    defaults = {"up": "z", "crease_angle": CREASE_ANGLE}
+    defaults = {"up": "z", "scale": 1.0, "crease_angle": CREASE_ANGLE}
     return {key: value for key, value in entry.items() if value != defaults.get(key)}
 
 

@@ -38,6 +38,15 @@ def group_numbers(parents: Indices) -> Indices:
     return groups
 
 
+def united_items(parents: Indices) -> Indices:
+    """The items that are not the root of their group, ascending."""
+    found = [
+        np.flatnonzero(parents[chunk] != np.arange(chunk.start, chunk.stop)) + chunk.start
+        for chunk in chunks(len(parents), AT_ONCE)
+    ]
+    return np.concatenate([np.empty(0, np.intp), *found])
+
+
 def roots_of(parents: Indices, items: Indices) -> Indices:
     """The root of each item, which becomes its parent (path compression)."""
     ancestors = np.take(parents, items)

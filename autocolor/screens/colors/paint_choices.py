@@ -10,7 +10,7 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import Color
-from autocolor.files.recent import note_color, recent_colors
+from autocolor.files.state.recent import note_color, recent_colors
 from autocolor.scene.paints.finishes import FINISHES, finished
 from autocolor.scene.paints.swatches import COLUMNS, ROWS, swatches
 from autocolor.scene.surfaces import Paint, Surface

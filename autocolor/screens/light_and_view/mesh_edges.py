@@ -16,6 +16,7 @@ from autocolor.arrays import Booleans, Floats, Indices, dot
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.geometry.fans import places_of_corners
 from autocolor.scene.geometry.planes.plane_cells import facet_normals
+from autocolor.scene.geometry.planes.scaled_nodes import as_they_are
 from autocolor.scene.mesh import Mesh
 
 DRAWN_CREASE: Final = 30.0
@@ -75,7 +76,7 @@ def mesh_edges(
     without area have no edges. The lines of a stage are drawn apart: the features alone of its parts.
     """
     parts, coordinate_rows, node_rows = mesh.part_numbers, mesh.coordinates.T, mesh.node_numbers.T
-    normals = facet_normals(coordinate_rows, node_rows)
+    normals = facet_normals(as_they_are(coordinate_rows), node_rows)
     has_edges = (normals != 0).any(axis=0)
     if part_numbers is not None:
         has_edges &= np.isin(parts, list(part_numbers))

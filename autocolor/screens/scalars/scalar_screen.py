@@ -20,10 +20,16 @@ from autocolor.widgets.column_rows import rows_of
 from autocolor.widgets.widget import Choice, Gap, Switch, Widget
 
 NO_SCALAR: Final = "none"
+ZEBRA: Final = "zebra"
+"""The name of a computed scalar, and of the scale that it is for."""
+
 OWN_COLORS: Final = "own colors"
 
-COMPUTING: Final = ("direction", "stripes")
-"""The columns that some scalars are computed with."""
+COMPUTED_WITH: Final[Mapping[str, Sequence[str]]] = {
+    "direction": ("distance", "slope", "draft angle", "zebra"),
+    "stripes": ("zebra",),
+}
+"""The columns that some computed scalars are computed with, and these scalars."""
 
 WITH_ROWS: Final = ("name", "limits", "scale", "below", "above", "missing", "surfaces")
 """The columns that have rows of their own here."""
@@ -47,8 +53,8 @@ class ScalarScreen(OverPicture):
         )
         if scalar is None:
             return [choice]
-        of_mesh = scalar.name in {each.name for each in scene.mesh.scalars}
-        leave_out = (*WITH_ROWS, *(COMPUTING if of_mesh else ()))
+        is_computed = scalar.name not in {each.name for each in scene.mesh.scalars}
+        unused = (key for key, names in COMPUTED_WITH.items() if not (is_computed and scalar.name in names))
         return [
             choice,
             Gap("scale gap"),
@@ -57,7 +63,7 @@ class ScalarScreen(OverPicture):
             *limit_rows(self.session, scalar, lambda limits: self._put({"limits": limits})),
             *self._color_rows(scalar),
             Gap("bands gap"),
-            *rows_of(scalar, self._put, self.session.world, leave_out=leave_out),
+            *rows_of(scalar, self._put, self.session.world, leave_out=(*WITH_ROWS, *unused)),
             Gap("surfaces gap"),
             *self._surface_rows(),
         ]
@@ -133,12 +139,18 @@ class ScalarScreen(OverPicture):
         ]
 
     def _choose(self, name: str) -> None:
-        """Show another scalar, in its own range, or none."""
+        """Show another scalar, in its own range, or none; zebra stripes come and go with their colors."""
         scene = self.session.scene
         if name == NO_SCALAR:
             self.session.edit(scene.without_scalar())
-        else:
-            self.session.edit(scene.with_scalar(name=name, limits=None))
+            return
+        colors: dict[str, Any] = {}
+        if ZEBRA in (name, scene.scalar.name if scene.scalar is not None else ""):
+            own = Scalar(name)
+            colors = (
+                {"scale": ZEBRA, "bands": 2} if name == ZEBRA else {"scale": own.scale, "bands": own.bands}
+            )
+        self.session.edit(scene.with_scalar(name=name, limits=None, **colors))
 
     def _put(self, changes: Mapping[str, Any]) -> None:
         self.session.edit(self.session.scene.with_scalar(**changes))

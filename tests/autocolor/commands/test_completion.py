@@ -9,9 +9,9 @@ from click.shell_completion import BashComplete
 from autocolor import read_scene, render, write_picture
 from autocolor.commands import completion
 from autocolor.commands.autocolor import autocolor
-from autocolor.commands.completion import IN_FOLDERS, SUFFIXES, narrowed
+from autocolor.commands.completion import narrowed
 from autocolor.files.meshes.formats import mesh_formats, mesh_suffixes
-from autocolor.files.scenes.formats import scene_formats, scene_suffixes
+from autocolor.files.scenes.formats import scene_suffixes
 from tests.autocolor.commands.conftest import Run
 
 
@@ -35,10 +35,17 @@ def crowded(folder: Path) -> Path:
     return folder
 
 
-def test_the_endings_and_folders_of_scenes_are_those_of_all_formats() -> None:
-    assert sorted(SUFFIXES) == sorted({*scene_suffixes(), *mesh_suffixes()})
-    folders = {(each.in_folder,) for each in scene_formats() if each.in_folder is not None}
-    assert set(IN_FOLDERS) == folders | {each.in_folder for each in mesh_formats() if each.in_folder}
+def test_the_files_and_folders_of_all_formats_are_completed(folder: Path) -> None:
+    (folder / "all").mkdir()
+    expected = {f"all/a{suffix}" for suffix in (*scene_suffixes(), *mesh_suffixes())}
+    for name in expected:
+        (folder / name).touch()
+    for each in mesh_formats():
+        for name in each.in_folder:
+            (folder / "all" / each.name).mkdir(exist_ok=True)
+            (folder / "all" / each.name / name).touch()
+            expected.add(f"all/{each.name}")
+    assert set(completed("render", "all/")) == expected
 
 
 @pytest.mark.parametrize("command", ["render", "view", "info", "validate", "show", "tables"])

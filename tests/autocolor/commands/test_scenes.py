@@ -24,15 +24,25 @@ def said(*arguments: str) -> str:
     return CliRunner().invoke(echo, arguments).output
 
 
-def test_a_command_takes_a_scene_an_up_axis_where_surfaces_come_from_and_whether_to_be_strict() -> None:
-    assert said("car.obj") == "car.obj z materials False\n"
-    assert said("--up", "y", "car.obj", "--strict") == "car.obj y materials True\n"
-    assert said("--surfaces", "parts", "car.obj") == "car.obj z parts False\n"
+def test_a_command_takes_a_scene_an_up_axis_a_scale_where_surfaces_come_from_and_whether_to_be_strict() -> (
+    None
+):
+    assert said("car.obj") == "car.obj z materials False 1.0\n"
+    assert said("--up", "y", "car.obj", "--strict") == "car.obj y materials True 1.0\n"
+    assert said("--surfaces", "parts", "car.obj") == "car.obj z parts False 1.0\n"
+    assert said("--scale", "0.001", "car.obj") == "car.obj z materials False 0.001\n"
 
 
 @pytest.mark.parametrize(
     "arguments",
-    [(), ("a.obj", "b.obj"), ("a.obj", "--up", "Z"), ("a.obj", "--up"), ("a.obj", "--surfaces", "Parts")],
+    [
+        (),
+        ("a.obj", "b.obj"),
+        ("a.obj", "--up", "Z"),
+        ("a.obj", "--up"),
+        ("a.obj", "--scale", "x"),
+        ("a.obj", "--surfaces", "Parts"),
+    ],
 )
 def test_other_arguments_are_wrong_usage(arguments: tuple[str, ...]) -> None:
     assert CliRunner().invoke(echo, arguments).exit_code == 2
@@ -59,6 +69,11 @@ def test_the_up_axis_is_that_of_the_mesh_file(folder: Path) -> None:
     assert above[2].tolist() == [1, -1, 0]
 
 
+def test_the_scale_is_a_factor_for_the_coordinates_of_the_mesh_file(folder: Path) -> None:
+    larger = read(SceneSource("two.obj", scale=25.4)).scene.mesh.coordinates
+    assert larger[2].tolist() == (read(SceneSource("two.obj")).scene.mesh.coordinates[2] * 25.4).tolist()
+
+
 def test_what_cannot_be_read_is_refused_and_not_told(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -81,5 +96,5 @@ def test_only_strict_makes_a_repair_an_exit_code(repairs: tuple[str, ...], stric
 @pytest.mark.parametrize("command", ["render", "view", "info", "validate", "show", "tables"])
 def test_every_command_that_reads_a_scene_takes_the_same_options(run: Run, command: str) -> None:
     shown = run(command, "--help").out
-    for option in ("SCENE", "--up [x|y|z]", "--surfaces [materials|parts]", "--strict"):
+    for option in ("SCENE", "--up [x|y|z]", "--scale FACTOR", "--surfaces [materials|parts]", "--strict"):
         assert option in shown

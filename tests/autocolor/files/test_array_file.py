@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from autocolor import InputError
-from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
+from autocolor.files.array_file import ArrayFileKind, Series, array_file_bytes, read_array_file
 
 KIND = ArrayFileKind(
     noun="test file",
@@ -46,6 +47,54 @@ def test_an_older_format_is_read_and_any_other_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(array_file_bytes(KIND, {"name": "", "format": "test 3"}, NUMBERS))
     with pytest.raises(InputError, match=r"file, header: its format must be 'test 2', not another; make it"):
         read_array_file(KIND, tmp_path / "file")
+
+
+WITH_SERIES = dataclasses.replace(
+    KIND,
+    formats=("test 3",),
+    plain=("test 2", "test 1"),
+    series={"rows": Series("row", ("<f8", 1), most=3)},
+)
+
+
+@pytest.mark.parametrize("count", [0, 1, 3])
+def test_a_series_has_as_many_arrays_as_the_header_tells(tmp_path: Path, count: int) -> None:
+    series = {f"row_{number}": np.full(number, number) for number in range(count)}
+    header = {"name": "", "rows": list(range(count))}
+    (tmp_path / "file").write_bytes(array_file_bytes(WITH_SERIES, header, {**NUMBERS, **series}))
+    again = read_array_file(WITH_SERIES, tmp_path / "file")
+    assert again.header == {"format": "test 3", **header}
+    assert again.arrays.keys() == {"numbers", *series}
+    for name, values in series.items():
+        assert again.arrays[name].dtype == np.float64
+        assert again.arrays[name].tolist() == values.tolist()
+
+
+def test_a_plain_format_has_no_series(tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(array_file_bytes(KIND, {"name": ""}, NUMBERS))
+    assert read_array_file(WITH_SERIES, tmp_path / "file").arrays.keys() == {"numbers"}
+    (tmp_path / "file").write_bytes(array_file_bytes(KIND, {"name": "", "rows": []}, NUMBERS))
+    with pytest.raises(InputError, match=r"file, header: it must have the keys of its format, not others"):
+        read_array_file(WITH_SERIES, tmp_path / "file")
+
+
+@pytest.mark.parametrize("rows", [None, {}, "ab", 3, [0] * 4])
+def test_a_series_that_is_no_short_list_is_refused(tmp_path: Path, rows: object) -> None:
+    plain = dataclasses.replace(KIND, formats=("test 3",))
+    (tmp_path / "file").write_bytes(array_file_bytes(plain, {"name": "", "rows": rows}, NUMBERS))
+    with pytest.raises(InputError, match=r"file, header: rows must be a list of at most 3 rows, not"):
+        read_array_file(WITH_SERIES, tmp_path / "file")
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_series_with_other_members_than_the_header_tells_is_refused(tmp_path: Path, count: int) -> None:
+    header = {"name": "", "rows": [0, 0]}
+    rows = {f"row_{number}": np.zeros(2) for number in range(count)}
+    types = {**KIND.arrays, **{name: ("<f8", 1) for name in rows}}
+    plain = dataclasses.replace(KIND, formats=("test 3",), arrays=types)
+    (tmp_path / "file").write_bytes(array_file_bytes(plain, header, {**NUMBERS, **rows}))
+    with pytest.raises(InputError, match="must be whole and as autocolor wrote it, not with members like"):
+        read_array_file(WITH_SERIES, tmp_path / "file")
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import pytest
 from autocolor import Mesh, OutputError, read_scene
 from autocolor.files import mesh_writing
 from autocolor.files.mesh_writing import entries_of, meshes_there, reports_of, written_mesh
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from tests.autocolor.meshes import cube
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nf 1 2 3 4\n"
@@ -41,6 +42,23 @@ def test_what_obj_does_not_hold_is_written_as_arrays(tmp_path: Path, mesh: Mesh)
     assert np.array_equal(meshes.reports[0].mesh.node_numbers, mesh.node_numbers)
 
 
+def test_a_mesh_with_scalars_is_written_as_arrays_and_is_there_again(tmp_path: Path) -> None:
+    mesh = cube().with_scalars(MeshScalar("stress", np.array([np.nan, *range(7)])))
+    written: list[Path] = []
+    meshes = written_mesh(tmp_path, mesh, written)
+    assert meshes.entries == ({"file": "mesh.tables"},)
+    assert np.array_equal(meshes.reports[0].mesh.scalars[0].values, mesh.scalars[0].values, equal_nan=True)
+    text = b'[[mesh]]\nfile = "mesh.tables"\n'
+    assert meshes_there(tmp_path, mesh, text) is not None
+    for other in (
+        cube(),
+        cube().with_scalars(MeshScalar("strain", mesh.scalars[0].values)),
+        cube().with_scalars(MeshScalar("stress", np.arange(8.0))),
+        cube().with_scalars(MeshScalar("stress", np.arange(6.0), "polygon")),
+    ):
+        assert meshes_there(tmp_path, other, text) is None
+
+
 def test_a_mesh_that_no_format_holds_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mesh_writing, "_is_same", lambda *_: False)
     written: list[Path] = []
@@ -60,6 +78,15 @@ def test_the_files_that_a_scene_file_names_come_first(tmp_path: Path) -> None:
     found = meshes_there(tmp_path, mesh, None)
     assert found is not None
     assert found.entries == ({"file": "car.obj", "up": "z"},)
+
+
+def test_a_file_is_named_with_the_up_axis_and_the_scale_that_it_was_read_with(tmp_path: Path) -> None:
+    (tmp_path / "deeper").mkdir()
+    (tmp_path / "deeper" / "car.obj").write_text(CAR)
+    mesh = read_scene(tmp_path / "deeper" / "car.obj", up="y", scale=0.25).mesh
+    found = meshes_there(tmp_path, mesh, None)
+    assert found is not None
+    assert found.entries == ({"file": "deeper/car.obj", "up": "y", "scale": 0.25},)
 
 
 def test_files_that_hold_another_mesh_or_none_are_left_alone(tmp_path: Path) -> None:

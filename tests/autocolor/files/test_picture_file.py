@@ -23,7 +23,8 @@ from autocolor import Flap, Flaps, Light, Scene, UsageError, read_picture, read_
 from autocolor.errors import InputError, MissingInputError, OutputError, WriteError
 from autocolor.files.picture_file import PICTURE_FILE, SavedPicture
 from autocolor.mapping.display_image import display_image
-from tests.autocolor.meshes import cube, wall_scene
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
+from tests.autocolor.meshes import cube, wall, wall_scene
 from tests.autocolor.strategies import scenes
 
 LINES, ELEMENTS = 9, 12
@@ -72,6 +73,24 @@ def zipped(members: dict[str, bytes], compression: int = zipfile.ZIP_STORED) -> 
     return buffer.getvalue()
 
 
+def in_color() -> Scene:
+    """A wall with scalars of both kinds, some of their values missing, one of them shown."""
+    mesh = wall(3, 2).with_scalars(
+        MeshScalar("stress", np.array([np.nan, *range(11)])),
+        MeshScalar("load", np.linspace(-1, 1, 6), "polygon"),
+        MeshScalar("\udcff", np.full(6, np.nan), "polygon"),
+    )
+    return wall_scene(mesh, scalar={"name": "stress", "limits": (0, 5), "bands": 4})
+
+
+@pytest.fixture(scope="module")
+def colored(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The bytes of a small picture file with scalars."""
+    path = tmp_path_factory.mktemp("pictures") / "wall.npz"
+    saved(path, in_color())
+    return path.read_bytes()
+
+
 def npy(array: npt.NDArray[Any]) -> bytes:
     buffer = io.BytesIO()
     np.save(buffer, array)
@@ -102,6 +121,8 @@ def equal_scenes(one: Scene, other: Scene) -> bool:
             np.array_equal(getattr(one.mesh, name), getattr(other.mesh, name))
             for name in ("coordinates", "node_numbers", "part_numbers")
         )
+        and [(scalar.name, scalar.of, scalar.values.tobytes()) for scalar in one.mesh.scalars]
+        == [(scalar.name, scalar.of, scalar.values.tobytes()) for scalar in other.mesh.scalars]
     )
 
 
@@ -126,6 +147,37 @@ def test_a_picture_comes_back_with_its_scene(tmp_path: Path) -> None:
     assert again.picture.surfaces == picture.surfaces
     assert again.picture.ranges == picture.ranges
     assert (display_image(again.scene, again.picture).words == display_image(scene, picture).words).all()
+
+
+@pytest.mark.parametrize("name", ["stress", "load", "\udcff", "z", "zebra"])
+def test_a_picture_comes_back_with_its_scalar_and_those_of_the_mesh(tmp_path: Path, name: str) -> None:
+    scene = in_color().replace(scalar={"name": name})
+    picture = render(scene, LINES, ELEMENTS)
+    again = saved(tmp_path / "wall.npz", scene)
+    assert equal_scenes(again.scene, scene)
+    assert picture.scalar is not None
+    assert again.picture.scalar is not None
+    assert again.picture.scalar.tobytes() == picture.scalar.tobytes()
+    assert again.picture.scalar_limits == picture.scalar_limits
+    write_picture(tmp_path / "two.npz", *again)
+    assert (tmp_path / "two.npz").read_bytes() == (tmp_path / "wall.npz").read_bytes()
+
+
+def test_numpy_can_open_the_scalars(colored: bytes) -> None:
+    with np.load(io.BytesIO(colored)) as arrays:
+        assert {*arrays} - {*PICTURE_FILE.arrays} == {
+            "header", "mesh_scalar_0", "mesh_scalar_1", "mesh_scalar_2", "scalar_0",
+        }  # fmt: skip
+        assert arrays["mesh_scalar_1"].tolist() == np.linspace(-1, 1, 6).tolist()
+
+
+@pytest.mark.parametrize("scalar", [None, {"name": "z"}])
+def test_a_picture_of_another_scalar_than_its_scene_is_not_written(tmp_path: Path, scalar: Any) -> None:
+    scene = wall_scene(scalar=scalar)
+    other = scene.replace(scalar=None if scalar else {"name": "z"})
+    with pytest.raises(UsageError, match="must both have a scalar or neither, not one alone; render"):
+        write_picture(tmp_path / "wall.npz", render(scene, LINES, ELEMENTS), other)
+    assert list(tmp_path.iterdir()) == []
 
 
 @given(scene=scenes())
@@ -317,7 +369,8 @@ def change_scene(table: str, row: int | None = None, **fields: Any) -> Callable[
 @pytest.mark.parametrize(
     ("edit", "sentence"),
     [
-        (change(format="autocolor picture 3"), "its format must be 'autocolor picture 2'"),
+        (change(format="autocolor picture 4"), "its format must be 'autocolor picture 3'"),
+        (change(format="autocolor picture 2"), "it must have the keys of its format, not others"),
         (change(scale=0), "its scale must be a number above 0, not 0"),
         (change(scale=-1.5), "its scale must be a number above 0, not -1.5"),
         (change(scale=True), "its scale must be a number above 0, not True"),
@@ -328,7 +381,14 @@ def change_scene(table: str, row: int | None = None, **fields: Any) -> Callable[
         (change(surfaces=["wall", "more"]), "its surfaces must be the scene's"),
         (change(surfaces={}), "its surfaces must be the scene's"),
         (change(scene=[]), "scene: it must be tables, its mesh among them, not []"),
-        (change(more=1), "its format must be"),
+        (change(more=1), "it must have the keys of its format, not others"),
+        (change(mesh_scalars=3), "mesh_scalars must be a list of at most 1,000 rows, not 3"),
+        (change(mesh_scalars=[{}] * 1001), "mesh_scalars must be a list of at most 1,000 rows, not ["),
+        (change(shown_scalars=[{}, {}]), "shown_scalars must be a list of at most 1 rows, not ["),
+        (
+            change(mesh_scalars=[{"name": "a", "of": "node"}]),
+            "must be whole and as autocolor wrote it, not with",
+        ),
         (change_scene("lights", 0, intensity=-1), "intensity must be a finite number of at least 0"),
         (change_scene("lights", 0, intensity=10**400), "intensity must be a finite number of at least 0"),
         (change_scene("lights", 0, name=[]), "lights[1].name must be a string"),
@@ -409,6 +469,70 @@ WRONG_ARRAYS: list[tuple[str, npt.NDArray[Any]]] = [
     ("part_numbers", np.array([{"a": 1}], object)),
     ("header", np.array(["{}"])),
 ]
+
+
+WRONG_SCALARS: list[tuple[str, npt.NDArray[Any]]] = [
+    ("mesh_scalar_0", np.zeros(11)),
+    ("mesh_scalar_0", np.zeros(12, np.float32)),
+    ("mesh_scalar_0", np.full(12, np.inf)),
+    ("mesh_scalar_1", np.zeros((6, 1))),
+    ("mesh_scalar_3", np.zeros(6)),
+    ("scalar_0", np.zeros((ELEMENTS, LINES), np.float32)),
+    ("scalar_0", np.zeros((LINES, ELEMENTS))),
+    ("scalar_0", np.full((LINES, ELEMENTS), np.inf, np.float32)),
+    ("scalar_1", np.zeros((LINES, ELEMENTS), np.float32)),
+]
+
+
+@pytest.mark.parametrize(("name", "array"), WRONG_SCALARS)
+def test_a_wrong_scalar_is_refused(
+    colored: bytes, tmp_path: Path, name: str, array: npt.NDArray[Any]
+) -> None:
+    with pytest.raises(InputError, match=r"^changed\.npz"):
+        read_bytes(with_array(colored, name, array), tmp_path)
+
+
+def change_rows(table: str, **fields: Any) -> Callable[[dict[str, Any]], None]:
+    return lambda header: header[table][0].update(fields)
+
+
+@pytest.mark.parametrize(
+    ("edit", "sentence"),
+    [
+        (change_rows("mesh_scalars", name=""), "a scalar must have a name, not ''; give it one"),
+        (change_rows("mesh_scalars", name=3), "a scalar must have a name, not 3; give it one"),
+        (change_rows("mesh_scalars", name="load"), "scalar 'load': its name must be unique"),
+        (change_rows("mesh_scalars", of="part"), "it must be of 'node' or 'polygon', not 'part'"),
+        (change_rows("mesh_scalars", of="polygon"), "there must be one value a polygon (6), not 12"),
+        (change_rows("mesh_scalars", more=1), "mesh_scalars[1] must be a table of name and of, not {"),
+        (change_rows("shown_scalars", limits=[1, 1]), "shown_scalars[1].limits must be two finite numbers"),
+        (
+            change_rows("shown_scalars", limits=[0, 1e300]),
+            "shown_scalars[1].limits must be two finite numbers",
+        ),
+        (change_rows("shown_scalars", limits=3), "shown_scalars[1].limits must be two finite numbers"),
+        (change_rows("shown_scalars", more=3), "shown_scalars[1].limits must be two finite numbers"),
+        (change(shown_scalars=[3]), "shown_scalars[1].limits must be two finite numbers"),
+        (change_scene("scalar", name="strain"), "scalar.name must be a scalar of the mesh or a computed one"),
+    ],
+)
+def test_a_header_with_wrong_scalars_is_refused_in_a_sentence(
+    colored: bytes, tmp_path: Path, edit: Callable[[dict[str, Any]], None], sentence: str
+) -> None:
+    header = header_of(colored)
+    edit(header)
+    with pytest.raises(InputError) as caught:
+        read_bytes(with_header(colored, json.dumps(header)), tmp_path)
+    assert sentence in str(caught.value)
+    assert str(caught.value).startswith("changed.npz")
+    assert str(caught.value).endswith("; save the picture again")
+
+
+def test_a_raster_without_a_scalar_in_the_scene_is_refused(colored: bytes, tmp_path: Path) -> None:
+    header = header_of(colored)
+    del header["scene"]["scalar"]
+    with pytest.raises(InputError, match="there must be a scalar at the pixels if the scene shows one, and"):
+        read_bytes(with_header(colored, json.dumps(header)), tmp_path)
 
 
 @pytest.mark.parametrize(("name", "array"), WRONG_ARRAYS)

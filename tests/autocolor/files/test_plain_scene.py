@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, InputError, Light, Scene, read_picture, render, write_picture
-from autocolor.files import picture_file
+from autocolor.files.array_file import array_file_bytes, read_array_file
+from autocolor.files.picture_file import PICTURE_FILE
 from autocolor.files.plain_scene import plain_scene, scene_of_plain
 from autocolor.scene.columns.column import keys_of
 from autocolor.scene.surfaces import Paint, Reflectance, Surface
@@ -68,16 +69,17 @@ def test_the_values_of_the_first_picture_files_give_the_same_scene(scene: Scene)
     assert columns(read_again(old, scene)) == columns(scene)
 
 
-def test_a_picture_file_of_the_first_format_is_still_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize("old", ["autocolor picture 1", "autocolor picture 2"])
+def test_a_picture_file_of_an_older_format_is_still_read(tmp_path: Path, old: str) -> None:
     scene = wall_scene(ambient=0.5)
     picture = render(scene, 6, 8)
-    older = dataclasses.replace(picture_file.PICTURE_FILE, formats=("autocolor picture 1",))
-    monkeypatch.setattr(picture_file, "PICTURE_FILE", older)
-    monkeypatch.setattr(picture_file, "plain_scene", lambda given: nested(plain_scene(given)))
-    write_picture(tmp_path / "old.npz", picture, scene)
-    monkeypatch.undo()
+    write_picture(tmp_path / "new.npz", picture, scene)
+    header, arrays = read_array_file(PICTURE_FILE, tmp_path / "new.npz")
+    header = {key: header[key] for key in PICTURE_FILE.keys}
+    older = dataclasses.replace(PICTURE_FILE, formats=(old,), series={})
+    if old == "autocolor picture 1":
+        header["scene"] = nested(header["scene"])
+    (tmp_path / "old.npz").write_bytes(array_file_bytes(older, header, arrays))
     again = read_picture(tmp_path / "old.npz")
     assert columns(again.scene) == columns(scene)
     assert (again.picture.intensity == picture.intensity).all()

@@ -48,6 +48,23 @@ def test_up_is_the_up_axis_of_a_bare_mesh(folder: Path) -> None:
         read_scene(folder, up="-z")
 
 
+def test_scale_is_a_factor_for_the_coordinates_of_a_bare_mesh(folder: Path) -> None:
+    report = read_scene_with_report(folder / "car.obj", up="y", scale=0.5)
+    assert report.scene.mesh.coordinates[2].tolist() == [0.5, -1.5, 0.5]
+    assert report.mesh_files == ({"file": "car.obj", "up": "y", "scale": 0.5},)
+
+
+@pytest.mark.parametrize("scale", [0, -1, float("nan"), float("inf"), 1e31, "2", True, None, 10**400])
+def test_a_scale_is_a_finite_number_above_zero(folder: Path, scale: Any) -> None:
+    with pytest.raises(UsageError, match=r"^scale must be .*, not .*; give a factor such as 0\.001$"):
+        read_scene(folder / "car.obj", scale=scale)
+
+
+def test_a_scale_that_makes_coordinates_too_large_is_refused(folder: Path) -> None:
+    with pytest.raises(InputError, match="coordinates must be finite and at most 1e30 in size"):
+        read_scene(folder / "car.obj", scale=1e30)
+
+
 def test_parts_beyond_the_surfaces_share_one_and_it_is_said(tmp_path: Path) -> None:
     path = tmp_path / "car.obj"
     path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 3\n" + "".join(f"o p{part}\nf 1 2 3\n" for part in range(300)))
@@ -79,7 +96,7 @@ def test_what_is_no_scene_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="a scene's folder must contain"):
         read_scene(tmp_path)
     (tmp_path / "a.shape").write_text("solid")
-    with pytest.raises(InputError, match=r"ends in \.npz, \.toml.* or \.\w+, not in '\.shape'"):
+    with pytest.raises(InputError, match=r"end in \.\w+, .* or \.\w+, not in '\.shape'"):
         read_scene(tmp_path / "a.shape")
     (tmp_path / "x.obj").mkdir()
     with pytest.raises(InputError, match="a scene's folder"):
@@ -103,11 +120,13 @@ def test_a_mesh_is_read_without_a_window_or_a_command(folder: Path) -> None:
     subprocess.run([sys.executable, "-c", program], check=True, env={**os.environ, "PYTHONPATH": os.getcwd()})
 
 
-def test_an_up_axis_goes_with_a_mesh_alone(tmp_path: Path) -> None:
+def test_an_up_axis_and_a_scale_go_with_a_mesh_alone(tmp_path: Path) -> None:
     (tmp_path / "square.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 0 1\nf 1 2 3\n")
     (tmp_path / "scene.toml").write_text('[[mesh]]\nfile = "square.obj"\n')
     with pytest.raises(UsageError, match=r"up is for mesh files, not for .*scene\.toml, which gives"):
         read_scene(tmp_path, up="y")
+    with pytest.raises(UsageError, match=r"scale is for mesh files, not for .*scene\.toml, which gives"):
+        read_scene(tmp_path, scale=2)
 
 
 def test_surfaces_are_those_of_materials_or_of_parts(folder: Path) -> None:

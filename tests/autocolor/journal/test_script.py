@@ -15,12 +15,12 @@ from hypothesis import strategies as st
 
 import autocolor
 from autocolor import InputError, Mesh, Scene, Studio, UsageError, View, read_journal, read_scene, scene_of
-from autocolor.journal.history import Drop, Edit, Keep, Open, Saved, Show, Step
+from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
 from autocolor.journal.meshes_beside import MeshesBeside
-from autocolor.journal.opening import checksum_of
+from autocolor.journal.opening import checksum_of, opened
 from autocolor.journal.places import Source
 from autocolor.journal.reading import session_of
-from autocolor.journal.script import call_between, literal, step_line
+from autocolor.journal.script import call_between, journal_text, literal, step_line
 from autocolor.scene.light_sets.new_lights import new_light_of
 from autocolor.scene.scene import AUTO
 from ramtek_emu import Ramtek9300
@@ -222,6 +222,22 @@ def test_each_kind_of_step_has_the_narrowest_line() -> None:
     ]
 
 
+def test_steps_of_the_scalar_have_lines_of_their_own() -> None:
+    shown = CAR.with_scalar(name="z", bands=8)
+    limited = shown.with_scalar(limits=[0, 1], scale=["red", "blue"])
+    free = limited.with_scalar(limits=None)
+    assert lines_of(CAR, shown, limited, free, CAR) == [
+        "studio.scalar(name='z', scale='viridis', bands=8, missing='#808080', legend=True,"
+        " direction=[0.0, 0.0, 1.0], stripes=12.0)",
+        "studio.scalar(limits=[0.0, 1.0], scale=['#ff0000', '#0000ff'])",
+        "studio.scalar(limits=None)",
+        "studio.scalar(None)",
+    ]
+    for after, call in ((free, "with_scalar(limits=None)"), (CAR, "without_scalar()")):
+        line = step_line(Edit(limited, after, joins=True), CAR, MeshesBeside())
+        assert line == f"studio.edit(studio.scene.{call}, same_step=True)"
+
+
 def test_what_is_undone_with_the_step_before_says_so() -> None:
     line = step_line(Edit(CAR, CAR.with_light("key", on=False), joins=True), CAR, MeshesBeside())
     assert line == "studio.edit(studio.scene.with_light('key', on=False), same_step=True)"
@@ -279,22 +295,36 @@ def test_the_checksum_is_that_of_all_values(written: Path) -> None:
 
 
 def test_steps_of_files_and_variants_have_lines_of_their_own(tmp_path: Path) -> None:
-    opened = Open(CAR, Source(str(tmp_path / "car.obj"), "y", "parts"))
+    step = Open(CAR, Source(str(tmp_path / "car.obj"), "y", "parts"))
     beside = MeshesBeside(tmp_path)
-    line = step_line(opened, CAR, beside)
+    line = step_line(step, CAR, beside)
     begin = (
         f"studio.open('{tmp_path / 'car.obj'}', up='y', surfaces='parts', tables={{'parts': [{{'name': 'hood'"
     )
     assert line.startswith(begin)
     assert line.endswith(f", checksum='{checksum_of(CAR)}')")
     steps: list[Step] = [Keep("A"), Show("it's"), Drop("A"), Saved(CAR, {"/car.npz": "9f"}), "undo"]
-    assert [step_line(step, CAR, beside) for step in steps] == [
+    assert [step_line(each, CAR, beside) for each in steps] == [
         "studio.keep_variant('A')",
         'studio.show_variant("it\'s")',
         "studio.drop_variant('A')",
         "studio.mark_saved({'/car.npz': '9f'})",
         "studio.undo()",
     ]
+
+
+def test_a_scale_is_told_and_read_again(tmp_path: Path) -> None:
+    (tmp_path / "car.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
+    source = Source(str(tmp_path / "car.obj"), "y", "parts", 0.5)
+    scene, place = opened(source)
+    assert scene.mesh.coordinates.tolist() == [[0, 0, 0], [0.5, 0, 0], [0.5, 0, 0.5]]
+    text = journal_text(History(scene, place), source, MeshesBeside())
+    assert "up='y', surfaces='parts', scale=0.5)" in text
+    assert session_of(text).source == source
+    line = step_line(Open(scene, source), scene, MeshesBeside())
+    assert ", up='y', surfaces='parts', scale=0.5, tables=" in line
+    again = session_of(f"{text}{line}\n").history.scene
+    assert checksum_of(again) == checksum_of(scene)
 
 
 def test_another_mesh_is_named_with_what_else_was_changed(tmp_path: Path) -> None:

@@ -75,6 +75,8 @@ def test_a_scene_is_opened_with_its_tables(tmp_path: Path) -> None:
         "studio.open(5)",
         "studio.open('a', outside=True)",
         "studio.open('a', tables=[])",
+        "studio.open('a', scale='2')",
+        "studio.open('a', scale=True)",
         "studio.open('a', tables={5: 1})",
         "studio.keep_variant()",
         "studio.keep_variant(name='A')",
@@ -105,6 +107,7 @@ def test_anything_else_is_refused(line: str) -> None:
         ("studio.keep_variant('')", "a variant must have a name of 1 to 100 characters, not ''"),
         ("studio.open('/none.obj')", "/none.obj: there is no such file or folder; check the name"),
         ("studio.open('/', up='w')", "up must be 'x', 'y' or 'z', not 'w'"),
+        ("studio.open('/', scale=0)", "scale must be a number above 0 and at most 1e+30"),
         ("studio.hold_exposure({'bodi': [0, 1]})", "exposure 'bodi' is not in the surface table"),
     ],
 )

@@ -25,8 +25,7 @@ def panes(count: int, *values: float, **scalar: Any) -> Scene:
         mesh.with_scalars(MeshScalar("stress", given_values, "polygon")),
         surfaces=[Surface(name) for name in mesh.part_names],
         surface_of_part={name: name for name in mesh.part_names},
-        scalar={"name": "stress", **scalar},
-    )
+    ).with_scalar(**{"name": "stress", **scalar})
 
 
 def bands_of(scene: Scene) -> Any:

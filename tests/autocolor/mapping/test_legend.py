@@ -28,7 +28,7 @@ from tests.autocolor.meshes import sphere
 
 
 def ball(**scalar: Any) -> Scene:
-    return scene_of(sphere(12, 8), scalar={"name": "z", **scalar})
+    return scene_of(sphere(12, 8)).with_scalar(**{"name": "z", **scalar})
 
 
 def shown(scene: Scene, lines: int = 480, elements: int = 640) -> DisplayImage:

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, Mesh
+from autocolor.scene import mesh as room
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import meshes
 
@@ -192,3 +193,28 @@ def test_a_mesh_without_part_numbers_is_one_part() -> None:
     mesh = Mesh(np.eye(3), [[0, 1, 2], [2, 1, 0]])  # type: ignore[arg-type]
     assert (mesh.part_names, mesh.part_numbers.tolist()) == (("mesh",), [0, 0])
     assert mesh_of(part_numbers=None, part_names=("hood",)).part_names == ("hood",)
+
+
+@given(meshes())
+def test_a_mesh_of_tables_holds_them_themselves_and_what_was_computed_of_them(mesh: Mesh) -> None:
+    tables = (mesh.coordinates, mesh.node_numbers, mesh.part_numbers)
+    held = Mesh.of_tables(*tables, mesh.part_names, 25.0, normals=mesh.normals, shared_planes=None)
+    assert held.coordinates is mesh.coordinates
+    assert held.node_numbers is mesh.node_numbers
+    assert held.part_numbers is mesh.part_numbers
+    assert (held.part_names, held.crease_angle) == (mesh.part_names, 25.0)
+    assert held.normals is mesh.normals
+    assert held.shared_planes is None
+    computed = Mesh.of_tables(*tables, mesh.part_names, mesh.crease_angle)
+    assert computed.normals.vectors.tobytes() == mesh.normals.vectors.tobytes()
+    assert (computed.shared_planes is None) == (mesh.shared_planes is None)
+
+
+@pytest.mark.parametrize("at_once", [1, 3, 1000])
+def test_edges_are_counted_alike_in_chunks_of_any_size(at_once: int) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(room, "POLYGONS_AT_ONCE", at_once)
+        assert cube().edge_count == 12
+        assert grid(3, 2, (0, 0, 0), (3, 0, 0), (0, 2, 0)).edge_count == 17
+        assert mesh_of(node_numbers=np.array([[0, 1, 2], [2, 1, 0]]), part_numbers=[0, 0]).edge_count == 3
+        assert mesh_of(node_numbers=np.empty((0, 4), np.intp), part_numbers=[]).edge_count == 0

@@ -6,7 +6,7 @@ import pytest
 
 from autocolor import Light, Scene, read_scene, write_rig, write_scene
 from autocolor.errors import AutocolorError
-from autocolor.files.recent import note_file
+from autocolor.files.state.recent import note_file
 from autocolor.screens.file_screen import LEFT, MOST_ROWS, RIGHT, FileRow
 from autocolor.screens.session import PICTURE
 from autocolor.widgets.menu import WORK
@@ -290,3 +290,20 @@ def test_the_up_axis_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand, folder:
     # Other files give their own.
     hand.viewer.session.open(folder / "wall")
     assert scene_of(hand).name == "wall"
+
+
+def test_the_scale_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand) -> None:
+    row = next(each for each in hand.viewer.board.menu_rows() if each.label == "mesh scale")
+    # From 1 to 10 and 100.
+    for _ in range(2):
+        hand.click(row.area.right - 8, row.area.top + 8)
+    pick(hand, "deeper")
+    pick(hand, "triangle.obj")
+    assert scene_of(hand).mesh.coordinates.max() == 100
+
+
+def test_the_scale_of_the_command_line_is_among_those_that_can_be_pointed_at(hand: Hand) -> None:
+    hand.viewer.session.place_meshes("y", 25.4)
+    row = next(each for each in hand.viewer.board.menu_rows() if each.label == "mesh scale")
+    hand.click(row.area.right - 8, row.area.top + 8)
+    assert (hand.viewer.session.mesh_up, hand.viewer.session.mesh_scale) == ("y", 100)

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from autocolor import InputError, Light, OutputError, Studio, read_rig, write_rig, write_scene
-from autocolor.files.recent import recent_files
+from autocolor.files.state.recent import recent_files
 from autocolor.screens.session import MESSAGE_SECONDS, PICTURE, Session
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import wall_scene

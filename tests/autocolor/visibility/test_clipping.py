@@ -19,7 +19,14 @@ def polygons_of(positions: Floats, corners: list[list[int]], near: float = 0.25)
     """Polygons whose normals are their positions, which clipping must interpolate alike."""
     numbers = np.array(corners, np.intp).T
     return CameraPolygons(
-        1.0, near, positions, positions.astype(np.float32), numbers, numbers, np.arange(len(corners))
+        1.0,
+        near,
+        float(positions[2].min()),
+        positions,
+        positions.astype(np.float32),
+        numbers,
+        numbers,
+        np.arange(len(corners)),
     )
 
 

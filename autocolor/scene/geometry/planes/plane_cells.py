@@ -11,8 +11,10 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from autocolor.arrays import Booleans, Floats, Indices, Numbers, chunks, cross, dot, lengths
+from autocolor.scene.geometry.planes.scaled_nodes import ScaledNodes
 from autocolor.scene.geometry.union_find import unite
 
 CELL: Final = 1 / 256
@@ -31,6 +33,9 @@ SHARPEST: Final = 2e-4
 """Assumed: how far a corner may be off a plane, as a fraction of its polygon's width."""
 
 POLYGONS_AT_ONCE: Final = 1 << 13
+
+LARGE: Final = 1 << 21
+"""Polygons of which only the low bits of hashes are kept; the few that are compared are hashed again."""
 
 FORMS: Final = np.random.default_rng(1983).uniform(-1, 1, (3, 3, 4))
 """Three bilinear forms of n and (n, d), which are the same for the plane (-n, -d)."""
@@ -54,9 +59,8 @@ class Facets:
     widths: Floats
 
 
-def facets(coordinate_rows: Floats, node_rows: Indices) -> Facets:
-    """The facets of polygons; `coordinate_rows` is (3, nodes), `node_rows` (4, polygons)."""
-    corners = np.take(coordinate_rows, node_rows, axis=1)
+def facets(corners: Floats) -> Facets:
+    """The facets of polygons with these corners, (3, 4, polygons)."""
     across, along = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
     normals = cross(across, along)
     areas = lengths(normals)
@@ -80,81 +84,122 @@ def part_of(found: Facets, rows: Indices | Booleans) -> Facets:
     )
 
 
-def facet_normals(coordinate_rows: Floats, node_rows: Indices) -> Floats:
+def facet_normals(nodes: ScaledNodes, node_rows: Indices) -> Floats:
     """The normals of facets alone, (3, n)."""
     normals = np.empty((3, node_rows.shape[1]))
     for chunk in chunks(node_rows.shape[1], POLYGONS_AT_ONCE):
-        normals[:, chunk] = facets(coordinate_rows, node_rows[:, chunk]).normals
+        normals[:, chunk] = facets(nodes.corners(node_rows[:, chunk])).normals
     return normals
 
 
-def coplanar_groups(
-    coordinate_rows: Floats, node_rows: Indices, grids: Numbers, widths: Floats, tolerance: float
-) -> Indices:
+@dataclass(frozen=True, eq=False)
+class PlaneCells:
+    """The cells in which the planes of polygons lie, and the widths of the polygons, 0 if they are not flat.
+
+    `hashes`, (grids, polygons), has the hash of each cell as int64, or as uint32 its low bits alone.
+    `widths` is (polygons,).
+    """
+
+    hashes: Numbers | NDArray[np.uint32]
+    widths: Floats
+
+    def keys(self, nodes: ScaledNodes, node_rows: Indices, polygons: Indices, grid: int = 0) -> Numbers:
+        """The whole hashes of the cells of some polygons in a grid."""
+        if self.hashes.dtype == np.int64:
+            whole: Numbers = self.hashes[grid].take(polygons)
+            return whole
+        keys = np.empty(len(polygons), np.int64)
+        for chunk in chunks(len(polygons), POLYGONS_AT_ONCE):
+            found = facets(nodes.corners(node_rows[:, polygons[chunk]]))
+            keys[chunk] = _hashes(_numbers(found.normals, dot(found.normals, found.centers)), SHIFTS[grid])
+        return keys
+
+
+def coplanar_groups(nodes: ScaledNodes, node_rows: Indices, cells: PlaneCells, tolerance: float) -> Indices:
     """Union-find parents of the polygons, those united that seem to lie in one plane.
 
-    Coordinates are around 0 and of at most about 1 in size; corners are exact to the tolerance. `grids` and
-    `widths` are as from `plane_cells`.
+    Coordinates are around 0 and of at most about 1 in size; corners are exact to the tolerance.
     """
-    parents = np.arange(node_rows.shape[1])
-    widths = widths.copy()
-    rank = max(len(widths) - MOST_GROUNDS, 0)
-    grounds = widths >= np.sort(widths)[rank:][:1]
-    left = np.flatnonzero(widths)
-    slot_count = 4 << len(widths).bit_length()
-    for keys in grids:
-        # Leave out most of the polygons whose cell has no ground or nothing else before they are sorted.
-        slots = keys.take(left) & (slot_count - 1)
-        counts = np.bincount(slots, minlength=slot_count)
-        counts *= np.bincount(slots.compress(grounds.take(left)), minlength=slot_count) > 0
-        candidates = left.compress(counts.take(slots) > 1)
-        candidates = candidates[np.argsort(keys.take(candidates), kind="stable")]
+    count = node_rows.shape[1]
+    rank = max(count - MOST_GROUNDS, 0)
+    grounds = np.flatnonzero(cells.widths >= (np.partition(cells.widths, rank)[rank] if count else 0.0))
+    left = cells.widths > 0
+    parents = np.arange(count)
+    for grid, hashes in enumerate(cells.hashes):
+        candidates = _beside_grounds(hashes, left, grounds)
+        keys = cells.keys(nodes, node_rows, candidates, grid)
+        order = np.argsort(keys, kind="stable")
         # A chunk may end within a cell; the seeds of its two parts meet in the other grids.
-        for chunk in chunks(len(candidates), POLYGONS_AT_ONCE):
-            polygons = candidates[chunk]
-            seeds, members = _compared(
-                coordinate_rows, node_rows[:, polygons], keys.take(polygons), tolerance
-            )
+        for chunk in chunks(len(order), POLYGONS_AT_ONCE):
+            polygons = candidates[order[chunk]]
+            found = facets(nodes.corners(node_rows[:, polygons]))
+            seeds, members = _compared(found, keys[order[chunk]], tolerance)
             unite(parents, polygons[seeds], polygons[members])
             # The seed alone stands for its group in the other grids.
-            widths[polygons[members[members != seeds]]] = 0
-        left = left.compress(widths.take(left) > 0)
+            left[polygons[members[members != seeds]]] = False
     return parents
 
 
-def plane_cells(coordinate_rows: Floats, node_rows: Indices, tolerance: float) -> tuple[Numbers, Floats]:
-    """The hash of each polygon's cell in each grid, (grids, polygons), and its width, 0 if it is not flat."""
-    keys = np.empty((len(SHIFTS), node_rows.shape[1]), np.int64)
+def _beside_grounds(hashes: Numbers | NDArray[np.uint32], left: Booleans, grounds: Indices) -> Indices:
+    """Those polygons that are left whose cell may have a ground and something else."""
+    mask = hashes.dtype.type((4 << len(hashes).bit_length()) - 1)
+    slots = np.unique(hashes[grounds[left[grounds]]] & mask)
+    has_ground = np.zeros(int(mask) + 1, np.bool_)
+    has_ground[slots] = True
+    found = [
+        np.flatnonzero(has_ground.take(hashes[chunk] & mask) & left[chunk]) + chunk.start
+        for chunk in chunks(len(hashes), POLYGONS_AT_ONCE)
+    ]
+    beside = np.concatenate([np.empty(0, np.intp), *found])
+    slot = np.searchsorted(slots, hashes[beside] & mask)
+    counts = np.bincount(slot, minlength=1)
+    shared: Indices = beside[counts.take(slot) > 1]
+    return shared
+
+
+def plane_cells(nodes: ScaledNodes, node_rows: Indices, tolerance: float) -> PlaneCells:
+    """The cell of each polygon in each grid, and its width; the polygons are taken in chunks."""
+    count = node_rows.shape[1]
+    hashes = np.empty((len(SHIFTS), count), np.int64 if count < LARGE else np.uint32)
     widths = np.empty(node_rows.shape[1])
     for chunk in chunks(node_rows.shape[1], POLYGONS_AT_ONCE):
-        found = facets(coordinate_rows, node_rows[:, chunk])
+        found = facets(nodes.corners(node_rows[:, chunk]))
         offsets = found.corners[:, 0] - found.centers
         warp = np.abs(dot(found.normals, offsets))
-        numbers = _numbers(found.normals, dot(found.normals, found.centers))
         widths[chunk] = np.where(warp <= np.minimum(tolerance, SHARPEST * found.widths), found.widths, 0.0)
-        for row, shift in zip(keys, SHIFTS, strict=True):
-            cells = np.floor(numbers / CELL + shift).astype(np.int64)
-            row[chunk] = MIXERS @ cells
-    return keys, widths
+        numbers = _numbers(found.normals, dot(found.normals, found.centers))
+        for row, shift in zip(hashes, SHIFTS, strict=True):
+            row[chunk] = _hashes(numbers, shift).astype(row.dtype)
+    return PlaneCells(hashes, widths)
 
 
 def cells_of_planes(normals: Floats, distances: Floats, shift: Floats | float = 0.0) -> Numbers:
     """The hash of the cell of each plane in the first grid, `shift` added to its three numbers."""
     numbers = _numbers(normals, distances).T + shift
-    return np.floor(numbers / CELL + SHIFTS[0]).astype(np.int64) @ MIXERS
+    return _hashes(numbers.T, SHIFTS[0])
+
+
+def _hashes(numbers: Floats, shift: float) -> Numbers:
+    """One hash of the cell that the three numbers of each plane, (3, planes), lie in."""
+    hashes: Numbers = MIXERS @ np.floor(numbers / CELL + shift).astype(np.int64)
+    return hashes
 
 
 def _numbers(normals: Floats, distances: Floats) -> Floats:
-    """The three numbers of each plane, (3, planes)."""
-    planes = np.concatenate([normals, distances[None]])
-    return np.stack([dot(normals, form @ planes) for form in FORMS])
+    """The three numbers of each plane, (3, planes).
+
+    They are the same for a plane whichever others are asked for with it: a matrix product would not say so.
+    """
+    planes = [*normals, distances]
+    numbers = np.zeros((len(FORMS), len(distances)))
+    for number, form in zip(numbers, FORMS, strict=True):
+        for normal, factors in zip(normals, form.tolist(), strict=True):
+            number += normal * sum(factor * row for factor, row in zip(factors, planes, strict=True))
+    return numbers
 
 
-def _compared(
-    coordinate_rows: Floats, node_rows: Indices, keys: Numbers, tolerance: float
-) -> tuple[Indices, Indices]:
-    """Pairs of polygons in one plane: in each cell, those that lie in the plane of the largest."""
-    found = facets(coordinate_rows, node_rows)
+def _compared(found: Facets, keys: Numbers, tolerance: float) -> tuple[Indices, Indices]:
+    """Pairs of facets in one plane: in each cell, those that lie in the plane of the largest."""
     rows = np.lexsort((-found.areas, keys))
     seeds, members = [], []
     for _ in range(MOST_PLANES):

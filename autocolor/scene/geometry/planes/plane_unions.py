@@ -10,17 +10,19 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, Numbers, chunks, dot
+from autocolor.arrays import Indices, Numbers, chunks, dot
 from autocolor.scene.geometry.planes.plane_cells import (
     CELL,
     MOST_PLANES,
     POLYGONS_AT_ONCE,
     SHARPEST,
+    PlaneCells,
     cells_of_planes,
     facets,
 )
 from autocolor.scene.geometry.planes.plane_fits import Fits, fitted
-from autocolor.scene.geometry.union_find import roots_of, unite
+from autocolor.scene.geometry.planes.scaled_nodes import ScaledNodes
+from autocolor.scene.geometry.union_find import roots_of, unite, united_items
 
 MOST_SAMPLES: Final = 256
 """To how many polygons of a group a plane is fitted at most, when groups are united."""
@@ -47,32 +49,28 @@ class _Sampled(NamedTuple):
 
 
 def unite_in_fitted_planes(
-    coordinate_rows: Floats,
+    nodes: ScaledNodes,
     node_rows: Indices,
     parents: Indices,
-    cells: Numbers,
-    flat: Booleans,
+    cells: PlaneCells,
     tolerance: float,
 ) -> None:
-    """Unite what lies in one plane; `parents`, as from `coplanar_groups`, is changed in place.
-
-    `cells` has the cell of each polygon in the first grid, and `flat` tells which lie in a plane.
-    """
+    """Unite what lies in one plane; `parents`, as from `coplanar_groups`, is changed in place."""
     for _ in range(ROUNDS):
-        sampled = _sampled(coordinate_rows, node_rows, parents)
+        sampled = _sampled(nodes, node_rows, parents)
         if sampled is None:
             return
-        before = parents.copy()
-        if _unite_groups(coordinate_rows, node_rows, parents, sampled, tolerance):
-            sampled = _sampled(coordinate_rows, node_rows, parents) or sampled
-        _unite_polygons(coordinate_rows, node_rows, parents, sampled, cells, flat, tolerance)
-        if (parents == before).all():
+        before = len(united_items(parents))
+        if _unite_groups(nodes, node_rows, parents, sampled, tolerance):
+            sampled = _sampled(nodes, node_rows, parents) or sampled
+        _unite_polygons(nodes, node_rows, parents, sampled, cells, tolerance)
+        if len(united_items(parents)) == before:
             return
 
 
-def _sampled(coordinate_rows: Floats, node_rows: Indices, parents: Indices) -> _Sampled | None:
+def _sampled(nodes: ScaledNodes, node_rows: Indices, parents: Indices) -> _Sampled | None:
     """The groups; None if there is none that others may be united with."""
-    united = np.flatnonzero(parents != np.arange(len(parents)))
+    united = united_items(parents)
     roots = roots_of(parents, united)
     counts = np.bincount(roots)
     roots, sizes = np.flatnonzero(counts), counts[counts > 0] + 1
@@ -87,7 +85,7 @@ def _sampled(coordinate_rows: Floats, node_rows: Indices, parents: Indices) -> _
     place = np.arange(len(polygons)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
     chosen = place % (-(-sizes // MOST_SAMPLES))[numbers] == 0
     polygons, numbers = polygons[chosen], numbers[chosen]
-    fits = fitted(facets(coordinate_rows, node_rows[:, polygons]), numbers)
+    fits = fitted(facets(nodes.corners(node_rows[:, polygons])), numbers)
     return _Sampled(polygons, numbers, roots, fits, uniting)
 
 
@@ -114,14 +112,14 @@ def _registered(sampled: _Sampled) -> _Registered:
 
 
 def _unite_groups(
-    coordinate_rows: Floats, node_rows: Indices, parents: Indices, sampled: _Sampled, tolerance: float
+    nodes: ScaledNodes, node_rows: Indices, parents: Indices, sampled: _Sampled, tolerance: float
 ) -> bool:
     """Unite each group with the widest one in whose plane all of its polygons lie; whether any was united."""
     fits = sampled.fits
     registered = _registered(sampled)
     start, stop = registered.near(cells_of_planes(fits.normals, dot(fits.normals, fits.points)))
     first = sampled.first
-    found = facets(coordinate_rows, node_rows[:, sampled.polygons])
+    found = facets(nodes.corners(node_rows[:, sampled.polygons]))
     limits = np.minimum(tolerance, SHARPEST * found.widths)
     left, united = np.ones(len(first), np.bool_), False
     for rank in range(MOST_PLANES):
@@ -144,31 +142,35 @@ def _unite_groups(
 
 
 def _unite_polygons(
-    coordinate_rows: Floats,
+    nodes: ScaledNodes,
     node_rows: Indices,
     parents: Indices,
     sampled: _Sampled,
-    cells: Numbers,
-    flat: Booleans,
+    cells: PlaneCells,
     tolerance: float,
 ) -> None:
     """Unite each polygon that is alone with the widest group in whose plane it lies."""
     registered = _registered(sampled)
     first = sampled.first
-    alone = flat & (parents == np.arange(len(parents)))
     # Of a group only the first is its own parent.
+    alone = cells.widths > 0
+    alone[united_items(parents)] = False
     alone[sampled.first] = False
-    left = np.flatnonzero(alone)
     # Most of the polygons are in cells without a plane.
     slots = np.zeros(4 << len(registered.cells).bit_length(), np.bool_)
     slots[registered.cells & (len(slots) - 1)] = True
-    left = left[slots.take(cells.take(left) & (len(slots) - 1))]
-    start, stop = registered.near(cells.take(left))
+    mask = cells.hashes.dtype.type(len(slots) - 1)
+    found_alone = [
+        np.flatnonzero(alone[chunk] & slots.take(cells.hashes[0, chunk] & mask)) + chunk.start
+        for chunk in chunks(len(alone), POLYGONS_AT_ONCE)
+    ]
+    left = np.concatenate([np.empty(0, np.intp), *found_alone])
+    start, stop = registered.near(cells.keys(nodes, node_rows, left))
     some = start < stop
     left, start, stop = left[some], start[some], stop[some]
     for chunk in chunks(len(left), POLYGONS_AT_ONCE):
         polygons = left[chunk]
-        found = facets(coordinate_rows, node_rows[:, polygons])
+        found = facets(nodes.corners(node_rows[:, polygons]))
         limits = np.minimum(tolerance, SHARPEST * found.widths)
         rows = np.arange(len(polygons))
         for rank in range(MOST_PLANES):

@@ -37,7 +37,9 @@ from autocolor.scene.geometry.planes.plane_cells import (
 from autocolor.scene.geometry.planes.plane_fits import Fits, fitted, renumbered
 from autocolor.scene.geometry.planes.plane_levels import MOST_LEVELS, levels
 from autocolor.scene.geometry.planes.plane_unions import unite_in_fitted_planes
-from autocolor.scene.geometry.union_find import group_numbers, unite
+from autocolor.scene.geometry.planes.scaled_nodes import ScaledNodes
+from autocolor.scene.geometry.union_find import group_numbers, roots_of, unite, united_items
+from autocolor.scene.geometry.used_rows import used_bounds
 
 TOLERANCE: Final = 2e-6
 """Assumed: the largest distance of a corner from its plane, as a fraction of the size of the mesh."""
@@ -71,25 +73,21 @@ class SharedPlanes(Immutable):
 def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | None:
     """The planes in which polygons may overlap; None if there is none."""
     coordinate_rows, node_rows = coordinates.T, node_numbers.T
-    used = np.zeros(coordinate_rows.shape[1], np.bool_)
-    used[node_rows] = True
-    low = coordinate_rows.min(axis=1, where=used, initial=np.inf)
-    high = coordinate_rows.max(axis=1, where=used, initial=-np.inf)
+    low, high = used_bounds(coordinate_rows, node_rows)
     extent = float((high - low).max())
     if not 0 < extent < np.inf:
         return None
     middle = low / 2 + high / 2
     tolerance = TOLERANCE * min(max(float(np.abs([low, high]).max()) / extent, 1.0), MOST_OFFSET)
-    scaled = (coordinate_rows - middle[:, None]) / extent
+    scaled = ScaledNodes(coordinate_rows, middle, extent)
 
     # Find groups of polygons that seem to lie in one plane, and sort the polygons by group.
-    grids, widths = plane_cells(scaled, node_rows, tolerance)
-    parents = coplanar_groups(scaled, node_rows, grids, widths, tolerance)
-    unite_in_fitted_planes(scaled, node_rows, parents, grids[0], widths > 0, tolerance)
-    groups = group_numbers(parents)
-    polygons = np.flatnonzero(np.bincount(groups).take(groups) > 1)
-    polygons = polygons[np.argsort(groups[polygons], kind="stable")]
-    groups = groups[polygons]
+    cells = plane_cells(scaled, node_rows, tolerance)
+    parents = coplanar_groups(scaled, node_rows, cells, tolerance)
+    unite_in_fitted_planes(scaled, node_rows, parents, cells, tolerance)
+    del cells
+    polygons, groups = _in_groups(parents)
+    del parents
     # Drop those that are one patch, before anything large is computed.
     normals = facet_normals(scaled, node_rows[:, polygons])
     first = np.searchsorted(groups, groups)
@@ -100,7 +98,7 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     # Take those apart that lie in front of each other.
     rounding = coordinate_rounding(np.take(coordinate_rows, node_rows[:, polygons].ravel(), axis=1))
     level = levels(
-        facets(scaled, node_rows[:, polygons]),
+        facets(scaled.corners(node_rows[:, polygons])),
         groups,
         patches[several],
         rounding._replace(most=rounding.most / extent),
@@ -111,7 +109,7 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
     polygons, groups, places = polygons[order], groups[order], places[:, order]
     # Drop those that are too far from the plane of the others, or lie beside all of them.
     for beside in (False, True, False):
-        found = facets(scaled, node_rows[:, polygons])
+        found = facets(scaled.corners(node_rows[:, polygons]))
         groups, fits, off = _fitted_and_off(found, groups)
         normals = fits.normals[:, groups]
         kept = off <= np.minimum(tolerance, SHARPEST * found.widths)
@@ -123,7 +121,7 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
         if not len(polygons):
             return None
 
-    found = facets(scaled, node_rows[:, polygons])
+    found = facets(scaled.corners(node_rows[:, polygons]))
     groups, fits, off = _fitted_and_off(found, groups)
     first = np.flatnonzero(np.diff(groups, prepend=-1))
     plane_of_polygon = np.full(node_rows.shape[1], -1, np.intp)
@@ -137,6 +135,17 @@ def shared_planes(coordinates: Floats, node_numbers: Indices) -> SharedPlanes | 
         plane_of_polygon,
         turned,
     )
+
+
+def _in_groups(parents: Indices) -> tuple[Indices, Indices]:
+    """The polygons that are in a group of several, sorted by group, and their groups, numbered from 0."""
+    united = united_items(parents)
+    roots = roots_of(parents, united)
+    firsts = np.unique(roots)
+    polygons = np.concatenate([firsts, united])
+    groups = np.searchsorted(firsts, np.concatenate([firsts, roots]))
+    order = np.lexsort((polygons, groups))
+    return polygons[order], groups[order]
 
 
 def _fitted_and_off(found: Facets, groups: Indices) -> tuple[Indices, Fits, Floats]:

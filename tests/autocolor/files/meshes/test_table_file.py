@@ -1,6 +1,8 @@
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from autocolor.files.array_file import array_file_bytes
 from autocolor.files.meshes.formats import read_mesh
 from autocolor.files.meshes.table_file import TABLE_FILE, table_file_bytes
 from autocolor.files.repair.placement import Placement
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import meshes
 
@@ -35,6 +38,44 @@ def test_an_empty_mesh_and_odd_names_are_kept(tmp_path: Path) -> None:
     )  # fmt: skip
 
 
+def test_scalars_are_kept(tmp_path: Path) -> None:
+    mesh = cube().with_scalars(
+        MeshScalar("stress", np.array([np.nan, 1e30, *range(6)])),
+        MeshScalar("\ud800", np.arange(6.0), "polygon"),
+    )
+    (tmp_path / "mesh.tables").write_bytes(table_file_bytes(mesh))
+    again = read_mesh({"file": tmp_path / "mesh.tables"}).mesh.scalars
+    assert [(each.name, each.of) for each in again] == [("stress", "node"), ("\ud800", "polygon")]
+    for one, other in zip(again, mesh.scalars, strict=True):
+        assert np.array_equal(one.values, other.values, equal_nan=True)
+
+
+def test_a_table_file_without_scalars_is_still_read(tmp_path: Path) -> None:
+    older = dataclasses.replace(TABLE_FILE, formats=TABLE_FILE.plain, series={})
+    arrays = {name: getattr(cube(), name) for name in TABLE_FILE.arrays}
+    (tmp_path / "mesh.tables").write_bytes(array_file_bytes(older, {"part_names": ["cube"]}, arrays))
+    again = read_mesh({"file": tmp_path / "mesh.tables"}).mesh
+    assert np.array_equal(again.coordinates, cube().coordinates)
+    assert again.scalars == ()
+
+
+@pytest.mark.parametrize(
+    ("rows", "problem"),
+    [
+        ([{"name": "a", "of": "node"}], "there must be one value a node"),
+        ([{"name": "a"}], r"mesh_scalars\[1\] must be a table of name and of"),
+        (["a"], r"mesh_scalars\[1\] must be a table of name and of, not 'a'"),
+    ],
+)
+def test_wrong_scalars_are_refused(tmp_path: Path, rows: list[Any], problem: str) -> None:
+    arrays = {name: getattr(cube(), name) for name in TABLE_FILE.arrays}
+    header = {"part_names": ["cube"], "mesh_scalars": rows}
+    data = array_file_bytes(TABLE_FILE, header, {**arrays, "mesh_scalar_0": np.zeros(7)})
+    (tmp_path / "mesh.tables").write_bytes(data)
+    with pytest.raises(InputError, match=rf"(?m)^mesh\.tables: .*{problem}.*; write the scene again$"):
+        read_mesh({"file": tmp_path / "mesh.tables"})
+
+
 def test_the_up_axis_is_turned_as_in_other_formats(tmp_path: Path) -> None:
     (tmp_path / "mesh.tables").write_bytes(table_file_bytes(cube()))
     low, high = read_mesh({"file": tmp_path / "mesh.tables"}, Placement("y")).mesh.bounds
@@ -57,7 +98,9 @@ def test_a_table_file_of_no_mesh_is_refused(
 ) -> None:
     mesh = cube()
     arrays = {**{name: getattr(mesh, name) for name in TABLE_FILE.arrays}, **change}
-    (tmp_path / "mesh.tables").write_bytes(array_file_bytes(TABLE_FILE, {"part_names": names}, arrays))
+    (tmp_path / "mesh.tables").write_bytes(
+        array_file_bytes(TABLE_FILE, {"part_names": names, "mesh_scalars": []}, arrays)
+    )
     with pytest.raises(InputError, match=rf"(?m)^mesh\.tables: .*{problem}.*; write the scene again$"):
         read_mesh({"file": tmp_path / "mesh.tables"})
 

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 
@@ -8,13 +7,9 @@ import pytest
 
 from autocolor import InputError, read_scene
 from autocolor.files import scenes
+from autocolor.files.registry import Registry, recognized
 from autocolor.files.scenes import formats
-from autocolor.files.scenes.formats import (
-    scene_format_named,
-    scene_format_within,
-    scene_formats,
-    scene_suffixes,
-)
+from autocolor.files.scenes.formats import SceneFormat, scene_format_named, scene_formats, scene_suffixes
 
 ANOTHER = """
 from autocolor.files.scene_sources import read_scene_with_report
@@ -38,14 +33,14 @@ def name_of(path: Path) -> str | None:
 
 def name_within(path: Path, data: bytes) -> str | None:
     path.write_bytes(data)
-    found = scene_format_within(path)
+    found = recognized(path, scene_formats())
     return found.name if found else None
 
 
 def test_every_format_has_a_name_and_a_way_to_be_chosen() -> None:
-    assert [each.name for each in scene_formats()] == ["picture file", "scene file"]
-    assert [each.in_folder for each in scene_formats()] == [None, "scene.toml"]
-    assert scene_suffixes() == (".npz", ".toml")
+    assert [each.name for each in scene_formats()] == ["picture file", "scene file", "store"]
+    assert [each.in_folder for each in scene_formats()] == [None, "scene.toml", None]
+    assert scene_suffixes() == (".npz", ".toml", ".sqlite", ".db")
 
 
 @pytest.mark.parametrize(
@@ -72,12 +67,6 @@ def test_a_file_of_another_name_is_known_by_how_it_begins(tmp_path: Path) -> Non
     assert name_within(tmp_path / "empty", b"") is None
 
 
-def test_what_is_no_file_begins_as_nothing_and_is_never_waited_for(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "pipe")
-    for name in ("pipe", "none", ".", "a\0b"):
-        assert scene_format_within(tmp_path / name) is None
-
-
 def test_a_module_that_is_put_beside_the_others_is_a_format(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -85,15 +74,16 @@ def test_a_module_that_is_put_beside_the_others_is_a_format(
     (tmp_path / "car.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
     for name in ("car.another", "car", "scene.another"):
         (tmp_path / name).write_text("another car.obj")
-    with pytest.raises(InputError, match=r"ends in \.npz, \.toml, \.obj or \.tables, not in '\.another'"):
+    with pytest.raises(InputError, match=r"end in \..*, \.obj, .*, not in '\.another'"):
         read_scene(tmp_path / "car.another")
     monkeypatch.setattr(scenes, "__path__", [*scenes.__path__, str(tmp_path)])
-    monkeypatch.setattr(formats, "_REGISTERED", list(formats._REGISTERED))
-    scene_formats.cache_clear()
+    before, registry = scene_formats(), Registry[SceneFormat](scenes.__name__)
+    monkeypatch.setattr(formats, "REGISTRY", registry)
+    for each in before:
+        formats.register(each)
     try:
-        assert scene_suffixes() == (".another", ".npz", ".toml")
+        assert scene_suffixes() == (".another", ".npz", ".toml", ".sqlite", ".db")
         for path in (tmp_path / "car.another", tmp_path / "car", tmp_path):
             assert len(read_scene(path).mesh.node_numbers) == 1
     finally:
-        scene_formats.cache_clear()
         sys.modules.pop("autocolor.files.scenes.another_scene", None)

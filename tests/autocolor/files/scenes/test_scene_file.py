@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from autocolor import Reflectance
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.meshes.formats import mesh_suffixes
+from autocolor.files.registry import suffix_rule
 from autocolor.files.scenes.scene_file import read_scene_file
 from autocolor.files.scenes.scene_report import SceneReport
 from autocolor.scene.creation import SurfaceSource
@@ -222,7 +223,7 @@ concentration = -1
         " copy the file there",
         f"{place} 15, mesh[3]: {folder / 'none.obj'}: there is no such file or folder; check the name",
         f"{place} 16, mesh[3]: crease_angle must be a number from 0 to 180, not 200",
-        f"car.shape: a mesh file must end in {' or '.join(mesh_suffixes())}, not in '.shape';"
+        f"car.shape: a mesh file must {suffix_rule(Path('car.shape'), mesh_suffixes())};"
         " export it as one of these",
         f"{place} 20, mesh[5]: it must have a file, or nodes and polygons, not nodes; correct it",
         f"{place} 23, [surfaces.body]: exponent must be a finite number of at least 0, not -1",
@@ -335,7 +336,7 @@ def test_windows_line_ends_and_a_byte_order_mark_are_no_matter(folder: Path) -> 
     assert read(folder, b"\xef\xbb\xbf" + MESH.replace("\n", "\r\n").encode()).repairs == ()
     assert refusal(folder, b"\xef\xbb\xbf" + MESH.replace("\n", "\r\n").encode() + b"uq = 1\r\n") == [
         "scene.toml, line 3, mesh[1]: there is no 'uq'; known are 'file', 'nodes', 'polygons', 'up',"
-        " 'crease_angle'"
+        " 'scale', 'crease_angle'"
     ]
 
 

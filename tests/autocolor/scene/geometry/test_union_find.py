@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.scene.geometry import union_find
-from autocolor.scene.geometry.union_find import group_numbers, unite
+from autocolor.scene.geometry.union_find import group_numbers, unite, united_items
 
 COUNT = 30
 
@@ -48,3 +48,12 @@ def test_a_long_chain_in_any_order_is_one_group(monkeypatch: pytest.MonkeyPatch)
     for some in np.array_split(links, 5):
         unite(parents, chain[some], chain[some + 1])
     assert not group_numbers(parents).any()
+
+
+def test_united_items_are_those_that_are_not_the_root_of_their_group() -> None:
+    parents = np.arange(9)
+    unite(parents, np.array([1, 4, 7]), np.array([5, 5, 2]))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(union_find, "AT_ONCE", 4)
+        assert united_items(parents).tolist() == [4, 5, 7]
+    assert united_items(np.arange(0)).tolist() == []

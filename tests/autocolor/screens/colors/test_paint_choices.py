@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.files.recent import recent_colors
+from autocolor.files.state.recent import recent_colors
 from autocolor.scene.paints.finishes import FINISHES, finished
 from autocolor.scene.paints.swatches import COLUMNS, swatches
 from autocolor.screens.colors.paint_choices import RECENT, SWATCH_LINES, SWATCHES

@@ -12,7 +12,7 @@ def test_a_plane_is_fitted_to_each_group() -> None:
     corners = np.concatenate(
         [square, square + np.array([2, 0, 0]), square[:, [0, 2, 1]] + np.array([0, 3, 0])]
     )
-    found = facets(corners.T, np.arange(12).reshape(3, 4).T)
+    found = facets(corners.T[:, np.arange(12).reshape(3, 4).T])
     groups = np.array([0, 0, 1])
     fits = fitted(found, groups)
     assert np.abs(fits.normals.T) == pytest.approx(np.array([(0, 0, 1), (0, 1, 0)]))
@@ -24,7 +24,7 @@ def test_a_plane_is_fitted_to_each_group() -> None:
 
 
 def test_no_groups_have_no_planes() -> None:
-    found = facets(np.empty((3, 0)), np.empty((4, 0), np.intp))
+    found = facets(np.empty((3, 4, 0)))
     assert fitted(found, np.empty(0, np.intp)).normals.shape == (3, 0)
 
 

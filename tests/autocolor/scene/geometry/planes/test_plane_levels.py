@@ -29,7 +29,11 @@ def found(
     numbers = np.concatenate([WALL.node_numbers, *(POSTER.node_numbers + first for first in first_nodes)])
     patches = np.array([0] * len(WALL.node_numbers) + list(range(1, len(heights) + 1)))
     given_levels = levels(
-        facets((corners @ turn).T, numbers.T), np.zeros(len(numbers), np.intp), patches, rounding, np.zeros(3)
+        facets((corners @ turn).T[:, numbers.T]),
+        np.zeros(len(numbers), np.intp),
+        patches,
+        rounding,
+        np.zeros(3),
     )
     assert (given_levels[: len(WALL.node_numbers)] == 0).all()
     return [int(level) for level in given_levels[len(WALL.node_numbers) :]]

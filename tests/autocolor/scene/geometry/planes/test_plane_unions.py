@@ -6,6 +6,7 @@ import pytest
 
 from autocolor.scene.geometry.planes.plane_cells import plane_cells
 from autocolor.scene.geometry.planes.plane_unions import unite_in_fitted_planes
+from autocolor.scene.geometry.planes.scaled_nodes import as_they_are
 from autocolor.scene.geometry.union_find import group_numbers
 from tests.autocolor.meshes import grid
 
@@ -16,9 +17,9 @@ FLAT = grid(8, 6, (-0.5, -0.4, 0), (1, 0, 0.2), (0, 0.8, 0.1))
 def united(
     rows: npt.NDArray[np.float64], node_rows: npt.NDArray[np.intp], parents: list[int]
 ) -> npt.NDArray[np.intp]:
-    grids, widths = plane_cells(rows, node_rows, TOLERANCE)
-    found = np.array(parents)
-    unite_in_fitted_planes(rows, node_rows, found, grids[0], widths > 0, TOLERANCE)
+    nodes, found = as_they_are(rows), np.array(parents)
+    cells = plane_cells(nodes, node_rows, TOLERANCE)
+    unite_in_fitted_planes(nodes, node_rows, found, cells, TOLERANCE)
     return group_numbers(found)
 
 

@@ -1,0 +1,129 @@
+"""Numbers in text, separated by white space, which several formats of meshes consist of.
+
+Where each number begins is found at once, so that any run of them can be converted, counts can be checked
+before anything is made of them, and a wrong one is told with its line.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import numpy as np
+
+from autocolor.arrays import Floats, Numbers, chunks
+from autocolor.checks import LARGEST_COORDINATE
+from autocolor.errors import InputError
+from autocolor.files.reading import shown
+
+BLOCK: Final = 1 << 17
+"""Numbers to convert at once, so that their Python values are few."""
+
+IN_DECIMALS: Final = b"0123456789+-.eE \t\n\r\f\v"
+IN_WHOLES: Final = b"0123456789+- \t\n\r\f\v"
+IN_VALUES: Final = IN_DECIMALS + b"nNaAiIfF"
+"""With the letters of nan and inf; no other word of these letters is a number."""
+
+COORDINATE: Final = "a coordinate must be a decimal number of at most 1e30 in size"
+
+
+class NumberText:
+    """The text of a file, `data`, and where its words begin, `starts`; `place` is its name in messages."""
+
+    def __init__(self, data: bytes, place: str) -> None:
+        self.data = data
+        self.place = place
+        is_word = np.frombuffer(data, np.uint8) > ord(" ")
+        begins = is_word.copy()
+        begins[1:] &= ~is_word[:-1]
+        self.starts: Numbers = np.flatnonzero(begins)
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    def line(self, at: int) -> int:
+        """The line of a word, from 1."""
+        return self.data.count(b"\n", 0, int(self.starts[at])) + 1
+
+    def word(self, at: int) -> bytes:
+        """A word, cut to 1,000 bytes."""
+        start = int(self.starts[at])
+        return self.data[start : start + 1000].split(None, 1)[0]
+
+    def wrong(self, at: int, rule: str) -> InputError:
+        """The error for a word that breaks a rule, with its line."""
+        return InputError(
+            f"{self.place}, line {self.line(at)}: {rule}, not {shown(self.word(at))}; correct it"
+        )
+
+    def require(self, end: int, what: str) -> None:
+        """Raise InputError unless there are `end` words, of which the last are `what`."""
+        if end > len(self):
+            raise InputError(
+                f"{self.place}: there must be {end:,} numbers up to the end of the {what}, not {len(self):,};"
+                " the file is cut short or its counts are wrong"
+            )
+
+    def coordinates(self, first: int, count: int) -> Floats:
+        """The decimal numbers of some words, each at most 1e30 in size. Raises InputError."""
+        values = self._converted(first, count, IN_DECIMALS, COORDINATE)
+        large = np.flatnonzero(np.abs(values) > LARGEST_COORDINATE)
+        if len(large):
+            raise self.wrong(first + int(large[0]), COORDINATE)
+        return values
+
+    def values(self, first: int, count: int) -> Floats:
+        """The values of some words, which may be nan or inf. Raises InputError."""
+        return self._converted(first, count, IN_VALUES, "a value must be a decimal number, nan or inf")
+
+    def _converted(self, first: int, count: int, letters: bytes, rule: str) -> Floats:
+        values = np.empty(count)
+        for chunk in chunks(first + count, BLOCK, first):
+            text = self._text(chunk)
+            try:
+                if text.translate(None, letters):
+                    raise ValueError
+                words = text.decode("ascii").split()
+                values[chunk.start - first : chunk.stop - first] = np.fromiter(
+                    map(float, words), float, len(words)
+                )
+            except ValueError:
+                raise self.wrong(self._first_wrong(chunk, letters), rule) from None
+        return values
+
+    def wholes(self, first: int, count: int, what: str) -> Numbers:
+        """The whole numbers of some words, each within 18 digits; `what` they are. Raises InputError."""
+        values = np.empty(count, np.int64)
+        for chunk in chunks(first + count, BLOCK, first):
+            text = self._text(chunk)
+            try:
+                if text.translate(None, IN_WHOLES):
+                    raise ValueError
+                words = text.decode("ascii").split()
+                values[chunk.start - first : chunk.stop - first] = np.fromiter(
+                    map(int, words), np.int64, len(words)
+                )
+            except (ValueError, OverflowError):
+                rule = f"{what} must be a whole number"
+                raise self.wrong(self._first_wrong(chunk, IN_WHOLES), rule) from None
+        return values
+
+    def _text(self, chunk: slice) -> bytes:
+        """The text from the first word of a chunk to the end of its last."""
+        end = int(self.starts[chunk.stop]) if chunk.stop < len(self) else len(self.data)
+        return self.data[int(self.starts[chunk.start]) : end]
+
+    def _first_wrong(self, chunk: slice, letters: bytes) -> int:
+        """The first word of a chunk that is no number of these letters."""
+        for at in range(chunk.start, chunk.stop):
+            word = self.word(at)
+            try:
+                number = int(word) if letters == IN_WHOLES else float(word)
+                if word.translate(None, letters) or (letters == IN_WHOLES and abs(number) >= 1 << 63):
+                    return at
+            except ValueError:
+                return at
+        # A word that is longer than the longest is no number either.
+        lengths = np.diff(self.starts[chunk], append=math.inf)
+        start: int = chunk.start
+        return start + int(lengths.argmax())

@@ -1,0 +1,195 @@
+"""The surface of cells: polygons as they are, and the outer faces of volume cells.
+
+A face of a volume cell is outer if no other cell has it. Faces are turned outward by the volume of their
+cell, since programs number the corners of wedges either way round. A polygon that is a face of a volume cell,
+as boundaries are often written besides the volume, is left out: the face itself is there if it is outer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from autocolor.arrays import Booleans, Floats, Indices, Numbers, chunks, runs
+
+AT_A_TIME: Final = 1 << 15
+
+FACES: Final = {
+    "tetra": ((0, 1, 3, 3), (1, 2, 3, 3), (2, 0, 3, 3), (0, 2, 1, 1)),
+    "pyramid": ((0, 3, 2, 1), (0, 1, 4, 4), (1, 2, 4, 4), (2, 3, 4, 4), (3, 0, 4, 4)),
+    "wedge": ((0, 1, 2, 2), (3, 5, 4, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)),
+    "hexahedron": (
+        (0, 4, 7, 3),
+        (1, 2, 6, 5),
+        (0, 1, 5, 4),
+        (3, 7, 6, 2),
+        (0, 3, 2, 1),
+        (4, 5, 6, 7),
+    ),
+}
+"""The faces of each shape, all turned the same way; a triangle repeats its last corner."""
+
+CORNERS: Final = {"tetra": 4, "pyramid": 5, "wedge": 6, "hexahedron": 8}
+
+
+@dataclass(frozen=True, eq=False)
+class Volumes:
+    """Volume cells of one shape of FACES: their corners, (cells, corners), and their rows in the file."""
+
+    shape: str
+    corners: Indices
+    cells: Indices
+
+
+@dataclass(frozen=True, eq=False)
+class Flats:
+    """Polygons: all corners, one after the other, the number in each, and their rows among the cells."""
+
+    corners: Indices
+    corner_counts: Indices
+    cells: Indices
+
+    @staticmethod
+    def joined(several: Sequence[Flats]) -> Flats:
+        """Those of several, in the order of their rows; polygons without corners are left out."""
+        counts = np.concatenate([np.empty(0, np.intp), *(each.corner_counts for each in several)])
+        corners = np.concatenate([np.empty(0, np.intp), *(each.corners for each in several)])
+        cells = np.concatenate([np.empty(0, np.intp), *(each.cells for each in several)])
+        starts = np.cumsum(counts) - counts
+        order = np.argsort(cells, kind="stable")
+        order = order[counts[order] > 0]
+        return Flats(corners[runs(starts[order], counts[order])], counts[order], cells[order])
+
+    @staticmethod
+    def of(table: Indices, cells: Indices) -> Flats:
+        """Those of a table whose polygons have the same number of corners; four may repeat the last."""
+        counts = np.full(len(table), table.shape[1], np.intp)
+        if table.shape[1] != 4:
+            return Flats(table.ravel(), counts, cells)
+        is_corner = np.ones(table.shape, np.bool_)
+        is_corner[:, 3] = table[:, 3] != table[:, 2]
+        return Flats(table[is_corner], is_corner.sum(axis=1), cells)
+
+
+class CellSurface(NamedTuple):
+    """The polygons of a surface, the row of each node in the file, and sentences about what was left out."""
+
+    flats: Flats
+    nodes: Indices
+    sentences: tuple[str, ...]
+
+
+def cell_surface(coordinates: Floats, flats: Flats, volumes: Sequence[Volumes]) -> CellSurface:
+    """The surface of polygons and volume cells.
+
+    With volume cells, nodes that the surface does not use are left out, and its corners are rows of those
+    that are kept.
+    """
+    volumes = [each for each in volumes if len(each.cells)]
+    every = np.arange(len(coordinates))
+    if not volumes:
+        return CellSurface(flats, every, ())
+    faces, owners = _faces(coordinates, volumes)
+    keys = _keys(faces, len(coordinates))
+    order = np.lexsort(keys)
+    differs = (np.diff(keys[0][order]) != 0) | (np.diff(keys[1][order]) != 0)
+    is_outer = np.concatenate([[True], differs]) & np.concatenate([differs, [True]])
+    outer = np.sort(order[is_outer])
+    count = sum(len(each.cells) for each in volumes)
+    sentences = [f"took the outer surface of {count:,} volume {'cell' if count == 1 else 'cells'}"]
+
+    # Leave out polygons that are faces, and then the nodes within.
+    is_face = _are_among(flats, keys, len(coordinates))
+    if is_face.any():
+        number = int(is_face.sum())
+        sentences.append(f"left out {number:,} polygon{'s' * (number > 1)} that are faces of volume cells")
+        flats = _chosen(flats, ~is_face)
+    surface = Flats.joined([flats, Flats.of(faces[outer], owners[outer])])
+    kept, sentence = used_nodes(len(coordinates), surface.corners)
+    row_of = np.zeros(len(coordinates), np.intp)
+    row_of[kept] = np.arange(len(kept))
+    surface = Flats(row_of[surface.corners], surface.corner_counts, surface.cells)
+    return CellSurface(surface, kept, (*sentences, *sentence))
+
+
+def used_nodes(count: int, corners: Indices) -> tuple[Indices, tuple[str, ...]]:
+    """The rows of those of `count` nodes that are corners, and a sentence if others are left out."""
+    is_used = np.zeros(count, np.bool_)
+    is_used[corners] = True
+    kept = np.flatnonzero(is_used)
+    left = count - len(kept)
+    return kept, (
+        (f"left out {left:,} node{'s' * (left > 1)} that the surface does not use",) if left else ()
+    )
+
+
+def _faces(coordinates: Floats, volumes: Sequence[Volumes]) -> tuple[Indices, Indices]:
+    """All faces of the cells, (faces, 4), turned outward, and the row of the cell of each."""
+    faces, owners = [], []
+    for each in volumes:
+        template = np.array(FACES[each.shape])
+        table = np.empty((len(each.corners), len(template), 4), np.intp)
+        for chunk in chunks(len(each.corners), AT_A_TIME):
+            found = each.corners[chunk][:, template]
+            inward = _volumes(coordinates[each.corners[chunk]], template) < 0
+            # A triangle's last two corners are the same: turning the first two turns it, too.
+            triangles = template[:, 2] == template[:, 3]
+            turned = np.where(triangles[:, None], found[..., [1, 0, 2, 3]], found[..., ::-1])
+            table[chunk] = np.where(inward[:, None, None], turned, found)
+        faces.append(table.reshape(-1, 4))
+        owners.append(np.repeat(each.cells, len(template)))
+    return np.concatenate(faces), np.concatenate(owners)
+
+
+def _volumes(corners: Floats, template: Indices) -> Floats:
+    """Six times the volumes of cells, (cells, corners, 3), by their faces."""
+    size = np.ptp(corners, axis=1).max(axis=1)
+    size[size == 0] = 1.0
+    corners = (corners - corners.mean(axis=1, keepdims=True)) / size[:, None, None]
+    a, b, c, d = (corners[:, template[:, at]] for at in range(4))
+    sums: Floats = (np.cross(c - a, d - b) * (a + b + c + d)).sum(axis=(1, 2))
+    return sums
+
+
+def _keys(faces: Indices, nodes: int) -> tuple[Numbers, Numbers]:
+    """Two numbers that are the same for faces of the same corners, in whatever order."""
+    corners = np.sort(faces, axis=1).astype(np.int64)
+    # A triangle has two corners that are the same: which of them it repeats must not count.
+    is_triangle = faces[:, 2] == faces[:, 3]
+    corners[is_triangle, :3] = np.sort(faces[is_triangle, :3], axis=1)
+    corners[is_triangle, 3] = nodes
+    return corners[:, 0] * (nodes + 1) + corners[:, 1], corners[:, 2] * (nodes + 1) + corners[:, 3]
+
+
+def _are_among(flats: Flats, keys: tuple[Numbers, Numbers], nodes: int) -> Booleans:
+    """Which polygons have the corners of a face."""
+    found = np.zeros(len(flats.cells), np.bool_)
+    starts = np.cumsum(flats.corner_counts) - flats.corner_counts
+    small = np.flatnonzero((flats.corner_counts == 3) | (flats.corner_counts == 4))
+    if not len(small):
+        return found
+    table = flats.corners[
+        starts[small, None] + np.minimum(np.arange(4), flats.corner_counts[small, None] - 1)
+    ]
+    own = _keys(table, nodes)
+    pairs = np.stack([np.concatenate(each) for each in zip(keys, own, strict=True)])
+    order = np.lexsort((np.arange(pairs.shape[1]), pairs[0], pairs[1]))
+    same = np.zeros(len(order), np.bool_)
+    same[1:] = (np.diff(pairs[:, order], axis=1) == 0).all(axis=0)
+    # The first of a run of equal keys is a face if any is, since faces come before polygons.
+    firsts = np.maximum.accumulate(np.where(same, 0, np.arange(len(order))))
+    is_known = order[firsts] < len(keys[0])
+    mine = order >= len(keys[0])
+    found[small[order[mine] - len(keys[0])]] = is_known[mine]
+    return found
+
+
+def _chosen(flats: Flats, chosen: Booleans) -> Flats:
+    return Flats(
+        flats.corners[np.repeat(chosen, flats.corner_counts)],
+        flats.corner_counts[chosen],
+        flats.cells[chosen],
+    )

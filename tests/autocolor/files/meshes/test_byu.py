@@ -1,0 +1,193 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autocolor.errors import InputError
+from autocolor.files.meshes.byu import read_byu
+from autocolor.files.meshes.formats import format_of
+from autocolor.files.repair.placement import Placement
+from autocolor.files.repair.polygons import MeshReport
+from tests.autocolor.files.meshes.mutations import survives
+
+CUBE = [[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]
+
+FREE = """2 8 6 24
+1 5 6 6
+0 0 0 1 0 0 0 1 0 1 1 0
+0 0 1 1 0 1 0 1 1 1 1 1
+1 3 4 -2 5 6 8 -7 1 2 6 -5
+3 7 8 -4 1 5 7 -3 2 4 8 -6
+"""
+
+
+def in_columns(width: int) -> str:
+    """The cube in columns of Fortran, where numbers with a sign touch those before them."""
+    words = FREE.split()
+    numbers = ["".join(word.rjust(width) for word in words[:4]), "".join(w.rjust(width) for w in words[4:8])]
+    places = [f"{float(word) - 0.5:12.5E}" for word in words[8:32]]
+    numbers += ["".join(places[at : at + 6]) for at in range(0, 24, 6)]
+    numbers.append("".join(word.rjust(width) for word in words[32:]))
+    return "\n".join(numbers)
+
+
+def read(folder: Path, text: str | bytes, placement: Placement | None = None) -> MeshReport:
+    path = folder / "cube.byu"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_byu(path, placement or Placement())
+
+
+def refusal(folder: Path, text: str | bytes) -> str:
+    with pytest.raises(InputError) as caught:
+        read(folder, text)
+    return str(caught.value)
+
+
+def test_a_cube_keeps_its_quads_nodes_and_parts(tmp_path: Path) -> None:
+    report = read(tmp_path, FREE)
+    mesh = report.mesh
+    assert mesh.coordinates.tolist() == CUBE
+    assert mesh.node_numbers.tolist()[0] == [0, 2, 3, 1]
+    assert (mesh.edge_count, mesh.triangle_count, len(mesh.node_numbers)) == (12, 0, 6)
+    assert mesh.part_names == ("part 1", "part 2")
+    assert mesh.part_numbers.tolist() == [0, 0, 0, 0, 0, 1]
+    assert report.repairs == ()
+
+
+@pytest.mark.parametrize("width", [5, 8])
+def test_numbers_in_columns_may_touch(tmp_path: Path, width: int) -> None:
+    text = in_columns(width)
+    assert "E-01-" in text
+    mesh = read(tmp_path, text).mesh
+    assert (mesh.coordinates + 0.5).tolist() == CUBE
+    assert mesh.node_numbers.tolist() == read(tmp_path, FREE).mesh.node_numbers.tolist()
+
+
+def test_whole_numbers_that_fill_their_columns_touch_without_a_sign(tmp_path: Path) -> None:
+    nodes = 10_000
+    lines = [f"{1:5}{nodes:5}{1:5}{3:5}", f"{1:5}{1:5}"]
+    lines += [f"{at / 7:12.5E}{at * at:12.5E}{1.5:12.5E}" for at in range(nodes)]
+    lines.append(f"{9998:5}{10000:5}{-999:5}")
+    mesh = read(tmp_path, "\n".join(lines)).mesh
+    assert mesh.node_numbers.tolist() == [[9997, 9999, 998, 998]]
+    assert mesh.coordinates[:, 1].tolist() == [float(f"{at * at:.5E}") for at in range(nodes)]
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
+def test_lines_end_in_any_way_and_exponents_are_written_with_d(tmp_path: Path, ending: str) -> None:
+    text = FREE.replace(" 1 0 0 ", " 0.1D+01 0 0d0 ", 1).replace("\n", ending)
+    assert read(tmp_path, text).mesh.coordinates.tolist() == CUBE
+
+
+def test_a_polygon_of_no_part_has_one_named_after_the_file(tmp_path: Path) -> None:
+    mesh = read(tmp_path, FREE.replace("1 5 6 6", "2 3 3 5")).mesh
+    assert mesh.part_names == ("part 1", "part 2", "cube")
+    assert mesh.part_numbers.tolist() == [2, 0, 1, 1, 1, 2]
+    assert read(tmp_path, FREE.replace("2 8", "0 8").replace("1 5 6 6\n", "")).mesh.part_names == ("cube",)
+
+
+def test_a_polygon_of_many_sides_is_split_and_what_follows_is_told(tmp_path: Path) -> None:
+    text = "1 5 1 5\n1 1\n0 0 0 2 0 0 3 1 0 2 2 0 0 2 0\n1 2 3 4 -5\nend of file\n"
+    report = read(tmp_path, text)
+    assert sorted(map(len, map(set, report.mesh.node_numbers.tolist()))) == [3, 4]
+    assert report.repairs == (
+        "cube.byu: skipped words after the connectivity: 3",
+        "cube.byu: 1 polygon with more than four corners was split",
+    )
+
+
+def test_up_and_scale_place_the_mesh(tmp_path: Path) -> None:
+    mesh = read(tmp_path, FREE, Placement("y", 2.0)).mesh
+    assert mesh.coordinates[7].tolist() == [2, -2, 2]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        (
+            "2 8 6",
+            "2 8.5 6",
+            "cube.byu, line 1: a count in the header must be a whole number, not '8.5'; correct it",
+        ),
+        ("2 8 6", "2 0 6", "cube.byu, line 1: a count in the header must be at least 1, not '0'; correct it"),
+        (
+            "2 8 6",
+            "2 9000000000 6",
+            "cube.byu, line 1: a count must be at most that of the numbers in the file, 56, not '9000000000';"
+            " correct it",
+        ),
+        (
+            "6 24",
+            "25 24",
+            "cube.byu, line 1: the polygons must be at most as many as their corners, 24, not '25';"
+            " correct it",
+        ),
+        (
+            "4 8 -6",
+            "",
+            "cube.byu: there must be 56 numbers up to the end of the connectivity, not 53; the file is"
+            " cut short"
+            " or its counts are wrong",
+        ),
+        (
+            "1 5 6 6",
+            "1 5 6 7",
+            "cube.byu, line 2: part 2 must have polygons of 1 to 6, in order, not 6 to 7; correct its range",
+        ),
+        (
+            "0 0 1 1 0",
+            "0 0 1 nan 0",
+            "cube.byu, line 4: a coordinate must be a decimal number of at most 1e30 in size, not 'nan';"
+            " correct it",
+        ),
+        (
+            "1 3 4 -2",
+            "1 3 9 -2",
+            "cube.byu, line 5: a corner must be a node number of 1 to 8, or minus one, not '9'; correct it",
+        ),
+        (
+            "8 -6",
+            "8 6",
+            "cube.byu, line 6: the last corner of the last polygon must be negative, not '6'; correct it",
+        ),
+        (
+            "3 4 -2",
+            "3 4 2",
+            "cube.byu: there must be 6 polygons, as the header says, not 5, each ended by a negative corner;"
+            " correct the header or the connectivity",
+        ),
+    ],
+)  # fmt: skip
+def test_a_wrong_number_is_refused_with_its_line(tmp_path: Path, old: str, new: str, sentence: str) -> None:
+    assert FREE.count(old) == 1
+    assert refusal(tmp_path, FREE.replace(old, new)) == sentence
+
+
+def test_parts_that_overlap_too_often_are_refused(tmp_path: Path) -> None:
+    text = "102 3 1 3\n" + "1 1\n" * 102 + "0 0 0 1 0 0 0 1 0\n1 2 -3\n"
+    assert refusal(tmp_path, text) == (
+        "cube.byu: the ranges of 102 parts must overlap less; give each polygon one part"
+    )
+
+
+def test_what_is_no_text_is_refused(tmp_path: Path) -> None:
+    assert refusal(tmp_path, b"CDF\0") == (
+        "cube.byu: a Movie.BYU file must be text, not hold a NUL byte (line 1); save it as UTF-8 text"
+    )
+    assert refusal(tmp_path, b"") == (
+        "cube.byu: there must be 4 numbers up to the end of the header, not 0; the file is cut short or its"
+        " counts are wrong"
+    )
+
+
+def test_its_suffixes_are_known() -> None:
+    for name in ("a.g", "a.byu", "A.BYU"):
+        found = format_of(Path(name))
+        assert found is not None
+        assert found.name == "Movie.BYU"
+
+
+@pytest.mark.parametrize("text", [FREE, in_columns(8)], ids=["free", "columns"])
+def test_damaged_files_are_read_or_refused(tmp_path: Path, text: str) -> None:
+    survives(read_byu, tmp_path / "cube.byu", text.encode())

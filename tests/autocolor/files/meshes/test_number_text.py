@@ -1,0 +1,53 @@
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.errors import InputError
+from autocolor.files.meshes.number_text import NumberText
+
+
+def test_numbers_are_found_between_any_white_space() -> None:
+    text = NumberText(b"\n 1 -2\t+3\r\n4e1\n", "a.txt")
+    assert len(text) == 4
+    assert text.wholes(0, 3, "a count").tolist() == [1, -2, 3]
+    assert text.coordinates(1, 3).tolist() == [-2, 3, 40]
+    assert (text.word(3), text.line(3)) == (b"4e1", 3)
+
+
+@pytest.mark.parametrize("word", ["1_0", "0x1", "\u0661", "nan", "inf", "1d2", "1,5", "1e31", "e", "--1"])
+def test_coordinates_are_strict_and_a_wrong_one_is_told_with_its_line(word: str) -> None:
+    with pytest.raises(InputError) as caught:
+        NumberText(f"1 2\n3 {word} 4".encode(), "a.txt").coordinates(0, 5)
+    assert str(caught.value) == (
+        "a.txt, line 2: a coordinate must be a decimal number of at most 1e30 in size, not"
+        f" {word!r}; correct it"
+    )
+
+
+@pytest.mark.parametrize("word", ["1.0", "1_0", "x", "9" * 19, "9" * 5000, "+-1"])
+def test_whole_numbers_are_strict(word: str) -> None:
+    with pytest.raises(InputError, match="line 1: a count must be a whole number, not '"):
+        NumberText(f"1 {word}".encode(), "a.txt").wholes(0, 2, "a count")
+
+
+def test_values_may_be_missing_or_infinite() -> None:
+    assert str(NumberText(b"nan -INF 1e2 NaN", "").values(0, 4).tolist()) == "[nan, -inf, 100.0, nan]"
+    with pytest.raises(InputError, match="line 1: a value must be a decimal number, nan or inf, not 'fin'"):
+        NumberText(b"1 fin", "").values(0, 2)
+
+
+def test_too_few_numbers_are_refused_before_anything_is_made_of_them() -> None:
+    with pytest.raises(InputError) as caught:
+        NumberText(b"1 2 3", "a.txt").require(10**12, "nodes")
+    assert str(caught.value) == (
+        "a.txt: there must be 1,000,000,000,000 numbers up to the end of the nodes, not 3; the file is cut"
+        " short or its counts are wrong"
+    )
+
+
+@given(st.lists(st.floats(-1e30, 1e30), min_size=1))
+def test_numbers_read_back_equal(numbers: list[float]) -> None:
+    text = NumberText(" ".join(map(repr, numbers)).encode(), "")
+    assert text.coordinates(0, len(numbers)).tolist() == numbers
