@@ -45,6 +45,9 @@ RIB_COLUMNS: Final = 3
 STRIP_COLUMNS: Final = 7
 """The columns of the rib's foot, and with them those of its fillet and the flat one."""
 
+NOSE_LINE: Final = 1 + len(FOOT_ANGLES)
+"""The line of the strip where the rib begins."""
+
 SIDE_CELLS: Final = 7
 TOP_CELLS: Final = 30
 
@@ -58,6 +61,7 @@ RING_RADII: Final = np.array(
 """The rings around the bearing's axis: the bore, the seat of the bearing, the boss's foot and its fillet."""
 SEAT_RING: Final = 2
 BOSS_RING: Final = 5
+FLAT_RING: Final = len(RING_RADII) - 1
 
 RIM: Final = EDGE + 1.0
 """The width of the cells along the outline: of the rounded edge, and of what is flat beside it."""
