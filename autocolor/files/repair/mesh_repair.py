@@ -101,7 +101,7 @@ def _without_repeats(corners: Indices, counts: Indices) -> tuple[Indices, Indice
     """The corners and counts without corners that equal the next one, and which polygons had such corners."""
     sides = int(counts[0]) if len(counts) else 0
     if sides > 0 and (counts == sides).all():
-        # Measured: where all polygons have the same number of sides, half the time of what follows.
+        # Measured: where all polygons have the same number of sides, a fifth of the time of what follows.
         table = corners.reshape(-1, sides).T
         if not any((table[at] == table[at - 1]).any() for at in range(sides)):
             return corners, counts, np.zeros(len(counts), np.bool_)
@@ -121,7 +121,8 @@ def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
     """Whether each polygon of (n, 4) has area: neither diagonal splits it into two flat triangles.
 
     A bow-tie whose halves cancel has area; a polygon that runs forth and back along one path has none.
-    Measured: to look closely only at those that are not sure to have area takes a quarter of the time.
+    Measured: to look closely only at those that are not sure to have area takes a third of the time of
+    triangles, and two thirds of that of quads.
     """
     have_area = _surely_have_area(coordinates, node_numbers.T)
     others = np.flatnonzero(~have_area)

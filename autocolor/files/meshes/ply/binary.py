@@ -86,11 +86,8 @@ def _columns_of_rows(rows: AnyArray, element: Element) -> Iterator[tuple[str, Co
     for number, each in enumerate(element.properties):
         values = rows[f"value {number}"]
         if each.count_type:
-            # Measured: a column at a time takes a third of the time of the rows, which are not aligned.
-            table = np.empty(values.shape, np.dtype(each.type))
-            for at in range(values.shape[1]):
-                table[:, at] = values[:, at]
-            yield each.name, Lists(table.ravel(), np.full(len(rows), values.shape[1], np.intp))
+            flat = values.astype(each.type).ravel()
+            yield each.name, Lists(flat, np.full(len(rows), values.shape[1], np.intp))
         else:
             yield each.name, values
 
@@ -141,7 +138,7 @@ def _walk(data: bytes, at: int, element: Element, order: str, place: str) -> tup
 
     Of an element that is not used, the counts are those of the last rows.
 
-    Measured: a million triangles and quads in a tenth of a second.
+    Measured: a million triangles and quads, in any order, in a fifth of a second.
     """
     steps = _steps(element.properties)
     tail = _tail(element.properties)
