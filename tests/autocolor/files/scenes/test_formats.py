@@ -85,7 +85,7 @@ def test_a_module_that_is_put_beside_the_others_is_a_format(
     (tmp_path / "car.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n")
     for name in ("car.another", "car", "scene.another"):
         (tmp_path / name).write_text("another car.obj")
-    with pytest.raises(InputError, match=r"ends in \.npz, \.toml, \.obj or \.tables, not in '\.another'"):
+    with pytest.raises(InputError, match=r"ends in \.npz, \.toml, .*\.obj.*, not in '\.another'"):
         read_scene(tmp_path / "car.another")
     monkeypatch.setattr(scenes, "__path__", [*scenes.__path__, str(tmp_path)])
     monkeypatch.setattr(formats, "_REGISTERED", list(formats._REGISTERED))
