@@ -57,17 +57,17 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     for at, count in enumerate((nodes, polygons)):
         if not 1 <= count <= len(text):
             raise text.wrong(at, f"a count must be from 1 to that of the words in the file, {len(text):,}")
-    coordinates, first = _coordinates(text, nodes)
-    corners, counts, end = _polygons(text, first, polygons, nodes)
+    lines = _lines(text)
+    coordinates, first = _coordinates(text, lines, nodes)
+    corners, counts, end = _polygons(text, lines, first, polygons, nodes)
     left = len(text) - end
     table = Polygons(coordinates, corners, counts, np.zeros(polygons, np.intp), (path.stem,))
     skipped = (f"skipped words that are neither nodes nor polygons: {left:,}",) if left else ()
     return repaired(table, path.name, placement, skipped=skipped)
 
 
-def _coordinates(text: NumberText, nodes: int) -> tuple[Floats, int]:
+def _coordinates(text: NumberText, lines: Indices, nodes: int) -> tuple[Floats, int]:
     """The coordinates, (nodes, 3), and the first word after them. Raises InputError."""
-    lines = _lines(text)
     first = int(lines[lines > 2][0]) if (lines > 2).any() else len(text)
     text.require(first + 3 * nodes, "nodes")
     rows = np.append(lines[lines >= first], len(text))[: nodes + 1]
@@ -87,14 +87,15 @@ def _coordinates(text: NumberText, nodes: int) -> tuple[Floats, int]:
 def _lines(text: NumberText) -> Indices:
     """The first word of each line that has any."""
     ends = np.flatnonzero(np.frombuffer(text.data, np.uint8) == ord("\n"))
-    firsts: Indices = np.unique(np.searchsorted(text.starts, np.append(0, ends)))
-    return firsts[firsts < len(text)]
+    firsts: Indices = np.searchsorted(text.starts, np.append(0, ends))
+    return firsts[(np.diff(firsts, prepend=-1) > 0) & (firsts < len(text))]
 
 
-def _polygons(text: NumberText, first: int, polygons: int, nodes: int) -> tuple[Indices, Indices, int]:
+def _polygons(
+    text: NumberText, lines: Indices, first: int, polygons: int, nodes: int
+) -> tuple[Indices, Indices, int]:
     """The corners, their number in each polygon, and the word after the last. Raises InputError."""
     # Each polygon begins a line, so that what follows its corners need not be known.
-    lines = _lines(text)
     lines = np.concatenate([[first], lines[lines > first]])
     if first >= len(text) or len(lines) < polygons:
         raise InputError(
@@ -112,7 +113,7 @@ def _polygons(text: NumberText, first: int, polygons: int, nodes: int) -> tuple[
         starts = begins[rows] - at
         sizes = numbers[starts]
         wrong = np.flatnonzero(
-            ~((sizes >= 0) & (sizes <= limits[rows] - begins[rows] - 1) & (sizes % 1 == 0))
+            ~((sizes >= 0) & (sizes <= limits[rows] - begins[rows] - 1) & (np.floor(sizes) == sizes))
         )
         if len(wrong):
             raise text.wrong(
@@ -127,7 +128,7 @@ def _polygons(text: NumberText, first: int, polygons: int, nodes: int) -> tuple[
         place = np.arange(end - at) - starts[owner]
         chosen = np.flatnonzero((place >= 1) & (place <= sizes[owner]))
         found = numbers[chosen]
-        wrong = np.flatnonzero(~((found >= 0) & (found < nodes) & (found % 1 == 0)))
+        wrong = np.flatnonzero(~((found >= 0) & (found < nodes) & (np.floor(found) == found)))
         if len(wrong):
             raise text.wrong(
                 at + int(chosen[wrong[0]]), f"a corner must be a node number from 0 to {nodes - 1:,}"

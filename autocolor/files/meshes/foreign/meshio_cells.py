@@ -87,7 +87,8 @@ def polygons_of_meshio(mesh: Any, stem: str) -> ForeignMesh:
 
 def _rows(numbers: AnyArray) -> Indices:
     """Node numbers as rows. Raises ValueError for those that are not whole."""
-    rows = numbers.astype(np.intp)
+    with np.errstate(invalid="ignore"):
+        rows = numbers.astype(np.intp)
     if not np.array_equal(rows, numbers):
         raise ValueError("node numbers that are not whole")
     return rows

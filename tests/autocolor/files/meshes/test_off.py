@@ -134,6 +134,11 @@ def test_polygons_of_many_sides_are_split_and_what_follows_is_told(tmp_path: Pat
         ),
         (
             "4 0 1 5 4",
+            "4 0 1 inf 4",
+            "cube.off, line 14: a corner must be a node number from 0 to 7, not 'inf'; correct it",
+        ),
+        (
+            "4 0 1 5 4",
             "5 0 1 5 4",
             "cube.off, line 14: a polygon must begin with the number of the corners on its line, not '5';"
             " correct"
