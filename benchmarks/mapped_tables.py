@@ -46,7 +46,7 @@ LOOK_EVERY = 0.002
 def measure(rounds: int = ROUNDS, quick: bool = False) -> dict[str, Any]:
     """Seconds and MB of each step for a mesh and for one of ten times as many polygons."""
     steps: list[dict[str, Any]] = []
-    with tempfile.TemporaryDirectory(dir=ROOT) as folder:
+    with tempfile.TemporaryDirectory() as folder:
         for polygons in FEW if quick else SIZES:
             plain, full = Path(folder, f"plain-{polygons}"), Path(folder, f"full-{polygons}")
             make(plain, side_of(polygons))

@@ -63,7 +63,7 @@ def within(count: int) -> Rule:
     """The rule that all are from 0 to below `count`; numbers of any integer type are compared exactly."""
 
     def rule(rows: AnyArray) -> Booleans:
-        right: Booleans = ((rows >= 0) & (rows < count)).all(axis=0)
+        right: Booleans = np.asarray(((rows >= 0) & (rows < count)).all(axis=0))
         return right
 
     return rule
@@ -71,7 +71,7 @@ def within(count: int) -> Rule:
 
 def are_coordinates(rows: AnyArray) -> Booleans:
     """Which rows are finite and at most 1e30 in size."""
-    right: Booleans = (np.abs(rows) <= LARGEST_COORDINATE).all(axis=0)
+    right: Booleans = np.asarray((np.abs(rows) <= LARGEST_COORDINATE).all(axis=0))
     return right
 
 

@@ -115,7 +115,7 @@ def test_files_that_are_missing_or_no_files_are_refused(tmp_path: Path) -> None:
         mapped(tmp_path / "empty.npy")
 
 
-@settings(max_examples=30)
+@settings(max_examples=10)
 @given(st.integers(0, 255))
 def test_any_other_byte_in_the_header_is_refused_or_gives_a_table_of_the_same_size(
     tmp_path_factory: pytest.TempPathFactory, byte: int
