@@ -9,7 +9,7 @@ import pytest
 
 from autocolor.files.state.file_lock import lock_file
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 def test_one_has_the_lock_until_it_is_closed(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ from autocolor.files.state.recent import (
 )
 from autocolor.files.state.state_folder import state_folder
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 def test_at_first_there_is_nothing_and_no_folder_is_made(state: Path) -> None:
