@@ -209,8 +209,8 @@ def reason(error: Exception, clock: Clock | None = None) -> str:
         return f"a value must have at most {LONGEST_TEXT:,} bytes, not more; shorten it"
     if primary in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN):
         return (
-            "a change of the store was interrupted or is under way, and the files beside it cannot be used"
-            f" ({text}); open it once with the program that wrote it, or copy it to a folder of your own"
+            f"the store cannot be opened or changed where it is ({text}): a change of it was interrupted, or"
+            " it is not to be written; open it once with the program that wrote it, or use another file"
         )
     if primary == sqlite3.SQLITE_NOMEM:
         return "there is not enough memory to read the store; leave rows out"

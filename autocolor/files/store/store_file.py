@@ -26,7 +26,7 @@ from autocolor.files.store.connections import (
 )
 from autocolor.files.store.foreign_keys import broken_references
 from autocolor.files.store.found_tables import FoundTables, found_tables
-from autocolor.files.store.mesh_rows import insert_mesh
+from autocolor.files.store.mesh_inserts import insert_mesh
 from autocolor.files.store.permissions import authorizer, restoring
 from autocolor.files.store.scene_rows import insert_rows, report_of
 from autocolor.files.store.schema import APPLICATION, DEFINITIONS, ROW_TABLES, VALUES, VERSION

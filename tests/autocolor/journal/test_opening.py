@@ -7,10 +7,11 @@ from pathlib import Path
 import pytest
 
 import autocolor
-from autocolor import InputError, read_scene
-from autocolor.journal.opening import checksum_of, opened
+from autocolor import InputError, Mesh, read_scene
+from autocolor.journal.opening import checksum_of, is_same_mesh, opened, opened_again
 from autocolor.journal.places import Source, stamp_of
 from autocolor.scene.columns.rows import plain
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from tests.autocolor.sessions import car
 
 
@@ -43,3 +44,18 @@ def test_a_scene_of_another_checksum_is_refused(source: Source) -> None:
         f"{source.path} must hold the mesh that it held when it was opened, and it was changed since; bring"
         " the old file back"
     )
+
+
+def test_a_scene_that_is_opened_again_shares_the_mesh_if_it_is_the_same(source: Source) -> None:
+    present = read_scene(source.path)
+    again = opened_again(source, present)
+    assert again.scene.equals(present)
+    assert again.place.stamp == stamp_of(Path(source.path) / "scene.toml")
+    mesh = present.mesh
+    for other in (
+        mesh.with_scalars(MeshScalar("z", mesh.coordinates[:, 2])),
+        Mesh(mesh.coordinates + 1, mesh.node_numbers, mesh.part_numbers, mesh.part_names),
+        Mesh(mesh.coordinates, mesh.node_numbers, mesh.part_numbers, mesh.part_names, crease_angle=1.0),
+    ):
+        assert not is_same_mesh(other, mesh)
+        assert opened_again(source, present.replace(mesh=other)).scene.mesh is not other

@@ -40,3 +40,14 @@ def test_two_openings_of_one_file_are_two_places(tmp_path: Path) -> None:
     source = Source(str(tmp_path / "car.obj"))
     assert place_of(source) != place_of(source)
     assert len({place_of(source), place_of(source)}) == 2
+
+
+def test_the_stamp_of_a_store_is_also_that_of_what_was_written_beside_it(tmp_path: Path) -> None:
+    path = tmp_path / "car.sqlite"
+    assert file_of(Source(str(path))) == path
+    path.write_bytes(b"store")
+    before = stamp_of(path)
+    Path(f"{path}-wal").write_bytes(b"more")
+    assert stamp_of(path) != before
+    Path(f"{path}-wal").unlink()
+    assert stamp_of(path) == before

@@ -171,3 +171,21 @@ def test_ranges_that_are_given_are_held() -> None:
     studio, _ = opened()
     studio.hold_exposure({"object": (0.0, 2.0)})
     assert studio.scene.exposure == (("object", (0.0, 2.0)),)
+
+
+def test_the_file_of_a_scene_is_read_again_by_one_step_to_undo(tmp_path: Path) -> None:
+    studio, _ = opened()
+    with pytest.raises(UsageError, match="the scene must be in a file to be read again, and it is in none"):
+        studio.reopen()
+    path = tmp_path / "car.sqlite"
+    autocolor.write_scene(path, studio.scene)
+    studio.open(path)
+    assert studio.file == path
+    assert not studio.reopen()
+    autocolor.write_scene(path, studio.scene.replace(ambient=0.5), overwrite=True)
+    before = studio.scene
+    assert studio.reopen()
+    assert studio.scene.ambient == 0.5
+    assert studio.scene.mesh is before.mesh
+    studio.undo()
+    assert studio.scene is before
