@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from autocolor.files.rig_file import write_rig as write_rig
     from autocolor.files.scene_sources import read_scene as read_scene
     from autocolor.files.scene_writing import write_scene as write_scene
+    from autocolor.files.store.tables import open_tables as open_tables
     from autocolor.images import image as image
     from autocolor.images import save_image as save_image
     from autocolor.journal.reading import read_journal as read_journal
@@ -86,6 +87,7 @@ _HOME: Final = {
     "WriteError": "errors",
     "demo": "commands.demo",
     "image": "images",
+    "open_tables": "files.store.tables",
     "read_journal": "journal.reading",
     "read_picture": "files.picture_file",
     "read_rig": "files.rig_file",

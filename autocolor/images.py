@@ -18,8 +18,8 @@ from autocolor.sending import shown_colors
 def image(scene: Scene, picture: Picture) -> Bytes:
     """The picture in the colors of a scene, (lines, elements, 3) uint8: red, green, blue.
 
-    The colors are the same as on a display, without the legend of a scalar. Raises InputError if an intensity is not finite, or
-    if the surfaces of the picture are not those of the scene.
+    The colors are the same as on a display, without the legend of a scalar. Raises InputError if an intensity
+    is not finite, or if the surfaces of the picture are not those of the scene.
     """
     check_surfaces(scene, picture)
     return display_image(scene, picture).colors

@@ -85,7 +85,7 @@ def send_image(display: HostPort, image: DisplayImage, before: DisplayImage | No
 
 
 def shown_colors(image: DisplayImage) -> Bytes:
-    """The colors that a display of its size shows of an image, (lines, elements, 3) uint8, with the legend."""
+    """The colors of an image with its legend, (lines, elements, 3) uint8, as on a display of its size."""
     if legend(image) is None:
         return image.colors
     lines, elements = image.words.shape

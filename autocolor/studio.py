@@ -34,7 +34,6 @@ from autocolor.lighting.light_drags import highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
-from autocolor.mapping.legend import Legend, legend
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.mapping.pacing import block_for, blocks_of
 from autocolor.rendering import rendering
@@ -96,9 +95,10 @@ class Studio(StudioSession):
         """The entries of the lookup table, (1024, 3) uint8, read-only."""
         return self._shown.entries
 
-    def legend(self, right: int | None = None, bottom: int | None = None) -> Legend | None:
-        """The legend of the scalar that is shown, if there is one; `mapping.legend` tells where it stands."""
-        return legend(self._shown, right, bottom)
+    @property
+    def image(self) -> DisplayImage:
+        """What is shown: the words, the entries, and what they mean."""
+        return self._shown
 
     def image_of(self, scene: Scene) -> DisplayImage:
         """What another scene would look like on the display; the present one stays, and nothing is sent.

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 CPU_INFORMATION = Path("/proc/cpuinfo")
-PACKAGES = ("vtk", "moderngl", "matplotlib")
+PACKAGES = ("vtk", "moderngl", "matplotlib", "trimesh", "meshio")
 
 
 def machine() -> dict[str, str | int]:

@@ -63,6 +63,8 @@ class CommandGroup(click.Group):
     """The package that holds the modules of the commands."""
     table: ClassVar[dict[str, str]]
     """What each command does, in the order of the help."""
+    folders: ClassVar[dict[str, str]] = {}
+    """The folders within the package of commands that are not in it itself, each with a dot after it."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names in the order of the table."""
@@ -72,7 +74,7 @@ class CommandGroup(click.Group):
         """The command of that name, or None."""
         if cmd_name not in self.table:
             return None
-        module = import_module(f"{self.package}.{cmd_name}")
+        module = import_module(f"{self.package}.{self.folders.get(cmd_name, '')}{cmd_name}")
         command: click.Command = getattr(module, f"{cmd_name}_command", None) or getattr(module, cmd_name)
         return command
 

@@ -31,7 +31,9 @@ class AutocolorGroup(CommandGroup):
         "show": "show a scene in the interactive system on a display elsewhere",
         "tutorial": "learn the interactive system step by step on the built-in demo",
         "tables": "print or write the tables of a scene, including created ones",
+        "sql": "ask and change the tables of a scene as a relational data base",
     }
+    folders: ClassVar[dict[str, str]] = {"tables": "store.", "sql": "store."}
 
 
 @click.group(

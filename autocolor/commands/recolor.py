@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
-from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.options.settings import set_option, with_settings
+from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.usage import as_usage
 from autocolor.commands.verbosity import verbose_option
 from autocolor.errors import UsageError
@@ -133,15 +133,15 @@ def check_what_is_recolored(surface: str | None, colors: Mapping[str, Any], sett
 def recolored(
     scene: Scene, surface: str | None, colors: Mapping[str, Any], settings: tuple[str, ...]
 ) -> Scene:
-    """The scene with other colors of a surface, and settings; UsageError for one that would render it again."""
+    """The scene with settings and other colors of a surface; UsageError for what would render it again."""
     from autocolor.scene.columns.column import Tier
     from autocolor.scene.scene import costs_at_least
 
     edited = with_settings(scene, settings)
     if costs_at_least(scene, edited, Tier.MIX):
         raise UsageError(
-            "what --set changes in a picture must render nothing, such as colors, the mapping, limits and bands;"
-            " render the scene with it"
+            "--set: what is set in a picture must render nothing, such as colors, the mapping, or limits and"
+            " bands of a scalar; render the scene with it instead"
         )
     with as_usage():
         return edited if surface is None else edited.with_surface(surface, **colors)

@@ -1,4 +1,4 @@
-"""Reading a scene from a folder, a scene file, a mesh file or a picture file."""
+"""Reading a scene from a folder, a scene file, a store, a mesh file or a picture file."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def read_scene(
     outside: bool = False,
     surfaces: SurfaceSource = MATERIALS,
 ) -> Scene:
-    """The scene of a folder, a scene file (.toml), a mesh file such as .obj, or a picture file (.npz).
+    """The scene of a folder, a scene file (.toml), a store (.sqlite), a mesh file or a picture file (.npz).
 
     A folder must contain a `scene.toml`, or the tables of a mesh such as `nodes.csv` and `polygons.csv`;
     `autocolor convert --formats` lists all that can be read. Whatever the source does not define is created

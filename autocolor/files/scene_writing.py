@@ -1,4 +1,4 @@
-"""Writing a scene to a `scene.toml`, with its mesh beside it unless files there hold it already.
+"""Writing a scene to a store, or to a `scene.toml` with its mesh beside it unless files there hold it.
 
 A file that is there already is changed in place, so that its comments and its order stay, if it is a scene
 file of the same object. First the mesh is written, under a name that no file has, then the scene file: if
@@ -30,6 +30,7 @@ from autocolor.files.scenes.scene_edit import (
 from autocolor.files.scenes.scene_file import report_of_text
 from autocolor.files.scenes.scene_text import scene_text
 from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
+from autocolor.files.store.store_file import STORE_SUFFIXES, write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of
 from autocolor.scene.columns.column import Row, row_label
@@ -42,10 +43,10 @@ LOG: Final = logger_of(__name__)
 def write_scene(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool = False) -> None:
     """Write a scene so that `read_scene` gives it back: its tables as TOML, and its mesh.
 
-    `path` is a scene file (.toml) or a folder, for a `scene.toml` in it; a folder that does not exist is made
-    in one that does. Mesh files that the scene was read from are named if they are in that folder and still
-    hold its mesh; else the mesh is written beside the scene file, under a name that is free. The scene's name
-    is that of its folder or file, and is not written.
+    `path` is a store (.sqlite, .db; see `write_store`), a scene file (.toml), or a folder, for a `scene.toml`
+    in it; a folder that does not exist is made in one that does. Mesh files that the scene was read from are
+    named if they are in that folder and still hold its mesh; else the mesh is written beside the scene file,
+    under a name that is free. The scene's name is that of its folder or file, and is written to stores alone.
 
     With `overwrite`, a scene file may exist. If it is one of the same object, its comments, its order and the
     way in which it is written stay, and only what differs is changed. Mesh files are never overwritten.
@@ -64,6 +65,9 @@ def write_scene_with_tables(
 
     If `complete`, all keys are written, also those whose values are their defaults.
     """
+    if Path(path).suffix.lower() in STORE_SUFFIXES and not os.path.isdir(path):
+        write_store(path, scene, overwrite=overwrite)
+        return [Path(path)]
     target = _target(path)
     check_scene(scene)
     refuse_names((*scene.parts, *scene.surfaces, *scene.lights))
@@ -96,8 +100,8 @@ def _target(path: str | os.PathLike[str]) -> Path:
         is_other = False
     if is_other or suffix in {*scene_suffixes(), *mesh_suffixes()} - {".toml"}:
         raise UsageError(
-            f"a scene must be written to a folder or to a file that ends in .toml, not to {target}; choose"
-            " another name"
+            f"a scene must be written to a folder or to a file that ends in .toml,"
+            f" {' or '.join(STORE_SUFFIXES)}, not to {target}; choose another name"
         )
     return target if suffix == ".toml" else target / SCENE_FILE
 

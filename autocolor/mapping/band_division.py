@@ -28,7 +28,7 @@ def bands_by_surface(scene: Scene, picture: Picture) -> Mapping[str, Bands]:
     scalar, values = scene.scalar, picture.scalar_values
     if scalar is None or values is None:
         return {}
-    low, high = scalar_limits(scalar, picture)
+    low, high = scalar.limits or own_limits(picture)
     colored = colored_surfaces(scene)
     used = {scene.parts[number].surface for number in scene.mesh.parts_in_use}
     lacking = {
@@ -58,15 +58,14 @@ def colored_surfaces(scene: Scene) -> Sequence[str]:
     return tuple(dict.fromkeys(part.surface for part in scene.parts if not part.stage))
 
 
-def scalar_limits(scalar: Scalar, picture: Picture) -> tuple[float, float]:
-    """Where the first band begins and the last one ends: what the scalar tells, else its own range.
+def own_limits(picture: Picture) -> tuple[float, float]:
+    """The own range of the scalar of a picture, where its first band begins and its last one ends.
 
-    They do not depend on the color scale, or another scale would change words. Assumed: around a value that
-    is the same everywhere they are half of it away, or a half if it is zero; without any they are 0 and 1.
+    It does not depend on the color scale, such as by being symmetric for a diverging one, or another scale
+    would change words. Assumed: limits around a value that is the same everywhere are half of it away, or a
+    half if it is zero; without any value they are 0 and 1.
     """
-    low, high = scalar.limits or picture.scalar_limits or (0.0, 1.0)
-    # As exact as values are.
-    low, high = float(np.float32(low)), float(np.float32(high))
+    low, high = picture.scalar_limits or (0.0, 1.0)
     if low < high:
         return low, high
     half = abs(low) * HALF or HALF

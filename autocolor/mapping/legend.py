@@ -86,11 +86,11 @@ class Legend:
         return left <= element <= right and top <= line <= bottom
 
 
-def legend(image: DisplayImage, right: int | None = None, bottom: int | None = None) -> Legend | None:
+def legend(image: DisplayImage, end: int | None = None, at_left: bool = False) -> Legend | None:
     """The legend of an image; None without a scalar, where that has none, and where it would not fit.
 
-    It stands in the upper right corner of the picture, or of what is to the left of an element and above a
-    line.
+    Assumed: it stands in the upper right corner, where an object that fills the picture leaves most room; or
+    in the upper left one, or as if the picture ended before an element `end`.
     """
     scalar = image.scene.scalar
     seen = {image.picture.surfaces[each.surface_number - 1] for each in image.picture.slices}
@@ -100,21 +100,21 @@ def legend(image: DisplayImage, right: int | None = None, bottom: int | None = N
     lines, elements = image.words.shape
     # A surface where a value is missing has all the bands that there are.
     name = max(found, key=lambda name: found[name].has_missing)
-    return _laid_out(
+    return laid_out(
         scalar.name,
         found[name],
         image.ranges[name].first,
-        elements if right is None else min(right, elements),
-        lines if bottom is None else min(bottom, lines),
+        (lines, elements if end is None else min(end, elements)),
+        at_left,
     )
 
 
-def _laid_out(name: str, bands: Bands, first: int, right: int, bottom: int) -> Legend | None:
-    """The legend of a scalar with bands, to the left of an element and above a line."""
-    title = title_lines(name)
+def laid_out(name: str, bands: Bands, first: int, size: tuple[int, int], at_left: bool) -> Legend | None:
+    """The legend of a scalar with bands from a first word on, for a picture of a size."""
     height = lines_of_band(bands.bands)
     step = bands_apart(bands.bands, height, LEAST_APART)
-    numbers = numbers_between(bands.low, bands.high, bands.bands // step)
+    numbers, exponent = numbers_between(bands.low, bands.high, bands.bands // step)
+    title = [*title_lines(name), *([f"x 1e{exponent}"] if exponent else [])]
     above = [("above", bands.above)] * bands.has_above
     below = [("below", bands.below)] * bands.has_below + [("missing", bands.missing)] * bands.has_missing
 
@@ -124,11 +124,11 @@ def _laid_out(name: str, bands: Bands, first: int, right: int, bottom: int) -> L
     bar_lines = height * bands.bands
     rows = ROW_LINES * (len(above) + len(below))
     inside = TITLE_LINES * len(title) + TITLE_GAP + 2 * BAR_GAP + bar_lines + rows
-    if inner + 3 * MARGIN > MOST_SHARE * right or inside + 4 * MARGIN > bottom:
+    if inner + 3 * MARGIN > MOST_SHARE * size[1] or inside + 4 * MARGIN > size[0]:
         return None
 
-    left, top = right - 2 * MARGIN - inner, 2 * MARGIN
-    frame = Swatch(left - MARGIN, top - MARGIN, right - MARGIN - 1, top + inside + MARGIN - 1, FRAME)
+    left, top = 2 * MARGIN if at_left else size[1] - 2 * MARGIN - inner, 2 * MARGIN
+    frame = Swatch(left - MARGIN, top - MARGIN, left + inner + MARGIN - 1, top + inside + MARGIN - 1, FRAME)
     ground = Swatch(frame.left + 1, frame.top + 1, frame.right - 1, frame.bottom - 1, GROUND)
     swatches, labels = [frame, ground], []
 

@@ -15,6 +15,7 @@ from autocolor.screens.lights.lights_screen import LightsScreen
 from autocolor.screens.mapping.mapping_screen import MappingScreen
 from autocolor.screens.picture.picture_screen import PictureScreen
 from autocolor.screens.reflectance_screen import ReflectanceScreen
+from autocolor.screens.scalars.scalar_screen import ScalarScreen
 from autocolor.screens.screen import Screen
 
 SCREENS: Final[tuple[type[Screen], ...]] = (
@@ -25,6 +26,7 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     MixingScreen,
     BlendingScreen,
     MappingScreen,
+    ScalarScreen,
     KeptScreen,
     FileScreen,
     EntriesScreen,

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
-from autocolor.arrays import Bytes, Words
 from autocolor.errors import UsageError
+from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.scene import Scene
 from autocolor.studio import Studio
 
@@ -26,22 +26,15 @@ class Other(NamedTuple):
     scene: Scene
 
 
-class Image(NamedTuple):
-    """The words of a scene, (lines, elements), and its entries, (1024, 3)."""
-
-    words: Words
-    entries: Bytes
-
-
 class Comparing:
     """What the scene of a studio is compared with, and whether that is shown."""
 
     def __init__(self, studio: Studio) -> None:
         self._studio = studio
         self._chosen: Other | None = None
-        self._kept: tuple[Scene, Scene, Image] | None = None
+        self._kept: tuple[Scene, Scene, DisplayImage] | None = None
         """A scene that was compared with another, that one, and what that looks like."""
-        self._shown: Image | None = None
+        self._shown: DisplayImage | None = None
 
     @property
     def other(self) -> Other | None:
@@ -60,7 +53,7 @@ class Comparing:
             self.choose(None)
 
     @property
-    def image(self) -> Image | None:
+    def image(self) -> DisplayImage | None:
         """What is shown in place of the present state, if anything."""
         return self._shown
 
@@ -85,11 +78,10 @@ class Comparing:
         was_on, self._shown = self.is_on, None
         return was_on
 
-    def _image_of(self, other: Scene) -> Image:
+    def _image_of(self, other: Scene) -> DisplayImage:
         """What another scene looks like, computed once for each two that are compared."""
         studio = self._studio
         studio.refine()
         if self._kept is None or self._kept[0] is not studio.scene or self._kept[1] is not other:
-            image = studio.image_of(other)
-            self._kept = studio.scene, other, Image(image.words, image.entries)
+            self._kept = studio.scene, other, studio.image_of(other)
         return self._kept[2]

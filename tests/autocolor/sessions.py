@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Studio, Surface, View, scene_of
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from ramtek_emu import Configuration, Ramtek9300
 from tests.autocolor.meshes import STRETCHED, cube, grid, sphere
 
@@ -10,7 +13,7 @@ SMALL = Configuration(name="small", elements=32, lines=24, planes=10)
 
 
 def car() -> Scene:
-    """A round body, a pane and wheels, under two lights of the studio."""
+    """A round body, a pane and wheels, under two lights of the studio, with a scalar that the body lacks."""
     mesh = Mesh.joined(
         [
             Mesh(
@@ -23,6 +26,8 @@ def car() -> Scene:
             cube(1.2),
         ]
     )
+    stress = np.where(mesh.part_numbers == 0, np.nan, mesh.coordinates[mesh.node_numbers[:, 0], 0])
+    mesh = mesh.with_scalars(MeshScalar("stress", stress, "polygon"))
     return scene_of(
         mesh,
         surface_of_part={"hood": "body", "pane": "glass", "cube": "wheels"},

@@ -6,6 +6,7 @@ plane, in the eye's plane, at a pixel's center.
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, Light, Mesh, Paint, Part, Reflectance, Scene, Surface, View
 from autocolor.scene.curves import CURVES
 from autocolor.scene.reflection_models import MODELS, BlinnPhong, CookTorrance, Phong
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
+from autocolor.scene.scalars.scalar import Scalar
 
 Vector = tuple[float, float, float]
 
@@ -153,9 +156,46 @@ exposures = st.just("auto") | st.dictionaries(
 
 
 @st.composite
+def mesh_scalars(draw: st.DrawFn, mesh: Mesh) -> tuple[MeshScalar, ...]:
+    """A scalar of the nodes and one of the polygons, each with a few values, some of them missing."""
+    value = st.integers(-8, 8).map(float) | st.just(float("nan"))
+
+    def of(name: str, kind: str, count: int) -> MeshScalar:
+        return MeshScalar(name, np.array(draw(st.lists(value, min_size=count, max_size=count)), float), kind)
+
+    nodes, polygons = len(mesh.coordinates), len(mesh.node_numbers)
+    return of("stress", "node", nodes), of("load case 2", "polygon", polygons)
+
+
+limits = st.tuples(st.integers(-8, 0), st.integers(1, 8)).map(lambda pair: (float(pair[0]), float(pair[1])))
+short_lists = st.lists(colors, min_size=2, max_size=3).map(tuple)
+scales = st.sampled_from(["viridis", "zebra", "coolwarm_r"]) | short_lists
+
+
+def scalars() -> st.SearchStrategy[Scalar]:
+    """A scalar of the mesh or a computed one, with any limits, bands and colors."""
+    return st.builds(
+        Scalar,
+        st.sampled_from(["stress", "load case 2", "z"]),
+        limits=st.none() | limits,
+        scale=scales,
+        bands=st.integers(2, 20),
+        shades=st.none() | st.integers(1, 12),
+        below=st.none() | colors,
+        above=st.none() | colors,
+        missing=colors,
+        legend=st.booleans(),
+        surfaces=st.none() | st.sampled_from([("body",), ("glass", "body"), ()]),
+        direction=directions,
+        stripes=st.sampled_from([1.0, 12.0]),
+    )
+
+
+@st.composite
 def scenes(draw: st.DrawFn) -> Scene:
     """A scene with everything in it."""
     mesh = draw(meshes())
+    mesh = mesh.with_scalars(*draw(mesh_scalars(mesh)))
     names = ["body", "glass"]
     return Scene(
         mesh,
@@ -171,4 +211,11 @@ def scenes(draw: st.DrawFn) -> Scene:
         dither=draw(st.sampled_from(["off", "ordered"])),
         division=draw(st.sampled_from(["covered", "equal"])),
         background=draw(colors),
+        scalar=draw(st.none() | scalars()),
     )
+
+
+def of_mesh(scene: Scene, mesh: Mesh) -> Scene:
+    """The scene with another mesh, colored by a scalar that any mesh has."""
+    row = scene.scalar and dataclasses.replace(scene.scalar, name="z")
+    return scene.replace(mesh=mesh, scalar=row)

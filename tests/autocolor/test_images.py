@@ -25,10 +25,23 @@ from tests.autocolor.strategies import scenes
 
 
 @given(scenes())
-def test_the_colors_are_those_of_the_field_of_a_display(scene: Scene) -> None:
+def test_the_colors_are_those_of_the_field_of_a_display_without_a_legend(scene: Scene) -> None:
+    if scene.scalar is not None:
+        scene = scene.with_scalar(legend=False)
     display = Ramtek9300()
     studio = Studio(scene, display)
     assert (image(scene, studio.picture) == display.field()).all()
+
+
+def test_a_saved_image_has_the_legend_as_a_display_shows_it(tmp_path: Path) -> None:
+    scene = scene_of(cube(), scalar={"name": "z"})
+    display = Ramtek9300()
+    studio = Studio(scene, display)
+    path = tmp_path / "cube.png"
+    save_image(path, scene, studio.picture)
+    assert (np.asarray(Image.open(path)) == display.field()).all()
+    assert (display.field() != image(scene, studio.picture)).any()
+    assert studio._repr_png_() == display._repr_png_()
 
 
 def test_a_picture_is_colored_by_any_scene_that_has_its_surfaces() -> None:

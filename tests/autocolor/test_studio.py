@@ -30,7 +30,7 @@ from autocolor.mapping.level_ranges import SCREENS
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube
 from tests.autocolor.sessions import SMALL, car, fresh, held, opened
-from tests.autocolor.strategies import colors, numbers, scenes, vectors
+from tests.autocolor.strategies import colors, limits, numbers, scales, scenes, vectors
 
 Edit = tuple[str, str, dict[str, Any]]
 
@@ -100,7 +100,41 @@ view_edits = st.tuples(
     st.just(""),
     st.fixed_dictionaries({"angle": numbers(-90, 90), "field_of_view": numbers(20, 60)}),
 )
-any_edits = recolorings | surface_edits | light_edits | scene_edits | view_edits
+scale_edits = st.tuples(
+    st.just("scalar"),
+    st.just(""),
+    st.fixed_dictionaries({}, optional={"scale": scales, "missing": colors}),
+)
+level_edits = st.tuples(
+    st.just("scalar"),
+    st.just(""),
+    st.fixed_dictionaries(
+        {},
+        optional={
+            "limits": st.none() | limits,
+            "bands": st.integers(2, 200),
+            "shades": st.none() | st.integers(1, 12),
+            "below": st.none() | colors,
+            "above": st.none() | colors,
+            "surfaces": st.none() | st.lists(SURFACES, unique=True),
+            "legend": st.booleans(),
+        },
+    ),
+)
+scalar_choices = st.tuples(
+    st.just("scalar"), st.just(""), st.fixed_dictionaries({"name": st.sampled_from(["stress", "z"])})
+)
+any_edits: st.SearchStrategy[Edit] = (
+    recolorings
+    | surface_edits
+    | light_edits
+    | scene_edits
+    | view_edits
+    | scalar_choices
+    | scale_edits
+    | level_edits
+    | st.just(("scalar", "none", {}))
+)
 
 
 def apply(studio: Studio, edit: Edit) -> bool:
@@ -112,6 +146,10 @@ def apply(studio: Studio, edit: Edit) -> bool:
             studio.edit(studio.scene.replace(**changes))
         elif kind == "view":
             studio.view(**changes)
+        elif kind == "scalar" and name == "none":
+            studio.scalar(None)
+        elif kind == "scalar":
+            studio.scalar(**changes)
         else:
             getattr(studio, kind)(name, **changes)
     except InputError:
@@ -132,6 +170,111 @@ def test_recoloring_writes_no_word(edits: list[Edit]) -> None:
         assert display.lookup_table.written - entries_written <= 2 * range_of_surface.levels
     assert display.frame_buffer.written == written
     assert (display.words == words).all()
+
+
+@given(st.sampled_from(["stress", "z"]), st.lists(scale_edits, min_size=1, max_size=4))
+def test_another_color_scale_writes_no_word_and_the_entries_of_colored_surfaces_alone(
+    name: str, edits: list[Edit]
+) -> None:
+    studio, display = opened(car().with_scalar(name=name, surfaces=["body", "wheels"], below="#00ff00"))
+    words, written = display.words.copy(), display.frame_buffer.written
+    pane = display.entries[slice(*own_entries(studio, "glass"))]
+    for edit in edits:
+        entries_written = display.lookup_table.written
+        assert apply(studio, edit)
+        # Two words an entry.
+        most = 2 * sum(studio.level_ranges[name].levels for name in ("body", "wheels"))
+        assert display.lookup_table.written - entries_written <= most
+    assert display.frame_buffer.written == written
+    assert (display.words == words).all()
+    assert (display.entries[slice(*own_entries(studio, "glass"))] == pane).all()
+    assert held(display) == fresh(studio.scene)
+
+
+def own_entries(studio: Studio, name: str) -> tuple[int, int]:
+    first, levels = studio.level_ranges[name]
+    return first, first + levels
+
+
+@given(st.lists(level_edits, min_size=1, max_size=4))
+def test_limits_and_bands_make_levels_anew_and_render_nothing(edits: list[Edit]) -> None:
+    studio, display = opened(car().with_scalar(name="stress"))
+    picture = studio.picture
+    for edit in edits:
+        apply(studio, edit)
+    assert studio.picture is picture
+    assert held(display) == fresh(studio.scene)
+
+
+def test_another_scalar_mixes_and_lights_nothing_again() -> None:
+    studio, display = opened(car().with_scalar(name="stress"))
+    planes = dict(studio.picture.light_planes)
+    studio.scalar(name="z")
+    assert all(studio.picture.light_planes[name] is each for name, each in planes.items())
+    assert held(display) == fresh(studio.scene)
+
+
+def test_recoloring_a_surface_that_a_scalar_colors_sends_nothing_until_it_has_its_own_colors() -> None:
+    studio, display = opened(car().with_scalar(name="z"))
+    received = display.words_received
+    studio.recolor("body", object_color="#123456")
+    assert display.words_received == received
+    studio.scalar(None)
+    assert held(display) == fresh(studio.scene)
+
+
+def test_a_scalar_is_chosen_by_its_name_first_and_left_by_none() -> None:
+    studio, _ = opened()
+    with pytest.raises(InputError, match="scalar: name must be a string"):
+        studio.scalar(bands=8)
+    with pytest.raises(
+        InputError, match="must be a scalar of the mesh or a computed one, not 'stres'; did you"
+    ):
+        studio.scalar(name="stres")
+    with pytest.raises(UsageError, match="scalar takes fields of a Scalar, or None alone"):
+        studio.scalar(None, bands=8)
+    studio.scalar(name="stress", bands=8)
+    studio.scalar(bands=4)
+    assert studio.scene.scalar is not None
+    assert (studio.scene.scalar.name, studio.scene.scalar.bands) == ("stress", 4)
+    studio.scalar(None)
+    assert studio.scene.scalar is None
+    assert studio.undo()
+    assert studio.scene.scalar.bands == 4
+
+
+def test_bands_for_which_there_are_too_few_words_leave_everything_as_it_was() -> None:
+    studio, display = opened(car().with_scalar(name="z"))
+    before = held(display), studio.scene
+    with pytest.raises(
+        InputError, match="surface 'body' and 2 more: the bands of scalar 'z' times their shades"
+    ):
+        studio.scalar(bands=256, shades=2)
+    assert (held(display), studio.scene) == before
+
+
+def test_the_legend_follows_the_scale_by_entries_alone_and_the_limits_by_its_numbers() -> None:
+    display = Ramtek9300()
+    studio = Studio(car().with_scalar(name="z"), display)
+
+    def held_anew() -> bool:
+        anew = Ramtek9300()
+        Studio(studio.scene, anew)
+        return held(display) == held(anew)
+
+    assert (display.words != studio.words).any()
+    written = display.frame_buffer.written
+    studio.scalar(scale="magma")
+    assert display.frame_buffer.written == written
+    assert held_anew()
+    numbers = display.words.copy()
+    studio.scalar(limits=[-0.25, 0.75])
+    assert (display.words != numbers).any()
+    assert held_anew()
+    studio.scalar(legend=False)
+    assert (display.words == studio.words).all()
+    studio.undo()
+    assert held_anew()
 
 
 @given(recolorings)

@@ -39,7 +39,8 @@ class MeshFormat:
     the first file whether it may have this format.
 
     `written` makes the content of a single file; `write` writes the files of a format of several into an
-    empty folder. `holds` are the things beside nodes and polygons that are read back then, of HELD.
+    empty folder. `holds` are the things beside nodes and polygons that are read back then, of HELD. Files
+    that are `mapped` into memory are read page by page, so that their size has no limit.
     """
 
     name: str
@@ -51,6 +52,7 @@ class MeshFormat:
     written: Callable[[Mesh], bytes] | None = None
     write: Callable[[Path, Mesh], object] | None = None
     holds: frozenset[str] = frozenset()
+    mapped: bool = False
 
 
 PARTS: Final = "parts"

@@ -20,6 +20,7 @@ from autocolor.screens.picture.surface_row import surface_row
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import WIDTH
 from autocolor.widgets.column_rows import rows_of
+from autocolor.widgets.items import Item
 from autocolor.widgets.level_bars import LANE, LevelBar, PercentBar
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.widget import Gap, Widget
@@ -41,6 +42,10 @@ class BlendingScreen(OverPicture):
     title = "light blending"
     help = "Pick a level on the bar: the light color blends in above it"
     has_menu = False
+
+    def items(self) -> Sequence[Item]:
+        # Its bar stands where the legend would.
+        return ()
 
     def rows(self) -> Sequence[Widget]:
         surface = self.session.chosen_surface

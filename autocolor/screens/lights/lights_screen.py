@@ -30,7 +30,7 @@ class LightsScreen(OverPicture):
         self._handles = LightHandles(session, WORK, has_rims=True)
 
     def items(self) -> Sequence[Item]:
-        return self._handles.items()
+        return [*super().items(), *self._handles.items()]
 
     def handles(self) -> Sequence[Handle]:
         return self._handles.handles()

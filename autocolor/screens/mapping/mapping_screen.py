@@ -48,6 +48,8 @@ class MappingScreen(OverPicture):
     title = "mapping"
     help = "How intensities become levels; click in the picture: the surface whose curve is shown"
 
+    has_room_at_left = False
+
     def __init__(self, session: Session) -> None:
         super().__init__(session)
         self._touched: int | None = None
@@ -57,7 +59,7 @@ class MappingScreen(OverPicture):
 
     def rows(self) -> Sequence[Widget]:
         scene, session = self.session.scene, self.session
-        others = ("name", "view")
+        others = ("name", "view", "scalar")
         return [
             Choice(
                 "mapping",
@@ -100,7 +102,7 @@ class MappingScreen(OverPicture):
     # The curve.
 
     def items(self) -> Sequence[Item]:
-        return panel_items(self._curve())
+        return [*super().items(), *panel_items(self._curve())]
 
     def handles(self) -> Sequence[Handle]:
         return [

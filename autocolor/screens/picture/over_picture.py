@@ -6,28 +6,47 @@ is seen there tells the part.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from autocolor.arrays import Bytes, Words
+from autocolor.mapping.display_image import DisplayImage
+from autocolor.mapping.legend import legend
 from autocolor.screens.input.gestures import MIDDLE, Gesture, turn_between, wheel_ratio
+from autocolor.screens.picture.legend_items import legend_items
 from autocolor.screens.picture.picture_edits import PictureEdits
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import Session
+from autocolor.widgets.items import Item
+from autocolor.widgets.menu import MENU
 
 
 class OverPicture(Screen):
     """A screen whose base is the picture at full size, or another one that is compared with it."""
 
     shows_picture = True
+    has_room_at_left: ClassVar[bool] = True
+    """Whether the legend stands at the left where the menu is at the right."""
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
         self.edits = PictureEdits(session)
+        self._legend: tuple[DisplayImage, bool, Sequence[Item]] | None = None
+        """The legend of an image, and whether it is beside the menu."""
 
     def base(self) -> Words:
         image = self.session.comparing.image
         return self.session.studio.words if image is None else image.words
+
+    def items(self) -> Sequence[Item]:
+        """The legend of a scalar."""
+        image = self.session.comparing.image or self.session.studio.image
+        is_beside_menu = self.has_menu or self.is_under_menu
+        if self._legend is None or self._legend[:2] != (image, is_beside_menu):
+            end, at_left = (MENU.left, self.has_room_at_left) if is_beside_menu else (None, False)
+            self._legend = image, is_beside_menu, legend_items(legend(image, end, at_left))
+        return self._legend[2]
 
     def loads(self) -> Sequence[tuple[int, Bytes]]:
         image = self.session.comparing.image
@@ -70,19 +89,25 @@ class OverPicture(Screen):
             return None
         seen = studio.seen_at(line, element)
         first, levels = studio.level_ranges[name]
-        return Pointed(name, "" if seen is None else seen.part, word - first, levels - 1)
+        part = "" if seen is None else seen.part
+        bands, scalar = studio.image.bands.get(name), studio.scene.scalar
+        if bands is None or scalar is None:
+            return Pointed(name, part, f"level {word - first} of {levels - 1}")
+        values, block = studio.picture.scalar, studio.image.block
+        value = float("nan") if values is None else float(values[line // block, element // block])
+        shown = "missing" if math.isnan(value) else f"{value:.5g}"
+        return Pointed(name, part, f"{scalar.name} {shown}, shade {(word - first) % bands.shades + 1}")
 
 
 class Pointed(NamedTuple):
-    """A surface and a part that are pointed at, and the level there of the highest one."""
+    """A surface and a part that are pointed at, and what is read from the word there."""
 
     surface: str
     part: str
-    level: int
-    highest: int
+    read: str
 
     @property
     def told(self) -> str:
         """The same, as the message line says it."""
         names = " - ".join(dict.fromkeys(name for name in (self.part, self.surface) if name))
-        return f"{names}, level {self.level} of {self.highest}"
+        return f"{names}, {self.read}"

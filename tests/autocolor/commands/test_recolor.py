@@ -103,7 +103,7 @@ def test_pictures_of_another_size_keep_it(folder: Path, run: Run) -> None:
         (("scene.npz", "side", "--blend", "nan"), 2, "blend must be a number from 0 to 1, not nan"),
         (("scene.npz", "side", "--blend", "much"), 2, "'much' is not a valid float"),
         (("scene.npz", "side", "--percentage", "101"), 2, "light_percentage must be a number from 0 to 100"),
-        (("scene.npz",), 2, "Missing argument 'SURFACE'"),
+        (("scene.npz",), 2, "recolor needs a SURFACE for its colors"),
         (("none.npz", "side"), 66, "none.npz: there is no such file or folder"),
         (("two.obj", "side"), 65, "two.obj: a picture file must be whole and as autocolor wrote it"),
         (("scene", "side"), 65, "scene: it must be a regular file, not a folder"),
@@ -139,3 +139,34 @@ def test_a_picture_cut_short_is_bad_input_and_old_files_stay(saved: Path, run: R
         assert ran.code == 65
         assert ran.err.startswith("autocolor: scene.npz: a picture file must be whole")
     assert (saved.parent / "out.png").read_bytes() == b"mine"
+
+
+def test_what_renders_nothing_is_set_in_a_saved_picture(saved: Path, run: Run) -> None:
+    settings = ("--set", "surfaces.side.object_color=navy", "--set", "mapping=gamma")
+    assert run("recolor", "scene.npz", *settings, "-o", "one.png").code == 0
+    assert run("render", "scene", *settings, "-o", "two.png").code == 0
+    assert (saved.parent / "one.png").read_bytes() == (saved.parent / "two.png").read_bytes()
+
+
+def test_the_scale_limits_and_bands_of_a_scalar_are_set_in_a_saved_picture(saved: Path, run: Run) -> None:
+    shown = ("--set", "scalar.name=z")
+    assert run("render", "scene", *shown, "--save", "z.npz").code == 0
+    settings = ("--set", "scalar.scale=turbo", "--set", "scalar.limits=[0,0.5]", "--set", "scalar.bands=5")
+    assert run("recolor", "z.npz", *settings, "-o", "one.png").code == 0
+    assert run("render", "scene", *shown, *settings, "-o", "two.png").code == 0
+    assert (saved.parent / "one.png").read_bytes() == (saved.parent / "two.png").read_bytes()
+    assert run("recolor", "z.npz", "side", "--object", "navy", "-o", "three.png").code == 0
+
+
+@pytest.mark.parametrize("setting", ["ambient=0.5", "view.angle=10", "scalar.name=x"])
+def test_what_would_render_again_is_refused(saved: Path, run: Run, setting: str) -> None:
+    result = run("recolor", "scene.npz", "--set", setting)
+    assert result.code == 2
+    assert "what is set in a picture must render nothing" in result.err
+
+
+def test_colors_need_a_surface_and_nothing_at_all_is_refused(saved: Path, run: Run) -> None:
+    for options in ((), ("--object", "navy"), ("--object", "navy", "--set", "mapping=gamma")):
+        result = run("recolor", "scene.npz", *options)
+        assert result.code == 2
+        assert "recolor needs a SURFACE for its colors, or --set KEY=VALUE" in result.err

@@ -34,7 +34,7 @@ from autocolor.files import scene_writing
 from autocolor.files.scene_writing import write_scene_with_tables
 from autocolor.scene.columns.rows import with_values
 from tests.autocolor.meshes import cube
-from tests.autocolor.strategies import scenes
+from tests.autocolor.strategies import of_mesh, scenes
 
 COUPE = Path(__file__).parents[3] / "scenes" / "coupe"
 
@@ -158,7 +158,7 @@ def test_any_edit_of_a_file_that_says_little_is_read_back(
     folder = tmp_path_factory.mktemp("scene")
     (folder / "car.obj").write_text(CAR.replace("hood", "part 0").replace("roof", "part 1"))
     (folder / "scene.toml").write_text('# Mine.\n[[mesh]]\nfile = "car.obj"\n')
-    scene = drawn.replace(mesh=read_scene(folder).mesh)
+    scene = of_mesh(drawn, read_scene(folder).mesh)
     write_scene(folder, scene, overwrite=True)
     assert same(read_scene(folder), scene)
     assert (folder / "scene.toml").read_text().count("# Mine.") == 1

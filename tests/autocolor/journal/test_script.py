@@ -222,6 +222,22 @@ def test_each_kind_of_step_has_the_narrowest_line() -> None:
     ]
 
 
+def test_steps_of_the_scalar_have_lines_of_their_own() -> None:
+    shown = CAR.with_scalar(name="z", bands=8)
+    limited = shown.with_scalar(limits=[0, 1], scale=["red", "blue"])
+    free = limited.with_scalar(limits=None)
+    assert lines_of(CAR, shown, limited, free, CAR) == [
+        "studio.scalar(name='z', scale='viridis', bands=8, missing='#808080', legend=True,"
+        " direction=[0.0, 0.0, 1.0], stripes=12.0)",
+        "studio.scalar(limits=[0.0, 1.0], scale=['#ff0000', '#0000ff'])",
+        "studio.scalar(limits=None)",
+        "studio.scalar(None)",
+    ]
+    for after, call in ((free, "with_scalar(limits=None)"), (CAR, "without_scalar()")):
+        line = step_line(Edit(limited, after, joins=True), CAR, MeshesBeside())
+        assert line == f"studio.edit(studio.scene.{call}, same_step=True)"
+
+
 def test_what_is_undone_with_the_step_before_says_so() -> None:
     line = step_line(Edit(CAR, CAR.with_light("key", on=False), joins=True), CAR, MeshesBeside())
     assert line == "studio.edit(studio.scene.with_light('key', on=False), same_step=True)"

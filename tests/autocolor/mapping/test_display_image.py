@@ -16,7 +16,17 @@ from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.scene import costs_at_least
 from tests.autocolor.meshes import wall_scene
-from tests.autocolor.strategies import MAPPINGS, colors, exposures, numbers, paints, scenes
+from tests.autocolor.strategies import (
+    MAPPINGS,
+    colors,
+    exposures,
+    limits,
+    numbers,
+    paints,
+    scalars,
+    scales,
+    scenes,
+)
 
 LINES, ELEMENTS = 9, 12
 
@@ -39,6 +49,14 @@ def of_scene(**fields: st.SearchStrategy[Any]) -> st.SearchStrategy[Edit]:
     return st.builds(lambda changes: lambda scene: scene.replace(**changes), st.fixed_dictionaries(fields))
 
 
+def of_scalar(**fields: st.SearchStrategy[Any]) -> st.SearchStrategy[Edit]:
+    """Edits of some fields of the scalar, if there is one."""
+    return st.builds(
+        lambda changes: lambda scene: scene.with_scalar(**changes) if scene.scalar else scene,
+        st.fixed_dictionaries(fields),
+    )
+
+
 paint_edits = of_surface(paint=paints)
 edits = st.one_of(
     paint_edits,
@@ -55,6 +73,12 @@ edits = st.one_of(
     of_scene(division=st.sampled_from(["covered", "equal"])),
     of_scene(ambient=numbers(0, 1)),
     of_scene(lights=st.sampled_from([(), (Light("key", (0.0, -3.0, 2.0)),)])),
+    of_scene(scalar=st.none() | scalars()),
+    of_scalar(scale=scales),
+    of_scalar(below=st.none() | colors),
+    of_scalar(limits=st.none() | limits),
+    of_scalar(bands=st.integers(2, 20)),
+    of_scalar(surfaces=st.none() | st.just(("glass",))),
     of_scene(name=st.sampled_from(["scene", "another"])),
 )
 """Edits of every tier."""
@@ -124,8 +148,20 @@ def test_another_paint_loads_the_range_of_its_surface_alone(scene: Scene, name: 
     is_other = scene.surface(name).paint != paint
     before = session.edit(lambda scene: scene.with_surface(name, paint=paint))
     loads = [(first, len(entries)) for first, entries in session.image.loads_after(before)]
-    has_words = name in session.image.ranges
+    has_words = name in session.image.ranges and name not in session.image.bands
     assert loads == ([tuple(session.image.ranges[name])] if is_other and has_words else [])
+
+
+@given(scenes(), scalars(), scales)
+def test_another_color_scale_loads_the_ranges_of_colored_surfaces_alone(
+    scene: Scene, scalar: Any, scale: Any
+) -> None:
+    session = Session(scene.replace(scalar=scalar))
+    before = session.edit(lambda scene: scene.with_scalar(scale=scale))
+    assert session.image.words is before.words
+    loads = [(first, len(entries)) for first, entries in session.image.loads_after(before)]
+    ranges = [tuple(session.image.ranges[name]) for name in ("body", "glass") if name in session.image.bands]
+    assert loads == ([] if scale == scalar.scale else ranges)
 
 
 @given(scenes(), edits)

@@ -18,6 +18,8 @@ def scene(folder: Path) -> Scene:
     [
         ("ambient", ("", "", ("ambient",))),
         ("view.eye", ("view", "", ("eye",))),
+        ("scalar.name", ("scalar", "", ("name",))),
+        ("scalar", ("", "", ("scalar",))),
         ("lights.key.aim", ("lights", "key", ("aim",))),
         ("lights.key.2.aim", ("lights", "key.2", ("aim",))),
         ('surfaces."front.low".blend', ("surfaces", "front.low", ("blend",))),
@@ -65,6 +67,9 @@ def test_a_key_that_its_row_has_not_has_no_field() -> None:
         ("lights.key.flaps.", {"lights.key.flaps.x.", "lights.key.flaps.y.", "lights.key.flaps.z."}),
         ("lights.key.flaps.z.", {"lights.key.flaps.z.minimum=", "lights.key.flaps.z.on="}),
         ("view.", {"view.eye=", "view.field_of_view="}),
+        ("scalar.", {"scalar.name=", "scalar.limits=", "scalar.bands="}),
+        ("scalar.name=", {"scalar.name=x", "scalar.name=mean curvature"}),
+        ("scalar.scale=", {"scalar.scale=viridis", "scalar.scale=zebra_r"}),
         ("dither=", {"dither=off", "dither=ordered"}),
         ("ambient=", {"ambient=0.1"}),
         ("lights.key.on=", {"lights.key.on=true", "lights.key.on=false"}),

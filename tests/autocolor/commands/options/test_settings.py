@@ -74,6 +74,15 @@ def test_every_kind_of_key_can_be_set(scene: Scene) -> None:
     assert changed.part("side").stage
 
 
+def test_a_scalar_is_set_where_there_was_none_in_any_order_and_unset(scene: Scene) -> None:
+    changed = with_settings(scene, ("scalar.bands=8", "scalar.limits=[0,250]", "scalar.name=z"))
+    assert changed.scalar is not None
+    assert (changed.scalar.name, changed.scalar.bands, changed.scalar.limits) == ("z", 8, (0.0, 250.0))
+    other = with_settings(changed, ("scalar.scale=magma", "scalar.limits=none"))
+    assert other.scalar == changed.with_scalar(scale="magma", limits=None).scalar
+    assert with_settings(other, ("scalar=none",)).scalar is None
+
+
 def test_flaps_are_set_whole_or_field_by_field(scene: Scene) -> None:
     flaps = with_settings(scene, ("lights.key.flaps.z.maximum=0.75",)).light("key").flaps
     assert flaps.z is not None
@@ -119,6 +128,7 @@ def test_of_two_names_the_longer_is_meant(scene: Scene) -> None:
         ("parts.sid.surface=x", "--set parts.sid.surface: there is no part 'sid'; did you mean 'side'?"),
         ("lights=1", "--set lights: it must name one field; write it as in lights.key.intensity=2"),
         ("lights.key=1", "--set lights.key: it must name one field; write it as in lights.key.intensity=2"),
+        ("scalar.=1", "--set scalar.: it must name one field; write it as in scalar.name=z"),
         ("view=1", "--set view: it must name one field; write it as in view.angle=10"),
         ("view.=1", "--set view.: it must name one field; write it as in view.angle=10"),
         ("ambient.x=1", "--set ambient.x: there is no field of this name; did you mean 'ambient'?"),
@@ -150,6 +160,9 @@ def test_a_key_that_names_nothing_is_refused(scene: Scene, setting: str, sentenc
         ("lights.key.flaps.w.minimum=1", "there is no 'w'; known are 'x', 'y', 'z'"),
         ("surfaces.side.difuse=1", "surface 'side': there is no 'difuse'; did you mean 'diffuse'?"),
         ("mapping=gama", "not 'gama'; did you mean 'gamma'?"),
+        ("scalar.bands=8", "scalar: name must be a string of at least one character, not missing; add it"),
+        ("scalar=z", "scalar must be a table of name, limits, scale"),
+        ("scalar.scale=virid", "not 'virid'; did you mean 'viridis'?"),
         ("ambient=-1", "ambient must be a finite number of at least 0, not -1"),
         ("ambient=nan", "ambient must be a finite number of at least 0, not nan"),
         ("background=rde", "not 'rde'; did you mean 'red'?"),

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.meshes.csv_tables import read_csv_tables
 from autocolor.files.repair.polygons import MeshReport
+from tests.autocolor.files.meshes.mutations import survives
 
 NODES = "node,x,y,z\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n"
 POLYGONS = "polygon,part,node1,node2,node3,node4\n1,hood,1,2,3,4\n2,roof,1,2,3,\n"
@@ -140,3 +141,48 @@ def test_any_bytes_are_read_or_refused(data: bytes, tmp_path_factory: pytest.Tem
         read(folder, NODES, data)
     with pytest.raises(InputError):
         read(folder, data, POLYGONS)
+
+
+def test_further_columns_are_scalars_and_empty_cells_missing_values(tmp_path: Path) -> None:
+    nodes = "x,stress,y,z,scalar x\n0,1.5,0,0,1\n1,,0,0,2\n1,-2e3,1,0,\n0,0,1,0,4\n"
+    polygons = "node1,node2,node3,node4,heat,stress\n1,2,3,4,,7\n1,2,3,,5,8\n"
+    mesh = read(tmp_path, nodes, polygons).mesh
+    assert [(each.name, each.of, str(each.values.tolist())) for each in mesh.scalars] == [
+        ("stress", "node", "[1.5, nan, -2000.0, 0.0]"),
+        ("x", "node", "[1.0, 2.0, nan, 4.0]"),
+        ("heat", "polygon", "[nan, 5.0]"),
+        ("stress of polygons", "polygon", "[7.0, 8.0]"),
+    ]
+
+
+@pytest.mark.parametrize("value", ["nan", "1e31", "1_0", "x"])
+def test_the_values_of_scalars_are_strict(tmp_path: Path, value: str) -> None:
+    assert refusal(tmp_path, NODES.replace("z\n", "z,s\n").replace("2,1,0,0", f"2,1,0,0,{value}")) == [
+        "nodes.csv, row 3: a value must be a decimal number of at most 1e30 in size, or empty if it is"
+        " missing,"
+        f" not {value!r}; correct it"
+    ]
+
+
+@pytest.mark.parametrize("name", ["polygn", "Part", "node5", ""])
+def test_a_column_that_is_nearly_one_of_the_mesh_is_no_scalar(tmp_path: Path, name: str) -> None:
+    known = "part" if name != "Part" else "polygon"
+    header = (
+        f"{known},node1,node2,node3,node4,{name}" if name != "polygn" else f"node1,node2,node3,node4,{name}"
+    )
+    (sentence,) = refusal(tmp_path, polygons=f"{header}\n")
+    assert sentence.startswith(f"polygons.csv, row 1: there is no column {name!r}; ")
+
+
+def test_there_are_at_most_a_thousand_columns_of_scalars(tmp_path: Path) -> None:
+    header = ",".join(["x", "y", "z", *(f"s{number}" for number in range(1010))])
+    assert refusal(tmp_path, header) == [
+        "nodes.csv, row 1: there must be at most 1,000 columns of scalars, not 1,013; remove some"
+    ]
+
+
+def test_damaged_tables_are_read_or_refused(tmp_path: Path) -> None:
+    for at, data in enumerate((NODES.replace("z\n", "z,s\n"), POLYGONS)):
+        read(tmp_path)
+        paths = tmp_path / "nodes.csv", tmp_path / "polygons.csv"
+        survives(lambda _, both=paths: read_csv_tables(*both), paths[at], data.encode())  # type: ignore[misc]

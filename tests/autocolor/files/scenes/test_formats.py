@@ -38,9 +38,9 @@ def name_within(path: Path, data: bytes) -> str | None:
 
 
 def test_every_format_has_a_name_and_a_way_to_be_chosen() -> None:
-    assert [each.name for each in scene_formats()] == ["picture file", "scene file"]
-    assert [each.in_folder for each in scene_formats()] == [None, "scene.toml"]
-    assert scene_suffixes() == (".npz", ".toml")
+    assert [each.name for each in scene_formats()] == ["picture file", "scene file", "store"]
+    assert [each.in_folder for each in scene_formats()] == [None, "scene.toml", None]
+    assert scene_suffixes() == (".npz", ".toml", ".sqlite", ".db")
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_a_module_that_is_put_beside_the_others_is_a_format(
     for each in before:
         formats.register(each)
     try:
-        assert scene_suffixes() == (".another", ".npz", ".toml")
+        assert scene_suffixes() == (".another", ".npz", ".toml", ".sqlite", ".db")
         for path in (tmp_path / "car.another", tmp_path / "car", tmp_path):
             assert len(read_scene(path).mesh.node_numbers) == 1
     finally:

@@ -17,7 +17,7 @@ from autocolor.files.scenes.scene_edit import (
 )
 from autocolor.files.scenes.scene_file import report_of_text
 from autocolor.scene.columns.rows import with_values
-from tests.autocolor.strategies import scenes
+from tests.autocolor.strategies import of_mesh, scenes
 
 MESH = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\no part 0\nf 1 2 3 4\no part 1\nf 1 2 3\n"
 
@@ -28,6 +28,7 @@ mesh = [ {file="car.obj"} ]
 view = { eye = [1,2,3], target=[0,0,0] }
 parts = { "part 0" = {surface="body"}, "part 1".surface = "glass" }
 surfaces = { body = { diffuse = 0.5, model="blinn", exponent = 3 }, glass = {} }
+scalar = { name = "z", limits = [0, 1] }
 exposure = { body = [0.0, 1.0] }
 """
 
@@ -39,6 +40,8 @@ parts."part 0".surface = "body"
 parts."part 1".surface = "glass"
 surfaces.body.diffuse = 0.5
 surfaces.glass.model = "cook-torrance"
+scalar.name = "z"
+scalar.scale = "turbo"
 exposure.body = [0.0, 1.0]
 exposure.object = [0.0, 1.0]
 [[mesh]]
@@ -104,7 +107,7 @@ def edited(text: str, scene: Scene, meshes: list[MeshReport]) -> str:
 def test_a_file_in_any_style_is_changed_to_any_scene(
     text: str, drawn: Scene, meshes: list[MeshReport]
 ) -> None:
-    scene = drawn.replace(mesh=meshes[0].mesh)
+    scene = of_mesh(drawn, meshes[0].mesh)
     after = edited(text, scene, meshes)
     assert with_values(read(after.encode(), meshes), {"mesh": scene.mesh, "name": scene.name}).equals(scene)
     assert after.count("# Mine.") == 1
@@ -115,6 +118,17 @@ def test_a_file_in_any_style_is_changed_to_any_scene(
 @pytest.mark.parametrize("text", [INLINE, DOTTED, HEADERS])
 def test_without_a_change_nothing_changes(text: str, meshes: list[MeshReport]) -> None:
     assert edited(text, read(text.encode(), meshes), meshes) == text
+
+
+def test_a_scalar_is_edited_in_place_with_its_comments(meshes: list[MeshReport]) -> None:
+    text = f'{HEADERS}\n# What is told.\n[scalar]\nname = "z"  # the height\nbands = 8\n'
+    scene = read(text.encode(), meshes)
+    after = edited(text, scene.with_scalar(bands=4, limits=[0, 1]), meshes)
+    assert after == text.replace("bands = 8\n", "bands = 4\nlimits = [0.0, 1.0]\n")
+    assert "scalar" not in edited(text, scene.without_scalar(), meshes)
+    assert edited(HEADERS, read(HEADERS.encode(), meshes).with_scalar(name="z"), meshes) == HEADERS.replace(
+        "[parts]\n", '\n[scalar]\nname = "z"\n\n[parts]\n'
+    )
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, Scene
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.files.scenes.scene_text import scene_text
-from tests.autocolor.strategies import scenes
+from tests.autocolor.strategies import of_mesh, scenes
 
 MESH = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\no {}\nf 1 2 3 4\no {}\nf 1 2 3\n"
 
@@ -42,7 +42,7 @@ def test_a_scene_that_was_written_reads_back_equal(
     (folder / "car.obj").write_text(MESH.format(*drawn.mesh.part_names))
     mesh = read_scene_with_report(folder / "car.obj", up=up).scene.mesh
     angle = drawn.mesh.crease_angle
-    scene = drawn.replace(mesh=dataclasses.replace(mesh, crease_angle=angle))
+    scene = of_mesh(drawn, dataclasses.replace(mesh, crease_angle=angle))
     assert same(scene, read_back(folder, scene, ({"file": "car.obj", "up": up},)))
 
 

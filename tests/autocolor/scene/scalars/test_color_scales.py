@@ -3,10 +3,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from autocolor.scene.scalars.color_scales import COLOR_SCALES, scale_colors
+from autocolor.scene.scalars.color_scales import COLOR_SCALES, IN_TURN, scale_colors
 
 
-@pytest.mark.parametrize("name", COLOR_SCALES)
+@pytest.mark.parametrize("name", [name for name in COLOR_SCALES if name not in IN_TURN])
 @pytest.mark.parametrize("count", [2, 5, 16, 256])
 def test_a_scale_runs_from_its_first_color_to_its_last(name: str, count: int) -> None:
     colors = scale_colors(name, count)
@@ -14,6 +14,20 @@ def test_a_scale_runs_from_its_first_color_to_its_last(name: str, count: int) ->
     assert colors.shape == (count, 3)
     assert colors.dtype == np.uint8
     assert [bytes(colors[0]), bytes(colors[-1])] == ends
+
+
+@pytest.mark.parametrize("name", [name for name in COLOR_SCALES if not name.endswith("_r")])
+def test_a_reversed_scale_begins_with_the_last_color(name: str) -> None:
+    assert (scale_colors(f"{name}_r", 8)[::-1] == scale_colors(name, 8)).all()
+
+
+def test_the_middle_band_of_an_odd_number_has_the_middle_color_of_a_diverging_scale() -> None:
+    assert bytes(scale_colors("coolwarm", 9)[4]).hex() == COLOR_SCALES["coolwarm"][16][1:]
+
+
+def test_zebra_is_black_and_white_in_turn_however_many_bands_there_are() -> None:
+    assert scale_colors("zebra", 5)[:, 0].tolist() == [0, 255, 0, 255, 0]
+    assert scale_colors("zebra_r", 4)[:, 0].tolist() == [255, 0, 255, 0]
 
 
 def test_a_list_of_colors_is_a_scale_whose_colors_are_mixed_between_them() -> None:

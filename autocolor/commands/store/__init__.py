@@ -1,0 +1,4 @@
+"""The commands that print, ask and change the tables of a scene, the prompt, and the ways to print answers.
+
+Uses `files.store`.
+"""

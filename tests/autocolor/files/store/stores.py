@@ -1,0 +1,73 @@
+"""Stores for the tests: small ones, and what is done to them with SQLite alone, as outside tools do."""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from autocolor import Light, Mesh, Scene, Surface, scene_of
+from autocolor.files.store.store_file import write_store
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
+
+
+def small_scene() -> Scene:
+    """A quad and a triangle of two parts, with two surfaces, two lights and two scalars."""
+    mesh = Mesh(
+        np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]]),
+        np.array([[0, 1, 2, 3], [0, 1, 4, 4]]),
+        np.array([0, 1]),
+        ("hood", "roof"),
+    ).with_scalars(
+        MeshScalar("stress", np.array([1.0, 2.0, np.nan, 4.0, 5.0])),
+        MeshScalar("area", np.array([1.0, 0.5]), "polygon"),
+    )
+    return scene_of(
+        mesh,
+        surfaces=[Surface("body"), Surface("glass")],
+        parts={"hood": {"surface": "body"}, "roof": {"surface": "glass", "stage": True}},
+        lights=[Light("key", (2, -3, 4), aim=(0, 0, 0)), Light("rim", (-2, 3, 4))],
+        name="small",
+    )
+
+
+def small_store(folder: Path, name: str = "small.sqlite") -> Path:
+    """A store with the small scene."""
+    path = folder / name
+    write_store(path, small_scene())
+    return path
+
+
+def run(path: Path, *statements: str) -> list[tuple[Any, ...]]:
+    """Run statements on a store as an outside tool does, without checks of keys; the rows of the last."""
+    with closing(sqlite3.connect(path)) as connection, connection:
+        for statement in statements:
+            rows = connection.execute(statement).fetchall()
+    return rows
+
+
+def is_equal(one: Scene, other: Scene) -> bool:
+    """Whether two scenes are equal in all tables, those of the mesh included."""
+    a, b = one.mesh, other.mesh
+    return (
+        np.array_equal(a.coordinates, b.coordinates)
+        and np.array_equal(a.node_numbers, b.node_numbers)
+        and np.array_equal(a.part_numbers, b.part_numbers)
+        and a.part_names == b.part_names
+        and a.crease_angle == b.crease_angle
+        and [(each.name, each.of) for each in a.scalars] == [(each.name, each.of) for each in b.scalars]
+        and all(
+            np.array_equal(x.values, y.values, equal_nan=True)
+            for x, y in zip(a.scalars, b.scalars, strict=True)
+        )
+        and one.replace(mesh=b).equals(other)
+    )
+
+
+def tables_of(path: Path) -> dict[str, list[tuple[Any, ...]]]:
+    """All rows of all tables of a store."""
+    names = [name for (name,) in run(path, "SELECT name FROM sqlite_master WHERE type = 'table'")]
+    return {name: run(path, f'SELECT * FROM "{name}"') for name in names}

@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autocolor import InputError
+from autocolor.files.store.store_file import read_store
+from tests.autocolor.files.store.stores import run, small_scene, small_store
+
+
+def test_a_row_that_is_added_needs_no_more_than_a_scene_file_does(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(
+        path,
+        "INSERT INTO lights (name, position_x, position_y, position_z) VALUES ('fill', 1, 2, 3)",
+        "INSERT INTO surfaces (name, model, roughness) VALUES ('metal', 'cook-torrance', 0.2)",
+        "UPDATE lights SET flaps_z_maximum = 0.5 WHERE name = 'rim'",
+    )
+    scene = read_store(path).scene
+    expected = small_scene().with_new_light("fill", position=(1, 2, 3))
+    assert scene.lights == expected.with_light("rim", flaps={"z": {"maximum": 0.5}}).lights
+    assert scene.surface("metal").reflectance.model.roughness == 0.2  # type: ignore[attr-defined]
+
+
+def test_tables_that_are_missing_are_created_and_told(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "DROP TABLE surfaces", "DROP TABLE lights", "DROP TABLE view")
+    report = read_store(path)
+    assert [part.surface for part in report.scene.parts] == ["body", "glass"]
+    assert [surface.name for surface in report.scene.surfaces] == ["body", "glass"]
+    assert report.is_view_created
+    assert report.are_lights_created
+    run(path, "DROP TABLE parts")
+    own = read_store(path, surfaces="parts").scene
+    assert [(part.name, part.surface) for part in own.parts] == [("hood", "hood"), ("roof", "roof")]
+
+
+def test_an_empty_table_of_lights_means_no_lights(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "DELETE FROM lights")
+    assert read_store(path).scene.lights == ()
+
+
+def test_every_problem_of_the_rows_is_told(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(
+        path,
+        "UPDATE surfaces SET exponent = 5, model = 'cook-torrance' WHERE name = 'glass'",
+        "UPDATE lights SET concentration = 3 WHERE name = 'rim'",
+        "UPDATE scene SET exposure = '{\"body\": [2, 1]}'",
+    )
+    with pytest.raises(InputError) as refused:
+        read_store(path)
+    first, second = refused.value.problems
+    assert first.startswith("small.sqlite: surfaces, row 2: exponent must go with model = 'phong'")
+    assert second.startswith("small.sqlite: lights, row 2: concentration must come with a direction")
+
+
+def test_more_than_one_row_of_a_table_of_one_is_refused(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(
+        path,
+        "CREATE TABLE views AS SELECT * FROM view",
+        "DROP TABLE view",
+        "ALTER TABLE views RENAME TO view",
+    )
+    run(path, "INSERT INTO view SELECT * FROM view")
+    with pytest.raises(InputError, match="view must have one row, not 2; leave one"):
+        read_store(path)

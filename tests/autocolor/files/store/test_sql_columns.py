@@ -1,0 +1,130 @@
+from __future__ import annotations
+
+import math
+import sqlite3
+from dataclasses import dataclass, field
+from typing import Annotated
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import BlinnPhong, Flap, Flaps, Light, Paint, Surface
+from autocolor.checks import Color
+from autocolor.files.store.schema import row_table as table_of
+from autocolor.files.store.sql_columns import SqlValue, columns_of, in_sql, row_table, row_values
+from autocolor.scene.columns.color_kinds import ColorKind
+from autocolor.scene.columns.column import Column, Row, Tier, keys_of
+from autocolor.scene.columns.reference_kinds import PointOrName, References
+from autocolor.scene.columns.row_kinds import Nested, Variant
+from autocolor.scene.columns.rows import made
+from autocolor.scene.columns.value_kinds import Choice, Number, Switch, Text, VectorKind, Whole
+from autocolor.scene.reflection_models import MODELS
+from autocolor.scene.scalars.scalar import Scalar
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Part
+from autocolor.scene.view import View
+from tests.autocolor.strategies import lights, surfaces, vectors
+
+FREE = Tier.NOTHING
+
+
+@dataclass(frozen=True)
+class Inner(Row):
+    low: Annotated[float, Column(Number(endless=-math.inf), FREE, "")] = -math.inf
+    shut: Annotated[bool, Column(Switch(), FREE, "")] = False
+
+
+@dataclass(frozen=True)
+class Loose(Row):
+    one: Annotated[int | None, Column(Whole(0, 9), FREE, "")] = None
+
+
+@dataclass(frozen=True)
+class MadeUp(Row):
+    """A row class with a column of each kind, which nothing else knows of."""
+
+    name: Annotated[str, Column(Text(), FREE, "")]
+    order: Annotated[int, Column(Whole(1, 5), FREE, "")]
+    group: Annotated[str, Column(Choice(("a", "it's")), FREE, "")] = "it's"
+    place: Annotated[tuple[float, float, float], Column(VectorKind(), FREE, "")] = (1.0, 2.0, 3.0)
+    way: Annotated[tuple[float, float, float] | None, Column(VectorKind(has_length=True), FREE, "")] = None
+    tint: Annotated[Color | None, Column(ColorKind(), FREE, "")] = None
+    model: Annotated[Row, Column(Variant(MODELS), FREE, "")] = field(default_factory=BlinnPhong)
+    near: Annotated[object, Column(PointOrName("lights"), FREE, "")] = "here"
+    all: Annotated[tuple[str, ...] | None, Column(References("lights"), FREE, "")] = None
+    inner: Annotated[Inner | None, Column(Nested(Inner), FREE, "")] = None
+    loose: Annotated[Loose | None, Column(Nested(Loose), FREE, "")] = None
+    paint: Annotated[Paint, Column(Nested(Paint, inline=True), FREE, "")] = field(default_factory=Paint)
+
+
+texts = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), min_size=1, max_size=9)
+made_up = st.builds(
+    MadeUp,
+    texts,
+    st.integers(1, 5),
+    st.sampled_from(["a", "it's"]),
+    vectors(),
+    st.none() | vectors().filter(any),
+    st.none() | st.just((1, 2, 3)),
+    st.sampled_from([model() for model in MODELS.values()]),
+    texts | vectors() | st.just('["a"]'),
+    st.none() | st.lists(texts, max_size=3),
+    st.none() | st.builds(Inner, st.just(-math.inf) | st.floats(-5, 5), st.booleans()),
+    st.none() | st.builds(Loose, st.none() | st.integers(0, 9)),
+)
+
+
+def through_a_table(row: Row) -> dict[str, SqlValue]:
+    """The values of a row as a table gives them back that was made for its class."""
+    table = table_of("rows", type(row))
+    connection = sqlite3.connect(":memory:")
+    connection.execute("CREATE TABLE surfaces (name TEXT UNIQUE)")
+    connection.execute(table.definition)
+    values = row_values(row)
+    marks = ", ".join("?" * len(values))
+    names = ", ".join(f'"{name}"' for name in values)
+    connection.execute(f"INSERT INTO rows ({names}) VALUES ({marks})", tuple(values.values()))
+    (back,) = connection.execute(f"SELECT {names} FROM rows").fetchall()
+    connection.close()
+    return dict(zip(values, back, strict=True))
+
+
+@given(made_up | lights() | surfaces("body"))
+def test_a_row_of_any_class_comes_back_from_its_table(row: Row) -> None:
+    assert made(type(row), row_table(type(row), through_a_table(row))) == row
+
+
+@pytest.mark.parametrize("cls", [Scene, View, Scalar, Light, Surface, Part, Flap, Flaps, MadeUp])
+def test_every_key_of_a_class_has_its_columns(cls: type[Row]) -> None:
+    held_elsewhere = {"mesh", "parts", "surfaces", "lights"} if cls is Scene else set()
+    found = {column.path[0] for column in columns_of(cls)}
+    assert found == keys_of(cls).keys() - held_elsewhere
+
+
+def test_a_table_fills_in_the_defaults_of_the_row() -> None:
+    connection = sqlite3.connect(":memory:")
+    connection.execute(table_of("rows", MadeUp).definition)
+    connection.execute("INSERT INTO rows (name, \"order\") VALUES ('new', 2)")
+    cursor = connection.execute("SELECT * FROM rows")
+    (row,) = cursor.fetchall()
+    values = dict(zip((each[0] for each in cursor.description), row, strict=True))
+    assert made(MadeUp, row_table(MadeUp, values)) == MadeUp("new", 2)
+
+
+def test_a_row_in_a_row_that_is_absent_has_no_infinite_limits() -> None:
+    values = row_values(MadeUp("plain", 1))
+    assert row_table(MadeUp, values).get("inner") is None
+    shut = row_values(MadeUp("shut", 1, inner=Inner(shut=True)))
+    assert (shut["inner_low"], shut["inner_shut"]) == (None, 1)
+    assert row_table(MadeUp, shut)["inner"] == {"low": -math.inf, "shut": True}
+
+
+def test_text_stands_as_it_is_and_lists_as_json() -> None:
+    assert [in_sql(each) for each in ("linear", ((0, 0.5), (1, 1)), '["x"]', True, None)] == [
+        "linear",
+        "[[0, 0.5], [1, 1]]",
+        '"[\\"x\\"]"',
+        1,
+        None,
+    ]

@@ -1,0 +1,73 @@
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+
+import pytest
+
+from autocolor import UsageError
+from autocolor.files.store.statements import answer_of, changes_of
+from autocolor.files.store.store_file import store_of
+from tests.autocolor.files.store.stores import small_scene
+
+ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT "
+
+
+@pytest.fixture
+def connection() -> Iterator[sqlite3.Connection]:
+    made = store_of(small_scene())
+    yield made
+    made.close()
+
+
+@pytest.mark.parametrize(
+    ("statement", "problem"),
+    [
+        ("SELECT * FROM light", "there is no table 'light'; did you mean 'lights'?"),
+        ("SELECT intensty FROM lights", "there is no column 'intensty'; did you mean 'intensity'?"),
+        ("SELECT lights.nam FROM lights", "there is no column 'lights.nam'; did you mean 'name'?"),
+        ("SELECT load_extension('x')", "a statement may not call the function 'load_extension'; "),
+        ("SELECT roud(1.5)", "a statement may not call the function 'roud'; did you mean 'round'?"),
+        (
+            "SELECT on FROM lights",
+            "cannot be understood near 'on'; as a column, write \"on\" with its quotes",
+        ),
+        ("SELEC * FROM lights", "a statement cannot be understood near 'SELEC'; correct it"),
+        ("SELECT * FROM", "a statement must be complete, and this one ends too early; complete it"),
+        ("SELECT 1; SELECT 2", "there must be one statement at a time, not several"),
+        ("  ; ", "a statement must not be empty; write one, as in SELECT"),
+        ("DELETE FROM lights", "must only read the tables, and this one changes lights; allow changes with"),
+        ("CREATE TABLE x (y)", "must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not"),
+        ("ATTACH 'x' AS y", "must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not"),
+        ("PRAGMA journal_mode = OFF", "must be a SELECT or, with --write"),
+        (
+            "SELECT hex(hex(hex(hex(replace(printf('%200000d', 1), ' ', 'abcdef')))))",
+            "a value must have at most",
+        ),
+    ],
+)
+def test_a_wrong_statement_is_told_in_a_sentence_with_what_to_do(
+    connection: sqlite3.Connection, statement: str, problem: str
+) -> None:
+    with pytest.raises(UsageError) as refused:
+        list(answer_of(connection, statement).rows)
+    assert problem in str(refused.value)
+
+
+@pytest.mark.parametrize("select", ["max(i) FROM n", "i FROM n WHERE i < 0"])
+def test_a_statement_that_runs_on_is_ended(connection: sqlite3.Connection, select: str) -> None:
+    with pytest.raises(UsageError, match=r"a statement must end within 0\.05 seconds, not run on; narrow it"):
+        list(answer_of(connection, ENDLESS + select, seconds=0.05).rows)
+
+
+def test_rows_come_as_they_are_asked_for(connection: sqlite3.Connection) -> None:
+    columns, rows = answer_of(connection, ENDLESS + "i, i FROM n")
+    assert columns == ("i", "i 2")
+    assert [next(rows) for _ in range(3)] == [(1, 1), (2, 2), (3, 3)]
+
+
+def test_what_a_statement_would_change_is_known_before_it_is_run(connection: sqlite3.Connection) -> None:
+    found = changes_of(connection, "UPDATE lights SET intensity = ?", [2.0])
+    assert found == {"lights": {sqlite3.SQLITE_UPDATE}}
+    assert connection.execute("SELECT DISTINCT intensity FROM lights").fetchall() == [(1.0,)]
+    assert changes_of(connection, "SELECT * FROM lights") == {}

@@ -1,0 +1,324 @@
+from __future__ import annotations
+
+import os
+import random
+import sqlite3
+import subprocess
+import sys
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from autocolor import InputError, Mesh, MissingInputError, OutputError, Scene, UsageError, WriteError
+from autocolor.files.scene_sources import read_scene
+from autocolor.files.scene_writing import write_scene
+from autocolor.files.store.store_file import read_store, store_bytes, write_store
+from autocolor.scene.creation import scene_of
+from tests.autocolor.files.store.stores import is_equal, run, small_scene, small_store, tables_of
+from tests.autocolor.strategies import scenes
+
+ONE_FILE = settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+
+
+@ONE_FILE
+@given(scene=scenes())
+def test_a_store_gives_the_scene_back_that_was_written(tmp_path: Path, scene: Scene) -> None:
+    path = tmp_path / "any.sqlite"
+    path.write_bytes(store_bytes(scene))
+    report = read_store(path)
+    assert is_equal(report.scene, scene)
+    assert report.repairs == report.created == ()
+
+
+@ONE_FILE
+@given(scene=scenes())
+def test_a_store_and_a_directory_become_each_other_table_by_table(tmp_path: Path, scene: Scene) -> None:
+    first, second = tmp_path / "first.sqlite", tmp_path / "second.sqlite"
+    first.write_bytes(store_bytes(scene.replace(name="folder")))
+    folder = tmp_path / "folder"
+    write_scene(folder, read_store(first).scene, overwrite=True)
+    second.write_bytes(store_bytes(read_scene(folder)))
+    assert tables_of(first) == tables_of(second)
+
+
+def test_scalars_of_the_mesh_and_missing_values_are_kept(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    assert is_equal(read_store(path).scene, small_scene())
+    query = "SELECT node, x, value FROM nodes LEFT JOIN node_scalars USING (node) WHERE scalar = 'stress'"
+    assert run(path, query)[2] == (3, 1.0, None)
+
+
+def test_the_tables_can_be_joined_and_selected_by_any_tool(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    query = (
+        "SELECT polygon, parts.surface, node4 FROM polygons JOIN parts ON parts.name = polygons.part"
+        " ORDER BY polygon"
+    )
+    assert run(path, query) == [(1, "body", 4), (2, "glass", None)]
+
+
+def test_a_store_of_nodes_and_polygons_alone_is_completed_as_any_mesh_is(tmp_path: Path) -> None:
+    path = tmp_path / "bare.db"
+    run(
+        path,
+        "CREATE TABLE nodes (node INTEGER, x, y, z)",
+        "CREATE TABLE polygons (polygon INTEGER, part TEXT, node1, node2, node3, node4)",
+        "INSERT INTO nodes VALUES (70, 0, 1, 1), (10, 0, 0, 0), (20, 1, 0, 0), (40, 1.5, 1, 0)",
+        "INSERT INTO polygons VALUES (5, 'roof', 10, 20, 70, NULL), (3, 'hood', 10, 20, 40, 70)",
+    )
+    report = read_store(path)
+    mesh = report.scene.mesh
+    assert mesh.part_names == ("hood", "roof")
+    assert mesh.node_numbers.tolist() == [[0, 1, 2, 3], [0, 1, 3, 3]]
+    assert mesh.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [1.5, 1, 0], [0, 1, 1]]
+    bare = scene_of(mesh, name="bare")
+    assert report.scene.equals(bare)
+    assert len(report.created) == 3
+
+
+@pytest.mark.parametrize(
+    ("statement", "problem"),
+    [
+        (
+            "UPDATE polygons SET node3 = 40 WHERE polygon = 2",
+            "polygons, row 2: node 40 is not in the node table (1 to 5); correct it",
+        ),
+        (
+            "UPDATE polygons SET part = 'hod' WHERE polygon = 1",
+            "polygons, row 1: part 'hod' is not in the part table; did you mean 'hood'?",
+        ),
+        (
+            "UPDATE parts SET surface = 'bodi' WHERE name = 'hood'",
+            "parts, row 1: surface 'bodi' is not in the surface table; did you mean 'body'?",
+        ),
+        (
+            "DELETE FROM nodes WHERE node = 5",
+            "polygons, row 2: node 5 is not in the node table (1 to 4); correct it",
+        ),
+        (
+            "UPDATE view SET direction_x = 1, direction_y = 0, direction_z = 0, target_x = 1, target_y = 2,"
+            " target_z = 3",
+            "view, row 1: it must have either a direction or a target; give one of them",
+        ),
+        (
+            "UPDATE surfaces SET object_color = 'rde' WHERE name = 'body'",
+            'surfaces, row 1: object_color must be "#rrggbb", a name such as "red", or three whole numbers'
+            " from 0 to 255, not 'rde'; did you mean 'red'?",
+        ),
+    ],
+)
+def test_a_refusal_names_the_table_the_row_and_what_to_do(
+    tmp_path: Path, statement: str, problem: str
+) -> None:
+    path = small_store(tmp_path)
+    run(path, statement)
+    with pytest.raises(InputError) as refused:
+        read_store(path)
+    assert f"small.sqlite: {problem}" in refused.value.problems
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "INSERT INTO nodes VALUES (9, 9e999, 0, 0)",
+        "INSERT INTO nodes VALUES (9, 'one', 0, 0)",
+        "UPDATE polygons SET node1 = NULL",
+        "UPDATE lights SET intensity = -1",
+        'UPDATE lights SET "on" = 2',
+        "UPDATE lights SET aim_x = NULL WHERE name = 'key'",
+        "UPDATE scene SET dither = 'on'",
+        "UPDATE surfaces SET model = 'gloss'",
+        "INSERT INTO scene DEFAULT VALUES",
+        "UPDATE lights SET name = 'key'",
+    ],
+)
+def test_the_tables_themselves_refuse_what_a_scene_would_refuse(tmp_path: Path, statement: str) -> None:
+    with pytest.raises(sqlite3.IntegrityError):
+        run(small_store(tmp_path), statement)
+
+
+@pytest.mark.parametrize("name", ["nodes", "polygons", "lights"])
+def test_a_view_of_the_name_of_a_table_is_refused_and_not_run(tmp_path: Path, name: str) -> None:
+    path = small_store(tmp_path)
+    run(path, f"ALTER TABLE {name} RENAME TO other", f"CREATE VIEW {name} AS SELECT * FROM other")
+    with pytest.raises(
+        InputError, match=f"{name} must be a table, not a view; make it a table, or rename it"
+    ):
+        read_store(path)
+
+
+def test_a_virtual_table_and_a_computed_column_are_refused_by_name(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "DROP TABLE mesh", "CREATE VIRTUAL TABLE mesh USING fts5(crease_angle)")
+    with pytest.raises(InputError, match="mesh must be a table, not a virtual table"):
+        read_store(path)
+    path = small_store(tmp_path, "other.sqlite")
+    run(path, "DROP TABLE mesh", "CREATE TABLE mesh (number, crease_angle AS (hex(zeroblob(1000000))))")
+    with pytest.raises(
+        InputError, match="mesh: a column must hold values, not compute them as 'crease_angle'"
+    ):
+        read_store(path)
+
+
+def test_what_others_keep_in_a_store_is_kept_and_not_run_when_it_is_saved_over(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(
+        path,
+        "CREATE TABLE notes (text)",
+        "INSERT INTO notes VALUES ('mine')",
+        "CREATE VIEW far AS SELECT * FROM nodes WHERE x > 0.9",
+        "CREATE INDEX by_part ON polygons (part)",
+        "CREATE TRIGGER evil AFTER DELETE ON lights BEGIN DELETE FROM notes; END",
+        "CREATE TRIGGER worse AFTER INSERT ON lights BEGIN DELETE FROM notes; END",
+    )
+    scene = read_store(path).scene.without_light("rim").replace(ambient=0.25)
+    write_store(path, scene, overwrite=True)
+    assert is_equal(read_store(path).scene, scene)
+    assert run(path, "SELECT * FROM notes") == [("mine",)]
+    names = {name for (name,) in run(path, "SELECT name FROM sqlite_master WHERE sql IS NOT NULL")}
+    assert {"notes", "far", "by_part", "evil", "worse"} <= names
+    assert run(path, "SELECT count(*) FROM far") == [(2,)]
+
+
+def test_what_others_keep_is_not_lost_where_it_does_not_fit(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "DELETE FROM polygons WHERE polygon = 2", "CREATE UNIQUE INDEX one ON polygons (node1)")
+    before = tables_of(path)
+    with pytest.raises(WriteError, match="what others keep in the store cannot be kept"):
+        write_store(path, small_scene(), overwrite=True)
+    assert tables_of(path) == before
+
+
+def test_a_damaged_store_is_written_anew(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    data = bytearray(path.read_bytes())
+    data[8192 : 8192 * 3] = b"\xff" * (8192 * 2)
+    path.write_bytes(data)
+    with pytest.raises(InputError, match="if it is damaged, bring a copy back, or rescue it"):
+        read_store(path)
+    write_store(path, small_scene(), overwrite=True)
+    assert is_equal(read_store(path).scene, small_scene())
+
+
+def test_a_store_that_exists_is_not_overwritten_unless_asked(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    before = path.read_bytes()
+    with pytest.raises(OutputError):
+        write_store(path, small_scene())
+    assert path.read_bytes() == before
+    with pytest.raises(UsageError, match=r"must be written to a file that ends in \.sqlite or \.db, not to"):
+        write_store(tmp_path / "small.txt", small_scene())
+
+
+def test_a_store_that_another_program_writes_to_is_left_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = small_store(tmp_path)
+    before = tables_of(path)
+    monkeypatch.setattr("autocolor.files.store.connections.SECONDS_OF_WAITING", 0.05)
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        with pytest.raises(WriteError, match="another program is writing to the store"):
+            write_store(path, small_scene(), overwrite=True)
+        with pytest.raises(InputError, match="another program is writing to the store"):
+            read_store(path)
+        other.execute("ROLLBACK")
+    assert tables_of(path) == before
+
+
+def test_what_another_program_wrote_beside_the_store_is_read_with_it(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("PRAGMA journal_mode = WAL")
+        other.execute("UPDATE scene SET ambient = 0.75")
+        assert os.path.getsize(f"{path}-wal") > 0
+        assert read_store(path).scene.ambient == 0.75
+
+
+def test_a_change_that_was_interrupted_is_taken_back(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    code = (
+        "import os, sqlite3, sys; c = sqlite3.connect(sys.argv[1], isolation_level=None);"
+        "c.execute('PRAGMA cache_size = 1'); c.execute('PRAGMA cache_spill = 1'); c.execute('BEGIN');"
+        "c.execute('DELETE FROM lights');"
+        "[c.execute('INSERT INTO nodes VALUES (?, 1, 1, 1)', (n,)) for n in range(100, 20000)]; os._exit(0)"
+    )
+    subprocess.run([sys.executable, "-c", code, str(path)], check=True, timeout=60)
+    assert os.path.exists(f"{path}-journal")
+    assert is_equal(read_store(path).scene, small_scene())
+
+
+def test_a_file_that_is_no_store_or_is_not_there_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "text.sqlite"
+    path.write_text("nodes")
+    with pytest.raises(InputError, match="a store must be an SQLite file"):
+        read_store(path)
+    with pytest.raises(MissingInputError):
+        read_store(tmp_path / "none.sqlite")
+    empty = tmp_path / "empty.sqlite"
+    run(empty, "CREATE TABLE node (x)")
+    with pytest.raises(
+        InputError, match="must have the tables nodes and polygons, and nodes and polygons are"
+    ):
+        read_store(empty)
+
+
+def test_a_store_that_is_damaged_anywhere_gives_a_scene_or_a_refusal(tmp_path: Path) -> None:
+    data = store_bytes(small_scene())
+    chance = random.Random(12)
+    path = tmp_path / "damaged.sqlite"
+    read = refused = 0
+    for number in range(200):
+        changed = bytearray(data)
+        if number % 4 == 0:
+            del changed[chance.randrange(len(data)) :]
+        for _ in range(chance.choice((1, 1, 3, 30))):
+            if changed:
+                changed[chance.randrange(len(changed))] = chance.randrange(256)
+        if number % 5 == 0 and len(changed) > 200:
+            # In the header and the schema.
+            changed[chance.randrange(16, 200)] = chance.randrange(256)
+        path.write_bytes(changed)
+        try:
+            scene = read_store(path).scene
+        except InputError as error:
+            refused += all(problem.startswith("damaged.sqlite") for problem in error.problems)
+            continue
+        read += 1
+        assert np.isfinite(scene.mesh.coordinates).all()
+    assert read + refused == 200
+    assert read > 20 < refused
+
+
+def test_a_text_that_is_too_long_is_refused_before_it_is_read(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "UPDATE scene SET name = hex(zeroblob(2000000))")
+    with pytest.raises(InputError, match="a value must have at most 1,048,576 bytes"):
+        read_store(path)
+
+
+def test_polygons_without_area_and_parts_without_polygons_are_kept(tmp_path: Path) -> None:
+    mesh = Mesh(np.zeros((3, 3)), np.array([[0, 0, 1, 2], [1, 1, 1, 1]]), np.array([1, 1]), ("none", "all"))
+    scene = scene_of(mesh)
+    path = tmp_path / "flat.sqlite"
+    write_store(path, scene)
+    assert is_equal(read_store(path).scene, scene)
+
+
+def test_a_name_that_utf_8_cannot_hold_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="a name in a store must be text in UTF-8; rename it"):
+        write_store(tmp_path / "odd.sqlite", small_scene().replace(name="\ud800"))
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_mesh_of_many_rows_comes_back_the_same(tmp_path: Path) -> None:
+    rows = 70_000
+    coordinates = np.random.default_rng(3).normal(size=(rows + 2, 3))
+    first = np.arange(rows)
+    scene = scene_of(Mesh(coordinates, np.stack([first, first + 1, first + 2], axis=1)))
+    path = tmp_path / "many.sqlite"
+    write_store(path, scene)
+    assert is_equal(read_store(path).scene, scene)

@@ -1,0 +1,136 @@
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Scene, render, scene_of
+from autocolor.mapping.display_image import DisplayImage, display_image
+from autocolor.mapping.legend import (
+    BAR_ELEMENTS,
+    CHARACTER,
+    GROUND,
+    INK,
+    LETTER_LINES,
+    MOST_TITLE,
+    Legend,
+    laid_out,
+    legend,
+    title_lines,
+)
+from autocolor.mapping.level_ranges import SCREENS
+from autocolor.mapping.scalar_bands import Bands
+from autocolor.scene.scalars.color_scales import scale_colors
+from tests.autocolor.meshes import sphere
+
+
+def ball(**scalar: Any) -> Scene:
+    return scene_of(sphere(12, 8)).with_scalar(**{"name": "z", **scalar})
+
+
+def shown(scene: Scene, lines: int = 480, elements: int = 640) -> DisplayImage:
+    return display_image(scene, render(scene, lines, elements))
+
+
+def legend_of(image: DisplayImage) -> Legend:
+    found = legend(image)
+    assert found is not None
+    return found
+
+
+def test_the_bar_has_the_brightest_word_of_each_band_from_the_lowest_at_the_bottom() -> None:
+    image = shown(ball(scale="turbo", bands=7, shades=3))
+    (first, _), (bands,) = *image.ranges.values(), image.bands.values()
+    bar = [each for each in legend_of(image).swatches if each.word < SCREENS.first]
+    assert [each.word for each in bar] == [first + bands.brightest(band) for band in range(7)]
+    assert all(lower.top == upper.bottom + 1 for lower, upper in pairwise(bar))
+    assert {each.right - each.left + 1 for each in bar} == {BAR_ELEMENTS}
+    assert (image.entries[[each.word for each in bar]] == scale_colors("turbo", 7)).all()
+
+
+def test_it_tells_the_name_and_the_limits_beside_the_ends_of_the_bar() -> None:
+    found = legend_of(shown(ball(limits=[-2, 6], bands=8)))
+    bar = [each for each in found.swatches if each.word < SCREENS.first]
+    title, *numbers = found.labels
+    assert title.text == "z"
+    assert [each.text for each in numbers] == ["-2", "-1", "0", "1", "2", "3", "4", "5", "6"]
+    for number, end in ((numbers[0], bar[0].bottom + 1), (numbers[-1], bar[-1].top)):
+        assert abs(number.top + LETTER_LINES // 2 - end) <= 1
+
+
+def test_large_numbers_are_told_in_millions() -> None:
+    labels = legend_of(shown(ball(limits=[0, 8e6], bands=2))).labels
+    assert [each.text for each in labels] == ["z", "x 1e6", "0", "4", "8"]
+
+
+def test_colors_beyond_the_limits_are_told_where_they_are_used() -> None:
+    texts = [each.text for each in legend_of(shown(ball(limits=[-1, 1], below="red", above="blue"))).labels]
+    assert {"above", "below"} <= set(texts)
+    assert not {"above", "below", "missing"} & {each.text for each in legend_of(shown(ball())).labels}
+
+
+@given(st.integers(2, 256), st.sampled_from(["z", "gaussian curvature", "x" * 40, "a b c d e " * 9]))
+def test_all_of_it_is_inside_its_frame_and_the_frame_inside_the_picture(bands: int, name: str) -> None:
+    found = laid_out(name, Bands(-1234.5, 6789.1, bands, 1, True, True, True), 1, (480, 640), False)
+    assert found is not None
+    frame = found.swatches[0]
+    assert frame.left >= 0
+    assert frame.top >= 0
+    assert frame.right < 640
+    assert frame.bottom < 464
+    for swatch in found.swatches[1:]:
+        assert frame.left < swatch.left <= swatch.right < frame.right
+        assert frame.top < swatch.top <= swatch.bottom < frame.bottom
+    for label in found.labels:
+        assert frame.left < label.left
+        assert label.left + CHARACTER * len(label.text) - 1 < frame.right
+        assert frame.top < label.top
+        assert label.top + LETTER_LINES - 1 < frame.bottom
+
+
+def test_its_ground_and_letters_are_words_of_the_screens() -> None:
+    found = legend_of(shown(ball()))
+    assert [each.word for each in found.swatches[:2]][1] == GROUND
+    assert all(word >= SCREENS.first for word in (GROUND, INK))
+
+
+def test_there_is_none_without_a_scalar_nor_where_it_is_switched_off_nor_in_a_small_picture() -> None:
+    scene = ball()
+    assert legend(shown(scene.without_scalar())) is None
+    assert legend(shown(scene.with_scalar(legend=False))) is None
+    assert legend(shown(scene, 48, 64)) is None
+    assert legend(shown(scene.with_scalar(surfaces=[]))) is None
+
+
+def test_another_color_scale_leaves_it_and_other_limits_change_its_numbers_alone() -> None:
+    scene = ball(limits=[0, 1])
+    picture = render(scene, 480, 640)
+    found = legend_of(display_image(scene, picture))
+    assert legend_of(display_image(scene.with_scalar(scale="magma"), picture)) == found
+    other = legend_of(display_image(scene.with_scalar(limits=[0, 2]), picture))
+    assert [each.word for each in other.swatches] == [each.word for each in found.swatches]
+    assert other.labels != found.labels
+
+
+def test_it_stands_where_there_is_room() -> None:
+    image = shown(ball())
+    right, left = legend_of(image).swatches[0], legend(image, at_left=True)
+    beside = legend(image, end=504)
+    assert left is not None
+    assert beside is not None
+    assert right.right == 640 - 9
+    assert left.swatches[0].left == 8
+    assert beside.swatches[0].right == 504 - 9
+    assert beside.has(504 - 9, 20)
+    assert not beside.has(504 - 8, 20)
+
+
+@pytest.mark.parametrize("name", ["", "stress", "von mises stress of load case two", "w" * 30])
+def test_a_title_has_at_most_three_lines_that_fit(name: str) -> None:
+    lines = title_lines(name)
+    assert 1 <= len(lines) <= 3
+    assert all(len(line) <= MOST_TITLE for line in lines)
+    assert name.startswith(lines[0].removesuffix(".."))
