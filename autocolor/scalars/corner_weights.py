@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Real, RealArray, cross
+from autocolor.arrays import Floats, Indices, Real, RealArray, cross, lengths
 
 ROUNDING: Final = 1e-9
 """How much a corner may turn inward, of the largest turn, and still be straight."""
@@ -65,7 +65,7 @@ def _weigh_in_triangles(
 ) -> None:
     """Fill in the weights of the corners, (3, 3, triangles), at each point, up to a factor."""
     outline = _outline(corners, points.dtype)
-    normals = cross(outline.sides[:, 0], outline.sides[:, 1])
+    normals = _unit(cross(outline.sides[:, 0], outline.sides[:, 1]))
     # The weight of a corner is the area on the opposite side.
     weights[2], weights[0], weights[1] = _areas(outline, normals, counts, points)
 
@@ -76,7 +76,7 @@ def _weigh_in_quads(
     """Fill in the weights of the corners, (3, 4, quads), at each point, up to a factor."""
     outline = _outline(corners, points.dtype)
     sides = outline.sides
-    normals = cross(sides[:, 0] + sides[:, 1], sides[:, 1] + sides[:, 2])
+    normals = _unit(cross(sides[:, 0] + sides[:, 1], sides[:, 1] + sides[:, 2]))
     areas = _areas(outline, normals, counts, points)
     # How much the outline turns at each corner: the area of the triangle with its two neighbors.
     turns = np.einsum("kp,kcp->cp", normals, cross(np.roll(sides, 1, axis=1), sides))
@@ -107,6 +107,14 @@ def _weights_at_notches(corners: Floats, notch: Indices, points: RealArray[Real]
     _weigh_in_triangles(from_notch[:, three, column], np.ones(len(notch), np.intp), points, in_triangles)
     weights[turned[three, column], column] = in_triangles
     return weights
+
+
+def _unit(normals: Floats) -> Floats:
+    """The normals in unit length, so that areas in a sliver are not too small for float32; 0 stays 0."""
+    sizes = lengths(normals)
+    sizes[sizes == 0] = 1.0
+    normals /= sizes
+    return normals
 
 
 class _Outline(NamedTuple):
