@@ -12,11 +12,14 @@ row by row. A repetition of several rows at once takes three times as long.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, Real, RealArray, cross
+from autocolor.arrays import Floats, Indices, Real, RealArray, cross, lengths
+
+ROUNDING: Final = 1e-9
+"""How much a corner may turn inward, of the largest turn, and still be straight."""
 
 
 def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) -> RealArray[Real]:
@@ -28,13 +31,20 @@ def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) ->
     weights = np.zeros((4, points.shape[1]), points.dtype)
     # A side without length makes a triangle; it should be the one between the last two corners.
     no_side = (corners == np.roll(corners, -1, axis=1)).all(axis=0)
-    triangles = no_side.any(axis=0)
-    if not triangles.any():
-        _weigh_in_quads(corners, counts, points, weights)
-    elif no_side[2].all():
+    if no_side[2].all():
         _weigh_in_triangles(corners[:, :3], counts, points, weights)
-    else:
-        _weigh_in_both(corners, counts, points, weights, no_side)
+        return _normalized(weights)
+    # Measured: where some are triangles, to weigh these once more takes less than to keep them apart.
+    _weigh_in_quads(corners, counts, points, weights)
+    triangles = np.flatnonzero(no_side.any(axis=0))
+    if len(triangles):
+        three = (no_side[:, triangles].argmax(axis=0) + np.arange(2, 5)[:, None]) % 4
+        columns = np.flatnonzero(np.repeat(no_side.any(axis=0), counts))
+        within = np.zeros((3, len(columns)), points.dtype)
+        counts = counts[triangles]
+        _weigh_in_triangles(corners[:, three, triangles], counts, np.take(points, columns, axis=1), within)
+        weights[:, columns] = 0
+        weights[np.repeat(three, counts, axis=1), columns] = within
     return _normalized(weights)
 
 
@@ -50,30 +60,12 @@ def _normalized(weights: RealArray[Real]) -> RealArray[Real]:
     return weights
 
 
-def _weigh_in_both(
-    corners: Floats, counts: Indices, points: RealArray[Real], weights: RealArray[Real], no_side: Booleans
-) -> None:
-    """Fill in the weights in triangles, which have `no_side` between two of their corners, and in quads."""
-    triangles = no_side.any(axis=0)
-    places = (no_side[:, triangles].argmax(axis=0) + np.arange(2, 5)[:, None]) % 4
-    quad_places = np.repeat(np.arange(4)[:, None], np.count_nonzero(~triangles), axis=1)
-    for chosen, at, weigh in (
-        (triangles, places, _weigh_in_triangles),
-        (~triangles, quad_places, _weigh_in_quads),
-    ):
-        columns = np.flatnonzero(np.repeat(chosen, counts))
-        within = np.zeros((len(at), len(columns)), points.dtype)
-        own = np.compress(chosen, corners, axis=2)[:, at, np.arange(at.shape[1])]
-        weigh(own, counts[chosen], np.take(points, columns, axis=1), within)
-        weights[np.repeat(at, counts[chosen], axis=1), columns] = within
-
-
 def _weigh_in_triangles(
     corners: Floats, counts: Indices, points: RealArray[Real], weights: RealArray[Real]
 ) -> None:
     """Fill in the weights of the corners, (3, 3, triangles), at each point, up to a factor."""
     outline = _outline(corners, points.dtype)
-    normals = cross(outline.sides[:, 0], outline.sides[:, 1])
+    normals = _unit(cross(outline.sides[:, 0], outline.sides[:, 1]))
     # The weight of a corner is the area on the opposite side.
     weights[2], weights[0], weights[1] = _areas(outline, normals, counts, points)
 
@@ -84,14 +76,14 @@ def _weigh_in_quads(
     """Fill in the weights of the corners, (3, 4, quads), at each point, up to a factor."""
     outline = _outline(corners, points.dtype)
     sides = outline.sides
-    normals = cross(sides[:, 0] + sides[:, 1], sides[:, 1] + sides[:, 2])
+    normals = _unit(cross(sides[:, 0] + sides[:, 1], sides[:, 1] + sides[:, 2]))
     areas = _areas(outline, normals, counts, points)
     # How much the outline turns at each corner: the area of the triangle with its two neighbors.
     turns = np.einsum("kp,kcp->cp", normals, cross(np.roll(sides, 1, axis=1), sides))
     for corner, turn in enumerate(turns):
         np.multiply(areas[(corner + 1) % 4], areas[(corner + 2) % 4], out=weights[corner])
         weights[corner] *= np.repeat(np.maximum(turn, 0).astype(points.dtype), counts)
-    notched = turns.min(axis=0, initial=0) < 0
+    notched = turns.min(axis=0, initial=0) < -ROUNDING * turns.max(axis=0, initial=0)
     if notched.any():
         columns = np.flatnonzero(np.repeat(notched, counts))
         quads = np.repeat(np.arange(len(counts)), counts)[columns]
@@ -115,6 +107,14 @@ def _weights_at_notches(corners: Floats, notch: Indices, points: RealArray[Real]
     _weigh_in_triangles(from_notch[:, three, column], np.ones(len(notch), np.intp), points, in_triangles)
     weights[turned[three, column], column] = in_triangles
     return weights
+
+
+def _unit(normals: Floats) -> Floats:
+    """The normals in unit length, so that areas in a sliver are not too small for float32; 0 stays 0."""
+    sizes = lengths(normals)
+    sizes[sizes == 0] = 1.0
+    normals /= sizes
+    return normals
 
 
 class _Outline(NamedTuple):

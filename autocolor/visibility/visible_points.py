@@ -153,12 +153,8 @@ class VisiblePoints:
     @property
     def world_points(self) -> Floats:
         """The points in world coordinates, (n, 3), in the order of `pixels`."""
-        return self.world_rows(slice(None)).T
-
-    def world_rows(self, pixels: slice) -> Floats:
-        """The world coordinates of some points, (3, n)."""
-        in_camera = (self.rows[POINT, pixels].astype(np.float64) + self.middle[:, None]) * self.unit
-        points: Floats = self.view.axes.T @ in_camera + np.array(self.view.eye)[:, None]
+        in_camera = (self.rows[POINT].T.astype(np.float64) + self.middle) * self.unit
+        points: Floats = in_camera @ self.view.axes + np.array(self.view.eye)
         return points
 
     @property

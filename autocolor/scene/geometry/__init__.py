@@ -1,4 +1,4 @@
-"""What is computed from the node table and the polygon table alone: normals, fans, planes that are shared.
+"""What is computed from the node table and the polygon table alone: normals, fans, curvatures, shared planes.
 
 Uses the ground, and of `scene` only its own rooms.
 """

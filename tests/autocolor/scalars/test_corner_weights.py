@@ -101,6 +101,18 @@ def test_weights_of_any_polygon_at_any_point_are_shares(
     assert weights.sum(axis=1) == pytest.approx(1)
 
 
+@pytest.mark.parametrize("thickness", [1e-3, 1e-6, 1e-9])
+def test_a_sliver_has_weights_in_single_precision(thickness: float) -> None:
+    corners = np.array([(0.0, 0.0), (2.0, 0.0), (1.5, 1.0), (0.5, 1.0)]) * (1, thickness)
+    corners = np.concatenate([corners, np.zeros((4, 1))], axis=1)
+    wanted = np.array([0.4, 0.3, 0.2, 0.1])
+    place = (wanted @ corners)[:, None].astype(np.float32)
+    weights = corner_weights(corners.T[:, :, None], np.array([1]), place)[:, 0]
+    assert weights.dtype == np.float32
+    assert weights @ corners[:, 0] == pytest.approx(place[0, 0], rel=1e-5)
+    assert weights @ corners[:, 1] == pytest.approx(place[1, 0], rel=1e-5)
+
+
 def test_a_warped_quad_is_seen_along_its_normal() -> None:
     warped = [(0.0, 0.0, 0.1), (1.0, 0.0, -0.1), (1.0, 1.0, 0.1), (0.0, 1.0, -0.1)]
     flat = [(x, y, 0.0) for x, y, _ in warped]
