@@ -93,9 +93,11 @@ def legend(image: DisplayImage, end: int | None = None, at_left: bool = False) -
     in the upper left one, or as if the picture ended before an element `end`.
     """
     scalar = image.scene.scalar
+    if scalar is None or not scalar.legend:
+        return None
     seen = {image.picture.surfaces[each.surface_number - 1] for each in image.picture.slices}
     found = {name: bands for name, bands in image.bands.items() if name in seen}
-    if scalar is None or not scalar.legend or not found:
+    if not found:
         return None
     lines, elements = image.words.shape
     # A surface where a value is missing has all the bands that there are.

@@ -7,7 +7,7 @@
 
 | screen | words | borrowed entries |
 |---|---|---|
-| picture, lights, reflectance, mapping | all, `SCREENS` over the picture | none |
+| picture, lights, reflectance, mapping, scalar | all, `SCREENS` over the picture | none |
 | light and view | `SCREENS`; all in its small picture | none |
 | color mixing | `SCREENS`; the chosen surface's, in a small picture and a bar | ramps and swatches |
 | light blending | all, and the chosen surface's again in a bar, and `SCREENS` | none |

@@ -20,7 +20,8 @@ from tests.autocolor.sessions import SMALL, car
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("journal")
-    autocolor.write_scene(folder / "car", car())
+    # Without scalars, which OBJ cannot hold, so that the mesh is a text.
+    autocolor.write_scene(folder / "car", car().replace(mesh=car().mesh.with_scalars()))
     return folder
 
 
