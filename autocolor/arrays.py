@@ -6,7 +6,7 @@ Vectors stand in three rows, one for each axis, so that numpy works on long rows
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final, TypeVar
 
 import numpy as np
@@ -30,11 +30,20 @@ Booleans = NDArray[np.bool_]
 Bytes = NDArray[np.uint8]
 """Surface numbers, components of colors, bytes of files."""
 
+RasterPlaces = NDArray[np.int16]
+"""Lines and elements of a raster, which has at most 16,384 of each, for each of many nodes."""
+
+LowBits = NDArray[np.uint32]
+"""The low bits of hashes."""
+
 Words = NDArray[np.uint16]
 """Words of the display."""
 
 AnyArray = NDArray[Any]
 """An array whose element type is not known, or is checked elsewhere."""
+
+Scratch = Callable[[tuple[int, ...], type[Any]], AnyArray]
+"""What gives an array of a shape and a type to work in, such as `np.empty`, or one that a file backs."""
 
 Real = TypeVar("Real", np.float32, np.float64)
 

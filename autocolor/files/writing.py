@@ -6,8 +6,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import ramtek_emu
@@ -23,6 +23,27 @@ def write_atomically(path: str | os.PathLike[str], data: bytes, *, overwrite: bo
     """
     with _refusals_of_this_package():
         writing.write_atomically(path, data, overwrite=overwrite)
+
+
+def write_together(
+    files: Iterable[tuple[Path, Iterable[bytes]]],
+    *,
+    overwrite: bool,
+    before_names: Callable[[], None] = lambda: None,
+) -> None:
+    """Write files piece by piece, and give all of them their names when they are whole, the last one last.
+
+    `before_names` is called in between. Raises OutputError and WriteError as `write_atomically` does.
+    """
+    with _refusals_of_this_package(), ExitStack() as stack:
+        outputs = []
+        for path, pieces in files:
+            outputs.append(stack.enter_context(writing.Output(path, overwrite=overwrite)))
+            for piece in pieces:
+                outputs[-1].write(piece)
+        before_names()
+        for output in outputs:
+            output.keep()
 
 
 def refuse_output(path: str | os.PathLike[str], *, overwrite: bool) -> None:

@@ -157,8 +157,8 @@ class Mesh(Immutable):
     @cached_property
     def parts_in_use(self) -> tuple[int, ...]:
         """The part numbers that have a polygon."""
-        counts = np.bincount(self.part_numbers, minlength=len(self.part_names))
-        return tuple(np.flatnonzero(counts).tolist())
+        used = used_rows(self.part_numbers[None], len(self.part_names))
+        return tuple(np.flatnonzero(used).tolist())
 
     @property
     def edge_count(self) -> int:

@@ -12,9 +12,8 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from autocolor.arrays import Booleans, Indices, chunks, least_of_four, most_of_four
+from autocolor.arrays import Booleans, Indices, RasterPlaces, chunks, least_of_four, most_of_four
 from autocolor.scene.geometry.used_rows import used_rows
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
@@ -23,9 +22,6 @@ from autocolor.visibility.raster import Raster, left_center, on_raster, right_ce
 
 POLYGONS_AT_ONCE: Final = 1 << 15
 NODES_AT_ONCE: Final = 1 << 14
-
-Places = NDArray[np.int16]
-"""Lines and elements of a raster, which has at most 16,384 of each."""
 
 
 class NodePlaces(NamedTuple):
@@ -36,9 +32,9 @@ class NodePlaces(NamedTuple):
     `nearest` is the least depth.
     """
 
-    line: Places
-    left: Places
-    right: Places
+    line: RasterPlaces
+    left: RasterPlaces
+    right: RasterPlaces
     before: Booleans | None
     nearest: float
 

@@ -45,7 +45,8 @@ class MeshFormat:
     the first file whether it may have this format.
 
     `written` makes the content of a single file; `write` writes the files of a format of several into an
-    empty folder. `holds` are the things beside nodes and polygons that are read back then, of HELD.
+    empty folder. `holds` are the things beside nodes and polygons that are read back then, of HELD. Files
+    that are `mapped` into memory are read page by page, so that their size has no limit.
     """
 
     name: str
@@ -57,6 +58,7 @@ class MeshFormat:
     written: Callable[[Mesh], bytes] | None = None
     write: Callable[[Path, Mesh], object] | None = None
     holds: frozenset[str] = frozenset(HELD)
+    mapped: bool = False
 
 
 REGISTRY: Final = Registry[MeshFormat](__name__.rpartition(".")[0])

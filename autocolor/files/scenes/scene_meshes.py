@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import read_mesh
+from autocolor.files.meshes.formats import format_of_files, read_mesh
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
 from autocolor.files.repair.placement import SCALES, UPS, Placement
@@ -89,7 +89,7 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
         and (source := _source(problems, ("mesh", row), table, folder, outside)) is not None
     ]
     crease_angle = _crease_angle(problems, sources)
-    size = sum(_size(file) for source in sources for file in source.files.values())
+    size = sum(_size(file) for source in sources for file in _read_whole(source.files))
     if size > LARGEST_MESH_FILE:
         problems.note(
             ("mesh",),
@@ -153,6 +153,12 @@ def _crease_angle(problems: SceneProblems, sources: list[Source]) -> float | Non
                 f"must be the same in all meshes, {given[0][0]:g} as before, not {angle:g}; give one of them",
             )
     return given[0][0] if given else None
+
+
+def _read_whole(files: Mapping[str, Path]) -> Iterable[Path]:
+    """Those of the files of a mesh that are read whole, and not mapped into memory."""
+    found = format_of_files(files)
+    return () if found is not None and found.mapped else files.values()
 
 
 def _size(path: Path) -> int:

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Singles, chunks, cross, lengths
+from autocolor.arrays import Floats, Indices, Scratch, Singles, chunks, cross, lengths
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.geometry.fans import fans_of_corners, places_of_corners
 from autocolor.scene.geometry.union_find import group_numbers, unite
@@ -39,22 +39,34 @@ class NodeNormals(Immutable):
 
 
 def node_normals(
-    coordinates: Floats, node_numbers: Indices, part_numbers: Indices, crease_angle: float = CREASE_ANGLE
+    coordinates: Floats,
+    node_numbers: Indices,
+    part_numbers: Indices,
+    crease_angle: float = CREASE_ANGLE,
+    scratch: Scratch = np.empty,
 ) -> NodeNormals:
-    """The normals at the corners of the polygons; a polygon without area adds nothing to any."""
+    """The normals at the corners of the polygons; a polygon without area adds nothing to any.
+
+    `scratch` gives the arrays to work in, and those of the result: for a large mesh files may back them.
+    """
     coordinate_rows, node_rows = np.ascontiguousarray(coordinates.T), np.ascontiguousarray(node_numbers.T)
-    normals, angles = _normals_and_angles(coordinate_rows, node_rows)
-    places = places_of_corners(coordinate_rows, node_rows)
-    fans, opposite = fans_of_corners(places, part_numbers, normals, crease_angle)
+    normals, angles = _normals_and_angles(coordinate_rows, node_rows, scratch)
+    places = places_of_corners(coordinate_rows, node_rows, scratch)
+    fans, opposite = fans_of_corners(places, part_numbers, normals, crease_angle, scratch)
+    del places
 
     # Sum the normals of each fan, weighted by the angles.
-    vectors, numbers = _weighted_sums(fans, normals, angles)
+    vectors, numbers = _weighted_sums(fans, normals, angles, scratch)
+    del angles, fans
     if opposite:
         vectors, united = _united_with_opposite(vectors, opposite)
-        numbers = united[numbers]
+        for chunk in chunks(numbers.shape[1], POLYGONS_AT_ONCE):
+            numbers[:, chunk] = united[numbers[:, chunk]]
 
     # Give a fan whose normals cancel out the normal of one of its polygons.
-    sizes = lengths(vectors)
+    sizes = scratch(vectors.shape[1:], np.float64)
+    for chunk in chunks(len(sizes), POLYGONS_AT_ONCE):
+        sizes[chunk] = lengths(vectors[:, chunk])
     canceled = np.flatnonzero(sizes < 1e-9)
     if len(canceled):
         polygon_of_fan = np.zeros(vectors.shape[1], np.intp)
@@ -64,24 +76,32 @@ def node_normals(
         vectors[:, canceled] = normals[:, polygon_of_fan[canceled]]
         vectors[2, canceled[~vectors[:, canceled].any(axis=0)]] = 1.0
         sizes[canceled] = 1.0
-    vectors /= sizes
-    return NodeNormals(read_only(vectors.astype(np.float32).T), read_only(numbers.T))
+    singles: Singles = scratch(vectors.shape, np.float32)
+    for chunk in chunks(len(sizes), POLYGONS_AT_ONCE):
+        singles[:, chunk] = vectors[:, chunk] / sizes[chunk]
+    return NodeNormals(read_only(singles.T), read_only(numbers.T))
 
 
-def _normals_and_angles(coordinate_rows: Floats, node_rows: Indices) -> tuple[Floats, Floats]:
+def _normals_and_angles(
+    coordinate_rows: Floats, node_rows: Indices, scratch: Scratch
+) -> tuple[Floats, Floats]:
     """The normals of the polygons, (3, polygons), and the angles at their corners, (4, polygons)."""
-    normals, angles = np.empty((3, node_rows.shape[1])), np.empty(node_rows.shape)
-    for chunk in chunks(node_rows.shape[1], POLYGONS_AT_ONCE):
+    count = node_rows.shape[1]
+    normals, angles = scratch((3, count), np.float64), scratch((4, count), np.float64)
+    for chunk in chunks(count, POLYGONS_AT_ONCE):
         corners = np.take(coordinate_rows, node_rows[:, chunk], axis=1)
         normals[:, chunk] = polygon_normals(corners)
         angles[:, chunk] = _corner_angles(corners)
     return normals, angles
 
 
-def _weighted_sums(fans: Indices, normals: Floats, angles: Floats) -> tuple[Floats, Indices]:
+def _weighted_sums(
+    fans: Indices, normals: Floats, angles: Floats, scratch: Scratch
+) -> tuple[Floats, Indices]:
     """The sums of the weighted normals of each fan, (3, fans), and the fan of each corner, (4, polygons)."""
-    sums = np.zeros((3, int(fans.max(initial=-1)) + 1))
-    numbers = np.empty(angles.shape, np.intp)
+    sums = scratch((3, int(fans.max(initial=-1)) + 1), np.float64)
+    sums[:] = 0.0
+    numbers: Indices = scratch(angles.shape, np.intp)
     for chunk in chunks(angles.shape[1], POLYGONS_AT_ONCE):
         fan = fans[4 * chunk.start : 4 * chunk.stop]
         numbers[:, chunk] = fan.reshape(-1, 4).T

@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Indices, chunks
+from autocolor.arrays import Indices, Scratch, chunks
 
 AT_ONCE: Final = 1 << 15
 
@@ -27,14 +27,19 @@ def unite(parents: Indices, one: Indices, other: Indices) -> None:
         np.minimum.at(parents, np.maximum(one, other), np.minimum(one, other))
 
 
-def group_numbers(parents: Indices) -> Indices:
+def group_numbers(parents: Indices, scratch: Scratch = np.empty) -> Indices:
     """The group of each item; groups are numbered from 0 in the order of their roots."""
-    numbers = np.cumsum(parents == np.arange(len(parents)))
-    numbers -= 1
-    groups = np.empty_like(parents)
+    groups: Indices = scratch(parents.shape, parents.dtype.type)
+    count = 0
     for chunk in chunks(len(parents), AT_ONCE):
         items = np.arange(chunk.start, chunk.stop)
-        groups[items] = numbers[roots_of(parents, items)]
+        is_root = parents[chunk] == items
+        numbers = np.cumsum(is_root)
+        groups[chunk] = numbers + (count - 1)
+        count += int(numbers[-1])
+        # A root is the lowest of its group, so that it has its number by now.
+        others = items[~is_root]
+        groups[others] = groups[roots_of(parents, others)]
     return groups
 
 

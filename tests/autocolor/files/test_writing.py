@@ -2,12 +2,13 @@ from __future__ import annotations
 
 import errno
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from autocolor.errors import AutocolorError, OutputError, WriteError
-from autocolor.files.writing import write_atomically
+from autocolor.files.writing import write_atomically, write_together
 
 
 def test_a_new_file_has_the_bytes_and_nothing_stands_beside_it(tmp_path: Path) -> None:
@@ -134,3 +135,27 @@ def test_a_file_that_came_meanwhile_is_not_replaced(tmp_path: Path, monkeypatch:
     with pytest.raises(OutputError, match="exists"):
         write_atomically(path, b"new", overwrite=False)
     assert path.read_bytes() == b"other"
+
+
+def test_files_written_together_get_their_names_when_all_are_whole(tmp_path: Path) -> None:
+    seen: list[list[str]] = []
+
+    def pieces(fails: bool) -> Iterator[bytes]:
+        yield b"one"
+        if fails:
+            raise WriteError("the disk is full")
+        yield b"two"
+
+    def look() -> None:
+        seen.append([path.name for path in tmp_path.iterdir() if path.suffix == ".npy"])
+
+    files = [tmp_path / "a.npy", tmp_path / "b.npy"]
+    with pytest.raises(WriteError, match="the disk is full"):
+        write_together([(path, pieces(path == files[1])) for path in files], overwrite=False)
+    assert list(tmp_path.iterdir()) == []
+    write_together([(path, pieces(False)) for path in files], overwrite=False, before_names=look)
+    assert seen == [[]]
+    assert [path.read_bytes() for path in files] == [b"onetwo"] * 2
+    with pytest.raises(OutputError, match="an output must be a new file"):
+        write_together([(files[0], [b""])], overwrite=False)
+    assert files[0].read_bytes() == b"onetwo"

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from autocolor.arrays import Booleans, Floats, Indices, Numbers, chunks, cross, dot, lengths
+from autocolor.arrays import Booleans, Floats, Indices, LowBits, Numbers, chunks, cross, dot, lengths
 from autocolor.scene.geometry.planes.scaled_nodes import ScaledNodes
 from autocolor.scene.geometry.union_find import unite
 
@@ -100,7 +99,7 @@ class PlaneCells:
     `widths` is (polygons,).
     """
 
-    hashes: Numbers | NDArray[np.uint32]
+    hashes: Numbers | LowBits
     widths: Floats
 
     def keys(self, nodes: ScaledNodes, node_rows: Indices, polygons: Indices, grid: int = 0) -> Numbers:
@@ -140,7 +139,7 @@ def coplanar_groups(nodes: ScaledNodes, node_rows: Indices, cells: PlaneCells, t
     return parents
 
 
-def _beside_grounds(hashes: Numbers | NDArray[np.uint32], left: Booleans, grounds: Indices) -> Indices:
+def _beside_grounds(hashes: Numbers | LowBits, left: Booleans, grounds: Indices) -> Indices:
     """Those polygons that are left whose cell may have a ground and something else."""
     mask = hashes.dtype.type((4 << len(hashes).bit_length()) - 1)
     slots = np.unique(hashes[grounds[left[grounds]]] & mask)
