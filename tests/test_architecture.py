@@ -68,6 +68,9 @@ DOORS_OF_THE_DISPLAY = {
 }  # fmt: skip
 OUTSIDE = {"numpy", "click", "PIL", "pygame"}
 
+READING_FOR_US = {"meshio", "trimesh"}
+"""The packages of the extra `meshes`."""
+
 
 class Import(NamedTuple):
     """A module that another imports, and whether it does so when it is loaded itself."""
@@ -149,7 +152,17 @@ def test_pillow_is_in_two_files_one_for_pictures_and_one_for_the_names_of_colors
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:
     used = {outer(each.target) for name in MODULES for each in imports_of(name)}
-    assert used <= {*PUBLIC_NAMES, *OUTSIDE, *sys.stdlib_module_names}
+    assert used <= {*PUBLIC_NAMES, *OUTSIDE, *READING_FOR_US, *sys.stdlib_module_names}
+
+
+def test_the_libraries_that_read_meshes_are_in_one_file_and_loaded_when_they_are_needed() -> None:
+    found = {
+        (name, each.at_once)
+        for name in MODULES
+        for each in imports_of(name)
+        if outer(each.target) in READING_FOR_US
+    }
+    assert found == {("autocolor.files.meshes.foreign.worker", False)}
 
 
 @pytest.mark.parametrize("name", [name for name in MODULES if outer(name) in IN_THE_DIALECT])

@@ -101,7 +101,7 @@ class NumberCells:
 
 @dataclass(frozen=True)
 class WholeCells:
-    """Whole numbers of at most 18 digits; NOTHING for a wrong one, and for an empty one that is allowed."""
+    """Whole numbers of at most 18 digits; NOTHING for a wrong one, and for an empty one if allowed."""
 
     what: str
     may_be_empty: bool = False

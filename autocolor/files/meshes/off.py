@@ -1,0 +1,144 @@
+"""Reading a mesh from an OFF file in text.
+
+    OFF
+    nodes polygons edges
+    x y z ...               each node on a line; what follows (normals, colors) is skipped
+    4 0 1 2 3 ...           each polygon: its number of corners, its nodes from 0; colors are skipped
+
+The first word may be OFF, COFF, NOFF, CNOFF or one of these with ST before it, or be left out. Comments begin
+with `#`. Files of four coordinates or in binary are refused. It is read here, not by trimesh, since that
+splits all quads.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from autocolor.arrays import Floats, Indices
+from autocolor.errors import InputError
+from autocolor.files.meshes.formats import MeshFormat, register
+from autocolor.files.meshes.number_text import NumberText
+from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
+from autocolor.files.repair.mesh_repair import repaired
+from autocolor.files.repair.placement import PLAIN, Placement
+from autocolor.files.repair.polygons import MeshReport, Polygons
+from autocolor.scene.geometry.polygon_split import MOST_CORNERS
+
+KEYWORD: Final = re.compile(rb"\s*([A-Za-z0-9]*OFF)\b")
+KNOWN: Final = re.compile(rb"(ST)?C?N?OFF")
+COMMENT: Final = re.compile(rb"#[^\n]*")
+
+
+def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
+    """The mesh of an OFF file, and what was repaired. Raises InputError."""
+    data = read_bytes(path, LARGEST_MESH_FILE)
+    if problem := text_problem(data):
+        raise InputError(f"{path.name}: an OFF file {problem}")
+    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    if b"#" in data:
+        data = COMMENT.sub(b"", data)
+    keyword = KEYWORD.match(data)
+    if keyword is not None:
+        if not KNOWN.fullmatch(keyword[1]):
+            raise InputError(
+                f"{path.name}: an OFF file must begin OFF, COFF, NOFF or STOFF, not {shown(keyword[1])};"
+                f" write"
+                " it with three coordinates, as text"
+            )
+        # Spaces keep the lines and the places of what follows.
+        data = b" " * keyword.end(1) + data[keyword.end(1) :]
+    text = NumberText(data, path.name)
+    text.require(3, "header")
+    nodes, polygons = text.wholes(0, 2, "a count in the header").tolist()
+    for at, count in enumerate((nodes, polygons)):
+        if not 1 <= count <= len(text):
+            raise text.wrong(at, f"a count must be from 1 to that of the words in the file, {len(text):,}")
+    coordinates, first = _coordinates(text, nodes)
+    corners, counts, end = _polygons(text, first, polygons, nodes)
+    left = len(text) - end
+    table = Polygons(coordinates, corners, counts, np.zeros(polygons, np.intp), (path.stem,))
+    skipped = (f"skipped words that are neither nodes nor polygons: {left:,}",) if left else ()
+    return repaired(table, path.name, placement, skipped=skipped)
+
+
+def _coordinates(text: NumberText, nodes: int) -> tuple[Floats, int]:
+    """The coordinates, (nodes, 3), and the first word after them. Raises InputError."""
+    lines = _lines(text)
+    first = int(lines[lines > 2][0]) if (lines > 2).any() else len(text)
+    text.require(first + 3 * nodes, "nodes")
+    rows = np.append(lines[lines >= first], len(text))[: nodes + 1]
+    width = int(rows[1] - rows[0])
+    if width <= 3 or not np.array_equal(rows, first + width * np.arange(nodes + 1)):
+        return text.coordinates(first, 3 * nodes).reshape(-1, 3), first + 3 * nodes
+    end = first + nodes * width
+    # As many words follow each node: convert those before them, line by line.
+    table = text.values(first, nodes * width).reshape(nodes, width)
+    for at in range(3):
+        wrong = np.flatnonzero(~(np.abs(table[:, at]) <= 1e30))
+        if len(wrong):
+            text.coordinates(first + int(wrong[0]) * width + at, 1)
+    return np.ascontiguousarray(table[:, :3]), end
+
+
+def _lines(text: NumberText) -> Indices:
+    """The first word of each line that has any."""
+    ends = np.flatnonzero(np.frombuffer(text.data, np.uint8) == ord("\n"))
+    firsts: Indices = np.unique(np.searchsorted(text.starts, np.append(0, ends)))
+    return firsts[firsts < len(text)]
+
+
+def _polygons(text: NumberText, first: int, polygons: int, nodes: int) -> tuple[Indices, Indices, int]:
+    """The corners, their number in each polygon, and the word after the last. Raises InputError."""
+    # Each polygon begins a line, so that what follows its corners need not be known.
+    lines = _lines(text)
+    lines = np.concatenate([[first], lines[lines > first]])
+    if first >= len(text) or len(lines) < polygons:
+        raise InputError(
+            f"{text.place}: there must be {polygons:,} lines of polygons, as the header says, not"
+            f" {len(lines) if first < len(text) else 0:,}; correct the header or the polygons"
+        )
+    begins = lines[:polygons]
+    limits = np.append(lines, len(text))[1 : polygons + 1]
+    counts = np.empty(polygons, np.intp)
+    corners = []
+    for begin in range(0, polygons, 1 << 16):
+        rows = slice(begin, min(begin + (1 << 16), polygons))
+        at, end = int(begins[rows][0]), int(limits[rows][-1])
+        numbers = text.values(at, end - at)
+        starts = begins[rows] - at
+        sizes = numbers[starts]
+        wrong = np.flatnonzero(
+            ~((sizes >= 0) & (sizes <= limits[rows] - begins[rows] - 1) & (sizes % 1 == 0))
+        )
+        if len(wrong):
+            raise text.wrong(
+                at + int(starts[wrong[0]]), "a polygon must begin with the number of the corners on its line"
+            )
+        if sizes.max() > MOST_CORNERS:
+            raise text.wrong(
+                at + int(starts[sizes.argmax()]), f"a polygon must have at most {MOST_CORNERS:,} corners"
+            )
+        counts[rows] = sizes
+        owner = np.repeat(np.arange(len(sizes)), limits[rows] - begins[rows])
+        place = np.arange(end - at) - starts[owner]
+        chosen = np.flatnonzero((place >= 1) & (place <= sizes[owner]))
+        found = numbers[chosen]
+        wrong = np.flatnonzero(~((found >= 0) & (found < nodes) & (found % 1 == 0)))
+        if len(wrong):
+            raise text.wrong(
+                at + int(chosen[wrong[0]]), f"a corner must be a node number from 0 to {nodes - 1:,}"
+            )
+        corners.append(found.astype(np.intp))
+    return np.concatenate(corners), counts, int(limits[-1])
+
+
+def _begins(head: bytes) -> bool:
+    found = KEYWORD.match(head)
+    return found is not None and KNOWN.fullmatch(found[1]) is not None
+
+
+OFF: Final = register(MeshFormat("OFF", read_off, (".off",), begins=_begins))

@@ -1,0 +1,168 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from autocolor.errors import InputError
+from autocolor.files.meshes.formats import format_of
+from autocolor.files.meshes.off import read_off
+from autocolor.files.repair.polygons import MeshReport
+from tests.autocolor.files.meshes.mutations import survives
+
+CUBE = """OFF
+# a cube
+8 6 12
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0 0 1
+1 0 1
+1 1 1
+0 1 1
+4 3 2 1 0
+4 4 5 6 7
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+"""
+
+
+def read(folder: Path, text: str | bytes) -> MeshReport:
+    path = folder / "cube.off"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_off(path)
+
+
+def refusal(folder: Path, text: str | bytes) -> str:
+    with pytest.raises(InputError) as caught:
+        read(folder, text)
+    return str(caught.value)
+
+
+def test_a_cube_keeps_its_quads_and_nodes(tmp_path: Path) -> None:
+    report = read(tmp_path, CUBE)
+    mesh = report.mesh
+    assert (len(mesh.coordinates), len(mesh.node_numbers), mesh.triangle_count) == (8, 6, 0)
+    assert mesh.node_numbers[0].tolist() == [3, 2, 1, 0]
+    assert mesh.coordinates[6].tolist() == [1, 1, 1]
+    assert mesh.part_names == ("cube",)
+    assert report.repairs == ()
+
+
+@pytest.mark.parametrize(
+    "first", ["OFF 8 6 12", "8 6 12", "  OFF\n\n8 6\t0", "STOFF\n8 6 12", "OFF # 1\n8 6 12 # 2"]
+)
+@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
+def test_the_header_has_many_forms(tmp_path: Path, first: str, ending: str) -> None:
+    text = CUBE.replace("OFF\n# a cube\n8 6 12", first).replace("\n", ending)
+    assert read(tmp_path, text).mesh.node_numbers.tolist() == read(tmp_path, CUBE).mesh.node_numbers.tolist()
+
+
+def test_colors_and_normals_are_skipped(tmp_path: Path) -> None:
+    lines = CUBE.replace("OFF", "CNOFF").splitlines()
+    lines[3:11] = [f"{line} 0.5 0.5 1 255 0 0 255" for line in lines[3:11]]
+    lines[11:] = [f"{line} {'0.2 0.3 0.4' if row % 2 else ''}" for row, line in enumerate(lines[11:])]
+    report = read(tmp_path, "\n".join(lines))
+    assert report.mesh.coordinates.tolist() == read(tmp_path, CUBE).mesh.coordinates.tolist()
+    assert report.mesh.node_numbers.tolist() == read(tmp_path, CUBE).mesh.node_numbers.tolist()
+    assert report.repairs == ()
+
+
+def test_polygons_of_many_sides_are_split_and_what_follows_is_told(tmp_path: Path) -> None:
+    text = "OFF\n5 2 0\n0 0 0 2 0 0 3 1 0\n2 2 0\n0 2 0\n5 0 1 2 3 4\n3 0 1 2\nmore words\n"
+    report = read(tmp_path, text)
+    assert sorted(len(set(row)) for row in report.mesh.node_numbers.tolist()) == [3, 3, 4]
+    assert report.repairs == (
+        "cube.off: skipped words that are neither nodes nor polygons: 2",
+        "cube.off: 1 polygon with more than four corners was split",
+    )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        (
+            "OFF\n",
+            "4OFF\n",
+            "cube.off: an OFF file must begin OFF, COFF, NOFF or STOFF, not '4OFF'; write it with three"
+            " coordinates,"
+            " as text",
+        ),
+        (
+            "8 6 12",
+            "x 6 12",
+            "cube.off, line 3: a count in the header must be a whole number, not 'x'; correct it",
+        ),
+        (
+            "8 6 12",
+            "8000000000 6 12",
+            "cube.off, line 3: a count must be from 1 to that of the words in the file, 57, not '8000000000';"
+            " correct it",
+        ),
+        (
+            "8 6 12",
+            "20 6 12",
+            "cube.off: there must be 63 numbers up to the end of the nodes, not 57; the file is cut short"
+            " or its"
+            " counts are wrong",
+        ),
+        (
+            "8 6 12",
+            "8 7 12",
+            "cube.off: there must be 7 lines of polygons, as the header says, not 6; correct the header"
+            " or the"
+            " polygons",
+        ),
+        (
+            "1 1 0\n",
+            "1 inf 0\n",
+            "cube.off, line 6: a coordinate must be a decimal number of at most 1e30 in size, not 'inf';"
+            " correct it",
+        ),
+        (
+            "4 0 1 5 4",
+            "4 0 1 5 8",
+            "cube.off, line 14: a corner must be a node number from 0 to 7, not '8'; correct it",
+        ),
+        (
+            "4 0 1 5 4",
+            "4 0 1 5.5 4",
+            "cube.off, line 14: a corner must be a node number from 0 to 7, not '5.5'; correct it",
+        ),
+        (
+            "4 0 1 5 4",
+            "5 0 1 5 4",
+            "cube.off, line 14: a polygon must begin with the number of the corners on its line, not '5';"
+            " correct"
+            " it",
+        ),
+    ],
+)
+def test_a_wrong_number_is_refused_with_its_line(tmp_path: Path, old: str, new: str, sentence: str) -> None:
+    assert CUBE.count(old) == 1
+    assert refusal(tmp_path, CUBE.replace(old, new)) == sentence
+
+
+def test_binary_and_empty_files_are_refused(tmp_path: Path) -> None:
+    assert refusal(tmp_path, b"OFF BINARY\n\0\0\0\1").startswith(
+        "cube.off: an OFF file must be text, not hold a NUL"
+    )
+    assert refusal(tmp_path, b"").startswith(
+        "cube.off: there must be 3 numbers up to the end of the header, not 0"
+    )
+
+
+def test_a_file_is_known_by_its_suffix_and_its_first_word(tmp_path: Path) -> None:
+    for name in ("a.off", "a.dat"):
+        (tmp_path / name).write_text(CUBE)
+        found = format_of(tmp_path / name)
+        assert found is not None
+        assert found.name == "OFF"
+
+
+def test_damaged_files_are_read_or_refused(tmp_path: Path) -> None:
+    survives(read_off, tmp_path / "cube.off", CUBE.encode())
+    survives(read_off, tmp_path / "cube.off", CUBE.replace("\n1", " 5\n1").encode())
