@@ -119,6 +119,7 @@ def _replace_word(data: bytearray, chance: random.Random, at: int) -> None:
 def outcome_of(seed: Seed, folder: Path) -> Outcome:
     """What comes of reading the files of a seed, which are written to a folder."""
     for name, data in seed.files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(data)
     began = time.process_time()
     try:
@@ -276,7 +277,8 @@ def written_seed(output: Output) -> Seed:
         output.write(target, scene_of(mesh), False)
         if not output.in_folder:
             return Seed(f"{output.name} as written", {target.name: target.read_bytes()}, target.name)
-        files = {path.name: path.read_bytes() for path in sorted(target.iterdir())}
+        found = sorted(path for path in target.rglob("*") if path.is_file())
+        files = {path.relative_to(target).as_posix(): path.read_bytes() for path in found}
         return Seed(f"{output.name} as written", files)
 
 
