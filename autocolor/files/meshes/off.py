@@ -112,7 +112,7 @@ def _polygons(text: NumberText, first: int, polygons: int, nodes: int) -> tuple[
         starts = begins[rows] - at
         sizes = numbers[starts]
         wrong = np.flatnonzero(
-            ~((sizes >= 0) & (sizes <= limits[rows] - begins[rows] - 1) & (sizes % 1 == 0))
+            ~((sizes >= 0) & (sizes <= limits[rows] - begins[rows] - 1) & (sizes == np.floor(sizes)))
         )
         if len(wrong):
             raise text.wrong(
@@ -127,7 +127,7 @@ def _polygons(text: NumberText, first: int, polygons: int, nodes: int) -> tuple[
         place = np.arange(end - at) - starts[owner]
         chosen = np.flatnonzero((place >= 1) & (place <= sizes[owner]))
         found = numbers[chosen]
-        wrong = np.flatnonzero(~((found >= 0) & (found < nodes) & (found % 1 == 0)))
+        wrong = np.flatnonzero(~((found >= 0) & (found < nodes) & (found == np.floor(found))))
         if len(wrong):
             raise text.wrong(
                 at + int(chosen[wrong[0]]), f"a corner must be a node number from 0 to {nodes - 1:,}"
