@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from autocolor.scene.reflection_models import BlinnPhong as BlinnPhong
     from autocolor.scene.reflection_models import CookTorrance as CookTorrance
     from autocolor.scene.reflection_models import Phong as Phong
+    from autocolor.scene.scalars.mesh_scalars import MeshScalar as MeshScalar
+    from autocolor.scene.scalars.scalar import Scalar as Scalar
     from autocolor.scene.scene import Scene as Scene
     from autocolor.scene.surfaces import Paint as Paint
     from autocolor.scene.surfaces import Part as Part
@@ -66,6 +68,7 @@ _HOME: Final = {
     "LevelRange": "mapping.level_ranges",
     "Light": "scene.lights",
     "Mesh": "scene.mesh",
+    "MeshScalar": "scene.scalars.mesh_scalars",
     "MissingInputError": "errors",
     "OutputError": "errors",
     "Paint": "scene.surfaces",
@@ -74,6 +77,7 @@ _HOME: Final = {
     "Picture": "lighting.picture",
     "Reflectance": "scene.surfaces",
     "Rig": "scene.light_sets.rigs",
+    "Scalar": "scene.scalars.scalar",
     "Scene": "scene.scene",
     "Studio": "studio",
     "Surface": "scene.surfaces",

@@ -18,7 +18,10 @@ from benchmarks import plots
 from benchmarks.machine import heading, machine
 
 RESULTS = Path(__file__).parent / "results"
-PARTS = ("targets", "scaling", "start", "steps", "movement", "events", "reading", "form", "mapped_tables")
+PARTS = (
+    "targets", "scaling", "start", "steps", "scalars", "movement", "events", "reading", "mapped_tables",
+    "form",
+)  # fmt: skip
 """Modules with `measure` and `text`."""
 PROGRAMS = {"display": "benchmarks.display", "ports": "benchmarks.host_ports"}
 """Measurements that are programs of their own."""

@@ -135,7 +135,7 @@ def read(reader: str, path: Path) -> Any:
         return read_mesh({"file": path}).mesh
     module = importlib.import_module(reader)
     make: Callable[[Path], Any] = module.load if reader == "trimesh" else module.read
-    # meshio says that it found normals or an empty line.
+    # What a peer prints is no part of the table.
     with contextlib.redirect_stdout(io.StringIO()):
         return make(path)
 

@@ -1,24 +1,31 @@
-"""The picture at the head of the README: `python -m scenes.title_picture` writes `docs/coupe.png`."""
+"""The pictures of the README: `python -m scenes.title_picture` writes docs/coupe.png and docs/bracket.png."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
 from ramtek_emu.png import save_png
+from scenes.figure_part import COLORS, EXPOSURE, STRESS
 from scenes.figures import open_scene
 
-PICTURE = Path(__file__).parents[1] / "docs" / "coupe.png"
+FOLDER: Final = Path(__file__).parents[1] / "docs"
 
 
 def main() -> None:
-    """Render once, and show the picture in two paints, side by side."""
-    studio, display = open_scene("coupe")
+    """Write two pictures, each of a scene that is rendered once and shown in two ways, side by side."""
+    FOLDER.mkdir(exist_ok=True)
+    coupe, display = open_scene("coupe")
     red = display.field()
-    studio.recolor("body", object_color="#1f3f8f", blend=0.5)
-    PICTURE.parent.mkdir(exist_ok=True)
-    save_png(np.hstack([red, display.field()]), PICTURE)
+    coupe.recolor("body", object_color="#1f3f8f", blend=0.5)
+    save_png(np.hstack([red, display.field()]), FOLDER / "coupe.png")
+    bracket, display = open_scene("bracket")
+    metal = display.field()
+    bracket.edit(bracket.scene.replace(exposure=EXPOSURE))
+    bracket.scalar(**STRESS, scale=COLORS, shades=20)
+    save_png(np.hstack([metal, display.field()]), FOLDER / "bracket.png")
 
 
 if __name__ == "__main__":

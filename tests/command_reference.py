@@ -55,6 +55,7 @@ MEANINGS = {
 
 COMMANDS = (
     (0, "autocolor validate car"),
+    (0, "autocolor sql car 'SELECT name FROM lights' --csv"),
     (0, "ramtek play lines.ramtek -o lines.png"),
     (1, "autocolor validate torn.obj --strict"),
     (2, "autocolor rendr car"),
@@ -66,6 +67,9 @@ COMMANDS = (
     (2, "autocolor recolor car.npz body --object rde"),
     (2, "autocolor recolor car.npz bodi --object red"),
     (2, "autocolor show car --to 127.0.0.1:9300"),
+    (2, "autocolor sql car 'SELECT nme FROM lights'"),
+    (2, "autocolor sql car 'DELETE FROM lights'"),
+    (2, "autocolor sql car 'UPDATE polygons SET node1 = 9' --write"),
     (2, "ramtek play lines.ramtek --configuration gmr"),
     (65, "autocolor render broken.obj"),
     (65, "ramtek assemble wrong.txt -o wrong.ramtek"),

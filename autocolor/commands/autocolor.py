@@ -34,7 +34,7 @@ class AutocolorGroup(CommandGroup):
         "tables": "print or write the tables of a scene, including created ones",
         "sql": "ask and change the tables of a scene as a relational data base",
     }
-    folders: ClassVar[dict[str, str]] = {"sql": "store."}
+    folders: ClassVar[dict[str, str]] = {"tables": "store.", "sql": "store."}
 
 
 @click.group(

@@ -23,7 +23,7 @@ MOST_LISTED: Final = 1000
 
 
 class Openable(NamedTuple):
-    """A path, and what it is: "scene", "picture", "mesh" or "folder"."""
+    """A path, and what it is: "scene", "store", "picture", "mesh" or "folder"."""
 
     path: Path
     kind: str

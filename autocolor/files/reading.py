@@ -15,7 +15,7 @@ LARGEST_MESH_FILE: Final = 256 * 1024 * 1024
 
 LARGEST_BINARY_MESH_FILE: Final = 1024 * 1024 * 1024
 """Assumed: in bytes, twenty million triangles as STL or fifty million polygons as PLY. A binary file is read
-at a hundred megabytes a second and more."""
+at a hundred megabytes a second and more, and in about six times its size of memory."""
 
 LEAST_READ: Final = 1 << 20
 """Bytes to request even if the file system reports a smaller file."""

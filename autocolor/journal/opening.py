@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -14,7 +14,10 @@ from autocolor.files.plain_scene import plain_scene
 from autocolor.files.scene_sources import read_scene
 from autocolor.journal.places import Place, Source, place_of
 from autocolor.journal.variants import Opened
+from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
+
+ARRAYS: Final = ("coordinates", "node_numbers", "part_numbers")
 
 
 def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: str | None = None) -> Opened:
@@ -29,6 +32,30 @@ def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: st
     if checksum is not None:
         check_sum(scene, checksum, source)
     return Opened(scene, place_again(place, scene, read))
+
+
+def opened_again(source: Source, present: Scene) -> Opened:
+    """The scene of a source as it is now, and its place; it shares the mesh of the present one if that is it.
+
+    Raises InputError as `read_scene`.
+    """
+    found = opened(source)
+    if not is_same_mesh(found.scene.mesh, present.mesh):
+        return found
+    return Opened(found.scene.replace(mesh=present.mesh), found.place)
+
+
+def is_same_mesh(one: Mesh, other: Mesh) -> bool:
+    """Whether all tables of two meshes are equal."""
+    return (
+        (one.part_names, one.crease_angle) == (other.part_names, other.crease_angle)
+        and all(np.array_equal(vars(one)[name], vars(other)[name]) for name in ARRAYS)
+        and [(each.name, each.of) for each in one.scalars] == [(each.name, each.of) for each in other.scalars]
+        and all(
+            np.array_equal(a.values, b.values, equal_nan=True)
+            for a, b in zip(one.scalars, other.scalars, strict=True)
+        )
+    )
 
 
 def place_again(place: Place, then: Scene, now: Scene) -> Place:

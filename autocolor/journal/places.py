@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from autocolor.files.paths import SCENE_FILE
+from autocolor.files.store.store_file import STORE_SUFFIXES
 from autocolor.scene.creation import SurfaceSource
 
 PACKAGE: Final = Path(__file__).resolve().parents[1]
@@ -48,16 +49,23 @@ def place_of(source: Source) -> Place:
 
 
 def file_of(source: Source) -> Path | None:
-    """The scene file or the picture file of a source; None for a mesh."""
+    """The scene file, the store or the picture file of a source; None for a mesh."""
     path = Path(source.path)
     path = path / SCENE_FILE if path.is_dir() else path
-    return path if path.suffix.lower() in (".toml", PICTURE_SUFFIX) else None
+    return path if path.suffix.lower() in (".toml", PICTURE_SUFFIX, *STORE_SUFFIXES) else None
 
 
 def stamp_of(path: Path) -> str | None:
-    """The SHA-256 of the bytes of a file, in hexadecimal digits; None if it cannot be read."""
+    """The SHA-256 of the bytes of a file, in hexadecimal digits; None if it cannot be read.
+
+    Of a store, also of what was written beside it and not yet into it.
+    """
     try:
         with open(path, "rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
+            digest = hashlib.file_digest(file, "sha256")
+        beside = Path(f"{path}-wal")
+        if path.suffix.lower() in STORE_SUFFIXES and beside.exists():
+            digest.update(beside.read_bytes())
     except OSError:
         return None
+    return digest.hexdigest()

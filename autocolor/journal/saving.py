@@ -1,9 +1,10 @@
 """Saving a session: its scene and its picture, under names that are found and told.
 
-A scene that was opened from a scene file, or a picture that was opened from a picture file, is saved to that
-file, if it still holds what was opened; what it held is kept beside it under a numbered name. All else is
-saved to new files in a folder: `coupe/scene.toml` and `coupe.npz`, or `coupe-2/scene.toml` and `coupe-2.npz`
-if one of those exists. After that the same names are saved to again, unless the files were changed since.
+A scene that was opened from a scene file or a store, or a picture that was opened from a picture file, is
+saved to that file, if it still holds what was opened; what it held is kept beside it under a numbered name.
+All else is saved to new files in a folder: `coupe/scene.toml` and `coupe.npz`, or `coupe-2/scene.toml` and
+`coupe-2.npz` if one of those exists. After that the same names are saved to again, unless the files were
+changed since.
 """
 
 from __future__ import annotations

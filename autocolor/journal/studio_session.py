@@ -85,6 +85,36 @@ class StudioSession(ABC):
         self._show_scene(scene.scene)
         self._history.open(scene, source)
 
+    @property
+    def file(self) -> Path | None:
+        """The scene file or the store that the scene is saved to; None if there is none yet."""
+        from autocolor.journal.places import PICTURE_SUFFIX, file_of
+
+        saved = [Path(path) for path in self._history.saved.files]
+        place = self._history.place
+        if not saved and place.source is not None and place.stamp is not None:
+            saved = [path for path in (file_of(place.source),) if path is not None]
+        return next((path for path in saved if path.suffix.lower() != PICTURE_SUFFIX), None)
+
+    def reopen(self) -> bool:
+        """Read the scene's file again, by one step to undo; False if it holds the present scene.
+
+        Raises UsageError if there is no such file, InputError if it cannot be read.
+        """
+        from autocolor.journal.opening import opened_again
+        from autocolor.journal.places import Source
+
+        path, source = self.file, self._history.place.source
+        if path is None:
+            raise UsageError("the scene must be in a file to be read again, and it is in none; save it")
+        source = Source(str(path), surfaces="materials" if source is None else source.surfaces)
+        found = opened_again(source, self._history.scene)
+        if found.scene.equals(self._history.scene):
+            return False
+        self._show_scene(found.scene)
+        self._history.open(found, source)
+        return True
+
     def keep_variant(self, name: str | None = None) -> str:
         """Keep the current scene under a name, a free letter if None; returns the name.
 

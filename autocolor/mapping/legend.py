@@ -111,10 +111,10 @@ def legend(image: DisplayImage, end: int | None = None, at_left: bool = False) -
 
 def laid_out(name: str, bands: Bands, first: int, size: tuple[int, int], at_left: bool) -> Legend | None:
     """The legend of a scalar with bands from a first word on, for a picture of a size."""
-    title = title_lines(name)
     height = lines_of_band(bands.bands)
     step = bands_apart(bands.bands, height, LEAST_APART)
-    numbers = numbers_between(bands.low, bands.high, bands.bands // step)
+    numbers, exponent = numbers_between(bands.low, bands.high, bands.bands // step)
+    title = [*title_lines(name), *([f"x 1e{exponent}"] if exponent else [])]
     above = [("above", bands.above)] * bands.has_above
     below = [("below", bands.below)] * bands.has_below + [("missing", bands.missing)] * bands.has_missing
 

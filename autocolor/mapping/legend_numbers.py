@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
-LARGE: Final = 1e6
-SMALL: Final = 1e-4
-"""Assumed: numbers from LARGE on, and those at distances below SMALL, are told with exponents."""
+MOST_DIGITS: Final = 6
+"""Assumed: digits before or after the point up to which numbers are told without a power of ten."""
 
 EXACT: Final = 1e-7
 """Assumed: what a number may be off by, as a fraction of the distance to the next; limits are of float32."""
@@ -26,23 +25,37 @@ def bands_apart(bands: int, lines: int, least: int) -> int:
     return next(dividing, bands)
 
 
-def numbers_between(low: float, high: float, count: int) -> Sequence[str]:
+class Numbers(NamedTuple):
+    """Numbers as texts, in units of a power of ten."""
+
+    texts: Sequence[str]
+    exponent: int
+
+
+def numbers_between(low: float, high: float, count: int) -> Numbers:
     """Numbers at `count` equal distances from low to high, both included.
 
     They have as few digits as are exact; if four digits of the distance are not, all have the same decimals,
-    three digits of it.
+    three digits of it. Very large and very small ones are in thousands, millions or the like.
 
-    >>> numbers_between(0, 250, 4), numbers_between(0, 1.2, 7)[:5]
+    >>> numbers_between(0, 250, 4).texts, numbers_between(0, 1.2, 7).texts[:5]
     (['0', '62.5', '125', '187.5', '250'], ['0', '0.171', '0.343', '0.514', '0.686'])
+    >>> numbers_between(0, 5e6, 2)
+    Numbers(texts=['0', '2.5', '5'], exponent=6)
     """
     distance = (high - low) / count
     values = [low + (high - low) * number / count for number in range(count)] + [high]
     # What is zero but for rounding is told as zero.
     values = [0.0 if abs(value) < distance * EXACT else value for value in values]
-    largest = max(abs(low), abs(high))
-    if largest >= LARGE or distance < SMALL:
-        digits = min(7, max(4, 2 + math.ceil(math.log10(largest / distance))))
-        return [f"{value:.{digits}g}" for value in values]
+    exponent = 0
+    before, after = (math.floor(math.log10(each)) for each in (max(abs(low), abs(high)), distance))
+    if before >= MOST_DIGITS or after < 3 - MOST_DIGITS:
+        exponent = before // 3 * 3
+    unit = 10.0**exponent
+    return Numbers(_texts([value / unit for value in values], distance / unit), exponent)
+
+
+def _texts(values: Sequence[float], distance: float) -> Sequence[str]:
     most = max(0, 3 - math.floor(math.log10(distance)))
     for decimals in range(most + 1):
         if all(abs(round(value, decimals) - value) <= distance * EXACT for value in values):

@@ -47,7 +47,8 @@ def _elevations(mesh: Mesh, scalar: Scalar, points: VisiblePoints, *, of_surface
     values = np.empty(len(points.pixels), np.float32)
     for chunk in weighted_points(mesh, points):
         at_corners = np.take(vectors, np.take(numbers, chunk.polygons, axis=1), axis=1)
-        normals = np.stack([chunk.interpolated(row) for row in at_corners.astype(np.float64)])
+        rows = [chunk.interpolated(row) for row in at_corners.astype(np.float64)]
+        normals = np.stack(rows).astype(np.float64)
         along = pull @ normals
         across = lengths(normals - pull[:, None] * along)
         # An arc tangent of both is exact where an arc sine or cosine is not.

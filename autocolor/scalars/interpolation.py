@@ -10,7 +10,7 @@ import numpy as np
 from autocolor.arrays import Floats, Indices, Singles, chunks_of_runs
 from autocolor.scalars.corner_weights import corner_weights
 from autocolor.scene.mesh import Mesh
-from autocolor.visibility.visible_points import VisiblePoints
+from autocolor.visibility.visible_points import POINT, VisiblePoints
 
 POINTS_AT_ONCE: Final = 1 << 14
 
@@ -31,16 +31,20 @@ class WeightedPoints(NamedTuple):
     pixels: slice
     polygons: Indices
     counts: Indices
-    weights: Floats
+    weights: Singles
 
-    def interpolated(self, corner_values: Floats) -> Floats:
+    def interpolated(self, corner_values: Floats) -> Singles:
         """Values at the points, (n,), of those at the corners of the polygons, (4, polygons).
 
         NaN is a missing value: a polygon with a corner that has none has none itself.
         """
-        values: Floats = self.weights[0] * np.repeat(corner_values[0], self.counts)
-        for weight, corner in zip(self.weights[1:], corner_values[1:], strict=True):
-            values += weight * np.repeat(corner, self.counts)
+        # The weights are rounded: weigh differences from one corner, so that what is constant stays so.
+        first = corner_values[0].astype(np.float32)
+        values = np.repeat(first, self.counts)
+        for weight, difference in zip(self.weights[1:], corner_values[1:] - first, strict=True):
+            part = np.repeat(difference.astype(np.float32), self.counts)
+            part *= weight
+            values += part
         return values
 
 
@@ -53,12 +57,18 @@ def polygon_runs(points: VisiblePoints) -> PolygonRuns:
 
 
 def weighted_points(mesh: Mesh, points: VisiblePoints) -> Iterator[WeightedPoints]:
-    """The visible points in chunks, with the weights of the corners of the polygons that they are in."""
+    """The visible points in chunks, with the weights of the corners of the polygons that they are in.
+
+    The corners are taken to where the points are, in camera space, and not the points to the world.
+    """
     polygons, counts = polygon_runs(points)
     coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
+    eye, middle = np.array(points.view.eye)[:, None], points.middle[:, None]
     for part, pixels in chunks_of_runs(counts, POINTS_AT_ONCE):
-        corners = np.take(coordinate_rows, np.take(node_rows, polygons[part], axis=1), axis=1)
-        weights = corner_weights(corners, counts[part], points.world_rows(pixels))
+        nodes = np.take(node_rows, polygons[part], axis=1)
+        world = np.take(coordinate_rows, nodes.ravel(), axis=1) - eye
+        corners = (points.view.axes @ world / points.unit - middle).reshape(3, 4, -1)
+        weights = corner_weights(corners, counts[part], points.rows[POINT, pixels])
         yield WeightedPoints(pixels, polygons[part], counts[part], weights)
 
 

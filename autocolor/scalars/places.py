@@ -7,23 +7,29 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, chunks
-from autocolor.scalars.ranges import Limits, ScalarValues, kept, range_of, within
+from autocolor.arrays import Floats, Singles, chunks
+from autocolor.scalars.ranges import UNIT, Limits, ScalarValues, kept, size_of, widened, within
+from autocolor.scene.geometry.used_rows import used_rows
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalars.scalar import Scalar
-from autocolor.visibility.visible_points import PIXELS_AT_ONCE, VisiblePoints
+from autocolor.visibility.visible_points import PIXELS_AT_ONCE, POINT, VisiblePoints
 
-AXES: Final = np.eye(3)
+LEAST: Final = 1e-6
+"""Assumed: the share of an object's size that is rounding, as in the height of a level plate."""
 
 
 def coordinate(axis: int, mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
     """A world coordinate; the range is that of the nodes that polygons use."""
-    return _along(AXES[axis], mesh, points)
+    low, high = mesh.bounds
+    limits = widened(float(low[axis]), float(high[axis]), LEAST * size_of(mesh))
+    return within(_along(np.eye(3)[axis], points), limits)
 
 
 def distance(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
     """The distance from the origin along the scalar's direction; the range is that of the nodes in use."""
-    return _along(unit_vector(scalar), mesh, points)
+    direction = unit_vector(scalar)
+    key = ("distance", *direction.tolist())
+    return within(_along(direction, points), kept(mesh, key, partial(_range_along, direction, mesh)))
 
 
 def unit_vector(scalar: Scalar) -> Floats:
@@ -35,13 +41,23 @@ def unit_vector(scalar: Scalar) -> Floats:
     return unit
 
 
-def _along(direction: Floats, mesh: Mesh, points: VisiblePoints) -> ScalarValues:
+def _along(direction: Floats, points: VisiblePoints) -> Singles:
+    """The component of each point along a unit vector."""
+    toward = points.camera_direction((direction[0], direction[1], direction[2])) * points.unit
+    start = toward @ points.middle + direction @ np.array(points.view.eye)
     values = np.empty(len(points.pixels), np.float32)
     for chunk in chunks(len(values), PIXELS_AT_ONCE):
-        values[chunk] = direction @ points.world_rows(chunk)
-    key = ("along", *direction.tolist())
-    return within(values, kept(mesh, key, partial(_range_along, direction, mesh)))
+        right, down, ahead = points.rows[POINT, chunk].astype(np.float64)
+        values[chunk] = toward[0] * right + toward[1] * down + toward[2] * ahead + start
+    return values
 
 
 def _range_along(direction: Floats, mesh: Mesh) -> Limits:
-    return range_of(direction @ mesh.used_coordinates.T)
+    """The range of the nodes that polygons use, in chunks: the table may be a mapped file."""
+    used = used_rows(mesh.node_numbers.T, len(mesh.coordinates))
+    ends = [UNIT] if not used.any() else []
+    for chunk in chunks(len(used), PIXELS_AT_ONCE):
+        values = (direction @ mesh.coordinates.T[:, chunk])[used[chunk]]
+        if len(values):
+            ends.append((float(values.min()), float(values.max())))
+    return widened(min(low for low, _ in ends), max(high for _, high in ends), LEAST * size_of(mesh))

@@ -11,6 +11,7 @@ from autocolor.immutable import read_only
 from autocolor.scalars.computed import COMPUTING
 from autocolor.scalars.interpolation import interpolated
 from autocolor.scalars.ranges import Limits, ScalarValues, kept, range_of, within
+from autocolor.scene.geometry.used_rows import used_rows
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalars.mesh_scalars import POLYGON, MeshScalar
 from autocolor.scene.scalars.scalar import Scalar
@@ -46,6 +47,5 @@ def _of_nodes(mesh: Mesh, scalar: MeshScalar, points: VisiblePoints) -> ScalarVa
 
 
 def _range_of_nodes(mesh: Mesh, scalar: MeshScalar) -> Limits:
-    used = np.zeros(len(scalar.values), np.bool_)
-    used[mesh.node_numbers.T] = True
-    return range_of(scalar.values[used])
+    used = used_rows(mesh.node_numbers.T, len(scalar.values))
+    return range_of(scalar.values if used.all() else scalar.values[used])

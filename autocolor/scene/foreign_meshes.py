@@ -1,15 +1,15 @@
 """Meshes of other programs: nodes and polygons in arrays, and the meshes of trimesh, PyVista and meshio.
 
-None of these is imported: a mesh is recognized by what it has. Only its nodes and polygons are taken, no
-colors, normals or groups. A polygon of more than four sides is split, as those of files are.
+None of these is imported: a mesh is recognized by what it has. Only its nodes, its polygons and their scalars
+are taken, no colors, normals or groups. A polygon of more than four sides is split, as those of files are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from os import PathLike
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.logs import logger_of
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS, split_polygons
+from autocolor.scene.scalars.foreign_scalars import foreign_scalars
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
 
 LOG: Final = logger_of(__name__)
 
@@ -25,32 +27,49 @@ FLAT_CELLS: Final = ("triangle", "quad", "polygon")
 """The cells of meshio that are polygons; some files number the last by its sides, as in polygon5."""
 
 
-def foreign_tables(source: object, polygons: object = None) -> tuple[object, object]:
-    """The node table and the polygon table of a mesh of another program, for the checks of `Mesh`.
+class ForeignTables(NamedTuple):
+    """The node table, the polygon table and the scalars of a mesh of another program, still to be checked."""
+
+    nodes: Any
+    polygons: Any
+    scalars: tuple[MeshScalar, ...] = ()
+
+
+def foreign_tables(source: object, polygons: object = None) -> ForeignTables:
+    """The tables of a mesh of another program, for the checks of `Mesh`.
 
     `source` are nodes, (nodes, 3), if `polygons` are given: (polygons, 3), (polygons, 4), or a list of lists
     of any lengths. Otherwise it has `vertices` and `faces`, as those of trimesh; `points` and `faces`, as
-    PyVista's PolyData; or `points` and `cells`, as those of meshio. Raises InputError, and UsageError for
-    anything else.
+    PyVista's PolyData; or `points` and `cells`, as those of meshio. The latter two may have scalars. Raises
+    InputError, and UsageError for anything else.
     """
-    nodes = source
-    if polygons is None:
-        nodes, polygons = _nodes_and_polygons(source)
+    if polygons is not None:
+        table, _ = _polygon_table(source, polygons)
+        return ForeignTables(source, table)
+    nodes, polygons = _nodes_and_polygons(source)
+    table, owners = _polygon_table(nodes, polygons)
+    cells = getattr(source, "cells", None)
+    blocks = _flat_blocks(cells) if isinstance(cells, (list, tuple)) else None
+    return ForeignTables(nodes, table, foreign_scalars(source, nodes, owners, blocks))
+
+
+def _polygon_table(nodes: object, polygons: Any) -> tuple[AnyArray, Indices]:
+    """The polygon table of polygons, and the polygon that each of its rows is, or is a piece of."""
     try:
         table = np.asarray(polygons)
     except ValueError:
         # Its rows differ in length.
         table = np.empty(0)
     if table.ndim == 2 and len(table) and table.shape[1] in (3, 4):
-        return nodes, table
+        return table, np.arange(len(table))
     rows = [_row(number, row) for number, row in enumerate(_iterated(polygons))]
     if not rows:
         raise InputError("a mesh must have polygons, not nodes alone; add some")
     counts = np.array([len(row) for row in rows], np.intp)
-    return nodes, _split(nodes, np.concatenate(rows).astype(np.intp), counts)
+    return _split(nodes, np.concatenate(rows).astype(np.intp), counts)
 
 
-def _nodes_and_polygons(source: Any) -> tuple[object, object]:
+def _nodes_and_polygons(source: Any) -> tuple[Any, Any]:
     """The nodes of a mesh object, and its polygons: an array of equal rows, or rows of any lengths."""
     points, faces = getattr(source, "points", None), getattr(source, "faces", None)
     cells = getattr(source, "cells", None)
@@ -96,19 +115,27 @@ def _polygons_of_counted(faces: AnyArray) -> object:
     return rows
 
 
-def _polygons_of_cells(cells: Iterable[Any]) -> object:
+def _flat_blocks(cells: Sequence[Any]) -> list[int]:
+    """Which blocks of cells of meshio are polygons."""
+    kinds = [str(block.type) for block in cells]
+    return [
+        place
+        for place, kind in enumerate(kinds)
+        if kind in FLAT_CELLS or kind.removeprefix("polygon").isdigit()
+    ]
+
+
+def _polygons_of_cells(cells: Sequence[Any]) -> object:
     """The polygons among the cells of meshio; all others are left out. Raises InputError if there is none."""
-    flat: list[Any] = []
-    others: list[Any] = []
     for block in cells:
         if not (hasattr(block, "type") and hasattr(block, "data")):
             raise InputError(
                 f"cells must have a type and data, as those of meshio, not be {shown(block)}; make them cell"
                 " blocks"
             )
-        kind = str(block.type)
-        is_flat = kind in FLAT_CELLS or kind.removeprefix("polygon").isdigit()
-        (flat if is_flat else others).append(block)
+    places = _flat_blocks(cells)
+    flat = [cells[place] for place in places]
+    others = [block for place, block in enumerate(cells) if place not in places]
     left_out = ", ".join(f"{len(block.data):,} of type {block.type!r}" for block in others)
     if not flat:
         kinds = f"cells alone: {left_out}" if others else "none"
@@ -142,8 +169,11 @@ def _row(number: int, row: object) -> AnyArray:
     return corners
 
 
-def _split(nodes: object, corners: Indices, counts: Indices) -> Indices:
-    """The polygon table, (polygons, 4), of polygons with any number of corners. Raises InputError."""
+def _split(nodes: object, corners: Indices, counts: Indices) -> tuple[Indices, Indices]:
+    """The polygon table of polygons with any number of corners, and the polygon of each of its rows.
+
+    Raises InputError.
+    """
     coordinates = np.asarray(nodes)
     if coordinates.ndim != 2 or coordinates.shape[1] != 3 or coordinates.dtype.kind not in "iuf":
         raise InputError(f"nodes must be numbers of shape (nodes, 3), not {coordinates.shape}; give them so")
@@ -154,7 +184,7 @@ def _split(nodes: object, corners: Indices, counts: Indices) -> Indices:
             f"a node number must be a row of the nodes (0 to {len(coordinates) - 1}), not"
             f" {corners[outside[0]]} (row {row}); correct it"
         )
-    table, _ = split_polygons(coordinates.astype(np.float64), corners, counts)
+    table, owners = split_polygons(coordinates.astype(np.float64), corners, counts)
     if split := int((counts > 4).sum()):
         LOG.info("polygons with more than four corners that were split: %d", split)
-    return table
+    return table, owners

@@ -186,16 +186,17 @@ class Mesh(Immutable):
     ) -> Mesh:
         """The mesh, of one part, of a mesh of trimesh, PyVista or meshio, or of nodes and polygons.
 
-        Polygons may have any number of sides from three on; those of more than four are split. A Mesh is
-        returned as it is. Raises InputError, and UsageError for a source that is none of these.
+        Polygons may have any number of sides from three on; those of more than four are split. Data of one
+        component at the points or the cells of PyVista and meshio are its scalars. A Mesh is returned as it
+        is. Raises InputError, and UsageError for a source that is none of these.
 
         >>> Mesh.of([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 2, 3]])
         Mesh(nodes 4, polygons 2, parts 1)
         """
         if isinstance(source, Mesh) and polygons is None:
             return source
-        nodes, table = foreign_tables(source, polygons)
-        return cls(nodes, table, None, (part,), crease_angle)  # type: ignore[arg-type]
+        nodes, table, scalars = foreign_tables(source, polygons)
+        return cls(nodes, table, None, (part,), crease_angle, scalars)  # type: ignore[arg-type]
 
     @classmethod
     def of_tables(

@@ -41,6 +41,9 @@ class Actions(Protocol):
     def save(self) -> object:
         """Save the picture with its scene."""
 
+    def reopen(self) -> object:
+        """Read the scene's file again."""
+
     def escape(self) -> object:
         """Take back, close, return to the picture, or leave."""
 
@@ -152,6 +155,7 @@ BINDINGS: Final[tuple[Binding[Actions], ...]] = (
         repeats=True,
     ),
     Binding((Chord("s", control=True),), "save the picture with its scene", lambda viewer, _: viewer.save()),
+    Binding((Chord("r", control=True),), "read the scene's file again", lambda viewer, _: viewer.reopen()),
     Binding(
         (Chord("escape"),),
         "leave full screen, a page, and if saved the window",

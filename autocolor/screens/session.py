@@ -23,6 +23,7 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
 from autocolor.screens.comparing import NOW, Comparing
+from autocolor.screens.file_on_disk import FileOnDisk
 from autocolor.studio import Studio
 from autocolor.widgets.column_rows import World
 from autocolor.widgets.labels import short_name
@@ -85,6 +86,8 @@ class Session:
         """The scene whose changes leaving would have discarded, when the user was told so last."""
         self.news = News("", False, 0.0)
         """The last message."""
+        self.disk = FileOnDisk(studio)
+        """The file that the scene is in, which other programs may change."""
 
     @property
     def scene(self) -> Scene:
@@ -246,12 +249,27 @@ class Session:
             self.studio.open(path, up=self.mesh_up, scale=self.mesh_scale)
         else:
             self.studio.open(path)
+        self.disk.seen()
         note_file(path.resolve())
         self.tell(f"opened {path.name}; undo goes back")
+
+    def reopen(self) -> None:
+        """Read the scene's file again, as one step to undo. Raises UsageError or InputError."""
+        is_other = self.studio.reopen()
+        self.disk.seen()
+        self.tell("read again; undo goes back" if is_other else "the file holds this scene")
+
+    def take_changes(self) -> bool:
+        """Show what another program changed in the scene's file, or ask first; False if that is nothing."""
+        told = self.disk.take()
+        if told:
+            self.tell(told, is_warning=self.studio.is_changed, stands=True)
+        return bool(told)
 
     def save(self) -> None:
         """Save the scene and the picture, under names that the message tells."""
         saved = self.studio.save_session(self.folder)
+        self.disk.seen()
         note_file(saved.scene)
         self.tell(saved.told(self.folder))
 

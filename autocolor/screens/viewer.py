@@ -141,6 +141,8 @@ class Viewer:
         A picture that is watched comes in by some lines.
         """
         self._watching.advance()
+        if is_at_rest and not (self.board.is_dragging or self._watching.is_on):
+            self._take_changes()
         has_ended = is_at_rest and self._doing.kind != WHEEL and not self.board.is_dragging
         rests = has_ended or self._doing.has_rested
         if rests and (self.studio.is_coarse or self.session.moving):
@@ -148,6 +150,11 @@ class Viewer:
             self._refine()
             self._update()
         elif (rests and self.board.screen.idle()) or self._had_news != self.session.has_news:
+            self._update()
+
+    def _take_changes(self) -> None:
+        """Show what another program changed in the scene's file."""
+        if self.session.disk.was_changed() and self._do(None, self.session.take_changes):
             self._update()
 
     def tell(self, message: str, stands: bool = False) -> None:
@@ -276,6 +283,11 @@ class Viewer:
     def save(self) -> None:
         """Save the scene and the picture."""
         self.session.save()
+
+    def reopen(self) -> None:
+        """Read the scene's file again, as one step to undo."""
+        self._show_scene()
+        self.session.reopen()
 
     def clear(self) -> None:
         """Leave the picture alone on the display, without menu, message and cursors."""

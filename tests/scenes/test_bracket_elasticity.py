@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from autocolor.arrays import Floats, Indices
-from scenes.modeling.bracket.blocks import along, around_hole, between, circle
+from scenes.modeling.bracket.blocks import along, around_hole, circle
 from scenes.modeling.bracket.elasticity import displacements, node_stresses, von_mises
 from scenes.modeling.bracket.elements import Material
 
@@ -84,7 +84,8 @@ def test_a_hole_in_a_wide_plate_triples_the_stress_beside_it() -> None:
     outline = np.stack([np.minimum(np.cos(quarter) / np.maximum(np.sin(quarter), 1e-9), 1),
                         np.minimum(np.tan(quarter), 1)], axis=-1) * half  # fmt: skip
     shares = (np.geomspace(1.0, half, 19) - 1) / (half - 1)
-    flat = between(circle((0.0, 0.0), radius, quarter), outline, shares)
+    hole = circle((0.0, 0.0), radius, quarter)
+    flat = hole + np.multiply.outer(shares, outline - hole)
     grid = np.zeros((*flat.shape[:2], 2, 3))
     grid[..., :2], grid[:, :, 1, 2] = flat[:, :, None], 0.25
     nodes, corners, rows = solid_of(grid)
@@ -118,8 +119,10 @@ def test_shear_alone_has_a_von_mises_stress_of_root_three_and_even_pressure_has_
 
 def test_the_lines_around_a_hole_begin_on_it_and_end_on_its_outline() -> None:
     outline = along(np.array([(3.0, -3.0), (3.0, 3.0), (-3.0, 3.0), (-3.0, -3.0), (3.0, -3.0)]), 24)
-    block = around_hole((0.0, 0.0), [1.0, 1.5], outline, np.array([0.5, 1.0]))
-    assert block.shape == (4, 25, 2)
+    block = around_hole((0.0, 0.0), [1.0, 1.5], outline, 0.5)
+    assert block.shape == (5, 25, 2)
     assert np.linalg.norm(block[0], axis=1) == pytest.approx(1.0)
     assert block[-1] == pytest.approx(outline)
+    sides = np.abs(outline).max(axis=1) - np.abs(outline).min(axis=1) > 0.1
+    assert np.abs(block[-2]).max(axis=1)[sides] == pytest.approx(2.5)
     assert (block[:, 0] == block[:, -1]).all()

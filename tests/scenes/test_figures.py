@@ -9,7 +9,7 @@ from PIL import Image
 
 import autocolor
 from ramtek_emu import Ramtek9300
-from scenes import figure_04, figure_10, figure_15, figures
+from scenes import figure_04, figure_10, figure_15, figure_curvature, figure_part, figures
 
 EXPECTED = {
     "04": {"figure-04.png", "figure-04-a.png", "figure-04-b.png", "figure-04-c.png"},
@@ -19,6 +19,8 @@ EXPECTED = {
     "09": {"figure-09.png", "figure-09-a.png", "figure-09-b.png", "figure-09-c.png"},
     "10": {"figure-10.png", *(f"figure-10-{panel}.png" for panel in "abcdef")},
     "15": {"figure-15.png", "figure-15-a.png", "figure-15-b.png", "figure-15-c.png"},
+    "part": {"figure-part.png", *(f"figure-part-{panel}.png" for panel in "abcd")},
+    "curvature": {"figure-curvature.png", *(f"figure-curvature-{panel}.png" for panel in "abc")},
 }
 
 
@@ -136,3 +138,47 @@ def test_under_a_light_at_the_eye_the_glass_of_the_coupe_is_darker_than_its_pain
         gray[picture.surface_number == picture.surfaces.index(name) + 1] for name in ("glass", "body")
     )
     assert np.percentile(glass, 95) < np.percentile(body, 95)
+
+
+def test_the_bands_of_the_machined_part_keep_its_shading_and_flat_codes_do_not() -> None:
+    bracket = autocolor.read_scene(figures.SCENES / "bracket").replace(exposure=figure_part.EXPOSURE)
+    studio = autocolor.Studio(bracket, Ramtek9300())
+    is_cast = studio.picture.surface_number == studio.picture.surfaces.index("cast") + 1
+    colors = []
+    for shades in (20, 1):
+        studio.scalar(**figure_part.STRESS, scale=figure_part.COLORS, shades=shades)
+        first, levels = studio.level_ranges["cast"]
+        assert levels >= figure_part.STRESS["bands"] * shades
+        assert np.unique((studio.words[is_cast] - first) // shades).size >= figure_part.STRESS["bands"]
+        colors.append(len(np.unique(studio.entries[studio.words[is_cast]], axis=0)))
+    assert colors[0] > 100
+    assert colors[1] <= figure_part.STRESS["bands"] + 1
+
+
+def test_the_stress_of_the_part_is_largest_on_its_rib_among_what_is_seen_of_the_cast_surface() -> None:
+    bracket = autocolor.read_scene(figures.SCENES / "bracket").with_scalar(**figure_part.STRESS)
+    picture = autocolor.render(bracket, 240, 320)
+    assert picture.scalar is not None
+    is_metal = np.isin(
+        picture.surface_number, [picture.surfaces.index(name) + 1 for name in ("cast", "machined")]
+    )
+    assert np.isfinite(picture.scalar[is_metal]).all()
+    assert 100 < picture.scalar[is_metal].max() < 250
+    floor = picture.surface_number == picture.surfaces.index("floor") + 1
+    assert np.isnan(picture.scalar[floor]).all()
+
+
+def test_the_roof_of_the_coupe_bulges_and_only_its_body_is_colored_by_curvature() -> None:
+    plain = autocolor.Studio(autocolor.read_scene(figures.SCENES / "coupe"), Ramtek9300())
+    curved = autocolor.Studio(plain.scene.with_scalar(**figure_curvature.MEAN), Ramtek9300())
+    picture = curved.picture
+    assert picture.scalar is not None
+    body = picture.surface_number == picture.surfaces.index("body") + 1
+    assert np.isfinite(picture.scalar[body]).all()
+    assert np.median(picture.scalar[body]) > 0
+    assert set(np.unique(picture.surface_number[np.isfinite(picture.scalar)])) >= {
+        picture.surfaces.index("body") + 1
+    }
+    colors = curved.entries[curved.words[~body]].astype(int) - plain.entries[plain.words[~body]]
+    # Other surfaces have fewer levels, but the same colors.
+    assert np.percentile(np.abs(colors), 95) < 12

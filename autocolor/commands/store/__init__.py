@@ -1,4 +1,4 @@
-"""The command that asks the tables of a scene, its prompt, and the ways to print answers.
+"""The commands that print, ask and change the tables of a scene, the prompt, and the ways to print answers.
 
 Uses `files.store`.
 """

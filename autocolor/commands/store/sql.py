@@ -114,7 +114,7 @@ def _run(tables: Tables, source: SceneSource, write: bool, form: str, statement:
         count = tables.change(statement)
     except InputError as error:
         with as_usage():
-            raise InputError([*error.problems, "nothing was changed"]) from None
+            raise InputError(["nothing was changed", *error.problems]) from None
     click.echo(f"changed {count:,} row{'' if count == 1 else 's'}", err=True)
     if not tables.is_in_a_file:
         from autocolor.files.scene_writing import write_scene_with_tables

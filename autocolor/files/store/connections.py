@@ -112,12 +112,13 @@ def refuse_old_sqlite() -> None:
         )
 
 
-def connected(path: Path, *, may_change: bool = False) -> sqlite3.Connection:
+def connected(path: Path, *, may_change: bool = False, wait: float | None = None) -> sqlite3.Connection:
     """A connection to the store at a path, read-only unless it `may_change`; it begins no transaction itself.
 
     What another program wrote beside the file and not yet into it (`-wal`) is read with it. A change that was
     interrupted (`-journal`) is taken back first, as SQLite does. Raises InputError, MissingInputError, and,
-    if it `may_change`, WriteError where another program is writing.
+    if it `may_change`, WriteError where another program is writing. It waits some seconds for that one, or
+    `wait`.
     """
     refuse_old_sqlite()
     try:
@@ -138,32 +139,31 @@ def connected(path: Path, *, may_change: bool = False) -> sqlite3.Connection:
         )
     if may_change:
         with refusals(path.name), refusals_of_writing(path.name):
-            return _opened(path, "rw")
+            return _opened(path, "rw", wait)
     with refusals(path.name):
         try:
-            return _opened(path, "ro")
+            return _opened(path, "ro", wait)
         except sqlite3.OperationalError as error:
             if not _is_unfinished(error):
                 raise
         # Take back, or take over, what is beside the file; where nothing can be written, it is read alone.
         try:
-            _opened(path, "rw").close()
-            return _opened(path, "ro")
+            _opened(path, "rw", wait).close()
+            return _opened(path, "ro", wait)
         except sqlite3.OperationalError:
             if any(os.path.exists(f"{path}{end}") for end in ("-wal", "-journal")):
                 raise
-            return _opened(path, "ro&immutable=1")
+            return _opened(path, "ro&immutable=1", wait)
 
 
 def _is_unfinished(error: sqlite3.Error) -> bool:
     return getattr(error, "sqlite_errorcode", 0) & 0xFF in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
 
 
-def _opened(path: Path, mode: str) -> sqlite3.Connection:
+def _opened(path: Path, mode: str, wait: float | None) -> sqlite3.Connection:
     uri = f"file:{pathname2url(os.path.abspath(path))}?mode={mode}"
-    connection = sqlite3.connect(
-        uri, uri=True, isolation_level=None, timeout=SECONDS_OF_WAITING, cached_statements=16
-    )
+    timeout = SECONDS_OF_WAITING if wait is None else wait
+    connection = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=timeout)
     try:
         guarded(connection)
         # The first look at the file: SQLite opens it only now.

@@ -16,7 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices, Numbers
-from autocolor.checks import LARGEST_COORDINATE, shown
+from autocolor.checks import LARGEST_COORDINATE, nearest, shown
 from autocolor.errors import InputError
 from autocolor.files.store.found_tables import FoundTable, FoundTables, require_columns, small_table
 from autocolor.files.store.schema import MESH, NODES, POLYGONS, SCALARS, VALUES
@@ -166,8 +166,8 @@ def _parts(
         query = f"SELECT part FROM {POLYGONS} WHERE polygon = ?"
         (name,) = connection.execute(query, (int(polygons[row]),)).fetchone()
         problems.append(
-            f"{POLYGONS}, row {polygons[row]}: part {shown(name)} is not in the part table; correct it, or"
-            " add the part"
+            f"{POLYGONS}, row {polygons[row]}: part {shown(name)} is not in the part"
+            f" table{nearest(name, names) or '; correct it, or add the part'}"
         )
     if problems:
         raise InputError(problems)

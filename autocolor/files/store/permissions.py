@@ -36,6 +36,17 @@ READING_PRAGMAS: Final = frozenset(
 
 SETTABLE: Final = ("application_id", "schema_version", "user_version")
 
+RESTORES: Final = (
+    sqlite3.SQLITE_CREATE_TRIGGER,
+    sqlite3.SQLITE_CREATE_INDEX,
+    sqlite3.SQLITE_REINDEX,
+    sqlite3.SQLITE_SELECT,
+    sqlite3.SQLITE_READ,
+)
+"""What it takes to make a trigger or an index again, but for its row in the table of all tables."""
+
+MASTER: Final = "sqlite_master"
+
 READS: Final = (
     sqlite3.SQLITE_SELECT,
     sqlite3.SQLITE_READ,
@@ -66,3 +77,14 @@ def authorizer(may_change: bool) -> Authorizer:
         return sqlite3.SQLITE_OK if is_allowed else sqlite3.SQLITE_DENY
 
     return allowed
+
+
+def restoring(
+    action: int, first: str | None, second: str | None, database: str | None, inner: str | None
+) -> int:
+    """What the text may do that a file keeps of a trigger or an index: make that, and nothing else."""
+    if action == sqlite3.SQLITE_FUNCTION:
+        is_allowed = (second or "").lower() in FUNCTIONS
+    else:
+        is_allowed = action in RESTORES or (action in CHANGES[:2] and first == MASTER)
+    return sqlite3.SQLITE_OK if is_allowed else sqlite3.SQLITE_DENY

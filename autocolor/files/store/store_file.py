@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
@@ -25,11 +25,11 @@ from autocolor.files.store.connections import (
     refusals_of_writing,
 )
 from autocolor.files.store.foreign_keys import broken_references
-from autocolor.files.store.found_tables import found_tables
+from autocolor.files.store.found_tables import FoundTables, found_tables
 from autocolor.files.store.mesh_rows import insert_mesh
-from autocolor.files.store.permissions import authorizer
+from autocolor.files.store.permissions import authorizer, restoring
 from autocolor.files.store.scene_rows import insert_rows, report_of
-from autocolor.files.store.schema import APPLICATION, DEFINITIONS, ROW_TABLES, VERSION
+from autocolor.files.store.schema import APPLICATION, DEFINITIONS, ROW_TABLES, VALUES, VERSION
 from autocolor.files.store.sql_columns import quoted
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of, timed
@@ -65,10 +65,11 @@ def report_in(
     try:
         with refusals(file, clock):
             tables = found_tables(connection)
-            problems = broken_references(connection, tables)
-            if problems:
-                raise InputError(problems)
-            return report_of(connection, tables, name or "scene", surfaces)
+            _refuse_broken(connection, tables, ROW_TABLES)
+            report = report_of(connection, tables, name or "scene", surfaces)
+            # Of a node that is missing, the polygons tell first.
+            _refuse_broken(connection, tables, VALUES.values())
+            return report
     except InputError as error:
         prefix = f"{file}: "
         raise InputError(
@@ -77,6 +78,13 @@ def report_in(
     finally:
         connection.set_authorizer(None)
         connection.set_progress_handler(None, 0)
+
+
+def _refuse_broken(connection: sqlite3.Connection, tables: FoundTables, names: Iterable[str]) -> None:
+    """Raise InputError if a row of one of these tables refers to a row that is not there."""
+    problems = broken_references(connection, tables, names)
+    if problems:
+        raise InputError(problems)
 
 
 def store_of(scene: Scene) -> sqlite3.Connection:
@@ -140,7 +148,14 @@ def _is_rewritten(path: Path, scene: Scene) -> bool:
     try:
         with transaction(connection, path.name), without_triggers(connection):
             rewrite(connection, scene)
-    except sqlite3.DatabaseError as error:
+    except sqlite3.Error as error:
+        if getattr(error, "sqlite_errorcode", 0) & 0xFF not in (
+            sqlite3.SQLITE_CORRUPT,
+            sqlite3.SQLITE_NOTADB,
+        ):
+            raise WriteError(
+                f"{path}: what others keep in the store cannot be kept ({error}); write to another file"
+            ) from None
         LOG.warning("%s: written anew, as it is damaged (%s)", path, error)
         return False
     finally:
@@ -167,8 +182,7 @@ def rewrite(connection: sqlite3.Connection, scene: Scene) -> None:
         if table in kinds:
             connection.execute(f"DROP {kinds[table].upper()} {quoted(table)}")
     _fill(connection, scene)
-    for _, sql in others:
-        connection.execute(sql)
+    _restore(connection, [sql for _, sql in others])
 
 
 def _fill(connection: sqlite3.Connection, scene: Scene) -> None:
@@ -208,5 +222,14 @@ def without_triggers(connection: sqlite3.Connection) -> Iterator[None]:
     for name, _ in triggers:
         connection.execute(f"DROP TRIGGER {quoted(name)}")
     yield
-    for _, sql in triggers:
-        connection.execute(sql)
+    _restore(connection, [sql for _, sql in triggers])
+
+
+def _restore(connection: sqlite3.Connection, definitions: Iterable[str]) -> None:
+    """Make triggers and indices again; their text comes from a file, and may do nothing else."""
+    connection.set_authorizer(restoring)
+    try:
+        for sql in definitions:
+            connection.execute(sql)
+    finally:
+        connection.set_authorizer(None)

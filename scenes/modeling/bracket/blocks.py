@@ -64,9 +64,18 @@ def areas(corners: Floats) -> Floats:
     return (across[:, 0] * along[:, 1] - across[:, 1] * along[:, 0]) / 2
 
 
-def between(inner: Floats, outer: Floats, shares: Floats) -> Floats:
-    """The lines from one to another at these shares of the way, (shares, n, 2)."""
-    return inner + np.multiply.outer(shares, outer - inner)
+def to_outline(ring: Floats, outline: Floats, rim: float) -> Floats:
+    """Three lines from a ring to an outline, (3, n, 2): the second is `rim` beside it, if there is room."""
+    away = outline - ring
+    sides = np.diff(outline, axis=0)
+    sides /= np.linalg.norm(sides, axis=1)[:, None]
+    is_closed = np.allclose(outline[0], outline[-1])
+    before = np.concatenate([sides[-1:] if is_closed else sides[:1], sides])
+    after = np.concatenate([sides, sides[:1] if is_closed else sides[-1:]])
+    # The distances from the sides on either side of each point: the nearer one counts.
+    apart = [np.abs(away[:, 0] * side[:, 1] - away[:, 1] * side[:, 0]) for side in (before, after)]
+    share = np.minimum(rim / np.minimum(*apart), 0.6)[:, None]
+    return np.stack([ring + away * (1 - share) / 2, outline - away * share, outline])
 
 
 def circle(center: tuple[float, float], radius: float, angles: Floats) -> Floats:
@@ -81,8 +90,8 @@ def along(line: Floats, count: int) -> Floats:
     return np.stack([np.interp(places, lengths, component) for component in line.T], axis=-1)
 
 
-def around_hole(center: tuple[float, float], radii: list[float], outline: Floats, shares: Floats) -> Floats:
-    """The block around a hole: rings of these radii, then lines to a closed outline; (rings, n, 2).
+def around_hole(center: tuple[float, float], radii: list[float], outline: Floats, rim: float) -> Floats:
+    """The block around a hole: rings of these radii, then three lines to a closed outline; (lines, n, 2).
 
     The outline repeats its first point. The angles on the rings are halfway between equal ones and those in
     which the points of the outline are seen.
@@ -92,4 +101,4 @@ def around_hole(center: tuple[float, float], radii: list[float], outline: Floats
     angles = (seen + even) / 2
     rings = np.stack([circle(center, radius, angles) for radius in radii])
     rings[:, -1] = rings[:, 0]
-    return np.concatenate([rings, between(rings[-1], outline, shares)])
+    return np.concatenate([rings, to_outline(rings[-1], outline, rim)])

@@ -18,6 +18,9 @@ LUMPS_ALONG: Final = 8
 
 AT_ONCE: Final = 1024
 
+SLIGHT: Final = 1e-9
+"""What a motion is made stiffer by, as a share of its stiffness."""
+
 
 class CoarseSpace:
     """The motions of the lumps, and the inverse of their matrix."""
@@ -41,7 +44,7 @@ class CoarseSpace:
         self.motions[:, 0, 5], self.motions[:, 1, 5] = -y, x
         self.motions *= is_free[:, :, None]
 
-        matrix = np.zeros(36 * count * count)
+        entries = np.zeros(36 * count * count)
         for chunk in chunks(len(corners), AT_ONCE):
             motions = self.motions[corners[chunk]]
             blocks = matrices[chunk].reshape(-1, 8, 3, 8, 3)
@@ -50,9 +53,12 @@ class CoarseSpace:
             own = 6 * self.lumps[corners[chunk]]
             rows = own[:, :, None, None, None] + np.arange(6)[:, None]
             places = rows * (6 * count) + own[:, None, :, None, None] + np.arange(6)
-            matrix += np.bincount(places.reshape(-1), whole.reshape(-1), len(matrix))
-        # A lump that is held has no motions: keep those without stiffness out.
-        self.inverse = np.linalg.pinv(matrix.reshape(6 * count, -1), rcond=1e-12, hermitian=True)
+            entries += np.bincount(places.reshape(-1), whole.reshape(-1), len(entries))
+        # Lumps that are held, or too small to turn, have motions without stiffness: give them a little.
+        matrix = entries.reshape(6 * count, -1)
+        own_stiffness = np.diagonal(matrix)
+        slight = np.where(own_stiffness > 0, SLIGHT * own_stiffness, own_stiffness.max())
+        self.inverse: Floats = np.linalg.inv(matrix + np.diag(slight))
 
     def corrected(self, force: Floats) -> Floats:
         """The displacements, (3 n,), with which the lumps answer a force, (3 n,)."""
@@ -60,6 +66,7 @@ class CoarseSpace:
         sums = np.stack(
             [np.bincount(self.lumps, component, len(self.inverse) // 6) for component in own.T], axis=1
         )
-        answer = (self.inverse @ sums.reshape(-1)).reshape(-1, 6)
+        # Not by `@`, whose threads wait for each other on a busy machine.
+        answer = np.einsum("ij,j->i", self.inverse, sums.reshape(-1)).reshape(-1, 6)
         moved: Floats = np.einsum("nki,ni->nk", self.motions, answer[self.lumps])
         return moved.reshape(-1)

@@ -45,19 +45,24 @@ def displacements(
 
     # Conjugate gradients.
     moved, left = np.zeros(nodes.size), load.reshape(-1) * is_free
-    enough = TOLERANCE * np.linalg.norm(left)
+    enough = TOLERANCE**2 * _dot(left, left)
     ahead = preconditioned(left)
-    step, size = ahead, left @ ahead
+    step, size = ahead, _dot(left, ahead)
     for _ in range(MOST_STEPS):
-        if np.linalg.norm(left) <= enough:
+        if _dot(left, left) <= enough:
             return moved.reshape(-1, 3)
         pull = force(step)
-        length = size / (step @ pull)
+        length = size / _dot(step, pull)
         moved, left = moved + length * step, left - length * pull
         ahead = preconditioned(left)
-        before, size = size, left @ ahead
+        before, size = size, _dot(left, ahead)
         step = ahead + size / before * step
     raise ArithmeticError(f"no solution after {MOST_STEPS} steps: the solid must be held; hold more of it")
+
+
+def _dot(one: Floats, other: Floats) -> float:
+    """The dot product, summed in the same order whatever library numpy calls for `@`."""
+    return float((one * other).sum())
 
 
 def node_stresses(nodes: Floats, corners: Indices, material: Material, moved: Floats) -> Floats:

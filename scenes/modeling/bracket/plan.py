@@ -11,13 +11,14 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats
-from scenes.modeling.bracket.blocks import Plan, along, around_hole, between, circle, plan_of
+from scenes.modeling.bracket.blocks import Plan, along, around_hole, circle, plan_of, to_outline
 from scenes.modeling.bracket.measures import (
     AXIS,
     BORE,
     BOSS,
     CORNER,
     COUNTERBORE,
+    EDGE,
     HALF_WIDTH,
     HOLE,
     LENGTH,
@@ -44,6 +45,9 @@ RIB_COLUMNS: Final = 3
 STRIP_COLUMNS: Final = 7
 """The columns of the rib's foot, and with them those of its fillet and the flat one."""
 
+NOSE_LINE: Final = 1 + len(FOOT_ANGLES)
+"""The line of the strip where the rib begins."""
+
 SIDE_CELLS: Final = 7
 TOP_CELLS: Final = 30
 
@@ -57,7 +61,10 @@ RING_RADII: Final = np.array(
 """The rings around the bearing's axis: the bore, the seat of the bearing, the boss's foot and its fillet."""
 SEAT_RING: Final = 2
 BOSS_RING: Final = 5
-OUTER_SHARES: Final = np.array([0.33, 0.65, 1.0])
+FLAT_RING: Final = len(RING_RADII) - 1
+
+RIM: Final = EDGE + 1.0
+"""The width of the cells along the outline: of the rounded edge, and of what is flat beside it."""
 
 HOLE_RADII: Final = [HOLE, (HOLE + COUNTERBORE) / 2, COUNTERBORE, COUNTERBORE + 1.5]
 COUNTERBORE_RING: Final = 2
@@ -75,9 +82,9 @@ def half_plan() -> Plan:
         s, y = lines[name], _strip(lines[name])[:, bottom, 1]
         blocks[name] = _hole((float(s_of_x(x)), HOLE_Y), np.stack([s, y], axis=-1), name == "front")
     for name in ("bend", "stem"):
-        inside = _strip(lines[name])[:, bottom]
-        outside = np.stack([lines[name], half_width(lines[name])], axis=-1)
-        blocks[name] = between(inside, outside, np.linspace(0, 1, SIDE_CELLS + 1)).swapaxes(0, 1)
+        inside, outside = _strip(lines[name])[:, bottom, 1], half_width(lines[name])
+        y = np.stack([_across(*ends) for ends in zip(inside, outside, strict=True)])
+        blocks[name] = np.stack([np.broadcast_to(lines[name][:, None], y.shape), y], axis=-1)
     foot = np.concatenate([_strip(np.array([last]))[0], blocks["stem"][-1, 1:]])
     blocks["bearing"] = _bearing(foot)
     return plan_of(blocks)
@@ -105,6 +112,11 @@ def _strip(s: Floats) -> Floats:
     fillet[:, -1] = RIB + ROOT
     y = np.concatenate([foot, fillet, np.full((len(s), 1), RIB + ROOT + FLAT)], axis=1)
     return np.stack([np.broadcast_to(s[:, None], y.shape), y], axis=-1)
+
+
+def _across(first: float, last: float) -> Floats:
+    """The y of the nodes from beside the rib to the right side."""
+    return np.append(np.linspace(first, last - RIM, SIDE_CELLS), last)
 
 
 def half_width(s: Floats) -> Floats:
@@ -138,7 +150,7 @@ def _bearing(foot: Floats) -> Floats:
         rest = (even + begins[-1] * seen / seen[0]) / 2
         rings.append(circle(CENTER, radius, np.concatenate([begins, rest[1:]])))
         rings[-1][[0, -1], 1] = 0.0
-    return np.concatenate([rings, between(rings[-1], outline, OUTER_SHARES)])
+    return np.concatenate([rings, to_outline(rings[-1], outline, RIM)])
 
 
 def _hole(center: tuple[float, float], side: Floats, is_front: bool) -> Floats:
@@ -147,10 +159,11 @@ def _hole(center: tuple[float, float], side: Floats, is_front: bool) -> Floats:
     radius = CORNER if is_front else 0.0
     corner = circle((low + radius, HALF_WIDTH - radius), radius, np.linspace(np.pi / 2, np.pi, 40))
     front = along(np.concatenate([[((low + high) / 2, HALF_WIDTH)], corner, [(low, y)]]), 5 + SIDE_CELLS)
-    back = along(np.array([(high, y), (high, HALF_WIDTH)]), SIDE_CELLS)
+    across = _across(y, HALF_WIDTH)
+    back = np.stack([np.full(len(across), high), across], axis=-1)
     far = along(np.array([(high, HALF_WIDTH), ((low + high) / 2, HALF_WIDTH)]), 5)
     if not is_front:
         near = along(np.array([((low + high) / 2, HALF_WIDTH), (low, HALF_WIDTH)]), 5)
-        front = np.concatenate([near, along(np.array([(low, HALF_WIDTH), (low, y)]), SIDE_CELLS)[1:]])
+        front = np.concatenate([near, np.stack([np.full(len(across), low), across], axis=-1)[-2::-1]])
     outline = np.concatenate([side, back[1:], far[1:], front[1:]])
-    return around_hole(center, HOLE_RADII, outline, np.array([0.4, 1.0]))
+    return around_hole(center, HOLE_RADII, outline, RIM)

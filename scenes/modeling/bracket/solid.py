@@ -1,8 +1,7 @@
 """The solid of half the bracket: hexahedra in layers on the quads of its plan.
 
 Six layers are the plate of base and upright. The rib has eight more, and the boss eleven in front and two
-behind; the counterbores and the seat of the bearing lack some. A node is a column of the plan at a level;
-level 0 is the underside and the back, `PLATE` the side on which rib and boss stand.
+behind; the counterbores and the seat of the bearing lack some. A node is a column of the plan at a level.
 """
 
 from __future__ import annotations
@@ -13,12 +12,14 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, Indices
-from scenes.modeling.bracket import columns
 from scenes.modeling.bracket.blocks import Plan
-from scenes.modeling.bracket.columns import BACK, BOSS_LAYERS, LEVELS, PLATE, RIB_LAYERS, SEAT_LAYERS
+from scenes.modeling.bracket.columns import places
+from scenes.modeling.bracket.levels import BACK, BOSS_LAYERS, LEVELS, PLATE, RIB_LAYERS, SEAT_LAYERS
 from scenes.modeling.bracket.plan import (
     BOSS_RING,
     COUNTERBORE_RING,
+    FLAT_RING,
+    NOSE_LINE,
     RIB_COLUMNS,
     SEAT_RING,
     STRIP_COLUMNS,
@@ -28,19 +29,14 @@ from scenes.modeling.bracket.plan import (
 COUNTERBORE_LEVEL: Final = 3
 """The level of the counterbores' floors."""
 
-FLAT_RINGS: Final = 9
-"""The rings of the boss with its fillet and the flat cells beyond."""
-
-ZONES: Final = ("base", "fillet", "upright", "boss", "seat", "rib", "rib_foot", "boss_foot", "counterbore")
-"""What the quads of the plan belong to."""
-
 
 @dataclass(frozen=True)
 class Solid:
     """Hexahedra: `nodes` (n, 3) in millimeters, `corners` (m, 8), the lower four and then the upper four.
 
-    `quads`, (m,), are their rows in the plan and `layers`, (m,), their lower levels; `columns`, (n,), are the
-    points of the plan that the nodes stand on, and `levels`, (n,), their levels.
+    `zones` tells what each quad of the plan belongs to. `quads`, (m,), are the rows of the hexahedra in the
+    plan and `layers`, (m,), their lower levels; `columns`, (n,), are the points of the plan that the nodes
+    stand on, and `levels`, (n,), their levels.
     """
 
     plan: Plan
@@ -71,11 +67,10 @@ def half_solid() -> Solid:
     # Number the nodes in use: a column and a level each.
     low = plan.quads[quads] * LEVELS + (layers - BACK)[:, None]
     used, corners = np.unique(np.concatenate([low, low + 1], axis=1), return_inverse=True)
-    places = columns.places(plan)
     return Solid(
         plan,
         zones,
-        places.reshape(-1, 3)[used],
+        places(plan).reshape(-1, 3)[used],
         corners.reshape(-1, 8),
         quads,
         layers,
@@ -85,17 +80,20 @@ def half_solid() -> Solid:
 
 
 def zones_of(plan: Plan) -> tuple[str, ...]:
-    """What each quad of the plan belongs to, one of ZONES."""
+    """What each quad of the plan belongs to.
+
+    Beside the parts these are "rib_foot", "boss_foot" and "counterbore": what is around rib, boss and hole.
+    """
     zones = np.full(len(plan.quads), "base", "U12")
     zones[plan.quads_of["bend"]] = "fillet"
     zones[plan.quads_of["stem"]] = "upright"
     # The strip: in front of the nose all of it is the base, but for the last line of cells.
     strip, bearing = plan.quads_of["strip"], plan.quads_of["bearing"]
     zones[strip[1:, :STRIP_COLUMNS]] = "rib_foot"
-    zones[strip[columns.NOSE_LINE :, :RIB_COLUMNS]] = "rib"
+    zones[strip[NOSE_LINE:, :RIB_COLUMNS]] = "rib"
     zones[bearing] = "upright"
     zones[bearing[:, :STRIP_COLUMNS]] = "rib_foot"
-    zones[bearing[:FLAT_RINGS]] = "boss_foot"
+    zones[bearing[:FLAT_RING]] = "boss_foot"
     zones[bearing[:, :RIB_COLUMNS]] = "rib"
     zones[bearing[:BOSS_RING]] = "boss"
     zones[bearing[:SEAT_RING]] = "seat"

@@ -26,7 +26,7 @@ NESTED = (("reflectance", Reflectance), ("paint", Paint))
 def read_again(values: object, scene: Scene) -> Scene:
     """The scene of the values, and of the arrays of a scene's mesh."""
     mesh = scene.mesh
-    return scene_of_plain(values, mesh.coordinates, mesh.node_numbers, mesh.part_numbers)
+    return scene_of_plain(values, mesh.coordinates, mesh.node_numbers, mesh.part_numbers, mesh.scalars)
 
 
 def columns(scene: Scene) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from autocolor import (
     InputError,
     Light,
     Mesh,
+    MeshScalar,
     OutputError,
     Part,
     Scene,
@@ -36,6 +37,36 @@ from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import of_mesh, scenes
 
 COUPE = Path(__file__).parents[3] / "scenes" / "coupe"
+
+SCALARS = (
+    MeshScalar("stress", np.array([np.nan, *range(7)])),
+    MeshScalar("load", np.linspace(-1, 1, 6), "polygon"),
+)
+
+
+def test_a_scene_with_scalars_is_written_without_loss(tmp_path: Path) -> None:
+    scene = scene_of(cube().with_scalars(*SCALARS), scalar={"name": "load", "limits": (-2, 2), "bands": 5})
+    write_scene(tmp_path / "scene.toml", scene)
+    again = read_scene(tmp_path / "scene.toml")
+    assert again.scalar == scene.scalar
+    assert [(each.name, each.of) for each in again.mesh.scalars] == [("stress", "node"), ("load", "polygon")]
+    for one, other in zip(again.mesh.scalars, SCALARS, strict=True):
+        assert np.array_equal(one.values, other.values, equal_nan=True)
+    one_picture, other_picture = (render(each, 12, 16).scalar for each in (scene, again))
+    assert one_picture is not None
+    assert other_picture is not None
+    assert one_picture.tobytes() == other_picture.tobytes()
+
+
+def test_a_scalar_that_changes_is_written_to_a_new_file(tmp_path: Path) -> None:
+    scene = scene_of(cube().with_scalars(*SCALARS))
+    write_scene(tmp_path / "scene.toml", scene)
+    mesh = read_scene(tmp_path / "scene.toml").mesh
+    stronger = MeshScalar("stress", np.arange(8.0) * 2)
+    write_scene(tmp_path / "scene.toml", scene.replace(mesh=mesh.with_scalars(stronger)), overwrite=True)
+    (scalar,) = read_scene(tmp_path / "scene.toml").mesh.scalars
+    assert scalar.values.tolist() == stronger.values.tolist()
+
 
 HAND_WRITTEN = """\
 # A car by hand.

@@ -61,6 +61,11 @@ def test_it_tells_the_name_and_the_limits_beside_the_ends_of_the_bar() -> None:
         assert abs(number.top + LETTER_LINES // 2 - end) <= 1
 
 
+def test_large_numbers_are_told_in_millions() -> None:
+    labels = legend_of(shown(ball(limits=[0, 8e6], bands=2))).labels
+    assert [each.text for each in labels] == ["z", "x 1e6", "0", "4", "8"]
+
+
 def test_colors_beyond_the_limits_are_told_where_they_are_used() -> None:
     texts = [each.text for each in legend_of(shown(ball(limits=[-1, 1], below="red", above="blue"))).labels]
     assert {"above", "below"} <= set(texts)

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor.mapping.legend_numbers import bands_apart, numbers_between
@@ -17,19 +17,22 @@ def test_numbers_are_at_limits_of_bands_and_far_enough_apart_or_at_the_ends_alon
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "count", "told"),
+    ("low", "high", "count", "told", "exponent"),
     [
-        (0, 250, 4, ["0", "62.5", "125", "187.5", "250"]),
-        (-1, 1, 4, ["-1", "-0.5", "0", "0.5", "1"]),
-        (0, 1, 3, ["0", "0.333", "0.667", "1.000"]),
-        (0, 2e-6, 2, ["0", "1e-06", "2e-06"]),
-        (0, 4e6, 2, ["0", "2e+06", "4e+06"]),
-        (1e6, 1e6 + 4, 2, ["1000000", "1000002", "1000004"]),
-        (-0.3, 0.3, 2, ["-0.3", "0", "0.3"]),
+        (0, 250, 4, ["0", "62.5", "125", "187.5", "250"], 0),
+        (-1, 1, 4, ["-1", "-0.5", "0", "0.5", "1"], 0),
+        (0, 1, 3, ["0", "0.333", "0.667", "1.000"], 0),
+        (0, 2e-6, 2, ["0", "1", "2"], -6),
+        (320.1, 8019584, 2, ["0.00", "4.01", "8.02"], 6),
+        (0, 45_000, 3, ["0", "15000", "30000", "45000"], 0),
+        (-0.3, 0.3, 2, ["-0.3", "0", "0.3"], 0),
+        (1e30, 3e30, 2, ["1", "2", "3"], 30),
     ],
 )
-def test_numbers_are_told_in_few_digits(low: float, high: float, count: int, told: list[str]) -> None:
-    assert numbers_between(low, high, count) == told
+def test_numbers_are_told_in_few_digits(
+    low: float, high: float, count: int, told: list[str], exponent: int
+) -> None:
+    assert numbers_between(low, high, count) == (told, exponent)
 
 
 numbers = st.floats(-1e9, 1e9).filter(lambda value: value == 0 or abs(value) > 1e-9)
@@ -40,11 +43,10 @@ def test_each_number_is_that_of_its_limit_to_a_twentieth_of_the_distance(
     low: float, extent: float, count: int
 ) -> None:
     high = low + extent
+    assume(low < high)
     distance = (high - low) / count
-    told = numbers_between(low, high, count)
+    told, exponent = numbers_between(low, high, count)
     assert len(told) == count + 1
-    # Seven digits are as many as there is room for.
-    lost = max(abs(low), abs(high)) * 1e-6
     for number, text in enumerate(told):
-        assert abs(float(text) - (low + distance * number)) <= distance / 20 + lost
-        assert len(text) <= 13
+        wanted = low + (high - low) * number / count
+        assert abs(float(text) * 10.0**exponent - wanted) <= distance / 20 + 1e-9 * abs(wanted)

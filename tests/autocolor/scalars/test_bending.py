@@ -13,7 +13,7 @@ from autocolor.scalars.bending import (
 )
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.visibility.visible_points import VisiblePoints
-from tests.autocolor.meshes import cube, sphere, wall_scene
+from tests.autocolor.meshes import cube, grid, sphere, wall_scene
 from tests.autocolor.scalars.test_angles import cone
 
 ANY = Scalar("mean curvature")
@@ -53,12 +53,25 @@ def test_the_range_leaves_a_few_sharp_bends_out() -> None:
     mesh = Mesh.joined([ball, moved])
     _, (low, high) = mean_curvature(mesh, ANY, points_of(ball))
     assert mesh.curvatures.mean.max() > 50
-    assert 0.9 < low < high < 1.1
+    assert 0.4 < low < 1 < high < 2
+
+
+def test_what_is_flat_but_for_rounding_has_the_middle_of_the_range() -> None:
+    mesh = grid(9, 9, (0.1, 0.2, 0.3), (3.0, 0.7, -0.2), (-0.3, 2.0, 1.1))
+    mesh = Mesh(mesh.coordinates.astype(np.float32), mesh.node_numbers, part_names=("wall",))
+    points = points_of(mesh)
+    assert mesh.curvatures.mean.any()
+    for found in (mean_curvature, gaussian_curvature, largest_curvature, smallest_curvature):
+        values, (low, high) = found(mesh, ANY, points)
+        assert len(values) > 10
+        assert np.abs((values - low) / (high - low) - 0.5).max() < 0.01
 
 
 def test_the_sides_of_a_box_are_flat() -> None:
     mesh = cube()
+    size = 3**0.5
     for found in (mean_curvature, gaussian_curvature, largest_curvature, smallest_curvature):
         values, limits = found(mesh, ANY, rendering(wall_scene(mesh), 12, 16).points)
         assert not np.any(np.abs(values) > 1e-9)
-        assert limits == (-0.5, 0.5)
+        least = (0.01 / size) ** (2 if found is gaussian_curvature else 1)
+        assert limits == pytest.approx((-least, least))

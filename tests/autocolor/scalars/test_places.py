@@ -3,10 +3,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from autocolor import View
 from autocolor.rendering import rendering
 from autocolor.scalars.places import coordinate, distance, unit_vector
 from autocolor.scene.scalars.scalar import Scalar
-from tests.autocolor.meshes import sphere, wall_scene
+from tests.autocolor.meshes import grid, sphere, wall_scene
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -30,6 +31,16 @@ def test_a_distance_is_measured_along_the_direction_whatever_its_length() -> Non
         values, limits = distance(scene.mesh, scalar, points)
         assert values == pytest.approx(wanted, abs=1e-6)
         assert limits == pytest.approx((-2, 2), abs=0.03)
+
+
+def test_the_height_of_a_level_plate_is_in_the_middle_of_its_range() -> None:
+    mesh = grid(3, 3, (-1.0, -1.0, 1e-9), (2.0, 0.0, 1e-8), (0.0, 2.0, -1e-8))
+    points = rendering(wall_scene(mesh, view=View((0.0, 0.1, 4.0), target=(0.0, 0.0, 0.0))), 12, 16).points
+    for values, (low, high) in (
+        coordinate(2, mesh, Scalar("z"), points),
+        distance(mesh, Scalar("distance"), points),
+    ):
+        assert np.abs((values - low) / (high - low) - 0.5).max() < 0.05
 
 
 def test_the_range_is_that_of_the_object_and_not_of_what_is_seen() -> None:

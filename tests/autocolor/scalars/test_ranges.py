@@ -27,6 +27,12 @@ def test_a_constant_is_in_the_middle_of_its_range(value: float, limits: tuple[fl
     assert range_of(np.array([value, value])) == limits
 
 
+def test_an_extent_that_is_too_small_is_none() -> None:
+    assert widened(-1e-9, 1e-9, least=1e-3) == pytest.approx((-1e-3, 1e-3), rel=1e-5)
+    assert widened(5.0, 5.0, least=1e-3) == (2.5, 7.5)
+    assert widened(0.0, 1.0, least=1e-3) == (0, 1)
+
+
 def test_noise_counts_as_a_constant() -> None:
     low, high = widened(1000.0, 1000.0 + 1e-4)
     assert high - low == pytest.approx(1000, rel=1e-3)

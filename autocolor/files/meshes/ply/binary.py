@@ -36,7 +36,7 @@ def read_binary(data: bytes, header: Header, place: str) -> PlyTables:
     at = header.length
     elements: dict[str, Rows] = {}
     for element in header.elements:
-        least = element.count * sum(each.size for each in element.properties)
+        least = element.count * sum(each.size for each in element.properties) + element.least_corners
         if least > len(data) - at:
             _refuse_short(place, element, f"at least {least:,} bytes, not {len(data) - at:,}")
         columns, at = _columns(data, at, element, header.order, place)
@@ -97,18 +97,20 @@ def _columns_of_rows(rows: AnyArray, element: Element) -> Iterator[tuple[str, Co
 
 def _first_counts(data: bytes, at: int, element: Element, order: str, place: str) -> list[int]:
     """The counts of the lists of the first row."""
-    return [int(count[0]) for count in _walk(data, at, replace(element, count=1), order, place)]
+    counts, _ = _walk(data, at, replace(element, count=1), order, place)
+    return [int(count[0]) for count in counts]
 
 
 def _walked(data: bytes, at: int, element: Element, order: str, place: str) -> tuple[dict[str, Column], int]:
     """The columns of rows of different sizes, and where the next element begins."""
-    counts = _walk(data, at, element, order, place)
+    counts, end = _walk(data, at, element, order, place)
+    if not element.is_used:
+        return {}, end
     sizes = np.full(element.count, sum(each.size for each in element.properties))
     for count, (_, _, width) in zip(counts, _steps(element.properties), strict=True):
         sizes += count * width
     # The place of the next property in each row.
     places = np.cumsum(sizes)
-    end = at + int(places[-1])
     places += at - sizes
     columns: dict[str, Column] = {}
     for each in element.properties:
@@ -134,8 +136,10 @@ def _gathered(data: bytes, places: Indices, code: str) -> AnyArray:
     return everywhere[places]
 
 
-def _walk(data: bytes, at: int, element: Element, order: str, place: str) -> list[Indices]:
-    """The counts of each list of the rows of an element that begins at a byte.
+def _walk(data: bytes, at: int, element: Element, order: str, place: str) -> tuple[list[Indices], int]:
+    """The counts of each list of the rows of an element that begins at a byte, and where it ends.
+
+    Of an element that is not used, the counts are those of the last rows.
 
     Measured: a million triangles and quads in a tenth of a second.
     """
@@ -160,8 +164,10 @@ def _walk(data: bytes, at: int, element: Element, order: str, place: str) -> lis
             )
         if at > len(data):
             _refuse_short(place, element, "all their lists before the end, not after it")
+        if not element.is_used:
+            found.clear()
         found.append(np.array(counts, np.intp).reshape(rows, -1))
-    return list(np.ascontiguousarray(np.concatenate(found).T))
+    return list(np.ascontiguousarray(np.concatenate(found).T)), at
 
 
 def _steps(properties: tuple[Property, ...]) -> list[Step]:

@@ -16,6 +16,7 @@ import numpy as np
 from autocolor.checks import either, nearest
 from autocolor.errors import InputError
 from autocolor.files.meshes.obj.statements import name_of
+from autocolor.files.meshes.ply.properties import FACE, STRIPS, VERTEX
 from autocolor.files.reading import HEAD, shown, text_problem
 
 LARGEST_HEADER: Final = 16 << 20
@@ -35,7 +36,8 @@ TYPES: Final = {
     "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
     "float32": "f4", "float64": "f8", "int64": "i8", "uint64": "u8",
 }  # fmt: skip
-"""The types that a header names, as those of numpy. Departs from the format: it knows no 64-bit integers."""
+"""The types that a header names, as those of numpy. Integers of 64 bits are no PLY, but there are
+files with them."""
 
 FIRST_LINE: Final = re.compile(rb"ply[ \t]*(\r?\n|\r)")
 COUNT: Final = re.compile(rb"[0-9]{1,18}")
@@ -61,6 +63,19 @@ class Element:
     name: str
     count: int
     properties: tuple[Property, ...]
+
+    @property
+    def is_used(self) -> bool:
+        """Whether a mesh is made of it."""
+        return self.name in (VERTEX, FACE, STRIPS)
+
+    @property
+    def least_corners(self) -> int:
+        """How many corners its lists must have together at least.
+
+        Assumed: one for each face, so that no file of empty faces takes much memory.
+        """
+        return self.count if self.name == FACE and any(each.count_type for each in self.properties) else 0
 
 
 class Header(NamedTuple):
@@ -162,7 +177,10 @@ def _element(words: list[bytes], where: str, before: list[str]) -> tuple[str, in
             f"{where}: the name of an element must be unique, not repeated: {name!r}; rename one"
         )
     if len(before) >= MOST_ELEMENTS:
-        raise InputError(f"{where}: a header must have at most {MOST_ELEMENTS} elements, not more")
+        raise InputError(
+            f"{where}: a header must have at most {MOST_ELEMENTS} elements, not more; leave out what is not"
+            " needed"
+        )
     return name, int(words[2])
 
 

@@ -41,7 +41,7 @@ def _read(path: Path) -> tuple[Polygons, list[str]]:
     header = parsed_header(data, path.name)
     if not header.order and len(data) > LARGEST_MESH_FILE:
         raise InputError(
-            f"{path.name}: a PLY file in text must have at most {LARGEST_MESH_FILE:,} bytes, not more; export"
+            f"{path.name}: an ascii PLY file must have at most {LARGEST_MESH_FILE:,} bytes, not more; export"
             " it as binary"
         )
     tables = read_binary(data, header, path.name) if header.order else read_text(data, header, path.name)

@@ -47,7 +47,7 @@ class Block(NamedTuple):
 def read_text(data: bytes, header: Header, place: str) -> PlyTables:
     """The elements of a file; `place` is its name in messages. Raises InputError."""
     if problem := text_problem(data):
-        raise InputError(f"{place}: a PLY file in text {problem}")
+        raise InputError(f"{place}: an ascii PLY file {problem}")
     body = data[header.length :]
     if b"\r" in body:
         body = body.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
@@ -107,7 +107,6 @@ class TextLines:
 
     def bytes_left(self) -> int:
         """How many bytes at most were not taken."""
-        # A number has a byte and one after it.
         return len(self.text) - self.at + 1 + 2 * len(self.kept.numbers)
 
     def number_of(self, row: int) -> int:
@@ -179,7 +178,8 @@ def _numbers(block: bytes, is_space: Booleans, count: int) -> Floats | None:
 
 def _columns(lines: TextLines, element: Element, first: int) -> dict[str, Column]:
     """The columns of an element whose first row is one of the lines that are not empty."""
-    least = 2 * element.count * len(element.properties)
+    # A number has a byte and one after it.
+    least = 2 * (element.count * len(element.properties) + element.least_corners)
     if least > lines.bytes_left():
         raise InputError(
             f"{lines.place}: {element.count:,} elements {element.name!r} must have at least {least:,} bytes,"

@@ -64,10 +64,10 @@ def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], tuple[st
         corners, skipped = read_binary(data, path.name)
         return corners, np.zeros(len(corners) // 3, np.intp), (path.stem,), skipped
     if problem := text_problem(data):
-        raise InputError(f"{path.name}: an STL file in text {problem}")
+        raise InputError(f"{path.name}: an ascii STL file {problem}")
     if len(data) > LARGEST_MESH_FILE:
         raise InputError(
-            f"{path.name}: an STL file in text must have at most {LARGEST_MESH_FILE:,} bytes, not more;"
+            f"{path.name}: an ascii STL file must have at most {LARGEST_MESH_FILE:,} bytes, not more;"
             " export it as binary"
         )
     if b"\r" in data:

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import chain
 from typing import Final, NamedTuple, NoReturn
 
 import numpy as np
@@ -60,7 +61,7 @@ def read_text(data: bytes, place: str) -> TextTriangles:
     names: list[bytes] = []
     name: bytes | None = None
     begin = 0
-    for match in [*SOLID.finditer(data), None]:
+    for match in chain(SOLID.finditer(data), (None,)):
         end = len(data) if match is None else match.start()
         found = [_corners(data, *block, place) for block in _blocks(data, begin, end, place)]
         if name is None and found:

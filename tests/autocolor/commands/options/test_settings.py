@@ -161,7 +161,7 @@ def test_a_key_that_names_nothing_is_refused(scene: Scene, setting: str, sentenc
         ("surfaces.side.difuse=1", "surface 'side': there is no 'difuse'; did you mean 'diffuse'?"),
         ("mapping=gama", "not 'gama'; did you mean 'gamma'?"),
         ("scalar.bands=8", "scalar: name must be a string of at least one character, not missing; add it"),
-        ("scalar=z", "scalar must be a table of 'name', 'limits', 'scale'"),
+        ("scalar=z", "scalar must be a table of name, limits, scale"),
         ("scalar.scale=virid", "not 'virid'; did you mean 'viridis'?"),
         ("ambient=-1", "ambient must be a finite number of at least 0, not -1"),
         ("ambient=nan", "ambient must be a finite number of at least 0, not nan"),

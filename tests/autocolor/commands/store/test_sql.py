@@ -89,9 +89,9 @@ def test_a_change_that_would_be_wrong_is_refused_as_a_whole(tmp_path: Path, fold
     error = refused(path, "UPDATE polygons SET node1 = 9", "--write")
     assert error.exit_code == 2
     assert str(error).splitlines() == [
+        "nothing was changed",
         "small.sqlite: polygons, row 1: node 9 is not in the node table (1 to 5); correct it",
         "small.sqlite: polygons, row 2: node 9 is not in the node table (1 to 5); correct it",
-        "nothing was changed",
     ]
     assert tables_of(path) == before
     text = (folder / "scene.toml").read_bytes()

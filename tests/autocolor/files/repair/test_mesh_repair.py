@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.repair.mesh_repair import repaired
+from autocolor.files.repair.mesh_repair import _have_area, repaired
 from autocolor.files.repair.placement import Placement
 from autocolor.files.repair.polygons import MeshReport, Polygons
 
@@ -99,3 +100,34 @@ def test_whatever_is_left_has_area_and_normals(polygons: list[list[int]]) -> Non
     assert np.isfinite(mesh.normals.vectors).all()
     for row in mesh.node_numbers:
         assert len(set(row.tolist())) >= 3
+
+
+def flat(corners: list[list[float]]) -> bool:
+    """Whether a triangle has no area, worked out with fractions."""
+    a, b, c = ([Fraction(number) for number in corner] for corner in corners)
+    one = [q - p for p, q in zip(a, b, strict=True)]
+    other = [q - p for p, q in zip(a, c, strict=True)]
+    return all(one[i] * other[j] == one[j] * other[i] for i, j in ((0, 1), (1, 2), (2, 0)))
+
+
+@given(
+    quads=st.lists(
+        st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=4, max_size=4), min_size=1, max_size=30
+    ),
+    scale=st.sampled_from([1.0, 2.0**-100, 2.0**-400, 2.0**-530, 2.0**90]),
+    far=st.sampled_from([0.0, 1e3]),
+)
+def test_a_polygon_has_area_at_any_size_unless_both_its_diagonals_make_flat_triangles(
+    quads: list[list[tuple[int, int, int]]], scale: float, far: float
+) -> None:
+    coordinates = (np.array(quads, np.float64).reshape(-1, 3) + far) * scale
+    numbers = np.arange(len(coordinates)).reshape(-1, 4)
+    # Half of them are triangles.
+    numbers[::2, 3] = numbers[::2, 2]
+    expected = []
+    for quad in coordinates[numbers].tolist():
+        a, b, c, d = quad
+        expected.append(
+            not (flat([a, b, c]) and flat([a, c, d])) and not (flat([a, b, d]) and flat([b, c, d]))
+        )
+    assert _have_area(coordinates, numbers).tolist() == expected

@@ -127,7 +127,7 @@ def test_a_scalar_is_edited_in_place_with_its_comments(meshes: list[MeshReport])
     assert after == text.replace("bands = 8\n", "bands = 4\nlimits = [0.0, 1.0]\n")
     assert "scalar" not in edited(text, scene.without_scalar(), meshes)
     assert edited(HEADERS, read(HEADERS.encode(), meshes).with_scalar(name="z"), meshes) == HEADERS.replace(
-        "[parts]\n", '[scalar]\nname = "z"\n\n[parts]\n'
+        "[parts]\n", '\n[scalar]\nname = "z"\n\n[parts]\n'
     )
 
 

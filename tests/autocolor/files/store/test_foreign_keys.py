@@ -12,7 +12,7 @@ def broken(*statements: str) -> list[str]:
     connection = store_of(small_scene())
     for statement in statements:
         connection.execute(statement)
-    found = broken_references(connection, DEFINITIONS)
+    found = broken_references(connection, DEFINITIONS, DEFINITIONS)
     connection.close()
     return found
 
@@ -22,16 +22,17 @@ def test_a_whole_store_has_no_broken_references() -> None:
 
 
 def test_each_row_is_told_with_its_table_its_number_and_the_nearest_name() -> None:
-    assert broken("UPDATE parts SET surface = 'glas' WHERE number = 2", "UPDATE polygons SET node1 = 7") == [
+    assert broken(
+        "UPDATE parts SET surface = 'glas' WHERE number = 2", "UPDATE node_scalars SET scalar = 'x'"
+    ) == [
         "parts, row 2: surface 'glas' is not in the surface table; did you mean 'glass'?",
-        "polygons, row 1: node 7 is not in the node table (1 to 5); correct it",
-        "polygons, row 2: node 7 is not in the node table (1 to 5); correct it",
+        "node_scalars: a scalar is not in the mesh_scalars table; remove such rows",
     ]
 
 
 def test_so_many_are_told_and_no_more() -> None:
     numbers = "WITH n(i) AS (SELECT 10 UNION ALL SELECT i + 1 FROM n WHERE i < 500)"
-    insert = f"INSERT INTO polygons {numbers} SELECT i, 'hood', 1, 2, 99, 3 FROM n"
+    insert = f"INSERT INTO parts (name, surface) {numbers} SELECT 'part ' || i, 'none' FROM n"
     assert len(broken(insert)) == MOST_PROBLEMS
 
 
@@ -39,6 +40,6 @@ def test_tables_of_others_and_keys_that_fit_no_table_are_left_alone() -> None:
     assert broken("CREATE TABLE notes (node REFERENCES nodes)", "INSERT INTO notes VALUES (77)") == []
     connection = sqlite3.connect(":memory:")
     connection.execute("CREATE TABLE nodes (node, x)")
-    connection.execute("CREATE TABLE polygons (polygon, node1 REFERENCES nodes (node))")
-    connection.execute("INSERT INTO polygons VALUES (1, 2)")
-    assert broken_references(connection, {"nodes": 1, "polygons": 1}) == []
+    connection.execute("CREATE TABLE node_scalars (scalar, node REFERENCES nodes (node))")
+    connection.execute("INSERT INTO node_scalars VALUES (1, 2)")
+    assert broken_references(connection, {"nodes": 1, "node_scalars": 1}, DEFINITIONS) == []

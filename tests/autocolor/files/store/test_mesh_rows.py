@@ -62,7 +62,14 @@ def test_a_missing_node_is_named_also_where_no_table_tells_of_references(tmp_pat
 def test_a_value_of_a_node_that_is_not_there_is_refused(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     run(path, "INSERT INTO node_scalars VALUES ('stress', 9, 1.0)")
-    with pytest.raises(InputError, match="node_scalars: a node is not in the node table; remove such rows"):
+    with pytest.raises(
+        InputError, match="node_scalars, scalar 'stress': node 9 is not in the node table; remove"
+    ):
+        read_store(path)
+    run(path, "DELETE FROM node_scalars WHERE node = 9", "INSERT INTO node_scalars VALUES ('heat', 1, 1.0)")
+    with pytest.raises(
+        InputError, match="node_scalars: a scalar is not in the mesh_scalars table; remove such"
+    ):
         read_store(path)
 
 

@@ -4,7 +4,7 @@ import sqlite3
 
 import pytest
 
-from autocolor.files.store.permissions import authorizer
+from autocolor.files.store.permissions import authorizer, restoring
 
 REFUSED = (
     "ATTACH 'other.db' AS other",
@@ -53,6 +53,18 @@ def test_a_statement_that_changes_rows_may_change_nothing_else(statement: str) -
 @pytest.mark.parametrize("statement", CHANGES)
 def test_rows_are_changed_where_that_is_asked_for(statement: str) -> None:
     assert connection(may_change=True).execute(statement).rowcount == 1
+
+
+@pytest.mark.parametrize("statement", [each for each in (*REFUSED, *CHANGES) if "DROP" not in each])
+def test_the_text_of_a_trigger_or_an_index_may_make_that_alone(statement: str) -> None:
+    made = connection(may_change=True)
+    made.set_authorizer(restoring)
+    with pytest.raises(sqlite3.DatabaseError):
+        made.execute(statement)
+    made.execute("CREATE TRIGGER kept AFTER DELETE ON nodes BEGIN DELETE FROM nodes; END")
+    made.execute("CREATE INDEX kept_too ON nodes (abs(x))")
+    with pytest.raises(sqlite3.DatabaseError):
+        made.execute("CREATE INDEX other ON nodes (hex(zeroblob(x)))")
 
 
 def test_a_statement_may_compute() -> None:

@@ -183,6 +183,26 @@ def test_what_others_keep_in_a_store_is_kept_and_not_run_when_it_is_saved_over(t
     assert run(path, "SELECT count(*) FROM far") == [(2,)]
 
 
+def test_what_others_keep_is_not_lost_where_it_does_not_fit(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "DELETE FROM polygons WHERE polygon = 2", "CREATE UNIQUE INDEX one ON polygons (node1)")
+    before = tables_of(path)
+    with pytest.raises(WriteError, match="what others keep in the store cannot be kept"):
+        write_store(path, small_scene(), overwrite=True)
+    assert tables_of(path) == before
+
+
+def test_a_damaged_store_is_written_anew(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    data = bytearray(path.read_bytes())
+    data[8192 : 8192 * 3] = b"\xff" * (8192 * 2)
+    path.write_bytes(data)
+    with pytest.raises(InputError, match="if it is damaged, bring a copy back, or rescue it"):
+        read_store(path)
+    write_store(path, small_scene(), overwrite=True)
+    assert is_equal(read_store(path).scene, small_scene())
+
+
 def test_a_store_that_exists_is_not_overwritten_unless_asked(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     before = path.read_bytes()

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 import autocolor
-from autocolor.commands.tables import tables
+from autocolor.commands.store.tables import tables
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng lid\nf 1 2 3 4\n"
 

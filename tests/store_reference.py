@@ -1,0 +1,131 @@
+"""The reference of the table store: every table and column, as the store itself makes them.
+
+`python -m tests.store_reference > docs/STORE.md` writes it.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from autocolor.files.store.schema import DEFINITIONS, MESH_TABLES, ROW_TABLES, RowTable
+from autocolor.files.store.sql_columns import SqlColumn, literal
+
+ROOT = Path(__file__).resolve().parents[1]
+
+HEAD = """# The table store
+
+A scene in one SQLite file (`.sqlite` or `.db`), whose tables any tool of SQLite 3.37 or later can ask and
+edit. `read_scene`, `write_scene` and every command take it as they take a folder. The page is written
+from the columns in `autocolor/scene` by `python -m tests.store_reference > docs/STORE.md`; what a key
+means and what an edit of it costs is in COLUMNS.md.
+
+    autocolor sql car.sqlite "SELECT name, intensity FROM lights"
+    autocolor sql scenes/coupe "SELECT part, count(*) AS polygons FROM polygons GROUP BY part" --csv
+    autocolor sql car.sqlite "UPDATE surfaces SET exponent = 40 WHERE name = 'body'" --write
+    autocolor sql car.sqlite
+
+The last one asks at a prompt: `.tables`, `.schema lights`, `.quit`. A scene that is no store is read into
+memory for it; `--write` then saves to its folder, whose comments stay. In Python:
+
+    with autocolor.open_tables("car.sqlite") as tables:
+        tables.select("SELECT node, x, value AS stress FROM nodes JOIN node_scalars USING (node)"
+                      " WHERE scalar = ? AND value > ?", ["stress", 200])
+        tables.update("lights", "key", intensity=2.0)
+        scene = tables.scene()
+
+## What values are
+
+- Rows are counted from 1: `nodes.node`, `polygons.polygon`, and `number` in the other tables, which keeps
+  their order. Node and polygon numbers may have gaps and come in any order; they are counted anew when a
+  scene is saved.
+- Surfaces, parts, lights and scalars are referred to by their names.
+- A point, a direction or an axis is three columns: `position_x`, `position_y`, `position_z`.
+- A flap of a light is `flaps_z_minimum`, `flaps_z_maximum` and `flaps_z_on`; all three are NULL where
+  there is none. A limit that is NULL in a flap that is there is infinite.
+- What may be one of several things is text as it is or a list as JSON: `'linear'` or `'[[0, 0], [1,
+  1]]'`, `'auto'` or `'{"object": [0, 1.3]}'`. A switch is 0 or 1, a color any that a scene file may have.
+- NULL is absent, and a value of a scalar that is NULL or has no row is missing. Minus zero is 0.
+- `on` and `of` are words of SQL: write `"on"` and `"of"`.
+
+Only `nodes` and `polygons` must be there; all else is created as for any mesh, and a column that is
+missing has its default. Without `parts`, the parts are those that polygons name. `lights` without rows
+means no lights.
+
+## What is checked, and what is run
+
+The tables check types, ranges and choices themselves, and name the rule that is broken. Tools leave
+references unchecked unless they are asked (`PRAGMA foreign_keys = ON`), so reading a store checks them
+again, as it does every value: "polygons, row 12: node 40 is not in the node table (1 to 37); correct it".
+Nothing is repaired: polygons without area and parts without polygons stay, as they do in `.tables` files.
+
+A store is data. Reading one runs nothing that is in it: views and triggers stay as they are, and a view,
+a virtual table or a computed column of one of the names below is refused. Statements may read, compute,
+and with `--write` change rows; they may not attach files, load extensions, set pragmas or change tables,
+and end after 30 seconds (`--seconds`). A value has at most 1 MiB, a file at most 2 GiB.
+
+A new store is written beside its place and renamed. A store that is there is changed in place by one
+transaction, so that programs that have it open notice; other tables, views, indices and triggers are
+kept, and triggers are not run. What another program has written to a `-wal` file is read with the store.
+A change that was interrupted (`-journal`) is taken back. A studio that shows a store, or a scene file,
+shows what other programs change in it as one step to undo; with unsaved edits it asks.
+
+A million nodes and a million quads are read in 2.1 seconds and written in 2.6; see
+`files/store/mesh_rows.py` for what was measured.
+
+## The mesh
+"""
+
+ROWS = """
+## Tables of one row
+
+`scene`, `view` and `scalar` have at most one row, `number` 1.
+"""
+
+MANY = """
+## Tables of many rows
+"""
+
+
+def document() -> str:
+    """The whole reference."""
+    parts = [HEAD]
+    for name in MESH_TABLES:
+        parts.append(f"\n```sql\n{DEFINITIONS[name]};\n```\n")
+    for head, is_single in ((ROWS, True), (MANY, False)):
+        parts.append(head)
+        for table in ROW_TABLES.values():
+            if table.is_single == is_single:
+                parts.extend(lines_of(table))
+    return "".join(parts)
+
+
+def lines_of(table: RowTable) -> Iterator[str]:
+    """The reference of a table, a line a column; the three columns of a vector share one."""
+    yield f"\n### `{table.name}`\n\n| column | type | what it is | value | default |\n|---|---|---|---|---|\n"
+    for column in table.columns:
+        if not column.component:
+            default = "" if column.default is None else f"`{shown_default(table, column)}`"
+            told = default or ("NULL" if column.may_be_null else "")
+            rule = column.kind.rule().removeprefix("must be ")
+            yield f"| `{shown_name(column)}` | {column.type} | {column.help} | {rule} | {told} |\n".replace(
+                "|| ", "| "
+            )
+
+
+def shown_name(column: SqlColumn) -> str:
+    """The name of a column; of a vector, with all its axes."""
+    return column.name if column.component is None else f"{column.name[:-1]}x`, `..._y`, `..._z"
+
+
+def shown_default(table: RowTable, column: SqlColumn) -> str:
+    """The default of a column; of a vector, those of all its axes."""
+    if column.component is None:
+        return literal(column.default)
+    return ", ".join(literal(each.default) for each in table.columns if each.path == column.path)
+
+
+if __name__ == "__main__":
+    sys.stdout.reconfigure(encoding="utf-8")  # type: ignore[union-attr]
+    sys.stdout.write(document())
