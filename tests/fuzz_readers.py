@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import argparse
 import multiprocessing
-import os
 import resource
+import shutil
 import sys
 import tempfile
 import time
@@ -77,8 +77,8 @@ def reads(connection: Connection, folder: Path) -> None:
     """Read the seeds that come through a connection, until None comes, and send back what became of each."""
     resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
     while (seed := connection.recv()) is not None:
-        for name in os.listdir(folder):
-            os.unlink(folder / name)
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
         forget_peak()
         before = memory("VmRSS")
         outcome = outcome_of(seed, folder)
@@ -174,8 +174,8 @@ def main() -> int:
 
 def keep(seed: Seed, folder: Path) -> None:
     """Keep the files of a seed."""
-    folder.mkdir(parents=True, exist_ok=True)
     for name, data in seed.files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(data)
 
 

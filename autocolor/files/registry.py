@@ -105,5 +105,5 @@ def suffix_rule(path: Path, suffixes: Sequence[str]) -> str:
     *others, last = suffixes
     listed = f"{', '.join(others)} or {last}" if others else last
     given = f"not in {path.suffix!r}" if path.suffix else "and this one has no ending"
-    near = difflib.get_close_matches(path.suffix.lower(), suffixes, 1) if path.suffix else []
+    near = difflib.get_close_matches(path.suffix.lower(), suffixes, 1, 0.75) if path.suffix else []
     return f"end in {listed}, {given}{f'; did you mean {near[0]!r}?' if near else ''}"

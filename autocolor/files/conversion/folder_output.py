@@ -36,7 +36,7 @@ def write_folder(
         ) from None
     try:
         write(beside, mesh)
-        names = sorted(os.listdir(beside))
+        names = sorted(str(file.relative_to(beside)) for file in beside.rglob("*") if file.is_file())
         there = [name for name in names if os.path.lexists(path / name)]
         if there and not overwrite:
             raise OutputError(
@@ -44,9 +44,12 @@ def write_folder(
                 " overwrite it with --force"
             )
         _synced(beside, names)
-        os.makedirs(path, exist_ok=True)
-        for name in names:
-            os.replace(beside / name, path / name)
+        if path.exists():
+            for name in names:
+                (path / name).parent.mkdir(parents=True, exist_ok=True)
+                os.replace(beside / name, path / name)
+        else:
+            os.rename(beside, path)
     except OSError as error:
         raise WriteError(
             f"an output must be written whole, and {path} could not be ({reason_of(error)}); make room or"

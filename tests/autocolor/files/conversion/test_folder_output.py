@@ -13,11 +13,17 @@ from tests.autocolor.meshes import cube
 def write_two(folder: Path, mesh: Mesh) -> None:
     (folder / "nodes").write_text(str(len(mesh.coordinates)))
     (folder / "polygons").write_text(str(len(mesh.node_numbers)))
+    (folder / "scalars").mkdir()
+    (folder / "scalars" / "1").write_text("")
 
 
 def test_the_files_of_a_mesh_are_written_to_a_new_folder(tmp_path: Path) -> None:
     target = tmp_path / "out"
-    assert write_folder(target, cube(), write_two, overwrite=False) == [target / "nodes", target / "polygons"]
+    assert write_folder(target, cube(), write_two, overwrite=False) == [
+        target / "nodes",
+        target / "polygons",
+        target / "scalars" / "1",
+    ]
     assert (target / "polygons").read_text() == "6"
     assert list(tmp_path.iterdir()) == [target]
 
@@ -29,6 +35,7 @@ def test_files_are_overwritten_only_where_that_is_allowed_and_others_stay(tmp_pa
     with pytest.raises(OutputError, match=r"must be new files, not .*polygons, which exists"):
         write_folder(tmp_path / "out", cube(), write_two, overwrite=False)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["notes", "polygons"]
+    assert (tmp_path / "out" / "polygons").read_text() == "old"
     write_folder(tmp_path / "out", cube(), write_two, overwrite=True)
     assert (tmp_path / "out" / "polygons").read_text() == "6"
     assert (tmp_path / "out" / "notes").read_text() == "mine"
