@@ -7,7 +7,7 @@ from typing import Final
 from autocolor.screens.colors.blending_screen import BlendingScreen
 from autocolor.screens.colors.mixing_screen import MixingScreen
 from autocolor.screens.entries_screen import EntriesScreen
-from autocolor.screens.file_screen import FileScreen
+from autocolor.screens.files.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
 from autocolor.screens.kept_screen import KeptScreen
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen

@@ -23,7 +23,7 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
 from autocolor.screens.comparing import NOW, Comparing
-from autocolor.screens.file_on_disk import FileOnDisk
+from autocolor.screens.files.file_on_disk import FileOnDisk
 from autocolor.studio import Studio
 from autocolor.widgets.column_rows import World
 from autocolor.widgets.labels import short_name

@@ -11,7 +11,7 @@ from autocolor.files.scene_writing import write_scene
 from autocolor.files.store.store_file import write_store
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
-from autocolor.screens.file_on_disk import SECONDS_BETWEEN
+from autocolor.screens.files.file_on_disk import SECONDS_BETWEEN
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.files.store.stores import run, small_scene

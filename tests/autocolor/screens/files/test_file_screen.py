@@ -7,7 +7,7 @@ import pytest
 from autocolor import Light, Scene, read_scene, write_rig, write_scene
 from autocolor.errors import AutocolorError
 from autocolor.files.state.recent import note_file
-from autocolor.screens.file_screen import LEFT, MOST_ROWS, RIGHT, FileRow
+from autocolor.screens.files.file_screen import LEFT, MOST_ROWS, RIGHT, FileRow
 from autocolor.screens.session import PICTURE
 from autocolor.widgets.menu import WORK
 from tests.autocolor.meshes import wall_scene
