@@ -12,8 +12,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
+import numpy as np
+
 from autocolor.mapping.display_image import DisplayImage
-from autocolor.mapping.legend_numbers import bands_apart, numbers_between
+from autocolor.mapping.legend_numbers import bands_apart, numbers_between, stands_for_whole_numbers
 from autocolor.mapping.level_ranges import SCREENS
 from autocolor.mapping.scalar_bands import Bands
 
@@ -89,8 +91,8 @@ class Legend:
 def legend(image: DisplayImage, end: int | None = None, at_left: bool = False) -> Legend | None:
     """The legend of an image; None without a scalar, where that has none, and where it would not fit.
 
-    Assumed: it stands in the upper right corner, where an object that fills the picture leaves most room; or
-    in the upper left one, or as if the picture ended before an element `end`.
+    Assumed: it stands in the upper right corner, as if the picture ended before an element `end`; or in the
+    upper left one, if that is told, or if it hides less than half as much there of what the scalar colors.
     """
     scalar = image.scene.scalar
     if scalar is None or not scalar.legend:
@@ -102,20 +104,38 @@ def legend(image: DisplayImage, end: int | None = None, at_left: bool = False) -
     lines, elements = image.words.shape
     # A surface where a value is missing has all the bands that there are.
     name = max(found, key=lambda name: found[name].has_missing)
-    return laid_out(
-        scalar.name,
-        found[name],
-        image.ranges[name].first,
-        (lines, elements if end is None else min(end, elements)),
-        at_left,
+    size = lines, elements if end is None else min(end, elements)
+    right, left = (
+        laid_out(scalar.name, found[name], image.ranges[name].first, size, side) for side in (False, True)
+    )
+    if right is None or left is None:
+        return None
+    if end is None and not at_left:
+        at_left = 2 * _hidden(image, left) < _hidden(image, right)
+    return left if at_left else right
+
+
+def _hidden(image: DisplayImage, found: Legend) -> int:
+    """How many words of surfaces that the scalar colors a legend hides."""
+    left, top, right, bottom, _ = found.swatches[0]
+    words = image.words[top : bottom + 1, left : right + 1]
+    return sum(
+        int(np.count_nonzero((words >= first) & (words < first + levels)))
+        for first, levels in (image.ranges[name] for name in image.bands)
     )
 
 
 def laid_out(name: str, bands: Bands, first: int, size: tuple[int, int], at_left: bool) -> Legend | None:
     """The legend of a scalar with bands from a first word on, for a picture of a size."""
     height = lines_of_band(bands.bands)
-    step = bands_apart(bands.bands, height, LEAST_APART)
-    numbers, exponent = numbers_between(bands.low, bands.high, bands.bands // step)
+    if stands_for_whole_numbers(bands.low, bands.high, bands.bands) and height >= LETTER_LINES:
+        # Each band has its number beside its middle.
+        numbers, exponent = [f"{bands.low + 0.5 + band:.0f}" for band in range(bands.bands)], 0
+        places = [height * band + height // 2 for band in range(bands.bands)]
+    else:
+        step = bands_apart(bands.bands, height, LEAST_APART)
+        numbers, exponent = numbers_between(bands.low, bands.high, bands.bands // step)
+        places = [height * step * number for number in range(len(numbers))]
     title = [*title_lines(name), *([f"x 1e{exponent}"] if exponent else [])]
     above = [("above", bands.above)] * bands.has_above
     below = [("below", bands.below)] * bands.has_below + [("missing", bands.missing)] * bands.has_missing
@@ -153,8 +173,8 @@ def laid_out(name: str, bands: Bands, first: int, size: tuple[int, int], at_left
     foot = top + BAR_GAP + bar_lines
     for band in range(bands.bands):
         put(band, foot - (band + 1) * height, height)
-    for place, number in enumerate(numbers):
-        put_text(foot - place * step * height, number)
+    for place, number in zip(places, numbers, strict=True):
+        put_text(foot - place, number)
     top = foot + BAR_GAP
     for label, band in below:
         put(band, top, LETTER_LINES)

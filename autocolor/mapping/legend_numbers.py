@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
+from autocolor.mapping.rounding import HALF
+
 MOST_DIGITS: Final = 6
 """Assumed: digits before or after the point up to which numbers are told without a power of ten."""
 
@@ -23,6 +25,15 @@ def bands_apart(bands: int, lines: int, least: int) -> int:
     """
     dividing = (step for step in range(1, bands) if bands % step == 0 and step * lines >= least)
     return next(dividing, bands)
+
+
+def stands_for_whole_numbers(low: float, high: float, bands: int) -> bool:
+    """Whether the middle of each band is a whole number, as where numbers stand for kinds of things.
+
+    >>> stands_for_whole_numbers(0.5, 3.5, 3), stands_for_whole_numbers(0, 3, 3)
+    (True, False)
+    """
+    return high - low == bands and low % 1 == HALF
 
 
 class Numbers(NamedTuple):

@@ -134,3 +134,21 @@ def test_a_title_has_at_most_three_lines_that_fit(name: str) -> None:
     assert 1 <= len(lines) <= 3
     assert all(len(line) <= MOST_TITLE for line in lines)
     assert name.startswith(lines[0].removesuffix(".."))
+
+
+def test_bands_that_stand_for_whole_numbers_have_them_beside_their_middles() -> None:
+    found = legend_of(shown(ball(limits=[0.5, 4.5], bands=4)))
+    bar = [each for each in found.swatches if each.word < SCREENS.first]
+    _, *numbers = found.labels
+    assert [each.text for each in numbers] == ["1", "2", "3", "4"]
+    for number, band in zip(numbers, bar, strict=True):
+        assert abs(number.top + LETTER_LINES // 2 - (band.top + band.bottom) / 2) <= 1
+
+
+def test_it_goes_to_the_left_where_it_hides_far_less_of_the_object() -> None:
+    scene = ball()
+    x, y, z = scene.view.eye
+    for shift, is_left in ((-1.0, False), (1.0, True)):
+        eye = tuple(scene.view.axes[0] * -shift + (x, y, z))
+        moved = scene.with_view(eye=eye, direction=scene.view.axes[2].tolist(), target=None)
+        assert (legend_of(shown(moved)).swatches[0].left == 8) is is_left
