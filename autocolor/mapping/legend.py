@@ -130,7 +130,8 @@ def laid_out(name: str, bands: Bands, first: int, size: tuple[int, int], at_left
     height = lines_of_band(bands.bands)
     if stands_for_whole_numbers(bands.low, bands.high, bands.bands) and height >= LETTER_LINES:
         # Each band has its number beside its middle.
-        numbers, exponent = [f"{bands.low + 0.5 + band:.0f}" for band in range(bands.bands)], 0
+        numbers: Sequence[str] = [f"{bands.low + 0.5 + band:.0f}" for band in range(bands.bands)]
+        exponent = 0
         places = [height * band + height // 2 for band in range(bands.bands)]
     else:
         step = bands_apart(bands.bands, height, LEAST_APART)
