@@ -16,9 +16,7 @@ def mesh(*scalars: MeshScalar, coordinates: object = None, part: str = "a", crea
 
 
 def test_meshes_of_equal_tables_and_scalars_are_the_same_whatever_their_crease_angle() -> None:
-    one, other = (
-        mesh(MeshScalar("stress", VALUES.copy()), crease_angle=angle) for angle in (40.0, 20.0)
-    )
+    one, other = (mesh(MeshScalar("stress", VALUES.copy()), crease_angle=angle) for angle in (40.0, 20.0))
     assert has_same_tables(one, other)
     assert has_same_tables(one, one)
 
