@@ -1,4 +1,4 @@
-"""Helpers for input checks: how messages show values and lists, and which name was probably meant."""
+"""What input checks share: how messages show values and lists, and which name was probably meant."""
 
 from __future__ import annotations
 
@@ -32,6 +32,11 @@ def shown(value: object, most: int = 60) -> str:
         # A whole number of thousands of digits, or a list in lists in lists.
         text = f"a very large {type(value).__name__}"
     return text if len(text) <= most else f"{text[:most]}..."
+
+
+def printable(text: str) -> str:
+    """The text with a question mark for each letter that cannot be printed, such as the end of a line."""
+    return "".join(letter if letter.isprintable() else "?" for letter in text)
 
 
 def listed(names: Iterable[str]) -> str:

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
+from autocolor.checks import printable
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
+    from autocolor.scene.scalars.mesh_scalars import MeshScalar
 
 EXAMPLES: Final = """\b
 Examples:
@@ -26,7 +28,7 @@ Examples:
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.pass_context
 def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
-    """Print the nodes, polygons, edges, parts, surfaces, lights, view and intensities of SCENE."""
+    """Print the nodes, polygons, scalars, parts, surfaces, lights, view and intensities of SCENE."""
     report = read(source)
     facts = facts_of(report)
     if as_json:
@@ -55,6 +57,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "edges": mesh.edge_count,
         "quads": dataclasses.asdict(quad_shapes(mesh)),
         "bounds": [low.tolist(), high.tolist()],
+        "scalars": [scalar_facts(scalar) for scalar in mesh.scalars],
         "parts": {part.name: part.surface for part in scene.parts},
         "surfaces": {
             surface.name: {
@@ -71,6 +74,19 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
         "intensities": picture.ranges.whole,
         "repairs": list(report.repairs),
         "created": list(report.created),
+    }
+
+
+def scalar_facts(scalar: MeshScalar) -> dict[str, Any]:
+    """The facts about a scalar of the mesh; its range is None if all of its values are missing."""
+    import numpy as np
+
+    there = scalar.values[~np.isnan(scalar.values)]
+    return {
+        "name": scalar.name,
+        "of": scalar.of,
+        "range": [float(there.min()), float(there.max())] if len(there) else None,
+        "missing": len(scalar.values) - len(there),
     }
 
 
@@ -95,6 +111,13 @@ def lines_of(facts: dict[str, Any]) -> list[str]:
         owned = f"words {words[0]} to {words[1]}" if words else "no words"
         seen = f"intensities {extent.minimum:.4g} to {extent.maximum:.4g}" if extent else "not seen"
         lines.append(f"  {name}: {owned}, {seen}")
+    if facts["scalars"]:
+        lines.append("scalars:")
+    for scalar in facts["scalars"]:
+        extent, missing = scalar["range"], scalar["missing"]
+        values = f"{extent[0]:.4g} to {extent[1]:.4g}" if extent else "no values"
+        told = f", missing {missing:,}" if missing else ""
+        lines.append(f"  {printable(scalar['name'])}: of {scalar['of']}s, {values}{told}")
     if facts["created"]:
         lines.append(f"created: {', '.join(facts['created'])}")
     return lines

@@ -21,7 +21,7 @@ from typing import Any, Final, NamedTuple, NoReturn
 import numpy as np
 
 from autocolor.arrays import AnyArray
-from autocolor.checks import shown
+from autocolor.checks import printable, shown
 from autocolor.errors import InputError
 from autocolor.files.reading import read_bytes
 
@@ -130,7 +130,7 @@ def read_array_file(kind: ArrayFileKind, source: Path) -> ArrayFile:
 
 def _damaged(kind: ArrayFileKind, source: Path, found: str) -> InputError:
     # Names in the file may be anything.
-    told = "".join(letter if letter.isprintable() else "?" for letter in found[:LONGEST_REASON])
+    told = printable(found[:LONGEST_REASON])
     return InputError(
         f"{source.name}: a {kind.noun} must be whole and as autocolor wrote it, not {told}; {kind.advice}"
     )

@@ -8,8 +8,6 @@ from itertools import count
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-import numpy as np
-
 from autocolor.errors import InputError, OutputError
 from autocolor.files.mesh_sources import source_of
 from autocolor.files.meshes.formats import read_mesh
@@ -21,11 +19,10 @@ from autocolor.files.scenes.scene_meshes import MESH_FILE_KEYS, meshes_of
 from autocolor.files.scenes.toml_text import parsed_toml
 from autocolor.files.writing import write_atomically
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.same_meshes import has_same_tables
 
 MESH_STEM: Final = "mesh"
 """The name, without its ending, of the mesh file that is written beside a scene file."""
-
-ARRAYS: Final = ("coordinates", "node_numbers", "part_numbers")
 
 Entries = tuple[Mapping[str, Any], ...]
 """`[[mesh]]` tables."""
@@ -46,7 +43,7 @@ def meshes_there(folder: Path, mesh: Mesh, old: bytes | None) -> Meshes | None:
         given.append(_relative(source.entries, source.folder, folder.resolve()))
     for entries in given:
         reports = reports_of(folder, entries)
-        if reports and _is_same(Mesh.joined([report.mesh for report in reports]), mesh):
+        if reports and has_same_tables(Mesh.joined([report.mesh for report in reports]), mesh):
             return Meshes(entries, reports)
     return None
 
@@ -78,20 +75,6 @@ def reports_of(folder: Path, entries: Entries) -> list[MeshReport]:
     return [] if problems.found else reports
 
 
-def _is_same(one: Mesh, other: Mesh) -> bool:
-    """Whether all tables and scalars of two meshes are equal; the crease angle is not one of them."""
-    kinds, others = ([(scalar.name, scalar.of) for scalar in mesh.scalars] for mesh in (one, other))
-    return (
-        one.part_names == other.part_names
-        and kinds == others
-        and all(np.array_equal(vars(one)[name], vars(other)[name]) for name in ARRAYS)
-        and all(
-            np.array_equal(scalar.values, same.values, equal_nan=True)
-            for scalar, same in zip(one.scalars, other.scalars, strict=True)
-        )
-    )
-
-
 def written_mesh(folder: Path, mesh: Mesh, written: list[Path]) -> Meshes:
     """Write a mesh to a new file, as OBJ or, if that does not give the same mesh, scalars too, as arrays.
 
@@ -103,7 +86,7 @@ def written_mesh(folder: Path, mesh: Mesh, written: list[Path]) -> Meshes:
         written.append(path)
         try:
             report = read_mesh({"file": path})
-            if _is_same(report.mesh, mesh) and not report.repairs:
+            if has_same_tables(report.mesh, mesh) and not report.repairs:
                 return Meshes(({"file": path.name},), [report])
         except InputError:
             pass

@@ -41,11 +41,11 @@ def read_scene(
 
     A folder must contain a `scene.toml`, or the tables of a mesh such as `nodes.csv` and `polygons.csv`;
     `autocolor convert --formats` lists all that can be read. Whatever the source does not define is created
-    with defaults. `up` and `scale` are the up axis of a mesh that is read without a scene
-    file, and a factor for its coordinates. With `outside`, a scene file may name files outside its folder.
-    With `strict`, a mesh that needs repair is refused. Parts that are given no surface have that of their
-    material; with `surfaces="parts"`, each has one of its own. Raises InputError with every problem,
-    MissingInputError if a file does not exist.
+    with defaults. `up` and `scale` are the up axis of a mesh that is read without a scene file, and a factor
+    for its coordinates. With `outside`, a scene file may name files outside its folder. With `strict`, a mesh
+    that needs repair is refused. Parts that are given no surface have that of their material; with
+    `surfaces="parts"`, each has one of its own. Raises InputError with every problem, MissingInputError if a
+    file does not exist.
     """
     report = read_scene_with_report(path, up=up, scale=scale, outside=outside, surfaces=surfaces)
     if strict and report.repairs:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
@@ -15,9 +15,8 @@ from autocolor.files.scene_sources import read_scene
 from autocolor.journal.places import Place, Source, place_of
 from autocolor.journal.variants import Opened
 from autocolor.scene.mesh import Mesh
+from autocolor.scene.same_meshes import has_same_tables
 from autocolor.scene.scene import Scene
-
-ARRAYS: Final = ("coordinates", "node_numbers", "part_numbers")
 
 
 def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: str | None = None) -> Opened:
@@ -46,16 +45,8 @@ def opened_again(source: Source, present: Scene) -> Opened:
 
 
 def is_same_mesh(one: Mesh, other: Mesh) -> bool:
-    """Whether all tables of two meshes are equal."""
-    return (
-        (one.part_names, one.crease_angle) == (other.part_names, other.crease_angle)
-        and all(np.array_equal(vars(one)[name], vars(other)[name]) for name in ARRAYS)
-        and [(each.name, each.of) for each in one.scalars] == [(each.name, each.of) for each in other.scalars]
-        and all(
-            np.array_equal(a.values, b.values, equal_nan=True)
-            for a, b in zip(one.scalars, other.scalars, strict=True)
-        )
-    )
+    """Whether all of two meshes is equal, their crease angles too."""
+    return one.crease_angle == other.crease_angle and has_same_tables(one, other)
 
 
 def place_again(place: Place, then: Scene, now: Scene) -> Place:
@@ -73,9 +64,12 @@ def check_sum(scene: Scene, checksum: object, source: Source) -> None:
 
 
 def checksum_of(scene: Scene) -> str:
-    """The SHA-256 of all values of a scene, its mesh included, in hexadecimal digits."""
+    """The SHA-256 of all values of a scene, its mesh and scalars included, in hexadecimal digits."""
     digest = hashlib.sha256(json.dumps(plain_scene(scene), sort_keys=True).encode())
     mesh = scene.mesh
     for array, kind in ((mesh.coordinates, "<f8"), (mesh.node_numbers, "<i8"), (mesh.part_numbers, "<i8")):
         digest.update(np.ascontiguousarray(array, kind).tobytes())
+    for scalar in mesh.scalars:
+        digest.update(json.dumps([scalar.name, scalar.of]).encode())
+        digest.update(np.ascontiguousarray(scalar.values, "<f8").tobytes())
     return digest.hexdigest()

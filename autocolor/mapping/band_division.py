@@ -10,8 +10,8 @@ import numpy as np
 from autocolor.errors import InputError
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.level_ranges import FEWEST_LEVELS, SURFACE_WORDS, USEFUL_LEVELS
-from autocolor.mapping.rounding import HALF
 from autocolor.mapping.scalar_bands import Bands
+from autocolor.scalars.ranges import UNIT, widened
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Surface
@@ -62,14 +62,9 @@ def own_limits(picture: Picture) -> tuple[float, float]:
     """The own range of the scalar of a picture, where its first band begins and its last one ends.
 
     It does not depend on the color scale, such as by being symmetric for a diverging one, or another scale
-    would change words. Assumed: limits around a value that is the same everywhere are half of it away, or a
-    half if it is zero; without any value they are 0 and 1.
+    would change words. A picture that was made of rasters may have a range without extent; it is `widened`.
     """
-    low, high = picture.scalar_limits or (0.0, 1.0)
-    if low < high:
-        return low, high
-    half = abs(low) * HALF or HALF
-    return low - half, low + half
+    return widened(*(picture.scalar_limits or UNIT))
 
 
 def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Bands]) -> int:

@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
+from autocolor.checks import printable
 from autocolor.errors import InputError
 from autocolor.files.file_stem import file_stem, free_path
 from autocolor.files.openable import MESH, kind_of
@@ -137,7 +138,7 @@ class Session:
 
         It is one line. Letters that cannot be printed, as in names of files, become question marks.
         """
-        line = "".join(letter if letter.isprintable() else "?" for letter in message)
+        line = printable(message)
         self.news = News(line, is_warning, time.monotonic(), stands)
 
     def warn(self, message: object) -> None:

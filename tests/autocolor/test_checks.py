@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.checks import listed, nearest, shown
+from autocolor.checks import listed, nearest, printable, shown
 
 
 def test_the_nearest_right_name_is_told() -> None:
@@ -39,6 +39,10 @@ def test_any_name_gets_a_clause_or_none(name: str, names: list[str]) -> None:
 )
 def test_a_value_is_shown_as_it_is_written_and_cut_where_it_is_long(value: object, text: str) -> None:
     assert shown(value) == text
+
+
+def test_letters_that_cannot_be_printed_become_question_marks() -> None:
+    assert printable("two\nlines, ü\x1b[1m\udcff") == "two?lines, ü?[1m?"
 
 
 def test_names_are_listed_as_in_a_sentence() -> None:

@@ -30,7 +30,7 @@ WITHOUT_FAULT: Final[Color] = (200, 200, 200)
 SURFACE: Final = "mesh"
 """The one surface that all parts have in such a picture, so that there are levels for all kinds."""
 
-MATT: Final = Reflectance(0.8, 0.0)
+MATTE: Final = Reflectance(0.8, 0.0)
 
 
 def fault_scene(scene: Scene, faults: Sequence[Fault]) -> Scene:
@@ -41,7 +41,7 @@ def fault_scene(scene: Scene, faults: Sequence[Fault]) -> Scene:
     return scene.replace(
         mesh=mesh.with_scalars(*others, fault_scalar(mesh, faults)),
         parts=tuple(part.replace(surface=SURFACE, stage=False) for part in scene.parts),
-        surfaces=(Surface(SURFACE, MATT),),
+        surfaces=(Surface(SURFACE, MATTE),),
         exposure=AUTO,
         scalar=Scalar(
             name=FAULT, limits=(0.5, count + 0.5), scale=COLORS, bands=count, missing=WITHOUT_FAULT

@@ -1,4 +1,4 @@
 """Options that several commands share, and their values.
 
-Uses the scene, the mapping and the modules of `commands`.
+Uses the scene, `files.scenes` and the modules of `commands`.
 """

@@ -9,6 +9,8 @@ from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from typing import TYPE_CHECKING, Final
 
+from autocolor.checks import printable
+
 if TYPE_CHECKING:
     from autocolor.files.store.statements import Answer, Value
 
@@ -37,7 +39,7 @@ def _table(answer: Answer) -> Iterator[str]:
     if not answer.columns:
         return
     cells = [[_cell(value) for value in row] for row in first]
-    header = [_printable(name) for name in answer.columns]
+    header = [printable(name) for name in answer.columns]
     widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
     is_number = [
         any(isinstance(row[place], (int, float)) for row in first)
@@ -61,13 +63,8 @@ def _line(cells: Sequence[str], widths: Sequence[int], is_number: Sequence[bool]
 def _cell(value: Value) -> str:
     if value is None:
         return ABSENT
-    text = f"{len(value):,} bytes" if isinstance(value, bytes) else _printable(str(value))
+    text = f"{len(value):,} bytes" if isinstance(value, bytes) else printable(str(value))
     return text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}..."
-
-
-def _printable(text: str) -> str:
-    """The text without anything that a terminal would take as a command."""
-    return "".join(letter if letter.isprintable() else "?" for letter in text)
 
 
 def _csv(answer: Answer) -> Iterator[str]:

@@ -10,7 +10,7 @@ from typing import Final
 
 from autocolor.files.meshes.obj.materials import materials_of
 from autocolor.files.meshes.obj.obj_text import mtl_text, obj_text
-from autocolor.files.meshes.obj.statements import name_of
+from autocolor.files.repair.names import name_of
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.scene.creation import SHARED
 from autocolor.scene.scene import Scene

@@ -18,9 +18,10 @@ from typing import Final, Protocol
 import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Numbers
-from autocolor.checks import LARGEST_COORDINATE
+from autocolor.checks import LARGEST_COORDINATE, printable
 from autocolor.errors import InputError
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
+from autocolor.files.repair.names import LONGEST_NAME
 
 MOST_PROBLEMS: Final = 20
 
@@ -140,8 +141,8 @@ class NameCells:
         return np.fromiter(map(self._of_cell.__getitem__, cells), np.int64, len(cells))
 
     def one(self, cell: str, note: Callable[[str], None] | None = None) -> int:
-        """The row of the name, which is made printable and cut to 200 letters."""
-        name = "".join(letter if letter.isprintable() else "?" for letter in (cell or self.empty)[:200])
+        """The row of the name, which is made printable and cut to LONGEST_NAME letters."""
+        name = printable((cell or self.empty)[:LONGEST_NAME])
         return self.rows.setdefault(name, len(self.rows))
 
 

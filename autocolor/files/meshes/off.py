@@ -19,6 +19,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, Indices
+from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.number_text import NumberText
@@ -46,8 +47,7 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
         if not KNOWN.fullmatch(keyword[1]):
             raise InputError(
                 f"{path.name}: an OFF file must begin OFF, COFF, NOFF or STOFF, not {shown(keyword[1])};"
-                f" write"
-                " it with three coordinates, as text"
+                " write it with three coordinates, as text"
             )
         # Spaces keep the lines and the places of what follows.
         data = b" " * keyword.end(1) + data[keyword.end(1) :]
@@ -78,7 +78,7 @@ def _coordinates(text: NumberText, lines: Indices, nodes: int) -> tuple[Floats, 
     # As many words follow each node: convert those before them, line by line.
     table = text.values(first, nodes * width).reshape(nodes, width)
     for at in range(3):
-        wrong = np.flatnonzero(~(np.abs(table[:, at]) <= 1e30))
+        wrong = np.flatnonzero(~(np.abs(table[:, at]) <= LARGEST_COORDINATE))
         if len(wrong):
             text.coordinates(first + int(wrong[0]) * width + at, 1)
     return np.ascontiguousarray(table[:, :3]), end

@@ -16,10 +16,9 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.files.reading import shown
+from autocolor.files.repair.names import printable_name
 from autocolor.immutable import read_only
 from autocolor.scene.scalars.mesh_scalars import LARGEST_SCALAR, MOST_SCALARS, NODE, MeshScalar
-
-LONGEST_NAME: Final = 200
 
 SYMMETRIC: Final = (0, 3, 5, 3, 1, 4, 5, 4, 2)
 """Where the nine components of a tensor stand among six."""
@@ -38,7 +37,7 @@ class FoundScalars:
         if len(self.found) >= MOST_SCALARS:
             self._skipped += 1
             return
-        name = printable(name)
+        name = printable_name(name) or "scalar"
         values = values if rows is None else values[rows]
         values = values.reshape(len(values), -1) if values.size else values.reshape(len(values), 1)
         what, numbers = _one_component(values)
@@ -79,12 +78,6 @@ class FoundScalars:
         """Sentences about what was left out or made missing."""
         more = f"skipped {self._skipped:,} arrays: a mesh has at most {MOST_SCALARS:,} scalars"
         return (*self.sentences, more) if self._skipped else tuple(self.sentences)
-
-
-def printable(name: str) -> str:
-    """The name as printable text of at most LONGEST_NAME letters; "scalar" if there is none."""
-    name = "".join(letter if letter.isprintable() else "?" for letter in name.strip()[:LONGEST_NAME])
-    return name or "scalar"
 
 
 def _one_component(values: AnyArray) -> tuple[str, Floats | None]:

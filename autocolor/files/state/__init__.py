@@ -1,4 +1,4 @@
 """The files that the program keeps for itself in the platform's folder for them: recent files, their lock.
 
-Uses the modules of `files` and the ground.
+Uses the modules of `files`, `scene.columns` and the ground.
 """

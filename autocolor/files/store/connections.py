@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Final
 from urllib.request import pathname2url
 
+from autocolor.checks import printable
 from autocolor.errors import InputError, UnavailableError, WriteError, reason_of
 from autocolor.files.reading import read_head, refuse_irregular, unnameable, unreadable
 
@@ -199,7 +200,7 @@ def refusals_of_writing(name: str) -> Iterator[None]:
 def reason(error: Exception, clock: Clock | None = None) -> str:
     """What is wrong with a store by an error of SQLite, and what to do."""
     code = getattr(error, "sqlite_errorcode", None)
-    text = "".join(letter if letter.isprintable() else "?" for letter in reason_of(error)[:300])
+    text = printable(reason_of(error)[:300])
     primary: Any = None if code is None else code & 0xFF
     if clock is not None and clock.ended:
         return f"a store must be read within {clock.seconds:g} seconds, not longer; leave rows out"

@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 
 from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
+from autocolor.files.repair.names import different
 from autocolor.files.store.connections import LONGEST_TEXT, Clock
 from autocolor.files.store.permissions import CHANGES, FUNCTIONS, authorizer
 from autocolor.files.store.sql_columns import quoted
@@ -47,7 +48,7 @@ def answer_of(
     clock = Clock(connection, seconds)
     with told(connection, clock), allowed(connection, may_change=False):
         cursor = connection.execute(statement, parameters)
-    columns = _distinct([each[0] for each in cursor.description or ()])
+    columns = different([each[0] for each in cursor.description or ()])
 
     def rows() -> Iterator[tuple[Value, ...]]:
         while True:
@@ -200,16 +201,6 @@ def columns_in(connection: sqlite3.Connection, table: str) -> list[str]:
     except sqlite3.Error:
         # A view of others may be broken.
         return []
-
-
-def _distinct(names: Sequence[str]) -> tuple[str, ...]:
-    """The names, made different: of two columns `name` the second is `name 2`."""
-    counts: dict[str, int] = {}
-    found = []
-    for name in names:
-        counts[name] = counts.get(name, 0) + 1
-        found.append(name if counts[name] == 1 else f"{name} {counts[name]}")
-    return tuple(found)
 
 
 def require_name(name: str, known: Sequence[str], what: str) -> None:

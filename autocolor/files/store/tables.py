@@ -34,7 +34,7 @@ DEPENDENT: Final = {POLYGONS: (VALUES[POLYGON], POLYGON), NODES: (VALUES[NODE], 
 """The tables whose rows go with those of others, and by which column."""
 
 
-def open_tables(path: PathLike, *, up: str = "z") -> Tables:
+def open_tables(path: PathLike, *, up: str = "z", scale: float = 1.0) -> Tables:
     """The tables of a store, or of any other scene, which is read into memory for it.
 
         with autocolor.open_tables("car.sqlite") as tables:
@@ -44,9 +44,9 @@ def open_tables(path: PathLike, *, up: str = "z") -> Tables:
     Raises InputError, MissingInputError, and UsageError as `read_scene`.
     """
     path = Path(path)
-    if is_store(path):
+    if is_store(path) and (up, scale) == ("z", 1):
         return Tables(connected(path), path.name, path)
-    return tables_of(read_scene_with_report(path, up=up).scene)
+    return tables_of(read_scene_with_report(path, up=up, scale=scale).scene)
 
 
 def is_store(path: Path) -> bool:

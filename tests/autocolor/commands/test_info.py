@@ -3,10 +3,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from autocolor import read_scene, render, write_picture
 from autocolor.mapping.display_image import display_image
+from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.meshes import wall_scene
 
@@ -63,6 +65,33 @@ def test_names_that_are_no_text_are_shown_with_backslashes(folder: Path, run: Ru
     scene = wall_scene(lights=[], name="\udcff")
     write_picture("wall.npz", render(scene), scene)
     assert json.loads(run("info", "wall.npz", "--json").out)["name"] == "\udcff"
+
+
+def test_the_scalars_of_the_mesh_are_told_with_their_ranges_and_what_is_missing(
+    folder: Path, run: Run
+) -> None:
+    scene = wall_scene()
+    nodes, polygons = len(scene.mesh.coordinates), len(scene.mesh.node_numbers)
+    scalars = (
+        MeshScalar("stress", np.array([np.nan, *range(1, nodes)])),
+        MeshScalar("area", np.full(polygons, 0.125), "polygon"),
+        MeshScalar("none\nhere", np.full(nodes, np.nan)),
+    )
+    scene = scene.replace(mesh=scene.mesh.with_scalars(*scalars))
+    write_picture("wall.npz", render(scene), scene)
+    lines = run("info", "wall.npz").out.splitlines()
+    at = lines.index("scalars:")
+    assert lines[at + 1 : at + 4] == [
+        f"  stress: of nodes, 1 to {nodes - 1}, missing 1",
+        "  area: of polygons, 0.125 to 0.125",
+        f"  none?here: of nodes, no values, missing {nodes}",
+    ]
+    assert json.loads(run("info", "wall.npz", "--json").out)["scalars"] == [
+        {"name": "stress", "of": "node", "range": [1, nodes - 1], "missing": 1},
+        {"name": "area", "of": "polygon", "range": [0.125, 0.125], "missing": 0},
+        {"name": "none\nhere", "of": "node", "range": None, "missing": nodes},
+    ]
+    assert "scalars:" not in run("info", "scene").out
 
 
 @pytest.mark.parametrize(("name", "code"), [("none.obj", 66), ("scene/none", 66), (".", 65)])

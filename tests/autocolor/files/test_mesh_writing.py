@@ -60,7 +60,7 @@ def test_a_mesh_with_scalars_is_written_as_arrays_and_is_there_again(tmp_path: P
 
 
 def test_a_mesh_that_no_format_holds_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mesh_writing, "_is_same", lambda *_: False)
+    monkeypatch.setattr(mesh_writing, "has_same_tables", lambda *_: False)
     written: list[Path] = []
     with pytest.raises(OutputError, match=r"one of 6 polygons is too large; leave parts out"):
         written_mesh(tmp_path, cube(), written)

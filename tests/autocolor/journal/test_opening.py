@@ -46,6 +46,14 @@ def test_a_scene_of_another_checksum_is_refused(source: Source) -> None:
     )
 
 
+def test_the_checksum_has_the_scalars_of_the_mesh(source: Source) -> None:
+    scene = read_scene(source.path)
+    heights = scene.mesh.coordinates[:, 2]
+    scalars = [MeshScalar("z", heights), MeshScalar("height", heights), MeshScalar("z", heights + 1)]
+    sums = {checksum_of(scene.replace(mesh=scene.mesh.with_scalars(scalar))) for scalar in scalars}
+    assert len({checksum_of(scene), *sums}) == 4
+
+
 def test_a_scene_that_is_opened_again_shares_the_mesh_if_it_is_the_same(source: Source) -> None:
     present = read_scene(source.path)
     again = opened_again(source, present)

@@ -5,7 +5,7 @@ It comes as an array file, which is checked like any other: nothing is believed,
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -13,10 +13,11 @@ from typing import Any, Final
 import numpy as np
 
 from autocolor.arrays import AnyArray
-from autocolor.checks import LARGEST_COORDINATE, Color, shown
+from autocolor.checks import LARGEST_COORDINATE, Color, printable, shown
 from autocolor.errors import InputError
 from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
-from autocolor.files.repair.found_scalars import FoundScalars, printable
+from autocolor.files.repair.found_scalars import FoundScalars
+from autocolor.files.repair.names import different, printable_name
 from autocolor.files.repair.polygons import Polygons
 from autocolor.scene.scalars.mesh_scalars import NODE, POLYGON
 
@@ -112,7 +113,7 @@ def read_foreign_mesh(path: Path, largest: int, place: str, library: str) -> For
         arrays["corners"].astype(np.intp),
         arrays["corner_counts"].astype(np.intp),
         arrays["part_numbers"].astype(np.intp),
-        unique_names(header["part_names"]),
+        part_names_of(header["part_names"]),
         scalars.scalars,
     )
     renamed = dict(zip(header["part_names"], polygons.part_names, strict=True))
@@ -120,8 +121,8 @@ def read_foreign_mesh(path: Path, largest: int, place: str, library: str) -> For
     return ForeignMesh(
         polygons,
         (*sentences, *scalars.messages),
-        {renamed[part]: printable(name) for part, name in header["materials"].items() if part in renamed},
-        {printable(name): (color[0], color[1], color[2]) for name, color in header["colors"].items()},
+        {renamed[part]: _material(name) for part, name in header["materials"].items() if part in renamed},
+        {_material(name): (color[0], color[1], color[2]) for name, color in header["colors"].items()},
     )
 
 
@@ -168,17 +169,10 @@ def _is_color(value: object) -> bool:
     )
 
 
-def unique_names(names: list[str]) -> tuple[str, ...]:
-    """Printable names, all different: one that another has gets a number."""
-    taken: dict[str, int] = {}
-    found = []
-    for name in names:
-        name = stem = printable(name) if name.strip() else "part"
-        number = taken.get(stem, 1)
-        while name in taken:
-            number += 1
-            name = f"{stem} {number}"
-        taken[stem] = number
-        taken.setdefault(name, 1)
-        found.append(name)
-    return tuple(found)
+def part_names_of(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of parts that are printable and different; one without a name is "part"."""
+    return different([printable_name(name) or "part" for name in names])
+
+
+def _material(name: str) -> str:
+    return printable_name(name) or "material"

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Final
 
 import autocolor.files
+from autocolor.checks import printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.foreign.foreign_mesh import (
     FAILED,
@@ -92,7 +93,7 @@ def read_in_own_process(
             head = file.read(4 * LONGEST_SENTENCE)
         if head.startswith(FAILED):
             sentence = head[len(FAILED) :].decode("utf-8", "replace")[:LONGEST_SENTENCE]
-            found = "".join(letter if letter.isprintable() else "?" for letter in sentence)
+            found = printable(sentence)
             raise InputError(
                 f"{path.name}: {library} must be able to read it, and cannot ({found}); correct the file, or"
                 " write it as OBJ or PLY"

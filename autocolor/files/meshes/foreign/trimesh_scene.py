@@ -13,7 +13,7 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import Color
-from autocolor.files.meshes.foreign.foreign_mesh import ForeignMesh, unique_names
+from autocolor.files.meshes.foreign.foreign_mesh import ForeignMesh, part_names_of
 from autocolor.files.repair.polygons import Polygons
 from autocolor.scene.scalars.mesh_scalars import LARGEST_SCALAR, MOST_SCALARS, NODE, MeshScalar
 
@@ -58,7 +58,7 @@ def polygons_of_trimesh(scene: Any, stem: str) -> ForeignMesh:
         nodes += len(places)
     if not names:
         raise ValueError("no triangles")
-    part_names = unique_names(names)
+    part_names = part_names_of(names)
     keys = list(dict.fromkeys(key for each in values for key in each))[:MOST_SCALARS]
     scalars_found = tuple(
         MeshScalar(

@@ -42,7 +42,7 @@ from autocolor.logs import logger_of
 from autocolor.scene.geometry.node_normals import CREASE_ANGLE, NodeNormals
 from autocolor.scene.geometry.planes.shared_planes import SharedPlanes
 from autocolor.scene.mesh import PART, Mesh
-from autocolor.scene.scalars.mesh_scalars import NODE, MeshScalar
+from autocolor.scene.scalars.mesh_scalars import LARGEST_SCALAR, NODE, MeshScalar
 
 LOG: Final = logger_of(__name__)
 
@@ -236,7 +236,7 @@ def _scalars(folder: Path, notes: TableNotes, tables: Tables) -> tuple[MeshScala
             place,
             values,
             "a value must be at most 1e30 in size, or NaN if it is missing",
-            lambda row: (np.isnan(row) | (np.abs(row) <= 1e30))[0],
+            lambda row: (np.isnan(row) | (np.abs(row) <= LARGEST_SCALAR))[0],
             CORRECT,
         )
         found.append(MeshScalar(name, rows.as_read(place, values, np.float64), of))

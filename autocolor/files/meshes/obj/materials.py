@@ -23,9 +23,9 @@ from typing import Any, Final, NamedTuple
 
 from autocolor.errors import InputError
 from autocolor.files.meshes.obj.lines import NUMBER
-from autocolor.files.meshes.obj.statements import name_of
 from autocolor.files.paths import path_within
 from autocolor.files.reading import read_bytes, shown, text_problem
+from autocolor.files.repair.names import name_of
 from autocolor.mapping.rounding import half_up
 from autocolor.scene.columns.rows import changed
 from autocolor.scene.defaults import COLORED_PAINT, created_surface

@@ -8,17 +8,15 @@ chrome". Without a group the part has the name of the material, and without that
 
 from __future__ import annotations
 
-import codecs
 from typing import Final, NamedTuple
 
 from autocolor.files.reading import shown
+from autocolor.files.repair.names import name_of
 
 UNUSED: Final = frozenset(
     b"vt vn s mg maplib usemap lod bevel c_interp d_interp shadow_obj trace_obj".split()
 )
 """Statements that are ignored without being counted."""
-
-LONGEST_NAME: Final = 200
 
 SKIPPED: Final = {
     b"p": "points",
@@ -108,15 +106,3 @@ class Statements:
     def sentences(self) -> tuple[str, ...]:
         """Messages about what was skipped."""
         return tuple(f"skipped {what}: {count:,}" for what, count in self.skipped.items())
-
-
-def name_of(text: bytes) -> str:
-    """The name as printable text of at most LONGEST_NAME letters; bytes that are not UTF-8 are Latin-1."""
-    text = text.strip()
-    start = text[: 4 * LONGEST_NAME]
-    try:
-        # What is cut may end within a letter.
-        name = codecs.getincrementaldecoder("utf-8")().decode(start, final=start == text)
-    except UnicodeDecodeError:
-        name = start.decode("latin-1")
-    return "".join(letter if letter.isprintable() else "?" for letter in name[:LONGEST_NAME])

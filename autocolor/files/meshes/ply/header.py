@@ -15,9 +15,9 @@ import numpy as np
 
 from autocolor.checks import either, nearest
 from autocolor.errors import InputError
-from autocolor.files.meshes.obj.statements import name_of
 from autocolor.files.meshes.ply.properties import FACE, STRIPS, VERTEX
 from autocolor.files.reading import HEAD, shown, text_problem
+from autocolor.files.repair.names import name_of
 
 LARGEST_HEADER: Final = 16 << 20
 """Assumed: in bytes; a comment for each of a hundred thousand parts."""

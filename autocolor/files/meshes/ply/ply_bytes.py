@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import chunks
+from autocolor.checks import printable
 from autocolor.files.meshes.ply.properties import AXES, FACE, PART, VERTEX, property_of
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalars.mesh_scalars import NODE, POLYGON, MeshScalar
@@ -37,9 +38,9 @@ def ply_bytes(mesh: Mesh) -> bytes:
         "ply",
         "format binary_little_endian 1.0",
         "comment written by autocolor",
-        *(f"comment part {number} {_in_a_line(name)}" for number, name in enumerate(mesh.part_names)),
+        *(f"comment part {number} {printable(name)}" for number, name in enumerate(mesh.part_names)),
         *(
-            f"comment scalar {name} {_in_a_line(each.name)}"
+            f"comment scalar {name} {printable(each.name)}"
             for name, each in zip(properties, mesh.scalars, strict=True)
             if name != each.name
         ),
@@ -58,10 +59,6 @@ def ply_bytes(mesh: Mesh) -> bytes:
         node_rows[name] = scalar.values
     faces = [_faces(mesh, chunk, of_polygons, has_parts) for chunk in chunks(polygons, ROWS_AT_ONCE)]
     return b"".join(["\n".join(lines).encode("utf-8", "replace"), node_rows.tobytes(), *faces])
-
-
-def _in_a_line(name: str) -> str:
-    return "".join(letter if letter.isprintable() else "?" for letter in name)
 
 
 def _dtype(fields: Fields, scalars: list[tuple[str, MeshScalar]]) -> np.dtype[np.void]:

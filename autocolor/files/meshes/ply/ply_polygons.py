@@ -26,10 +26,10 @@ from autocolor.files.meshes.ply.properties import (
     STRIPS,
     VERTEX,
     Comments,
-    different,
     is_scalar,
 )
 from autocolor.files.meshes.ply.strips import triangles_of_strips
+from autocolor.files.repair.names import different
 from autocolor.files.repair.polygons import Polygons
 from autocolor.immutable import read_only
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS

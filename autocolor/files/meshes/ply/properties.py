@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple
 
-from autocolor.files.meshes.obj.statements import name_of
+from autocolor.files.repair.names import name_of
 
 AXES: Final = ("x", "y", "z")
 VERTEX: Final = "vertex"
@@ -70,22 +70,3 @@ def property_of(scalar: str, number: int) -> str:
     is_free = scalar not in NOT_SCALARS and scalar not in (*AXES, *PARTS, *CORNERS)
     is_free = is_free and not scalar.startswith("value_")
     return scalar if is_free and PLAIN_NAME.fullmatch(scalar) else f"value_{number}"
-
-
-def different(names: Sequence[str], addition: str = "") -> tuple[str, ...]:
-    """The names, each that was there before with an addition or a number.
-
-    >>> different(["hood", "hood", "hood"])
-    ('hood', 'hood 2', 'hood 3')
-    """
-    found: dict[str, None] = {}
-    counts: dict[str, int] = {}
-    for name in names:
-        unique = name if name not in found else f"{name}{addition}"
-        number = counts.get(name, 1)
-        while unique in found:
-            number += 1
-            unique = f"{name}{addition} {number}"
-        counts[name] = number
-        found[unique] = None
-    return tuple(found)

@@ -17,8 +17,6 @@ import numpy as np
 from autocolor.arrays import AnyArray, Indices
 from autocolor.errors import InputError
 from autocolor.files.meshes.formats import MeshFormat, register
-from autocolor.files.meshes.obj.statements import name_of
-from autocolor.files.meshes.ply.properties import different
 from autocolor.files.meshes.stl.binary import has_binary_size, read_binary
 from autocolor.files.meshes.stl.text import read_text
 from autocolor.files.meshes.stl.weld import welded
@@ -30,6 +28,7 @@ from autocolor.files.reading import (
     text_problem,
 )
 from autocolor.files.repair.mesh_repair import repaired
+from autocolor.files.repair.names import different, name_of
 from autocolor.files.repair.placement import PLAIN, Placement
 from autocolor.files.repair.polygons import MeshReport, Polygons
 

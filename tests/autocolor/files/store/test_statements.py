@@ -66,6 +66,10 @@ def test_rows_come_as_they_are_asked_for(connection: sqlite3.Connection) -> None
     assert [next(rows) for _ in range(3)] == [(1, 1), (2, 2), (3, 3)]
 
 
+def test_the_columns_of_an_answer_have_different_names(connection: sqlite3.Connection) -> None:
+    assert answer_of(connection, 'SELECT 1 AS a, 2 AS "a 2", 3 AS a').columns == ("a", "a 2", "a 3")
+
+
 def test_what_a_statement_would_change_is_known_before_it_is_run(connection: sqlite3.Connection) -> None:
     found = changes_of(connection, "UPDATE lights SET intensity = ?", [2.0])
     assert found == {"lights": {sqlite3.SQLITE_UPDATE}}

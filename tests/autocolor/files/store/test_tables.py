@@ -26,6 +26,14 @@ def test_rows_are_selected_joined_and_given_by_name(tmp_path: Path) -> None:
         assert twice == [{"a": 1, "a 2": 2}]
 
 
+def test_a_mesh_file_is_opened_by_its_up_axis_and_scale_which_a_store_gives_itself(tmp_path: Path) -> None:
+    (tmp_path / "one.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 3 0\nf 1 2 3\n")
+    with open_tables(tmp_path / "one.obj", up="y", scale=0.5) as tables:
+        assert tables.select("SELECT max(z) AS top FROM nodes") == [{"top": 1.5}]
+    with pytest.raises(UsageError, match="scale is for mesh files"):
+        open_tables(small_store(tmp_path), scale=2.0)
+
+
 def test_a_row_is_changed_by_its_key_and_saved_at_once(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     with open_tables(path) as tables:

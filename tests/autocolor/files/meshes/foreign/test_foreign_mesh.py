@@ -12,8 +12,8 @@ from autocolor.files.meshes.foreign.foreign_mesh import (
     ForeignMesh,
     foreign_mesh_bytes,
     kind_of_file,
+    part_names_of,
     read_foreign_mesh,
-    unique_names,
 )
 from autocolor.files.repair.polygons import Polygons
 from autocolor.scene.scalars.mesh_scalars import MeshScalar
@@ -117,4 +117,4 @@ def test_infinite_values_become_missing(tmp_path: Path) -> None:
 
 
 def test_names_are_made_unique_and_printable() -> None:
-    assert unique_names(["a", "a", "a 2", "", "b\0", "a"]) == ("a", "a 2", "a 2 2", "part", "b?", "a 3")
+    assert part_names_of(["a", "a", "a 2", "", "b\0", "a"]) == ("a", "a 2", "a 2 2", "part", "b?", "a 3")

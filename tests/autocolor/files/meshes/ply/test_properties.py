@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from autocolor.files.meshes.ply.properties import Comments, different, is_scalar, named_in, property_of
+from autocolor.files.meshes.ply.properties import Comments, is_scalar, named_in, property_of
 
 NONE = Comments({}, {})
 
@@ -39,8 +39,3 @@ def test_coordinates_normals_colors_and_texture_coordinates_are_no_scalars(name:
 )  # fmt: skip
 def test_a_scalar_is_written_under_its_name_where_that_is_free(scalar: str, name: str) -> None:
     assert property_of(scalar, 3) == name
-
-
-def test_names_that_repeat_become_different() -> None:
-    assert different(["a", "a", "b", "a", "a 2"]) == ("a", "a 2", "b", "a 3", "a 2 2")
-    assert different(["q", "q", "q"], " of polygons") == ("q", "q of polygons", "q of polygons 2")
