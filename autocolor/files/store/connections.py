@@ -38,6 +38,9 @@ SECONDS_OF_WAITING: Final = 5.0
 STEPS: Final = 100_000
 """Steps of SQLite's machine between two looks at the clock: about a millisecond."""
 
+BESIDE: Final = ("-journal", "-wal", "-shm")
+"""The endings of the files that SQLite opens beside a store."""
+
 LIMITS: Final = {
     sqlite3.SQLITE_LIMIT_LENGTH: LONGEST_TEXT,
     sqlite3.SQLITE_LIMIT_SQL_LENGTH: LONGEST_TEXT,
@@ -58,11 +61,13 @@ LIMITS: Final = {
 class Clock:
     """Ends statements of a connection that take longer than some seconds; `ended` tells that it did."""
 
-    def __init__(self, connection: sqlite3.Connection, seconds: float = READING_SECONDS) -> None:
+    def __init__(
+        self, connection: sqlite3.Connection, seconds: float = READING_SECONDS, steps: int = STEPS
+    ) -> None:
         self.seconds = seconds
         self.ended = False
         self.begin()
-        connection.set_progress_handler(self._look, STEPS)
+        connection.set_progress_handler(self._look, steps)
 
     def begin(self, seconds: float | None = None) -> None:
         """Count from now."""
@@ -137,6 +142,11 @@ def connected(path: Path, *, may_change: bool = False, wait: float | None = None
             f"{path.name}: a store must be an SQLite file, and this one does not begin as such; write it"
             " again with `autocolor convert`"
         )
+    for ending in BESIDE:
+        with suppress(OSError):
+            # SQLite would wait for a pipe without end.
+            beside = Path(f"{path}{ending}")
+            refuse_irregular(beside, os.stat(beside))
     if may_change:
         with refusals(path.name), refusals_of_writing(path.name):
             return _opened(path, "rw", wait)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import sqlite3
+import tracemalloc
 from collections.abc import Iterator
 
 import pytest
@@ -71,3 +72,12 @@ def test_what_a_statement_would_change_is_known_before_it_is_run(connection: sql
     assert found == {"lights": {sqlite3.SQLITE_UPDATE}}
     assert connection.execute("SELECT DISTINCT intensity FROM lights").fetchall() == [(1.0,)]
     assert changes_of(connection, "SELECT * FROM lights") == {}
+
+
+def test_long_rows_are_fetched_a_few_at_a_time(connection: sqlite3.Connection) -> None:
+    rows = answer_of(connection, ENDLESS + "printf('%.1000000c', 'a') FROM n").rows
+    tracemalloc.start()
+    next(rows)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 10_000_000
