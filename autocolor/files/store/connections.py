@@ -90,6 +90,9 @@ OF_WRITING: Final = (
 )
 """The errors of a store that is not itself at fault when it cannot be written."""
 
+OF_THE_DISK: Final = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
+"""The errors of a disk that is full or fails."""
+
 
 def guarded(connection: sqlite3.Connection) -> sqlite3.Connection:
     """The connection, with its limits and settings; nothing of its file is run."""
@@ -222,6 +225,8 @@ def reason(error: Exception, clock: Clock | None = None) -> str:
             f"the store cannot be opened or changed where it is ({text}): a change of it was interrupted, or"
             " it is not to be written; open it once with the program that wrote it, or use another file"
         )
+    if primary in OF_THE_DISK:
+        return f"the disk must hold the store, and is full or fails ({text}); make room, and try again"
     if primary == sqlite3.SQLITE_NOMEM:
         return "there is not enough memory to read the store; leave rows out"
     if primary == sqlite3.SQLITE_AUTH:

@@ -9,8 +9,8 @@ from contextlib import contextmanager
 from typing import Final, NamedTuple
 
 from autocolor.checks import nearest, shown
-from autocolor.errors import UsageError
-from autocolor.files.store.connections import LONGEST_TEXT, Clock
+from autocolor.errors import UsageError, WriteError
+from autocolor.files.store.connections import LONGEST_TEXT, OF_THE_DISK, Clock, reason
 from autocolor.files.store.permissions import CHANGES, FUNCTIONS, authorizer
 from autocolor.files.store.sql_columns import quoted
 
@@ -127,13 +127,18 @@ def allowed(connection: sqlite3.Connection, may_change: bool) -> Iterator[None]:
 
 @contextmanager
 def told(connection: sqlite3.Connection, clock: Clock) -> Iterator[None]:
-    """Raise what SQLite says of a statement as UsageError, in a sentence that tells what to do."""
+    """Raise what SQLite says of a statement as UsageError, in a sentence that tells what to do.
+
+    Raises WriteError instead for a disk that is full or fails.
+    """
     try:
         yield
     except (sqlite3.Error, sqlite3.Warning, OverflowError, UnicodeError) as error:
         if "interrupted" in str(error) and not clock.ended:
             # The user pressed Ctrl+C, which SQLite took.
             raise KeyboardInterrupt from None
+        if getattr(error, "sqlite_errorcode", 0) & 0xFF in OF_THE_DISK:
+            raise WriteError(reason(error)) from None
         raise UsageError(_sentence(connection, error, clock)) from None
 
 
