@@ -35,17 +35,19 @@ def lines_of(answer: Answer, form: str) -> Iterator[str]:
 def _table(answer: Answer) -> Iterator[str]:
     """The columns and the rows, aligned; numbers stand to the right."""
     rows = iter(answer.rows)
-    first = list(islice(rows, MEASURED))
+    cells = []
+    has_number = [False] * len(answer.columns)
+    has_other = [False] * len(answer.columns)
+    for values in islice(rows, MEASURED):
+        cells.append([_cell(value) for value in values])
+        for place, value in enumerate(values):
+            has_number[place] |= isinstance(value, (int, float))
+            has_other[place] |= not isinstance(value, (int, float, type(None)))
     if not answer.columns:
         return
-    cells = [[_cell(value) for value in row] for row in first]
     header = [printable(name) for name in answer.columns]
     widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
-    is_number = [
-        any(isinstance(row[place], (int, float)) for row in first)
-        and all(isinstance(row[place], (int, float, type(None))) for row in first)
-        for place in range(len(header))
-    ]
+    is_number = [number and not other for number, other in zip(has_number, has_other, strict=True)]
     yield _line(header, widths, is_number)
     yield "  ".join("-" * width for width in widths)
     for row in chain(cells, ([_cell(value) for value in each] for each in rows)):
@@ -63,8 +65,8 @@ def _line(cells: Sequence[str], widths: Sequence[int], is_number: Sequence[bool]
 def _cell(value: Value) -> str:
     if value is None:
         return ABSENT
-    text = f"{len(value):,} bytes" if isinstance(value, bytes) else printable(str(value))
-    return text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}..."
+    text = f"{len(value):,} bytes" if isinstance(value, bytes) else str(value)
+    return printable(text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}...")
 
 
 def _csv(answer: Answer) -> Iterator[str]:

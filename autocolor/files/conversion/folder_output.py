@@ -24,7 +24,7 @@ def write_folder(
     parent = path.resolve().parent
     if not parent.is_dir():
         raise OutputError(f"an output must be in an existing folder, not {path.parent}; create it")
-    if path.exists() and not path.is_dir():
+    if os.path.exists(path) and not os.path.isdir(path):
         raise OutputError(f"an output of several files must be a folder, not the file {path}; name another")
     beside = parent / f".{path.name[:100]}.{secrets.token_hex(6)}.part"
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -85,7 +86,8 @@ def output_of(path: Path) -> Output:
     UsageError for any other suffix.
     """
     every = outputs()
-    if path.is_dir():
+    # Unlike `Path.is_dir`, it never raises for a name that is too long.
+    if os.path.isdir(path):
         if not (path / SCENE_FILE).exists():
             mesh_format = format_of_folder(path)
             found = next((each for each in every if mesh_format and each.name == mesh_format.name), None)

@@ -39,6 +39,9 @@ SECONDS_OF_WAITING: Final = 5.0
 STEPS: Final = 100_000
 """Steps of SQLite's machine between two looks at the clock: about a millisecond."""
 
+BESIDE: Final = ("-journal", "-wal", "-shm")
+"""The endings of the files that SQLite opens beside a store."""
+
 LIMITS: Final = {
     sqlite3.SQLITE_LIMIT_LENGTH: LONGEST_TEXT,
     sqlite3.SQLITE_LIMIT_SQL_LENGTH: LONGEST_TEXT,
@@ -59,11 +62,13 @@ LIMITS: Final = {
 class Clock:
     """Ends statements of a connection that take longer than some seconds; `ended` tells that it did."""
 
-    def __init__(self, connection: sqlite3.Connection, seconds: float = READING_SECONDS) -> None:
+    def __init__(
+        self, connection: sqlite3.Connection, seconds: float = READING_SECONDS, steps: int = STEPS
+    ) -> None:
         self.seconds = seconds
         self.ended = False
         self.begin()
-        connection.set_progress_handler(self._look, STEPS)
+        connection.set_progress_handler(self._look, steps)
 
     def begin(self, seconds: float | None = None) -> None:
         """Count from now."""
@@ -85,6 +90,9 @@ OF_WRITING: Final = (
     sqlite3.SQLITE_CANTOPEN,
 )
 """The errors of a store that is not itself at fault when it cannot be written."""
+
+OF_THE_DISK: Final = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
+"""The errors of a disk that is full or fails."""
 
 
 def guarded(connection: sqlite3.Connection) -> sqlite3.Connection:
@@ -138,6 +146,11 @@ def connected(path: Path, *, may_change: bool = False, wait: float | None = None
             f"{path.name}: a store must be an SQLite file, and this one does not begin as such; write it"
             " again with `autocolor convert`"
         )
+    for ending in BESIDE:
+        with suppress(OSError):
+            # SQLite would wait for a pipe without end.
+            beside = Path(f"{path}{ending}")
+            refuse_irregular(beside, os.stat(beside))
     if may_change:
         with refusals(path.name), refusals_of_writing(path.name):
             return _opened(path, "rw", wait)
@@ -213,6 +226,8 @@ def reason(error: Exception, clock: Clock | None = None) -> str:
             f"the store cannot be opened or changed where it is ({text}): a change of it was interrupted, or"
             " it is not to be written; open it once with the program that wrote it, or use another file"
         )
+    if primary in OF_THE_DISK:
+        return f"the disk must hold the store, and is full or fails ({text}); make room, and try again"
     if primary == sqlite3.SQLITE_NOMEM:
         return "there is not enough memory to read the store; leave rows out"
     if primary == sqlite3.SQLITE_AUTH:

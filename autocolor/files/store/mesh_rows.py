@@ -176,17 +176,16 @@ def _scalar(
         ):
             _refuse_types(connection, table, of, (column,), rule, *types)
         query = f"SELECT {of}, value FROM {table} WHERE scalar = ? AND value IS NOT NULL ORDER BY {of}"
-        found = np.fromiter(chain.from_iterable(connection.execute(query, (name,))), np.float64).reshape(
-            -1, 2
-        )
-        keys = found[:, 0].astype(np.int64)
+        # A double does not hold every whole number.
+        found = np.fromiter(connection.execute(query, (name,)), [("key", np.int64), ("value", np.float64)])
+        keys = found["key"]
         rows = _rows_of(keys, numbers)
         if (rows < 0).any():
             missing = int(keys[rows < 0][0])
             raise InputError(
                 f"{table}, scalar {shown(name)}: {of} {missing} is not in the {of} table; remove its value"
             )
-        values[rows] = found[:, 1]
+        values[rows] = found["value"]
     return MeshScalar(name, read_only(values), of)
 
 

@@ -9,9 +9,9 @@ from contextlib import contextmanager
 from typing import Final, NamedTuple
 
 from autocolor.checks import nearest, shown
-from autocolor.errors import UsageError
+from autocolor.errors import UsageError, WriteError
 from autocolor.files.repair.names import different
-from autocolor.files.store.connections import LONGEST_TEXT, Clock
+from autocolor.files.store.connections import LONGEST_TEXT, OF_THE_DISK, Clock, reason
 from autocolor.files.store.permissions import CHANGES, FUNCTIONS, authorizer
 from autocolor.files.store.sql_columns import quoted
 
@@ -19,7 +19,10 @@ SECONDS: Final = 30.0
 """Assumed: how long a statement may take unless more is allowed."""
 
 AT_ONCE: Final = 1000
-"""Rows that are fetched at once."""
+"""Rows that are fetched at once, unless they are long."""
+
+STEPS: Final = 1000
+"""Steps of SQLite's machine between two looks at the clock: a function may take long for one step."""
 
 KEYWORDS: Final = ("on", "of", "all", "order", "group", "from", "to")
 """Keywords of SQL that are, or may be, the names of columns."""
@@ -45,7 +48,7 @@ def answer_of(
             f"a statement must only read the tables, and this one changes {', '.join(sorted(changed))}; allow"
             " changes with --write (tables.change in Python), or write a SELECT"
         )
-    clock = Clock(connection, seconds)
+    clock = Clock(connection, seconds, STEPS)
     with told(connection, clock), allowed(connection, may_change=False):
         cursor = connection.execute(statement, parameters)
     columns = different([each[0] for each in cursor.description or ()])
@@ -55,7 +58,7 @@ def answer_of(
             # What is done with the rows in between takes no time of the statement.
             clock.begin()
             with told(connection, clock), allowed(connection, may_change=False):
-                found = cursor.fetchmany(AT_ONCE)
+                found = _some_of(cursor)
             if not found:
                 return
             yield from found
@@ -63,11 +66,24 @@ def answer_of(
     return Answer(columns, rows())
 
 
+def _some_of(cursor: sqlite3.Cursor) -> list[tuple[Value, ...]]:
+    """The next AT_ONCE rows; fewer if their texts are LONGEST_TEXT letters together."""
+    rows: list[tuple[Value, ...]] = []
+    letters = 0
+    while len(rows) < AT_ONCE and letters < LONGEST_TEXT:
+        row = cursor.fetchone()
+        if row is None:
+            break
+        rows.append(row)
+        letters += sum(len(value) for value in row if isinstance(value, (str, bytes)))
+    return rows
+
+
 def change(
     connection: sqlite3.Connection, statement: str, parameters: Parameters = (), seconds: float = SECONDS
 ) -> int:
     """Run one statement that changes rows, within a transaction; returns how many. Raises UsageError."""
-    clock = Clock(connection, seconds)
+    clock = Clock(connection, seconds, STEPS)
     with told(connection, clock), allowed(connection, may_change=True):
         cursor = connection.execute(statement, parameters)
         # Rows that a RETURNING clause gives are left aside, but only then are all of them changed.
@@ -92,7 +108,7 @@ def changes_of(
         raise UsageError("a statement must not be empty; write one, as in SELECT * FROM lights")
     connection.set_authorizer(note)
     try:
-        with told(connection, Clock(connection, SECONDS)):
+        with told(connection, Clock(connection, SECONDS, STEPS)):
             is_pragma = statement.lstrip().lower().startswith(("pragma", "explain"))
             connection.execute(statement if is_pragma else f"EXPLAIN {statement}", parameters).fetchall()
     finally:
@@ -112,13 +128,18 @@ def allowed(connection: sqlite3.Connection, may_change: bool) -> Iterator[None]:
 
 @contextmanager
 def told(connection: sqlite3.Connection, clock: Clock) -> Iterator[None]:
-    """Raise what SQLite says of a statement as UsageError, in a sentence that tells what to do."""
+    """Raise what SQLite says of a statement as UsageError, in a sentence that tells what to do.
+
+    Raises WriteError instead for a disk that is full or fails.
+    """
     try:
         yield
     except (sqlite3.Error, sqlite3.Warning, OverflowError, UnicodeError) as error:
         if "interrupted" in str(error) and not clock.ended:
             # The user pressed Ctrl+C, which SQLite took.
             raise KeyboardInterrupt from None
+        if getattr(error, "sqlite_errorcode", 0) & 0xFF in OF_THE_DISK:
+            raise WriteError(reason(error)) from None
         raise UsageError(_sentence(connection, error, clock)) from None
 
 

@@ -71,7 +71,9 @@ def within(count: int) -> Rule:
 
 def are_coordinates(rows: AnyArray) -> Booleans:
     """Which rows are finite and at most 1e30 in size."""
-    right: Booleans = np.asarray((np.abs(rows) <= LARGEST_COORDINATE).all(axis=0))
+    # The largest is infinite in half precision.
+    numbers = rows.astype(np.float32) if rows.dtype.newbyteorder("=") == np.float16 else rows
+    right: Booleans = np.asarray((np.abs(numbers) <= LARGEST_COORDINATE).all(axis=0))
     return right
 
 

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import io
+import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -79,3 +81,44 @@ def test_text_without_an_end_is_not_collected_for_ever(monkeypatch: pytest.Monke
     monkeypatch.setattr(module, "MOST_LETTERS", 10)
     endless = iter(lambda: "x" * 6, None)
     assert list(statements_in(endless)) == ["x" * 12]
+
+
+@pytest.mark.parametrize("text", ["SELECT '\udcff';", "SELECT '\0';"])
+def test_what_is_not_text_is_refused(text: str) -> None:
+    with pytest.raises(UsageError, match="must be text in UTF-8 without NUL; save them so"):
+        list(statements_in([text]))
+
+
+def test_bytes_that_are_not_utf_8_are_refused() -> None:
+    with pytest.raises(UsageError, match="must be text in UTF-8"):
+        list(statements_in(io.TextIOWrapper(io.BytesIO(b"SELECT 1;\nSELECT '\xff';\n"), "utf-8")))
+
+
+def test_semicolons_in_long_texts_names_and_comments_are_passed_over_at_once() -> None:
+    many = ";" * 300_000
+    for text in (f"SELECT '{many}';", f'SELECT "{many}";', f"SELECT 1 /*{many}*/;", f"--{many}\nSELECT 1;"):
+        assert split(text) == ([text], "")
+    assert split(f"SELECT '{many}") == ([], f"SELECT '{many}")
+
+
+def test_the_name_of_a_stranger_commands_no_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = small_store(tmp_path)
+    with sqlite3.connect(path) as connection:
+        connection.execute('CREATE TABLE "a\x1b[31m" (b)')
+    connection.close()
+    lines = iter([".tables", ".schema"])
+
+    def typed(_: str) -> str:
+        try:
+            return next(lines)
+        except StopIteration:
+            raise EOFError from None
+
+    monkeypatch.setattr("builtins.input", typed)
+    with open_tables(path) as tables:
+        prompt(tables, lambda statement: None)
+    told = capsys.readouterr().out
+    assert "a?[31m" in told
+    assert "\x1b" not in told

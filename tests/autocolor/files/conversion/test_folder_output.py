@@ -57,3 +57,9 @@ def test_a_folder_has_a_folder_to_be_in_and_is_no_file(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(OutputError, match="must be a folder, not the file"):
         write_folder(tmp_path / "file", cube(), write_two, overwrite=True)
+
+
+def test_a_folder_whose_name_is_too_long_cannot_be_made(tmp_path: Path) -> None:
+    with pytest.raises(WriteError, match=r"could not be .*; make room or choose another place"):
+        write_folder(tmp_path / ("x" * 300), cube(), lambda folder, mesh: None, overwrite=False)
+    assert not list(tmp_path.iterdir())

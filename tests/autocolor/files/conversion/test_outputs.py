@@ -74,3 +74,8 @@ def test_a_suffix_that_nothing_is_written_in_is_refused_with_the_nearest(tmp_pat
         output_named("onj")
     with pytest.raises(UsageError, match=r"not 'qqqqq'; choose one$"):
         output_named("qqqqq")
+
+
+@pytest.mark.parametrize("name", ["x" * 300 + ".ply", "x" * 300])
+def test_a_name_that_is_too_long_is_left_to_what_writes(tmp_path: Path, name: str) -> None:
+    assert output_of(tmp_path / name).name == ("PLY" if name.endswith(".ply") else SCENE.name)

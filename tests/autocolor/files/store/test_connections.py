@@ -75,3 +75,13 @@ def test_an_old_sqlite_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sqlite3, "sqlite_version_info", (3, 31, 1))
     with pytest.raises(UnavailableError, match=r"a store must have SQLite 3\.37 or later"):
         in_memory()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes")
+@pytest.mark.parametrize("ending", ["-journal", "-wal", "-shm"])
+def test_a_pipe_beside_a_store_is_not_waited_for(tmp_path: Path, ending: str) -> None:
+    path = small_store(tmp_path)
+    os.mkfifo(f"{path}{ending}")
+    for may_change in (False, True):
+        with pytest.raises(InputError, match=f"{ending}: it must be a regular file, not a pipe; name a file"):
+            connected(path, may_change=may_change)

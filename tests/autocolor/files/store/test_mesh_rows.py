@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from autocolor import InputError
@@ -90,3 +91,16 @@ def test_too_many_rows_are_refused_before_they_are_read(
     monkeypatch.setattr(mesh_rows, "MOST_MESH_ROWS", 4)
     with pytest.raises(InputError, match="nodes must have at most 4 rows, not 5; leave rows out"):
         read_store(small_store(tmp_path))
+
+
+def test_values_belong_to_nodes_whose_numbers_a_double_does_not_hold(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    far = 2**53
+    run(
+        path,
+        f"UPDATE nodes SET node = node + {far}",
+        f"UPDATE node_scalars SET node = node + {far}",
+        *(f"UPDATE polygons SET node{corner} = node{corner} + {far}" for corner in (1, 2, 3, 4)),
+    )
+    stress = read_store(path).scene.mesh.scalars[0]
+    np.testing.assert_array_equal(stress.values, [1, 2, np.nan, 4, 5])

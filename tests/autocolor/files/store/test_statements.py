@@ -1,12 +1,13 @@
 from __future__ import annotations
 
 import sqlite3
+import tracemalloc
 from collections.abc import Iterator
 
 import pytest
 
-from autocolor import UsageError
-from autocolor.files.store.statements import answer_of, changes_of
+from autocolor import UsageError, WriteError
+from autocolor.files.store.statements import answer_of, change, changes_of
 from autocolor.files.store.store_file import store_of
 from tests.autocolor.files.store.stores import small_scene
 
@@ -75,3 +76,19 @@ def test_what_a_statement_would_change_is_known_before_it_is_run(connection: sql
     assert found == {"lights": {sqlite3.SQLITE_UPDATE}}
     assert connection.execute("SELECT DISTINCT intensity FROM lights").fetchall() == [(1.0,)]
     assert changes_of(connection, "SELECT * FROM lights") == {}
+
+
+def test_long_rows_are_fetched_a_few_at_a_time(connection: sqlite3.Connection) -> None:
+    rows = answer_of(connection, ENDLESS + "printf('%.1000000c', 'a') FROM n").rows
+    tracemalloc.start()
+    next(rows)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 10_000_000
+
+
+def test_a_full_disk_is_no_fault_of_the_statement(connection: sqlite3.Connection) -> None:
+    connection.execute("PRAGMA max_page_count = 1")
+    grow = "UPDATE lights SET name = name || printf('%.500000c', 'a')"
+    with pytest.raises(WriteError, match=r"the disk must hold the store, and is full or fails .*; make room"):
+        change(connection, grow)

@@ -84,3 +84,9 @@ def test_a_table_of_another_shape_or_kind_is_refused() -> None:
     with pytest.raises(InputError) as refusal:
         room.is_of("parts.npy", np.zeros(4), "part numbers", "iu")
     assert str(refusal.value) == "parts.npy: part numbers must be whole numbers, not float64; convert them"
+
+
+@pytest.mark.parametrize("dtype", [np.float16, ">f2", np.float32, np.float64])
+def test_coordinates_are_finite_in_any_precision(dtype: str | type[Any]) -> None:
+    rows = np.array([[0, np.inf, -np.inf, np.nan, 1]] * 3, dtype)
+    assert room.are_coordinates(rows).tolist() == [True, False, False, False, True]
