@@ -193,7 +193,7 @@ def test_a_pointer_elsewhere_saves_in_the_folder_of_the_scene(server: Served, tm
     session_elsewhere(History(car().replace(name="car")), server.address, tmp_path, None, prepare)
     assert sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*.*")) == [
         "car.npz",
-        "car/mesh.obj",
+        "car/mesh.tables",
         "car/scene.toml",
     ]
 
