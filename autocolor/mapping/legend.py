@@ -15,8 +15,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.mapping.display_image import DisplayImage
-from autocolor.mapping.legend_numbers import bands_apart, numbers_between, stands_for_whole_numbers
-from autocolor.mapping.level_ranges import SCREENS
+from autocolor.mapping.legend_numbers import numbers_beside
+from autocolor.mapping.level_ranges import SCREENS, WORDS
 from autocolor.mapping.scalar_bands import Bands
 
 CHARACTER: Final = 7
@@ -53,6 +53,9 @@ MOST_TITLE: Final = 12
 MOST_TITLES: Final = 3
 """Characters of a line of the title, and lines of it."""
 
+CORNERS: Final = ((False, False), (True, False), (False, True), (True, True))
+"""The corners of a picture: whether each is at the left, and whether it is at the foot."""
+
 MOST_SHARE: Final = 0.4
 """Assumed: the largest part of the width of the picture that the legend takes; a smaller picture has none."""
 
@@ -88,11 +91,12 @@ class Legend:
         return left <= element <= right and top <= line <= bottom
 
 
-def legend(image: DisplayImage, end: int | None = None, at_left: bool = False) -> Legend | None:
+def legend(image: DisplayImage, end: int | None = None, at_left: bool | None = None) -> Legend | None:
     """The legend of an image; None without a scalar, where that has none, and where it would not fit.
 
-    Assumed: it stands in the upper right corner, as if the picture ended before an element `end`; or in the
-    upper left one, if that is told, or if it hides less than half as much there of what the scalar colors.
+    Assumed: it stands in the upper right corner or the upper left one, as `at_left` tells; if that is None,
+    in that of the four where it hides fewest pixels of the object, the upper right one before others. `end`
+    puts it as if the picture ended before an element.
     """
     scalar = image.scene.scalar
     if scalar is None or not scalar.legend:
@@ -105,38 +109,28 @@ def legend(image: DisplayImage, end: int | None = None, at_left: bool = False) -
     # A surface where a value is missing has all the bands that there are.
     name = max(found, key=lambda name: found[name].has_missing)
     size = lines, elements if end is None else min(end, elements)
-    right, left = (
-        laid_out(scalar.name, found[name], image.ranges[name].first, size, side) for side in (False, True)
-    )
-    if right is None or left is None:
-        return None
-    if end is None and not at_left:
-        at_left = 2 * _hidden(image, left) < _hidden(image, right)
-    return left if at_left else right
+    corners = CORNERS if at_left is None else [(at_left, False)]
+    first = image.ranges[name].first
+    legends = [laid_out(scalar.name, found[name], first, size, *corner) for corner in corners]
+    return min(filter(None, legends), key=lambda legend: _hidden(image, legend), default=None)
 
 
-def _hidden(image: DisplayImage, found: Legend) -> int:
-    """How many words of surfaces that the scalar colors a legend hides."""
-    left, top, right, bottom, _ = found.swatches[0]
-    words = image.words[top : bottom + 1, left : right + 1]
-    return sum(
-        int(np.count_nonzero((words >= first) & (words < first + levels)))
-        for first, levels in (image.ranges[name] for name in image.bands)
-    )
+def _hidden(image: DisplayImage, legend: Legend) -> int:
+    """How many pixels of the object a legend hides; what is on the stage is none of it."""
+    of_object = {part.surface for part in image.scene.parts if not part.stage}
+    is_object = np.zeros(WORDS, np.bool_)
+    for name, (first, levels) in image.ranges.items():
+        is_object[first : first + levels] = name in of_object
+    left, top, right, bottom, _ = legend.swatches[0]
+    return int(np.count_nonzero(is_object[image.words[top : bottom + 1, left : right + 1]]))
 
 
-def laid_out(name: str, bands: Bands, first: int, size: tuple[int, int], at_left: bool) -> Legend | None:
-    """The legend of a scalar with bands from a first word on, for a picture of a size."""
+def laid_out(
+    name: str, bands: Bands, first: int, size: tuple[int, int], at_left: bool, at_foot: bool = False
+) -> Legend | None:
+    """The legend of a scalar with bands from a first word on, in a corner of a picture of a size."""
     height = lines_of_band(bands.bands)
-    if stands_for_whole_numbers(bands.low, bands.high, bands.bands) and height >= LETTER_LINES:
-        # Each band has its number beside its middle.
-        numbers: Sequence[str] = [f"{bands.low + 0.5 + band:.0f}" for band in range(bands.bands)]
-        exponent = 0
-        places = [height * band + height // 2 for band in range(bands.bands)]
-    else:
-        step = bands_apart(bands.bands, height, LEAST_APART)
-        numbers, exponent = numbers_between(bands.low, bands.high, bands.bands // step)
-        places = [height * step * number for number in range(len(numbers))]
+    numbers, exponent, places = numbers_beside(bands.low, bands.high, bands.bands, height, LEAST_APART)
     title = [*title_lines(name), *([f"x 1e{exponent}"] if exponent else [])]
     above = [("above", bands.above)] * bands.has_above
     below = [("below", bands.below)] * bands.has_below + [("missing", bands.missing)] * bands.has_missing
@@ -150,7 +144,8 @@ def laid_out(name: str, bands: Bands, first: int, size: tuple[int, int], at_left
     if inner + 3 * MARGIN > MOST_SHARE * size[1] or inside + 4 * MARGIN > size[0]:
         return None
 
-    left, top = 2 * MARGIN if at_left else size[1] - 2 * MARGIN - inner, 2 * MARGIN
+    left = 2 * MARGIN if at_left else size[1] - 2 * MARGIN - inner
+    top = size[0] - 2 * MARGIN - inside if at_foot else 2 * MARGIN
     frame = Swatch(left - MARGIN, top - MARGIN, left + inner + MARGIN - 1, top + inside + MARGIN - 1, FRAME)
     ground = Swatch(frame.left + 1, frame.top + 1, frame.right - 1, frame.bottom - 1, GROUND)
     swatches, labels = [frame, ground], []

@@ -6,8 +6,6 @@ import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from autocolor.mapping.rounding import HALF
-
 MOST_DIGITS: Final = 6
 """Assumed: digits before or after the point up to which numbers are told without a power of ten."""
 
@@ -27,13 +25,34 @@ def bands_apart(bands: int, lines: int, least: int) -> int:
     return next(dividing, bands)
 
 
-def stands_for_whole_numbers(low: float, high: float, bands: int) -> bool:
-    """Whether the middle of each band is a whole number, as where numbers stand for kinds of things.
+class PlacedNumbers(NamedTuple):
+    """Numbers as texts, in units of a power of ten, and the lines of each above the foot of the bar."""
 
-    >>> stands_for_whole_numbers(0.5, 3.5, 3), stands_for_whole_numbers(0, 3, 3)
-    (True, False)
+    texts: Sequence[str]
+    exponent: int
+    places: Sequence[int]
+
+
+def numbers_beside(low: float, high: float, bands: int, lines: int, least: int) -> PlacedNumbers:
+    """The numbers beside a bar of bands of so many lines each, from the lowest, `least` lines apart.
+
+    They are limits of bands. But bands that are each around a whole number, as of kinds or of counts, have
+    that number beside their middle, and these may be half as far apart: each names its band.
+
+    >>> numbers_beside(0, 100, 4, 24, 22)
+    PlacedNumbers(texts=['0', '25', '50', '75', '100'], exponent=0, places=[0, 24, 48, 72, 96])
+    >>> numbers_beside(0.5, 3.5, 3, 24, 22)
+    PlacedNumbers(texts=['1', '2', '3'], exponent=0, places=[12, 36, 60])
     """
-    return high - low == bands and low % 1 == HALF
+    if bands > 1 and high - low == bands and (low - 0.5).is_integer() and max(-low, high) < 10**MOST_DIGITS:
+        step = math.ceil(least / 2 / lines)
+        middles = range(0, bands, step)
+        texts = [str(round(low + 0.5) + band) for band in middles]
+        return PlacedNumbers(texts, 0, [band * lines + lines // 2 for band in middles])
+    step = bands_apart(bands, lines, least)
+    count = bands // step
+    numbers = numbers_between(low, high, count)
+    return PlacedNumbers(*numbers, [place * step * lines for place in range(count + 1)])
 
 
 class Numbers(NamedTuple):

@@ -14,7 +14,7 @@ TITLE: Final = "AUTOCOLOR"
 LEFT: Final = 24
 MIDDLE: Final = 220
 TOP: Final = 50
-STEP: Final = 14
+STEP: Final = 13
 
 LIMITS: Final = (
     "The blend gives the brightest points of a surface the color of the light.",

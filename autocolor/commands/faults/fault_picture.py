@@ -1,4 +1,4 @@
-"""A scene whose mesh is colored by its faults: one color for each kind, gray where there is none."""
+"""A scene whose mesh is colored by its faults: one color for each kind, light gray where there is none."""
 
 from __future__ import annotations
 
@@ -44,6 +44,9 @@ def fault_scene(scene: Scene, faults: Sequence[Fault]) -> Scene:
         surfaces=(Surface(SURFACE, MATTE),),
         exposure=AUTO,
         scalar=Scalar(
-            name=FAULT, limits=(0.5, count + 0.5), scale=COLORS, bands=count, missing=WITHOUT_FAULT
+            name=FAULT,
+            limits=(-0.5, count + 0.5),
+            scale=(WITHOUT_FAULT, *COLORS),
+            bands=count + 1,
         ),
     )

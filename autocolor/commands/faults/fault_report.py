@@ -28,8 +28,9 @@ def fault_lines(faults: Sequence[Fault]) -> Iterator[str]:
         yield f"{fault.number:2} {fault.kind} {len(fault.rows):,}: {KINDS[fault.kind]} ({what}{named}{more})"
         for hole in fault.holes[:FIRST_ROWS]:
             yield f"     {_hole_told(hole)}"
-        if len(fault.holes) > FIRST_ROWS:
-            yield f"     and {len(fault.holes) - FIRST_ROWS:,} shorter ones"
+        more_holes = len(fault.holes) - FIRST_ROWS
+        if more_holes > 0:
+            yield f"     and {more_holes:,} shorter {'one' if more_holes == 1 else 'ones'}"
 
 
 def _listed(rows: Any) -> str:

@@ -11,7 +11,7 @@ from autocolor.checks import Color, nearest
 from autocolor.scene.columns.color_kinds import ColorKind, in_digits
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.columns.value_kinds import UNORDERED, Leaf, Number, require
-from autocolor.scene.scalars.color_scales import COLOR_SCALES
+from autocolor.scene.scalars.color_scales import COLOR_SCALES, REVERSED
 
 MOST_COLORS: Final = 256
 
@@ -64,7 +64,10 @@ class ScaleKind(Leaf):
         return colors
 
     def advice(self, value: object) -> str:
-        return nearest(value, COLOR_SCALES) if isinstance(value, str) else ""
+        if not isinstance(value, str):
+            return ""
+        forward = (name for name in COLOR_SCALES if not name.endswith(REVERSED))
+        return nearest(value, COLOR_SCALES) or nearest(value, forward)
 
     def written(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: value if isinstance(value, str) else [in_digits(color) for color in value]}

@@ -12,7 +12,7 @@ from typing import ClassVar, NamedTuple
 
 from autocolor.arrays import Bytes, Words
 from autocolor.mapping.display_image import DisplayImage
-from autocolor.mapping.legend import legend
+from autocolor.mapping.legend import Legend, legend
 from autocolor.screens.input.gestures import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture.legend_items import legend_items
 from autocolor.screens.picture.picture_edits import PictureEdits
@@ -32,8 +32,8 @@ class OverPicture(Screen):
     def __init__(self, session: Session) -> None:
         super().__init__(session)
         self.edits = PictureEdits(session)
-        self._legend: tuple[DisplayImage, bool, Sequence[Item]] | None = None
-        """The legend of an image, and whether it is beside the menu."""
+        self._legend: tuple[DisplayImage, bool, Legend | None, Sequence[Item]] | None = None
+        """An image, whether its legend is beside the menu, that legend, and its items."""
 
     def base(self) -> Words:
         image = self.session.comparing.image
@@ -45,8 +45,9 @@ class OverPicture(Screen):
         is_beside_menu = self.has_menu or self.is_under_menu
         if self._legend is None or self._legend[:2] != (image, is_beside_menu):
             end, at_left = (MENU.left, self.has_room_at_left) if is_beside_menu else (None, False)
-            self._legend = image, is_beside_menu, legend_items(legend(image, end, at_left))
-        return self._legend[2]
+            found = legend(image, end, at_left)
+            self._legend = image, is_beside_menu, found, legend_items(found)
+        return self._legend[3]
 
     def loads(self) -> Sequence[tuple[int, Bytes]]:
         image = self.session.comparing.image
@@ -63,11 +64,15 @@ class OverPicture(Screen):
             return
         pointed = self._pointed(gesture.element, gesture.line)
         if pointed is None:
-            session.tell("the background")
+            session.tell("the legend" if self._is_on_legend(gesture) else "the background")
             return
         session.choose_surface(pointed.surface)
         session.part_name = pointed.part
         session.tell(pointed.told)
+
+    def _is_on_legend(self, gesture: Gesture) -> bool:
+        found = None if self._legend is None else self._legend[2]
+        return found is not None and found.has(gesture.element, gesture.line)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
         if start.button == MIDDLE or start.shift:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
+import numpy as np
+
 from autocolor.mapping.band_division import own_limits
 from autocolor.scene.columns.bars import bar_within
 from autocolor.scene.scalars.scalar import Scalar
@@ -20,7 +22,9 @@ PutLimits = Callable[[tuple[float, float] | None], object]
 
 def limit_rows(session: Session, scalar: Scalar, put: PutLimits) -> list[Widget]:
     """A switch for the scalar's own range, the two limits, and limits that are symmetric around zero."""
-    own = own_limits(session.studio.picture)
+    own_low, own_high = own_limits(session.studio.picture)
+    # The range is of float32: a scene file should say 0.1, and not 0.10000000149011612.
+    own = float(str(np.float32(own_low))), float(str(np.float32(own_high)))
     low, high = scalar.limits or own
     usual = bar_within(*own)
     least = LEAST_SHARE * (own[1] - own[0])

@@ -3,11 +3,12 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Scene, render, scene_of
+from autocolor import Mesh, Scene, View, render, scene_of
 from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.legend import (
     BAR_ELEMENTS,
@@ -118,7 +119,7 @@ def test_another_color_scale_leaves_it_and_other_limits_change_its_numbers_alone
 def test_it_stands_where_there_is_room() -> None:
     image = shown(ball())
     right, left = legend_of(image).swatches[0], legend(image, at_left=True)
-    beside = legend(image, end=504)
+    beside = legend(image, 504, False)
     assert left is not None
     assert beside is not None
     assert right.right == 640 - 9
@@ -126,6 +127,44 @@ def test_it_stands_where_there_is_room() -> None:
     assert beside.swatches[0].right == 504 - 9
     assert beside.has(504 - 9, 20)
     assert not beside.has(504 - 8, 20)
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "low", "corner"),
+    [(-9, 0, -9, (580, 8)), (0, 9, -9, (8, 8)), (-9, 9, 0, (580, 233))],
+)
+def test_it_hides_as_little_of_the_object_as_it_can(
+    left: float, right: float, low: float, corner: tuple[int, int]
+) -> None:
+    plate = [[left, 0, low], [right, 0, low], [right, 0, 9], [left, 0, 9]]
+    view = View((0, -5, 0), (0, 1, 0), field_of_view=60)
+    scene = scene_of(plate, [[0, 1, 2, 3]], view=view).with_scalar(name="z", limits=[-2, 6], bands=8)
+    assert legend_of(shown(scene)).swatches[0][:2] == corner
+
+
+@pytest.mark.parametrize("is_stage", [False, True])
+def test_it_may_hide_what_is_on_the_stage(is_stage: bool) -> None:
+    one = sphere(12, 8)
+    coordinates = np.vstack([one.coordinates, one.coordinates + np.array([3.0, 0.0, 2.0])])
+    polygons = np.vstack([one.node_numbers, one.node_numbers + len(one.coordinates)])
+    parts = np.repeat([0, 1], len(one.node_numbers))
+    scene = scene_of(
+        Mesh(coordinates, polygons, parts, ("ball", "wall")), surface_of_part={"ball": "ball", "wall": "wall"}
+    )
+    scene = scene.with_scalar(name="z").replace(
+        view=View((0, -5, 0), (0, 1, 0), field_of_view=60),
+        parts=[part.replace(stage=is_stage and part.name == "wall") for part in scene.parts],
+    )
+    assert (legend_of(shown(scene)).swatches[0].left == 8) == (not is_stage)
+
+
+def test_bands_around_whole_numbers_have_these_beside_their_middles() -> None:
+    found = legend_of(shown(ball(limits=[0.5, 4.5], bands=4)))
+    bar = [each for each in found.swatches if each.word < SCREENS.first]
+    _, *numbers = found.labels
+    assert [each.text for each in numbers] == ["1", "2", "3", "4"]
+    for number, band in zip(numbers, bar, strict=True):
+        assert abs(number.top + LETTER_LINES // 2 - (band.top + band.bottom) // 2) <= 1
 
 
 @pytest.mark.parametrize("name", ["", "stress", "von mises stress of load case two", "w" * 30])

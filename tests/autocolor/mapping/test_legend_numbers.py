@@ -1,10 +1,12 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from autocolor.mapping.legend_numbers import bands_apart, numbers_between
+from autocolor.mapping.legend_numbers import bands_apart, numbers_beside, numbers_between
 
 
 @given(st.integers(2, 256), st.integers(1, 24))
@@ -50,3 +52,14 @@ def test_each_number_is_that_of_its_limit_to_a_twentieth_of_the_distance(
     for number, text in enumerate(told):
         wanted = low + (high - low) * number / count
         assert abs(float(text) * 10.0**exponent - wanted) <= distance / 20 + 1e-9 * abs(wanted)
+
+
+@given(st.integers(-40, 40), st.integers(2, 256), st.integers(1, 24))
+def test_whole_numbers_are_beside_the_middles_of_their_bands_and_far_enough_apart(
+    first: int, bands: int, lines: int
+) -> None:
+    texts, exponent, places = numbers_beside(first - 0.5, first - 0.5 + bands, bands, lines, 22)
+    assert exponent == 0
+    assert [int(text) - first for text in texts] == [place // lines for place in places]
+    assert all(after - before >= 11 for before, after in pairwise(places))
+    assert texts[0] == str(first)

@@ -19,6 +19,11 @@ def test_every_row_of_the_help_fits_on_the_screen_above_the_message_line() -> No
         assert not any(item.area.overlaps(other.area) for other in items[:number])
 
 
+def test_the_limits_of_the_method_stand_apart_from_the_rows() -> None:
+    *rows, first, _ = help_items(TITLE, ROWS)
+    assert first.area.top - rows[-1].area.bottom > STEP
+
+
 def test_each_row_has_its_keys_and_what_they_do() -> None:
     items = help_items(TITLE, ROWS)
     for number, (keys, does) in enumerate(ROWS):

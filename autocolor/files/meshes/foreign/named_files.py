@@ -96,6 +96,11 @@ def _json(place: str, text: bytes) -> dict[str, Any]:
         described = json.loads(text.decode("utf-8"), parse_constant=refuse)
         if not isinstance(described, dict):
             raise ValueError(f"a {type(described).__name__}")
+    except json.JSONDecodeError as error:
+        raise InputError(
+            f"{place}: a glTF file must describe its scene in JSON, not as at line {error.lineno}, column"
+            f" {error.colno}; write it again"
+        ) from None
     except (ValueError, RecursionError) as error:
         found = " ".join(str(error).split())[:100]
         raise InputError(

@@ -92,7 +92,8 @@ def limit_time(seconds: float) -> None:
     except ImportError:
         return
     used = math.ceil(time.process_time() + seconds)
-    resource.setrlimit(resource.RLIMIT_CPU, (used, used))
+    # At the hard limit a process is killed without a reason; a second before, SIGXCPU tells it.
+    resource.setrlimit(resource.RLIMIT_CPU, (used, used + 1))
     signal.setitimer(signal.ITIMER_REAL, 2 * seconds)
 
 

@@ -96,8 +96,8 @@ def mesh_faults(mesh: Mesh) -> tuple[Fault, ...]:
 
 
 def fault_scalar(mesh: Mesh, faults: Sequence[Fault]) -> MeshScalar:
-    """The number of the gravest fault of each polygon of a mesh; missing where it has none."""
-    values = np.full(len(mesh.node_numbers), np.nan)
+    """The number of the gravest fault of each polygon of a mesh; 0 where it has none."""
+    values = np.zeros(len(mesh.node_numbers))
     for fault in sorted(faults, key=lambda each: each.number):
         values[fault.polygons] = fault.number
     return MeshScalar(FAULT, read_only(values), POLYGON)

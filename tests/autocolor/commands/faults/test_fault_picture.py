@@ -4,6 +4,8 @@ import numpy as np
 
 from autocolor import image, render, scene_of
 from autocolor.commands.faults.fault_picture import COLORS, fault_scene
+from autocolor.mapping.display_image import display_image
+from autocolor.mapping.legend import legend
 from autocolor.scene.geometry.faults.mesh_faults import KINDS, mesh_faults
 from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from tests.autocolor.meshes import cube
@@ -27,3 +29,10 @@ def test_the_faults_color_the_scene_whatever_surfaces_it_has() -> None:
     red, green, blue = COLORS[list(KINDS).index("turned")]
     # A shade of the kind's color: its components keep their order.
     assert any(g > b > r for r, g, b in colors), (red, green, blue)
+
+
+def test_the_legend_has_the_numbers_of_the_kinds_and_0_for_none() -> None:
+    scene = fault_scene(scene_of(cube()), ())
+    found = legend(display_image(scene, render(scene)))
+    assert found is not None
+    assert [each.text for each in found.labels] == ["fault", *map(str, range(len(KINDS) + 1))]

@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 
 import numpy as np
+import pytest
 
 from autocolor import Mesh
 from autocolor.commands.faults.fault_report import fault_lines, fault_values
@@ -30,3 +31,12 @@ def test_many_rows_are_cut_in_a_line_and_whole_in_json() -> None:
     }  # fmt: skip
     assert values[0]["loops"][0]["closed"] is True
     assert values[0]["polygons"] == [1]
+
+
+@pytest.mark.parametrize(("sheets", "told"), [(6, "and 1 shorter one"), (7, "and 2 shorter ones")])
+def test_loops_that_are_not_told_are_counted(sheets: int, told: str) -> None:
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
+    apart = np.arange(sheets)[:, None, None] * np.array([3.0, 0, 0])
+    corners = np.arange(4 * sheets).reshape(sheets, 4)
+    lines = list(fault_lines(mesh_faults(Mesh((square + apart).reshape(-1, 3), corners))))
+    assert lines[6].strip() == told

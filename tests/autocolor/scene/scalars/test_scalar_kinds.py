@@ -20,7 +20,15 @@ def test_a_color_beyond_a_limit_has_words_of_its_own() -> None:
     assert cost(red, blue) is Tier.ENTRIES
 
 
+def test_all_color_scales_are_named_where_none_is_near() -> None:
+    with pytest.raises(InputError, match=r"not 'jet'; known are 'viridis', .*'coolwarm'") as refusal:
+        Scalar("stress", scale="jet")
+    assert "_r'" not in str(refusal.value)
+
+
 def test_an_unknown_color_scale_is_refused_with_the_nearest_name() -> None:
     with pytest.raises(InputError, match=r"must be the name of a color scale, or a list of 2"):
         Scalar("stress", scale="virids")
+    with pytest.raises(InputError, match=r"did you mean 'coolwarm'\?"):
+        Scalar("stress", scale="cool-warm")
     assert Scalar("stress", scale=["red", "#00f"]).scale == ((255, 0, 0), (0, 0, 255))  # type: ignore[arg-type]

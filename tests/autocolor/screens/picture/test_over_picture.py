@@ -43,6 +43,14 @@ def test_a_pick_names_and_chooses_part_and_surface(hand: Hand) -> None:
     assert hand.viewer.studio.scene is hand.viewer.studio.history.start
 
 
+def test_a_click_on_the_legend_tells_that_it_is_one(tmp_path: Path) -> None:
+    hand = hand_before(ball_scene().with_scalar(name="z"), tmp_path)
+    hand.click(600, 100)
+    assert hand.viewer.message == "the legend"
+    hand.click(*BACKGROUND)
+    assert hand.viewer.message == "the background"
+
+
 def test_the_background_changes_no_choice(hand: Hand) -> None:
     hand.click(*FLOOR)
     hand.click(*BACKGROUND)

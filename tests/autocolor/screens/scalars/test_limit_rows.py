@@ -2,8 +2,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from autocolor import Mesh, scene_of
 from autocolor.scene.scalars.scalar import Scalar
 from tests.autocolor.screens.boxes import boxes, hand_at, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
@@ -54,3 +56,13 @@ def test_the_own_range_is_held_and_followed_again(hand: Hand) -> None:
 def test_limits_around_zero_are_as_far_as_the_farther_one(hand: Hand) -> None:
     hand.pick("around zero")
     assert scalar_of(hand).limits == (-1.0, 1.0)
+
+
+def test_a_held_range_has_the_fewest_digits(tmp_path: Path) -> None:
+    mesh = boxes().mesh
+    tenths = Mesh(mesh.coordinates * 0.1, mesh.node_numbers)
+    hand = hand_at(tmp_path, "scalar", scene_of(tenths).with_scalar(name="z", legend=False))
+    assert hand.viewer.studio.picture.scalar_limits == (0.0, float(np.float32(0.1)))
+    hand.pick("own range")
+    assert scalar_of(hand).limits == (0.0, 0.1)
+    assert words_are_those_of_the_scene(hand)

@@ -89,6 +89,7 @@ def test_what_is_no_json_is_refused(tmp_path: Path, data: bytes) -> None:
     assert refusal(write(tmp_path, data)).startswith(
         "a.gltf: a glTF file must describe its scene in JSON, not "
     )
+    assert refusal(write(tmp_path, b"{\n a")).endswith(", not as at line 2, column 2; write it again")
     assert refusal(write(tmp_path, b'{"buffers": {}}')) == "a.gltf: buffers must be a list; correct the file"
 
 
