@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.store.answers import printable
+from autocolor.checks import printable
+from autocolor.commands.store.answers import 
 from autocolor.errors import AutocolorError, UsageError
 
 if TYPE_CHECKING:
