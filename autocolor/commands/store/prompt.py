@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.checks import printable
-from autocolor.commands.store.answers import 
 from autocolor.errors import AutocolorError, UsageError
 
 if TYPE_CHECKING:
