@@ -63,7 +63,8 @@ Nothing is repaired: polygons without area and parts without polygons stay, as t
 A store is data. Reading one runs nothing that is in it: views and triggers stay as they are, and a view,
 a virtual table or a computed column of one of the names below is refused. Statements may read, compute,
 and with `--write` change rows; they may not attach files, load extensions, set pragmas or change tables,
-and end after 30 seconds (`--seconds`). A value has at most 1 MiB, a file at most 2 GiB.
+and end after 30 seconds (`--seconds`). A value has at most 1 MiB, one that a
+statement reads or computes 128 KiB, a file at most 2 GiB.
 
 A new store is written beside its place and renamed. A store that is there is changed in place by one
 transaction, so that programs that have it open notice; other tables, views, indices and triggers are

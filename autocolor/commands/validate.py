@@ -60,8 +60,9 @@ def validate(
         told = {"problems": [], "repairs": report.repairs, "faults": fault_values(faults)}
         click.echo(json.dumps(told, indent=2))
     else:
-        kinds = f", {len(faults)} kind{'s' if len(faults) > 1 else ''} of faults" if faults else ""
-        click.echo("\n".join([f"{source.path}: no problem{kinds}", *fault_lines(faults)]))
+        kinds = f"{len(faults)} kind{'s' if len(faults) > 1 else ''} of faults in its mesh"
+        found = f"it can be rendered, with {kinds}" if faults else "no problem"
+        click.echo("\n".join([f"{source.path}: {found}", *fault_lines(faults)]))
     if shows:
         from autocolor.commands.faults.fault_picture import fault_scene
 

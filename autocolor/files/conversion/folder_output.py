@@ -45,6 +45,9 @@ def write_folder(
             )
         _synced(beside, names)
         if path.exists():
+            # Remove the old files first: if this is cut off, the folder has files of one mesh only.
+            for name in there:
+                os.unlink(path / name)
             for name in names:
                 (path / name).parent.mkdir(parents=True, exist_ok=True)
                 os.replace(beside / name, path / name)

@@ -30,6 +30,10 @@ LARGEST_STORE: Final = 1 << 31
 LONGEST_TEXT: Final = 1 << 20
 """Assumed: in bytes, of a value and of a row."""
 
+LONGEST_COMPUTED: Final = 1 << 17
+"""Assumed: in bytes, of a value that a statement reads or computes. A function is not ended while it runs:
+to search half of this in all of it takes a fifth of a second, and of LONGEST_TEXT nine."""
+
 READING_SECONDS: Final = 120.0
 """Assumed: how long a store may be read; the largest takes half of that."""
 

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError, WriteError
 from autocolor.files.repair.names import different
-from autocolor.files.store.connections import LONGEST_TEXT, OF_THE_DISK, Clock, reason
+from autocolor.files.store.connections import LONGEST_COMPUTED, LONGEST_TEXT, OF_THE_DISK, Clock, reason
 from autocolor.files.store.permissions import CHANGES, FUNCTIONS, authorizer
 from autocolor.files.store.sql_columns import quoted
 
@@ -118,11 +118,13 @@ def changes_of(
 
 @contextmanager
 def allowed(connection: sqlite3.Connection, may_change: bool) -> Iterator[None]:
-    """What statements may do meanwhile."""
+    """What statements may do meanwhile, and how long the values may be that they compute."""
     connection.set_authorizer(authorizer(may_change))
+    longest = connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LONGEST_COMPUTED)
     try:
         yield
     finally:
+        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
         connection.set_authorizer(None)
 
 
@@ -182,7 +184,10 @@ _PATTERNS: Final = (
         "a statement must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not another;"
         " change the tables themselves with a tool of SQLite",
     ),
-    (r"too big|too large|too many|too long", f"a value must have at most {LONGEST_TEXT:,} bytes; shorten it"),
+    (
+        r"too big|too large|too many|too long",
+        f"a value must have at most {LONGEST_COMPUTED:,} bytes; shorten it",
+    ),
     (
         r"(?:locked|busy)",
         "another program is writing to the store, which must wait for it; let it end, and try again",

@@ -22,7 +22,7 @@ def test_a_scene_without_a_problem_says_so(folder: Path, run: Run) -> None:
 def test_faults_of_the_mesh_are_listed_and_count_under_strict(folder: Path, run: Run) -> None:
     ran = run("validate", "scene")
     first, border, *_ = ran.out.splitlines()
-    assert (ran.code, first[:23]) == (0, "scene: no problem, 1 ki")
+    assert (ran.code, first[:23]) == (0, "scene: it can be render")
     assert border.startswith(" 1 border ")
     ran = run("validate", "scene", "--json", "--strict")
     assert (ran.code, json.loads(ran.out)["faults"][0]["kind"]) == (1, "border")
@@ -66,7 +66,7 @@ def test_every_problem_is_told_at_once(folder: Path, run: Run) -> None:
 def test_repairs_are_no_problems_but_count_under_strict(folder: Path, run: Run) -> None:
     (folder / "two.obj").write_text((folder / "two.obj").read_text() + "f 1 1 2\n")
     ran = run("validate", "two.obj")
-    assert (ran.code, ran.out.splitlines()[0][:19]) == (0, "two.obj: no problem")
+    assert (ran.code, ran.out.splitlines()[0][:27]) == (0, "two.obj: it can be rendered")
     assert ran.err.count("\n") == 1
     ran = run("validate", "two.obj", "--strict", "--json")
     assert ran.code == 1

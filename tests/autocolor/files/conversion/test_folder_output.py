@@ -63,3 +63,23 @@ def test_a_folder_whose_name_is_too_long_cannot_be_made(tmp_path: Path) -> None:
     with pytest.raises(WriteError, match=r"could not be .*; make room or choose another place"):
         write_folder(tmp_path / ("x" * 300), cube(), lambda folder, mesh: None, overwrite=False)
     assert not list(tmp_path.iterdir())
+
+
+def test_an_overwriting_that_is_cut_off_never_mixes_two_meshes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = tmp_path / "out"
+    target.mkdir()
+    for name in ("nodes", "polygons"):
+        (target / name).write_text("old")
+
+    def cut_off(source: object, place: Path) -> None:
+        (target / "nodes").write_text("new")
+        raise OSError("cut off")
+
+    monkeypatch.setattr("os.replace", cut_off)
+    with pytest.raises(WriteError):
+        write_folder(target, cube(), write_two, overwrite=True)
+    assert [(path.name, path.read_text()) for path in target.iterdir() if path.is_file()] == [
+        ("nodes", "new")
+    ]

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from autocolor import UsageError, WriteError
+from autocolor.files.store.connections import LONGEST_COMPUTED
 from autocolor.files.store.statements import answer_of, change, changes_of
 from autocolor.files.store.store_file import store_of
 from tests.autocolor.files.store.stores import small_scene
@@ -42,7 +43,7 @@ def connection() -> Iterator[sqlite3.Connection]:
         ("ATTACH 'x' AS y", "must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not"),
         ("PRAGMA journal_mode = OFF", "must be a SELECT or, with --write"),
         (
-            "SELECT hex(hex(hex(hex(replace(printf('%200000d', 1), ' ', 'abcdef')))))",
+            "SELECT hex(hex(hex(hex(replace(printf('%100000d', 1), ' ', 'abcdef')))))",
             "a value must have at most",
         ),
     ],
@@ -89,6 +90,17 @@ def test_long_rows_are_fetched_a_few_at_a_time(connection: sqlite3.Connection) -
 
 def test_a_full_disk_is_no_fault_of_the_statement(connection: sqlite3.Connection) -> None:
     connection.execute("PRAGMA max_page_count = 1")
-    grow = "UPDATE lights SET name = name || printf('%.500000c', 'a')"
+    grow = "UPDATE lights SET name = name || printf('%.100000c', 'a')"
     with pytest.raises(WriteError, match=r"the disk must hold the store, and is full or fails .*; make room"):
         change(connection, grow)
+
+
+def test_values_that_a_statement_computes_are_short_enough_to_be_searched_at_once(
+    connection: sqlite3.Connection,
+) -> None:
+    def length_of(letters: int) -> object:
+        return next(answer_of(connection, f"SELECT length(printf('%.{letters}c', 'a'))").rows)[0]
+
+    assert length_of(LONGEST_COMPUTED - 1000) == LONGEST_COMPUTED - 1000
+    # A longer one is NULL, as printf has it.
+    assert length_of(LONGEST_COMPUTED + 1) is None
