@@ -127,14 +127,25 @@ def _with_scalar(picture: Picture, scene: Scene, points: VisiblePoints, before: 
     values, limits = None, None
     if scene.scalar is not None:
         old = None if before is None else before.scene.scalar
-        if before is not None and old is not None and _has_the_same_values(old, scene.scalar):
+        if (
+            before is not None
+            and old is not None
+            and _has_the_same_values(old, scene.scalar)
+            and _stage(before.scene) == _stage(scene)
+        ):
             values, limits = before.picture.scalar_values, before.picture.scalar_limits
         else:
             with timed(LOG, "scalar values"):
-                values, limits = scalar_values(scene.mesh, scene.scalar, points)
+                of_object = scene.object_coordinates if any(_stage(scene)) else None
+                values, limits = scalar_values(scene.mesh, scene.scalar, points, of_object)
     if values is picture.scalar_values:
         return picture
     return dataclasses.replace(picture, scalar_values=values, scalar_limits=limits)
+
+
+def _stage(scene: Scene) -> list[bool]:
+    """Which parts are stage: their coordinates are left out of the range of a scalar."""
+    return [part.stage for part in scene.parts]
 
 
 def _has_the_same_values(old: Scalar, new: Scalar) -> bool:

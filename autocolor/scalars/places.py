@@ -32,6 +32,19 @@ def distance(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
     return within(_along(direction, points), kept(mesh, key, partial(_range_along, direction, mesh)))
 
 
+def limits_of_object(scalar: Scalar, coordinates: Floats) -> Limits | None:
+    """The range of a scalar that tells where a point is, over the nodes of an object, (nodes, 3).
+
+    None for any other scalar.
+    """
+    if scalar.name not in ("x", "y", "z", "distance") or not len(coordinates):
+        return None
+    direction = unit_vector(scalar) if scalar.name == "distance" else np.eye(3)["xyz".index(scalar.name)]
+    values = coordinates @ direction
+    size = float(np.linalg.norm(np.ptp(coordinates, axis=0)))
+    return widened(float(values.min()), float(values.max()), LEAST * size)
+
+
 def unit_vector(scalar: Scalar) -> Floats:
     """The direction of a scalar in unit length."""
     direction = np.array(scalar.direction)

@@ -10,6 +10,7 @@ from autocolor.arrays import Floats, Indices
 from autocolor.immutable import read_only
 from autocolor.scalars.computed import COMPUTING
 from autocolor.scalars.interpolation import interpolated
+from autocolor.scalars.places import limits_of_object
 from autocolor.scalars.ranges import Limits, ScalarValues, kept, range_of, within
 from autocolor.scene.geometry.used_rows import used_rows
 from autocolor.scene.mesh import Mesh
@@ -18,11 +19,19 @@ from autocolor.scene.scalars.scalar import Scalar
 from autocolor.visibility.visible_points import VisiblePoints
 
 
-def scalar_values(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
-    """The values of a scalar at the visible points; the scalars of the mesh come before computed ones."""
+def scalar_values(
+    mesh: Mesh, scalar: Scalar, points: VisiblePoints, object_coordinates: Floats | None = None
+) -> ScalarValues:
+    """The values of a scalar at the visible points; the scalars of the mesh come before computed ones.
+
+    Where the object is a part of the mesh, the range of a coordinate or a distance is that of the
+    `object_coordinates`, (nodes, 3): a wide floor would leave it few colors.
+    """
     of_mesh = {each.name: each for each in mesh.scalars}.get(scalar.name)
     if of_mesh is None:
         values, limits = COMPUTING[scalar.name](mesh, scalar, points)
+        if object_coordinates is not None:
+            limits = limits_of_object(scalar, object_coordinates) or limits
     else:
         values, limits = (_of_polygons if of_mesh.of == POLYGON else _of_nodes)(mesh, of_mesh, points)
     return ScalarValues(read_only(values), limits)

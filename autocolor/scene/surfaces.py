@@ -42,7 +42,7 @@ class Part(Row):
     surface: Annotated[str, Column(Reference("surfaces"), Tier.FRAME, "The name of the part's surface.")]
     stage: Annotated[
         bool,
-        Column(Switch(), Tier.NOTHING, "Whether the part is not of the object, so that views leave it out."),
+        Column(Switch(), Tier.MIX, "Whether the part is not of the object, so that views leave it out."),
     ] = False
 
     def replace(self, /, **changes: Unpack[PartChanges]) -> Part:

@@ -18,7 +18,7 @@ from autocolor import rendering as room
 from autocolor.lighting.shading import shade
 from autocolor.rendering import Rendering, rendering
 from autocolor.visibility.visible_points import PointChunk
-from tests.autocolor.meshes import cube, sphere
+from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import scenes
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -347,3 +347,16 @@ def test_a_picture_needs_no_glibc(problem: type[Exception], monkeypatch: pytest.
     monkeypatch.setattr(ctypes, "CDLL", fails)
     room._keep_large_arrays.cache_clear()
     assert render(two_surfaces(), 6, 8).surface_number.any()
+
+
+@pytest.mark.parametrize("scalar", [{"name": "x"}, {"name": "distance", "direction": (2, 0, 0)}])
+def test_the_range_of_a_coordinate_leaves_out_the_stage_and_follows_it(scalar: dict[str, Any]) -> None:
+    floor = grid(1, 1, (-50, -50, 0), (100, 0, 0), (0, 100, 0), "floor")
+    parts = {"floor": {"stage": True}}
+    scene = scene_of(Mesh.joined([cube(), floor]), parts=parts, scalar=scalar)  # type: ignore[arg-type]
+    staged = rendering(scene, 12, 16)
+    assert staged.picture.scalar_limits == (0, 1)
+    whole = rendering(scene.with_part("floor", stage=False), 12, 16, staged)
+    assert whole.picture.scalar_limits == (-50, 50)
+    np.testing.assert_array_equal(whole.picture.scalar, staged.picture.scalar)
+    assert rendering(scene, 12, 16, whole).picture.scalar_limits == (0, 1)

@@ -220,6 +220,6 @@ def test_the_coordinates_of_the_object_follow_an_edit_of_the_stage(scene: Scene)
         assert each.object_coordinates.tolist() == object_coordinates(each.mesh, each.parts).tolist()
 
 
-def test_to_make_a_part_stage_computes_nothing_again() -> None:
+def test_to_make_a_part_stage_costs_no_visible_surface_and_no_light() -> None:
     scene = scene_of(car())
-    assert cost_of_edit(scene, scene.with_part("door", stage=True)) == Tier.NOTHING
+    assert cost_of_edit(scene, scene.with_part("door", stage=True)) == Tier.MIX
