@@ -72,7 +72,7 @@ kept, and triggers are not run. What another program has written to a `-wal` fil
 A change that was interrupted (`-journal`) is taken back. A studio that shows a store, or a scene file,
 shows what other programs change in it as one step to undo; with unsaved edits it asks.
 
-A million nodes and a million quads are read in 2.1 seconds and written in 2.6; see
+A million nodes and a million quads are read in 2.1 seconds and written in 3.2; see
 `files/store/mesh_rows.py` for what was measured.
 
 ## The mesh
