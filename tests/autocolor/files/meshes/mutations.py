@@ -6,6 +6,8 @@ import random
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
+
 from autocolor.errors import InputError
 from autocolor.files.repair.polygons import MeshReport
 
@@ -32,6 +34,25 @@ def mutations(data: bytes, count: int = 200) -> Iterator[bytes]:
             else:
                 del mutant[at:]
         yield bytes(mutant)
+
+
+def changes(data: bytes, count: int = 200) -> Iterator[bytes]:
+    """Copies of the data with bits turned over, bytes cut out or put in, and numbers replaced."""
+    chance = np.random.default_rng(1983)
+    for _ in range(count):
+        changed = bytearray(data)
+        for _ in range(chance.integers(1, 4)):
+            at = int(chance.integers(len(changed)))
+            kind = chance.integers(4)
+            if kind == 0:
+                changed[at] ^= 1 << int(chance.integers(8))
+            elif kind == 1:
+                del changed[at : at + int(chance.integers(1, 9))]
+            elif kind == 2:
+                changed[at:at] = chance.bytes(int(chance.integers(1, 9)))
+            else:
+                changed[at : at + 4] = chance.choice([b"\xff\xff\xff\xff", b"nan ", b"\0\0\xc0\x7f", b"9999"])
+        yield bytes(changed)
 
 
 def survives(read: Callable[[Path], MeshReport], path: Path, data: bytes, count: int = 200) -> None:

@@ -15,6 +15,7 @@ from autocolor.files.meshes.stl.binary import TRIANGLE
 from autocolor.files.meshes.stl.stl_file import read_stl
 from autocolor.files.repair.placement import Placement
 from autocolor.files.repair.polygons import MeshReport
+from tests.autocolor.files.meshes.mutations import changes
 
 NODES = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float32)
 QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -174,21 +175,8 @@ def test_a_text_cut_short_anywhere_is_refused_or_told(path: Path) -> None:
 
 @pytest.mark.parametrize("data", [binary(), binary(begin=b"solid"), text()])
 def test_two_hundred_mutations_are_read_or_refused(path: Path, data: bytes) -> None:
-    random = np.random.default_rng(1983)
-    for _ in range(200):
-        changed = bytearray(data)
-        for _ in range(random.integers(1, 4)):
-            at = int(random.integers(len(changed)))
-            kind = random.integers(4)
-            if kind == 0:
-                changed[at] ^= 1 << int(random.integers(8))
-            elif kind == 1:
-                del changed[at : at + int(random.integers(1, 9))]
-            elif kind == 2:
-                changed[at:at] = random.bytes(int(random.integers(1, 9)))
-            else:
-                changed[at : at + 4] = random.choice([b"\xff\xff\xff\xff", b"nan ", b"\0\0\xc0\x7f", b"9999"])
-        assert is_read_or_refused(path, bytes(changed))
+    for changed in changes(data):
+        assert is_read_or_refused(path, changed)
 
 
 @given(data=st.binary(max_size=150) | st.text("solidenfacrumvtxp 01.-\n", max_size=150).map(str.encode))
