@@ -77,8 +77,8 @@ def send_image(display: HostPort, image: DisplayImage, before: DisplayImage | No
         display.send(instructions.reset())
     for first, entries in [(0, image.entries)] if before is None else image.loads_after(before):
         display.send(encode(first, entries))
-    key, known = legend(image), None if before is None else legend(before)
-    if before is None or before.words is not image.words or key != known:
+    key = legend(image)
+    if before is None or before.words is not image.words or key != legend(before):
         display.send(instructions.write_image(image.words))
         if key is not None:
             display.send(drawn_legend(key))
