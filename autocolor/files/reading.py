@@ -5,8 +5,10 @@ from __future__ import annotations
 import errno
 import os
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Final
+from typing import BinaryIO, Final
 
 from autocolor.errors import InputError, MissingInputError, reason_of
 
@@ -32,28 +34,43 @@ def read_bytes(path: Path, largest: int) -> bytes:
     Never waits for a pipe or a device. Raises MissingInputError if the file does not exist, InputError if it
     is not a regular file, too large, or unreadable.
     """
-    try:
-        status = os.stat(path)
-    except OSError as error:
-        raise unreadable(path, error) from None
-    except ValueError:
-        raise unnameable(path) from None
-    try:
-        refuse_irregular(path, status)
-        # The file may have been replaced since: O_NONBLOCK keeps a pipe from blocking; fstat checks again.
-        number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-        with open(number, "rb") as file:
-            opened = os.fstat(number)
-            refuse_irregular(path, opened)
-            # read() allocates the requested size at once, even for a small file.
-            data = file.read(min(largest, max(opened.st_size, LEAST_READ)) + 1)
-    except OSError as error:
-        raise unreadable(path, error) from None
+    with opened(path) as (file, status):
+        # read() allocates the requested size at once, even for a small file.
+        data = file.read(min(largest, max(status.st_size, LEAST_READ)) + 1)
     if len(data) > largest:
         raise InputError(
             f"{path.name}: a file must have at most {largest:,} bytes, not more; split or simplify it"
         )
     return data.removeprefix(UTF_8_MARK)
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[tuple[BinaryIO, os.stat_result]]:
+    """A regular file opened for reading, and its status; it never waits for a pipe or a device.
+
+    Raises MissingInputError if the file does not exist, InputError if it is not a regular file, or if it
+    cannot be opened or read.
+    """
+    refuse_irregular(path, status_of(path))
+    try:
+        # The file may have been replaced since: O_NONBLOCK keeps a pipe from blocking; fstat checks again.
+        number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+        with open(number, "rb") as file:
+            status = os.fstat(number)
+            refuse_irregular(path, status)
+            yield file, status
+    except OSError as error:
+        raise unreadable(path, error) from None
+
+
+def status_of(path: Path) -> os.stat_result:
+    """The status of a file or folder. Raises MissingInputError, InputError for a name that cannot be one."""
+    try:
+        return os.stat(path)
+    except OSError as error:
+        raise unreadable(path, error) from None
+    except ValueError:
+        raise unnameable(path) from None
 
 
 def read_head(path: Path) -> bytes:

@@ -17,7 +17,7 @@ from autocolor.files.meshes.formats import (
     mesh_formats,
     read_mesh,
 )
-from autocolor.files.reading import unnameable, unreadable
+from autocolor.files.reading import status_of
 from autocolor.files.registry import recognized, suffix_rule, suffixes_of
 from autocolor.files.repair.placement import SCALES, UPS, Placement
 from autocolor.files.scenes.formats import SceneFormat, scene_formats
@@ -73,12 +73,7 @@ def read_scene_with_report(
     if surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
     path = Path(path)
-    try:
-        os.stat(path)
-    except OSError as error:
-        raise unreadable(path, error) from None
-    except ValueError:
-        raise unnameable(path) from None
+    status_of(path)
 
     path, found = source_format(path)
     if isinstance(found, SceneFormat):

@@ -18,7 +18,7 @@ from urllib.request import pathname2url
 
 from autocolor.checks import printable
 from autocolor.errors import InputError, UnavailableError, WriteError, reason_of
-from autocolor.files.reading import read_head, refuse_irregular, unnameable, unreadable
+from autocolor.files.reading import read_head, refuse_irregular, status_of
 
 LEAST_SQLITE: Final = (3, 37, 0)
 """The first version with STRICT tables."""
@@ -134,12 +134,7 @@ def connected(path: Path, *, may_change: bool = False, wait: float | None = None
     `wait`.
     """
     refuse_old_sqlite()
-    try:
-        status = os.stat(path)
-    except OSError as error:
-        raise unreadable(path, error) from None
-    except ValueError:
-        raise unnameable(path) from None
+    status = status_of(path)
     refuse_irregular(path, status)
     if status.st_size > LARGEST_STORE:
         raise InputError(

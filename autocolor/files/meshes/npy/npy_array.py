@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 import mmap
-import os
 import re
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -18,7 +17,7 @@ import numpy as np
 
 from autocolor.arrays import AnyArray
 from autocolor.errors import InputError
-from autocolor.files.reading import refuse_irregular, shown, unnameable, unreadable
+from autocolor.files.reading import opened, shown
 from autocolor.immutable import read_only
 
 MOST_ROWS: Final = 200_000_000
@@ -77,25 +76,17 @@ def mapped(path: Path) -> AnyArray:
 
     Raises MissingInputError if there is no such file, InputError if it is not such a table.
     """
-    try:
-        refuse_irregular(path, os.stat(path))
-        # The file may have been replaced since: O_NONBLOCK keeps a pipe from blocking.
-        number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-        with open(number, "rb") as file:
-            status = os.fstat(number)
-            refuse_irregular(path, status)
-            header = parsed_header(path.name, file.read(LARGEST_HEADER))
-            if status.st_size != header.size:
-                raise InputError(
-                    f"{path.name}: a table of shape {header.shape} and type {header.dtype} must have"
-                    f" {header.size:,} bytes, not {status.st_size:,}; write it again"
-                )
-            pages = mmap.mmap(number, header.size, access=mmap.ACCESS_READ)
-    except OSError as error:
-        raise unreadable(path, error) from None
-    except InputError:
-        raise
-    except ValueError:
-        raise unnameable(path) from None
+    with opened(path) as (file, status):
+        header = parsed_header(path.name, file.read(LARGEST_HEADER))
+        if status.st_size != header.size:
+            raise InputError(
+                f"{path.name}: a table of shape {header.shape} and type {header.dtype} must have"
+                f" {header.size:,} bytes, not {status.st_size:,}; write it again"
+            )
+        try:
+            pages = mmap.mmap(file.fileno(), header.size, access=mmap.ACCESS_READ)
+        except ValueError as error:
+            # Another program cut it off meanwhile.
+            raise InputError(f"{path.name}: a table must stay whole ({error}); write it again") from None
     numbers: AnyArray = np.frombuffer(pages, header.dtype, math.prod(header.shape), header.start)
     return read_only(numbers.reshape(header.shape, order="F" if header.by_columns else "C"))
