@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Numbers, chunks
+from autocolor.arrays import AnyArray, Floats, Numbers, chunks
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.reading import shown
@@ -66,7 +66,7 @@ class NumberText:
 
     def coordinates(self, first: int, count: int) -> Floats:
         """The decimal numbers of some words, each at most 1e30 in size. Raises InputError."""
-        values = self._converted(first, count, IN_DECIMALS, COORDINATE)
+        values = self._converted(first, count, IN_DECIMALS, COORDINATE, float)
         large = np.flatnonzero(np.abs(values) > LARGEST_COORDINATE)
         if len(large):
             raise self.wrong(first + int(large[0]), COORDINATE)
@@ -74,10 +74,17 @@ class NumberText:
 
     def values(self, first: int, count: int) -> Floats:
         """The values of some words, which may be nan or inf. Raises InputError."""
-        return self._converted(first, count, IN_VALUES, "a value must be a decimal number, nan or inf")
+        return self._converted(first, count, IN_VALUES, "a value must be a decimal number, nan or inf", float)
 
-    def _converted(self, first: int, count: int, letters: bytes, rule: str) -> Floats:
-        values = np.empty(count)
+    def wholes(self, first: int, count: int, what: str) -> Numbers:
+        """The whole numbers of some words, each within 18 digits; `what` they are. Raises InputError."""
+        return self._converted(first, count, IN_WHOLES, f"{what} must be a whole number", int)
+
+    def _converted(
+        self, first: int, count: int, letters: bytes, rule: str, convert: type[float] | type[int]
+    ) -> AnyArray:
+        """Some words as float64 or int64. Raises InputError for other letters, and for no number."""
+        values = np.empty(count, np.float64 if convert is float else np.int64)
         for chunk in chunks(first + count, BLOCK, first):
             text = self._text(chunk)
             try:
@@ -85,27 +92,10 @@ class NumberText:
                     raise ValueError
                 words = text.decode("ascii").split()
                 values[chunk.start - first : chunk.stop - first] = np.fromiter(
-                    map(float, words), float, len(words)
-                )
-            except ValueError:
-                raise self.wrong(self._first_wrong(chunk, letters), rule) from None
-        return values
-
-    def wholes(self, first: int, count: int, what: str) -> Numbers:
-        """The whole numbers of some words, each within 18 digits; `what` they are. Raises InputError."""
-        values = np.empty(count, np.int64)
-        for chunk in chunks(first + count, BLOCK, first):
-            text = self._text(chunk)
-            try:
-                if text.translate(None, IN_WHOLES):
-                    raise ValueError
-                words = text.decode("ascii").split()
-                values[chunk.start - first : chunk.stop - first] = np.fromiter(
-                    map(int, words), np.int64, len(words)
+                    map(convert, words), values.dtype, len(words)
                 )
             except (ValueError, OverflowError):
-                rule = f"{what} must be a whole number"
-                raise self.wrong(self._first_wrong(chunk, IN_WHOLES), rule) from None
+                raise self.wrong(self._first_wrong(chunk, letters), rule) from None
         return values
 
     def _text(self, chunk: slice) -> bytes:
