@@ -37,7 +37,7 @@ def bands_by_surface(scene: Scene, picture: Picture) -> Mapping[str, Bands]:
         if np.isnan(values[each.pixels]).any()
     }
     rows = [surface for surface in scene.surfaces if surface.name in used]
-    # Nothing is beyond the scalar's own range.
+    # Nothing of the object is beyond the scalar's own range; what is of the stage has the color of its ends.
     has_ends = scalar.limits is not None
     has_below, has_above = has_ends and scalar.below is not None, has_ends and scalar.above is not None
     bands = {
