@@ -37,10 +37,10 @@ if TYPE_CHECKING:
     from autocolor.mapping.level_ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
     from autocolor.scene.creation import scene_of as scene_of
-    from autocolor.scene.light_sets.rigs import Rig as Rig
-    from autocolor.scene.lights import Flap as Flap
-    from autocolor.scene.lights import Flaps as Flaps
-    from autocolor.scene.lights import Light as Light
+    from autocolor.scene.lights.flaps import Flap as Flap
+    from autocolor.scene.lights.flaps import Flaps as Flaps
+    from autocolor.scene.lights.light import Light as Light
+    from autocolor.scene.lights.rigs import Rig as Rig
     from autocolor.scene.mesh import Mesh as Mesh
     from autocolor.scene.reflection_models import BlinnPhong as BlinnPhong
     from autocolor.scene.reflection_models import CookTorrance as CookTorrance
@@ -62,11 +62,11 @@ _HOME: Final = {
     "AutocolorError": "errors",
     "BlinnPhong": "scene.reflection_models",
     "CookTorrance": "scene.reflection_models",
-    "Flap": "scene.lights",
-    "Flaps": "scene.lights",
+    "Flap": "scene.lights.flaps",
+    "Flaps": "scene.lights.flaps",
     "InputError": "errors",
     "LevelRange": "mapping.level_ranges",
-    "Light": "scene.lights",
+    "Light": "scene.lights.light",
     "Mesh": "scene.mesh",
     "MeshScalar": "scene.scalars.mesh_scalars",
     "MissingInputError": "errors",
@@ -76,7 +76,7 @@ _HOME: Final = {
     "Phong": "scene.reflection_models",
     "Picture": "lighting.picture",
     "Reflectance": "scene.surfaces",
-    "Rig": "scene.light_sets.rigs",
+    "Rig": "scene.lights.rigs",
     "Scalar": "scene.scalars.scalar",
     "Scene": "scene.scene",
     "Studio": "studio",

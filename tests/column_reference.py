@@ -14,7 +14,9 @@ from autocolor.files.scenes.scene_meshes import MeshEntry
 from autocolor.scene.columns.column import WORLD_UNITS, Column, Kind, Row, Tier, bar_of, fields_of, keys_of
 from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.columns.rows import plain
-from autocolor.scene.lights import Flap, Light
+from autocolor.scene.lights.flaps import Flap
+from autocolor.scene.lights.half_spaces import HalfSpace
+from autocolor.scene.lights.light import Light
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
@@ -50,12 +52,14 @@ TABLES: tuple[tuple[str, str, type[Row]], ...] = (
     ("`[surfaces.NAME]`", "", Surface),
     ("`[[lights]]`", "", Light),
     ("`flaps.x`, `flaps.y`, `flaps.z` of a light", "", Flap),
+    ("`half_spaces.NAME` of a light", "", HalfSpace),
 )
 
 LEFT_OUT = {
     Scene: ("mesh", "parts", "surfaces", "lights", "view", "scalar", "name"),
     Part: ("name",),
     Surface: ("name",),
+    HalfSpace: ("name",),
 }
 """What stands in a header, or has a table of its own."""
 

@@ -35,8 +35,8 @@ PUBLIC_NAMES = {
 
 WINGS = {
     "autocolor": (
-        "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "scalars", "lighting",
-        "mapping", "files", "rendering", "sending", "scan_lines", "journal", "studio", "images",
+        "errors", "logs", "arrays", "immutable", "checks", "modules", "scene", "visibility", "scalars",
+        "lighting", "mapping", "files", "rendering", "sending", "scan_lines", "journal", "studio", "images",
         "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (

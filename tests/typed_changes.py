@@ -9,7 +9,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from autocolor.scene.columns.column import Row, fields_of, keys_of
-from autocolor.scene.lights import Flap, Flaps, Light
+from autocolor.scene.lights.flaps import Flap, Flaps
+from autocolor.scene.lights.half_spaces import HalfSpace
+from autocolor.scene.lights.light import Light
+from autocolor.scene.lights.links import Links
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
@@ -18,7 +21,19 @@ from autocolor.scene.view import View
 ROOT = Path(__file__).resolve().parents[1]
 WRITTEN = ROOT / "autocolor" / "scene" / "changes.py"
 
-CLASSES: tuple[type[Row], ...] = (Flap, Flaps, Light, Part, Reflectance, Paint, Surface, View, Scalar)
+CLASSES: tuple[type[Row], ...] = (
+    Flap,
+    Flaps,
+    HalfSpace,
+    Links,
+    Light,
+    Part,
+    Reflectance,
+    Paint,
+    Surface,
+    View,
+    Scalar,
+)
 
 HEAD = '''"""What a change of a row may say: its keys and their types, for editors and type checkers.
 

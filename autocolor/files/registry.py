@@ -7,13 +7,12 @@ by the module that defines it; all modules of a package are imported for that.
 from __future__ import annotations
 
 import difflib
-import pkgutil
 from collections.abc import Callable, Iterable, Sequence
-from importlib import import_module
 from pathlib import Path
 from typing import Generic, Protocol, TypeVar
 
 from autocolor.files.reading import read_head
+from autocolor.modules import import_modules_of
 
 
 class Named(Protocol):
@@ -63,12 +62,6 @@ class Registry(Generic[SomeFormat]):
             import_modules_of(self._package)
             self._all = tuple(sorted(self._registered, key=lambda each: each.name))
         return self._all
-
-
-def import_modules_of(name: str) -> None:
-    """Import every module and package directly in the package of that name."""
-    for module in pkgutil.iter_modules(import_module(name).__path__, f"{name}."):
-        import_module(module.name)
 
 
 def suffixes_of(formats: Iterable[Named]) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.scene.columns.problems import RowError
 from autocolor.scene.columns.rows import made
-from autocolor.scene.light_sets.rigs import Rig
+from autocolor.scene.lights.rigs import Rig
 from autocolor.scene.scene import Scene
 
 RIG_SUFFIX: Final = ".toml"

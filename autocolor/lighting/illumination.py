@@ -18,7 +18,7 @@ from autocolor.lighting.picture import Picture
 from autocolor.lighting.shading import ControlledLight, controlled_light, shade
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.columns.rows import cost
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.scene.reflection_models import ReflectionModel
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import VisiblePoints
@@ -40,11 +40,12 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
         surface.surface_number: scene.surfaces[surface.surface_number - 1].reflectance.model
         for surface in points.slices
     }
+    lights = {light.name: light for light in scene.lights_in_world}
     weights = light_mix(models, scene.surfaces, scene.lights, scene.ambient)
     changed = _changed_surfaces(models, previous)
-    reusable = _reusable_planes(scene, previous)
+    reusable = _reusable_planes(lights, previous)
     updates = {
-        name: _plane_update(scene.light(name), reusable.get(name), changed, surface_weights, points)
+        name: _plane_update(lights[name], reusable.get(name), changed, surface_weights, points)
         for name, surface_weights in weights.lights.items()
     }
 
@@ -84,15 +85,16 @@ def _changed_surfaces(models: Mapping[int, ReflectionModel], previous: Previous 
     return {number for number, model in models.items() if old[number - 1].reflectance.model != model}
 
 
-def _reusable_planes(scene: Scene, previous: Previous | None) -> dict[str, LightPlanes]:
+def _reusable_planes(lights: Mapping[str, Light], previous: Previous | None) -> dict[str, LightPlanes]:
     """The planes of the previous picture that still belong to a light, on surfaces that have not changed."""
     if previous is None:
         return {}
     planes = previous.picture.light_planes
+    before = {light.name: light for light in previous.scene.lights_in_world}
     return {
-        light.name: planes[light.name]
-        for light in scene.lights
-        if light.name in planes and _has_same_planes(previous.scene.light(light.name), light)
+        name: planes[name]
+        for name, light in lights.items()
+        if name in planes and _has_same_planes(before[name], light)
     }
 
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from autocolor.checks import either, shown
 from autocolor.errors import UsageError
-from autocolor.lighting.light_controls import Axis, FlapEnd, flaps_of
-from autocolor.scene.lights import Flap
+from autocolor.lighting.light_controls.flap_sides import Axis, FlapEnd, flaps_of
+from autocolor.scene.lights.flaps import Flap
 from autocolor.scene.scene import Scene
 from autocolor.visibility.sight import Seen
 

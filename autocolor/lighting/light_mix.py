@@ -15,7 +15,7 @@ import numpy as np
 
 from autocolor.arrays import LARGEST_SINGLE
 from autocolor.errors import InputError
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.scene.reflection_models import ReflectionModel
 from autocolor.scene.surfaces import Surface
 

@@ -8,9 +8,10 @@ from typing import Final, Literal
 import numpy as np
 
 from autocolor.arrays import Booleans, Bytes, Indices, dot
-from autocolor.lighting.light_controls import Axis, Cone, FlapEnd, flap_sides, is_inside
+from autocolor.lighting.light_controls.cone import Cone
+from autocolor.lighting.light_controls.flap_sides import Axis, FlapEnd, flap_sides, is_inside
 from autocolor.lighting.rays import camera_light, rays_to
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.visibility.projection import focal_length
 from autocolor.visibility.sight import Sight
 from autocolor.visibility.visible_points import NORMAL, POINT, VisiblePoints

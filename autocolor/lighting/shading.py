@@ -20,10 +20,10 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Booleans, Indices, Singles, dot
-from autocolor.lighting.light_controls import LightControl, LitPoints, controls_of
+from autocolor.lighting.light_controls.control import LightControl, LitPoints, controls_of
 from autocolor.lighting.light_planes import DIFFUSE, SPECULAR
 from autocolor.lighting.rays import CameraLight, camera_light, rays_to
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.scene.reflection_models import Cosines, ReflectionModel
 from autocolor.visibility.visible_points import NORMAL, POINT, REFLECTED_VIEW, PointChunk, VisiblePoints
 
@@ -58,7 +58,7 @@ def shade(
     reflection model of each visible surface number.
     """
     out, rows = planes[:, chunk.pixels], points.rows[:, chunk.pixels]
-    is_lit = _lit_points(light.controls, rows)
+    is_lit = _lit_points(light.controls, rows, chunk.pixels)
     if is_lit is not None and not is_lit.any():
         out[:] = 0
         return
@@ -94,11 +94,11 @@ def shade(
         plane[chosen] = values
 
 
-def _lit_points(controls: Sequence[LightControl], rows: Singles) -> Booleans | None:
+def _lit_points(controls: Sequence[LightControl], rows: Singles, pixels: slice) -> Booleans | None:
     """Whether each point may be lit under all controls; None where no control decides by the points."""
     lit: Booleans | None = None
     for control in controls:
-        allowed = control.lit_points(rows)
+        allowed = control.lit_points(rows, pixels)
         if allowed is not None:
             lit = allowed if lit is None else np.logical_and(lit, allowed, out=lit)
     return lit

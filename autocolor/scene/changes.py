@@ -17,6 +17,7 @@ class FlapChanges(TypedDict, total=False):
     minimum: float
     maximum: float
     on: bool
+    edge_width: float
 
 
 class FlapsChanges(TypedDict, total=False):
@@ -25,6 +26,26 @@ class FlapsChanges(TypedDict, total=False):
     x: Row | FlapChanges | None
     y: Row | FlapChanges | None
     z: Row | FlapChanges | None
+
+
+class HalfSpaceChanges(TypedDict, total=False):
+    """Changes of a HalfSpace."""
+
+    name: str
+    point: Sequence[float]
+    direction: Sequence[float]
+    edge_width: float
+    carried: bool
+    on: bool
+
+
+class LinksChanges(TypedDict, total=False):
+    """Changes of a Links."""
+
+    only_surfaces: Sequence[str] | None
+    except_surfaces: Sequence[str] | None
+    only_parts: Sequence[str] | None
+    except_parts: Sequence[str] | None
 
 
 class LightChanges(TypedDict, total=False):
@@ -39,6 +60,17 @@ class LightChanges(TypedDict, total=False):
     concentration: float
     cone_angle: float | None
     flaps: Row | FlapsChanges
+    inner_angle: float | None
+    half_spaces: Mapping[str, Row | HalfSpaceChanges | None] | Sequence[Row]
+    falloff: Literal["none", "linear", "quadratic"]
+    reach: float | None
+    at_infinity: bool
+    follows: str | None
+    links: Row | LinksChanges
+    only_surfaces: Sequence[str]
+    except_surfaces: Sequence[str]
+    only_parts: Sequence[str]
+    except_parts: Sequence[str]
 
 
 class PartChanges(TypedDict, total=False):

@@ -29,15 +29,21 @@ from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Column, Row, Tier, fields_of, row_label
 from autocolor.scene.columns.problems import REFUSED, Problem, RowError
-from autocolor.scene.columns.reference_kinds import RangesByName, Referring, references_of
+from autocolor.scene.columns.reference_kinds import RangesByName, ReferenceAt, references_of
 from autocolor.scene.columns.row_kinds import Nested, Rows
 from autocolor.scene.columns.rows import changed, cost, with_values
 from autocolor.scene.columns.value_kinds import Choice, CurveKind, Instance, Number, Text
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import object_bounds, object_coordinates
-from autocolor.scene.light_sets.light_copies import axis_number, free_name, mirrored
-from autocolor.scene.light_sets.rigs import Rig
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.following import (
+    changes_in_frame,
+    following_problems,
+    frame_of,
+    lights_in_world,
+)
+from autocolor.scene.lights.light import Light
+from autocolor.scene.lights.light_copies import axis_number, free_name, mirrored
+from autocolor.scene.lights.rigs import Rig
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalars.computed_names import COMPUTED, name_problems
 from autocolor.scene.scalars.scalar import Scalar
@@ -158,6 +164,8 @@ class Scene(Row):
             yield from name_problems(self.scalar.name, self.mesh.scalars)
         # Finding the closest valid name is slow, and a file may contain many invalid names.
         yield from islice(self._reference_problems(), MOST_PROBLEMS)
+        if self.lights is not REFUSED:
+            yield from islice(following_problems(self.lights), MOST_PROBLEMS)
         if self.surfaces is not REFUSED and len(self.surfaces) > MOST_SURFACES:
             yield Problem(
                 ("surfaces",),
@@ -174,10 +182,10 @@ class Scene(Row):
         if isinstance(self.scalar, Scalar):
             tables.append((Scalar, (self.scalar,)))
         for row_class, rows in tables:
-            for name, referring in references_of(row_class).items():
-                others = vars(self)[referring.table]
+            for key, reference in references_of(row_class).items():
+                others = vars(self)[reference.kind.table]
                 if others is not REFUSED:
-                    yield from _missing_names(rows, name, referring, [row.name for row in others])
+                    yield from _missing_names(rows, key, reference, [row.name for row in others])
 
     def replace(self, /, **changes: Unpack[SceneChanges]) -> Scene:
         """The scene with some fields changed."""
@@ -190,6 +198,24 @@ class Scene(Row):
     def light(self, name: str) -> Light:
         """The light of that name. Raises UsageError, with the closest valid name, if there is none."""
         return self.lights[_place("light", self.lights, name)]
+
+    @property
+    def lights_in_world(self) -> tuple[Light, ...]:
+        """The lights where they are, in object coordinates, also those that follow something."""
+        return lights_in_world(self.lights, self.view)
+
+    def light_in_world(self, name: str) -> Light:
+        """The light of that name where it is, in object coordinates. Raises UsageError if there is none."""
+        return self.lights_in_world[_place("light", self.lights, name)]
+
+    def with_light_in_world(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
+        """The scene with some fields of one light changed; places and directions are in object coordinates.
+
+        They are turned to those of what the light follows, if anything. Raises UsageError or InputError.
+        """
+        light = self.light(name)
+        frame = frame_of(light, self.lights, self.view)
+        return self.with_light(name, **changes_in_frame(changes, frame))
 
     def surface(self, name: str) -> Surface:
         """The surface of that name. Raises UsageError, with the closest valid name, if there is none."""
@@ -245,9 +271,12 @@ class Scene(Row):
         return changed(self, {"lights": (*self.lights, new)})
 
     def without_light(self, name: str) -> Scene:
-        """The scene without one light. Raises UsageError if there is none of that name."""
+        """The scene without one light.
+
+        Raises UsageError if there is none of that name, InputError if another light follows it.
+        """
         place = _place("light", self.lights, name)
-        return with_values(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
+        return changed(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
 
     def with_copied_light(self, name: str, new_name: str | None = None) -> Scene:
         """The scene with a copy of one light after the others, named like "key 2" unless a name is given.
@@ -305,9 +334,11 @@ class Scene(Row):
         rows = vars(self)[table]
         row = rows[place]
         rows = (*rows[:place], changed(row, changes), *rows[place + 1 :])
-        # Tables refer to each other by name only: if no name changes, the references stay valid. What is
-        # cached of a scene depends on its parts.
-        if table == "parts" or "name" in changes or not references_of(type(row)).keys().isdisjoint(changes):
+        # Tables refer to each other by name only: if no name changes, the references stay valid, but that a
+        # light must keep the aim that another one follows. What is cached of a scene depends on its parts.
+        is_followed = table == "lights" and any(light.follows is not None for light in self.lights)
+        is_referring = not references_of(type(row)).keys().isdisjoint(changes)
+        if table == "parts" or "name" in changes or is_referring or is_followed:
             return changed(self, {table: rows})
         return with_values(self, {table: rows})
 
@@ -340,17 +371,17 @@ class Scene(Row):
 
 
 def _missing_names(
-    rows: Sequence[Row], name: str, referring: Referring, known: Sequence[str]
+    rows: Sequence[Row], key: str, reference: ReferenceAt, known: Sequence[str]
 ) -> Iterator[Problem]:
-    """The problems of rows whose column `name` refers to names that are not in `known`."""
+    """The problems of rows whose column `key` refers to names that are not in `known`."""
     found = set(known)
     for row in rows:
-        value = vars(row)[name]
-        for wanted in () if value is REFUSED or value is None else referring.names_in(value):
+        value = reference.value_in(row)
+        for wanted in () if value is REFUSED or value is None else reference.kind.names_in(value):
             if wanted not in found:
-                table = f"the {referring.table.removesuffix('s')} table"
+                table = f"the {reference.kind.table.removesuffix('s')} table"
                 label = f"{row_label(row)}: " if row_label(row) else ""
-                text = f"{label}{name} {shown(wanted)} is not in {table}{nearest(wanted, known)}"
+                text = f"{label}{key} {shown(wanted)} is not in {table}{nearest(wanted, known)}"
                 yield Problem((), text)
 
 

@@ -18,7 +18,7 @@ from autocolor.files.paths import SCENE_FILE
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
 from autocolor.files.state.recent import note_file
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface

@@ -11,7 +11,8 @@ from autocolor.scene.columns.column import Row, fields_of
 from autocolor.scene.columns.row_kinds import Nested, Rows
 from autocolor.scene.columns.rows import made, plain
 from autocolor.scene.geometry.node_normals import CREASE_ANGLE
-from autocolor.scene.lights import Flap, Light
+from autocolor.scene.lights.flaps import Flap
+from autocolor.scene.lights.light import Light
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface

@@ -17,7 +17,7 @@ from typing import Any, Final
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Field, Kind, Row, fields_of
 from autocolor.scene.columns.reference_kinds import Reference
-from autocolor.scene.columns.row_kinds import Nested, Rows, Variant
+from autocolor.scene.columns.row_kinds import NamedRows, Nested, Rows, Variant
 from autocolor.scene.columns.rows import plain
 from autocolor.scene.columns.value_kinds import (
     LARGEST_PLACE,
@@ -162,6 +162,7 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
             yield from _columns(inner_name, inner, inner_prefix, is_given and not is_optional)
         return
     may_be_null = is_optional or not is_given or getattr(kind, "endless", None) is not None
+    may_be_null |= isinstance(kind, NamedRows)
     start: Any = default() if default is not None and is_given and not may_be_null else None
     begun = {} if start is None else dict(kind.written(name, start))
     keys = kind.keys(name, column)

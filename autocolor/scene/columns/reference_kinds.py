@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from autocolor.arrays import LARGEST_SINGLE
 from autocolor.scene.columns.column import Row, fields_of
-from autocolor.scene.columns.value_kinds import Leaf, Number, Text, VectorKind
+from autocolor.scene.columns.problems import REFUSED
+from autocolor.scene.columns.row_kinds import Nested
+from autocolor.scene.columns.value_kinds import Leaf, Number, Text
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,25 @@ class Reference(Referring):
 
 
 @dataclass(frozen=True)
+class WordOrName(Referring):
+    """A word that means the same in every scene, or else the name of a row of another table."""
+
+    word: str
+
+    def rule(self) -> str:
+        return f"must be {self.word!r} or the name of one of the {self.table}"
+
+    def accepts(self) -> str:
+        return "str"
+
+    def accepted(self, value: Any) -> str:
+        return Text().accepted(value)
+
+    def names_in(self, value: Any) -> Sequence[str]:
+        return () if value == self.word else (value,)
+
+
+@dataclass(frozen=True)
 class References(Referring):
     """A list of names of rows of another table."""
 
@@ -56,23 +77,6 @@ class References(Referring):
 
     def names_in(self, value: Any) -> Sequence[str]:
         return tuple(value)
-
-
-@dataclass(frozen=True)
-class PointOrName(Referring):
-    """A point, or the name of a row of another table that gives the point."""
-
-    def rule(self) -> str:
-        return f"{VectorKind().rule()}, or a name"
-
-    def accepts(self) -> str:
-        return "str | Sequence[float]"
-
-    def accepted(self, value: Any) -> str | tuple[float, float, float]:
-        return Text().accepted(value) if isinstance(value, str) else VectorKind().accepted(value)
-
-    def names_in(self, value: Any) -> Sequence[str]:
-        return (value,) if isinstance(value, str) else ()
 
 
 @dataclass(frozen=True)
@@ -117,13 +121,33 @@ class RangesByName(Referring):
         return {name: value if isinstance(value, str) else {key: list(limits) for key, limits in value}}
 
 
-def references_of(cls: type[Row]) -> Mapping[str, Referring]:
-    """The kinds of the fields of a row class that refer to rows of other tables, by field name."""
+class ReferenceAt(NamedTuple):
+    """A column that refers to other rows: its kind, and the fields that lead to it from the row."""
+
+    kind: Referring
+    path: tuple[str, ...]
+
+    def value_in(self, row: Row) -> Any:
+        """The value in a row, which may be None or REFUSED."""
+        value: Any = row
+        for name in self.path:
+            value = vars(value)[name] if isinstance(value, Row) else REFUSED
+        return value
+
+
+def references_of(cls: type[Row]) -> Mapping[str, ReferenceAt]:
+    """The columns of a row class that refer to rows of other tables, by key."""
     found = _REFERENCES.get(cls)
     if found is None:
-        kinds = {name: field.column.kind for name, field in fields_of(cls).items()}
-        found = _REFERENCES[cls] = {name: kind for name, kind in kinds.items() if isinstance(kind, Referring)}
+        found = _REFERENCES[cls] = {}
+        for name, field in fields_of(cls).items():
+            kind = field.column.kind
+            if isinstance(kind, Referring):
+                found[name] = ReferenceAt(kind, (name,))
+            elif isinstance(kind, Nested) and kind.inline:
+                inner = references_of(kind.row_class)
+                found |= {key: each._replace(path=(name, *each.path)) for key, each in inner.items()}
     return found
 
 
-_REFERENCES: Final[dict[type[Row], Mapping[str, Referring]]] = {}
+_REFERENCES: Final[dict[type[Row], dict[str, ReferenceAt]]] = {}

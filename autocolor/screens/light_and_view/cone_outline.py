@@ -14,7 +14,7 @@ import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.screens.light_and_view.orthographic_views import OrthographicViews, Side
 
 RIM_SIDES: Final = 36

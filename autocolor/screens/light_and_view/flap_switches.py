@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any, Final
 
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.screens.light_and_view.light_marks import flap_marks
 from autocolor.screens.light_and_view.orthographic_views import AXES, SIDES, OrthographicViews
 from autocolor.widgets.areas import Area

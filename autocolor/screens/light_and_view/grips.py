@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any, Final, NamedTuple
 
 from autocolor.checks import Vector
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.scene.scene import Scene
 from autocolor.screens.light_and_view.light_marks import arrow_end, flap_marks
 from autocolor.screens.light_and_view.orthographic_views import AXES, SIDES, OrthographicViews

@@ -13,7 +13,7 @@ import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.screens.light_and_view.arrows import arrow
 from autocolor.screens.light_and_view.cone_outline import cone_outline
 from autocolor.screens.light_and_view.orthographic_views import OrthographicViews, Side

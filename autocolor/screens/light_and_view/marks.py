@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 from autocolor.screens.light_and_view.arrows import SHORTEST

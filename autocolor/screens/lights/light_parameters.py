@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from autocolor.checks import Vector
 from autocolor.scene.columns.column import fields_of
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.screens.session import Session
 from autocolor.widgets.column_rows import rows_of
 from autocolor.widgets.widget import Choice, Widget

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from autocolor.scene.light_sets.new_lights import new_light_of
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
+from autocolor.scene.lights.new_lights import new_light_of
 from autocolor.screens.lights.light_parameters import parameter_rows
 from autocolor.screens.picture.light_handles import LightHandles
 from autocolor.screens.picture.over_picture import OverPicture

@@ -14,10 +14,10 @@ import numpy as np
 
 from autocolor.arrays import Indices
 from autocolor.checks import Vector
-from autocolor.lighting.light_controls import flaps_of
+from autocolor.lighting.light_controls.flap_sides import flaps_of
 from autocolor.lighting.light_drags import cone_placed, flap_placed, highlight_placed
 from autocolor.lighting.rims import CONE, Rim, rims
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
 from autocolor.visibility.visible_points import VisiblePoints

@@ -10,7 +10,8 @@ from collections.abc import Callable
 from typing import Final, NamedTuple
 
 from autocolor.journal.history import History, Saved
-from autocolor.scene.lights import Flap, Light
+from autocolor.scene.lights.flaps import Flap
+from autocolor.scene.lights.light import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Surface
 

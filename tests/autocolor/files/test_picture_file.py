@@ -394,7 +394,7 @@ def change_scene(table: str, row: int | None = None, **fields: Any) -> Callable[
         (change_scene("lights", 0, name=[]), "lights[1].name must be a string"),
         (
             change_scene("lights", 1, flaps={"z": 4}),
-            "lights[2].flaps.z must be a table of minimum, maximum and on, not 4",
+            "lights[2].flaps.z must be a table of minimum, maximum, on and edge_width, not 4",
         ),
         (change_scene("parts", 0, name=["wall"]), "parts[1].name must be a string"),
         (change_scene("parts", 0, surface={}), "surface must be a string"),

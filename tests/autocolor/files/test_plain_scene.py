@@ -89,7 +89,7 @@ def test_what_is_absent_or_endless_is_left_out() -> None:
     lights = [Light("key", (0, -1, 0), flaps=Flaps(z=Flap(maximum=2.0)))]
     values = plain_scene(wall_scene(lights=lights))
     (light,) = values["lights"]
-    assert light["flaps"] == {"z": {"maximum": 2.0, "on": True}}
+    assert light["flaps"] == {"z": {"maximum": 2.0, "on": True, "edge_width": 0.0}}
     assert not {"direction", "aim", "cone_angle"} & set(light)
     assert values["mesh"] == {"part_names": ("wall",), "crease_angle": 40.0}
 

@@ -11,7 +11,6 @@ import pytest
 from autocolor.files.registry import (
     Registry,
     format_named,
-    import_modules_of,
     recognized,
     suffix_rule,
     suffixes_of,
@@ -31,20 +30,6 @@ SOLID = Shape("SOLID", (".solid", ".sld"), lambda head: head.startswith(b"solid"
 PLAIN = Shape("PLAIN", (".plain",), lambda head: head.startswith(b"plain"))
 ANYTHING = Shape("ANYTHING", (".any",))
 ALL = (ANYTHING, PLAIN, SOLID)
-
-
-def test_every_module_and_package_of_a_package_is_imported(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for path in ("shelf/__init__.py", "shelf/one.py", "shelf/two/__init__.py", "shelf/two/inner.py"):
-        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / path).write_text("")
-    monkeypatch.syspath_prepend(tmp_path)
-    import_modules_of("shelf")
-    names = {name for name in sys.modules if name.partition(".")[0] == "shelf"}
-    for name in names:
-        monkeypatch.delitem(sys.modules, name)
-    assert names == {"shelf", "shelf.one", "shelf.two"}
 
 
 def test_formats_are_registered_by_modules_and_sorted_by_name(

@@ -21,7 +21,7 @@ from autocolor.journal.opening import checksum_of, opened
 from autocolor.journal.places import Source
 from autocolor.journal.reading import session_of
 from autocolor.journal.script import call_between, journal_text, literal, step_line
-from autocolor.scene.light_sets.new_lights import new_light_of
+from autocolor.scene.lights.new_lights import new_light_of
 from autocolor.scene.scene import AUTO
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube

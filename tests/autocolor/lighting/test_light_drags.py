@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Scene, UsageError, View
-from autocolor.lighting.light_controls import Axis, FlapEnd
+from autocolor.lighting.light_controls.flap_sides import Axis, FlapEnd
 from autocolor.lighting.light_drags import LEAST_CONE, cone_placed, flap_placed, highlight_placed
 from autocolor.rendering import rendering
 from autocolor.visibility.sight import Seen, Sight, seen_at

@@ -81,6 +81,7 @@ def test_ends_of_flaps_that_are_nowhere_are_left_out(tmp_path: Path) -> None:
     report = read_scene_with_report(tmp_path / "car.obj")
     scene = report.scene.with_light("key", flaps=Flaps(z=Flap(minimum=0.5), x=Flap(on=False)))
     text = scene_text(scene, report.mesh_files)
-    assert "flaps.x = { on = false }\nflaps.z = { minimum = 0.5, on = true }\n" in text
+    flaps = "flaps.x = { on = false, edge_width = 0.0 }\nflaps.z = { minimum = 0.5, on = true, edge_width = 0.0 }\n"
+    assert flaps in text
     (tmp_path / "scene.toml").write_text(text)
     assert same(scene, read_scene_with_report(tmp_path).scene)

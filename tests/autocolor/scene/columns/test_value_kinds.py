@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from autocolor.scene.columns.column import Kind
 from autocolor.scene.columns.problems import REFUSED, Problem
-from autocolor.scene.columns.reference_kinds import PointOrName, Reference, References
+from autocolor.scene.columns.reference_kinds import Reference, References, WordOrName
 from autocolor.scene.columns.value_kinds import (
     Choice,
     CurveKind,
@@ -76,7 +76,7 @@ def test_what_is_no_finite_number_is_refused(value: object) -> None:
         (Reference("surfaces"), 3, "it must be a string of at least one character, not 3"),
         (References("lights"), "key", "it must be a list of names, not 'key'"),
         (References("lights"), ["key", 3], "it must be a list of names, not ['key', 3]"),
-        (PointOrName("lights"), 3, "it must be three finite numbers of at most 1e36, or a name, not 3"),
+        (WordOrName("lights", "eye"), 3, "it must be 'eye' or the name of one of the lights, not 3"),
         (Instance(dict), [], "it must be a dict, not []"),
         (
             CurveKind({"linear": 1, "gamma": 2}),
@@ -106,8 +106,8 @@ def test_a_value_that_breaks_a_rule_is_refused_in_a_sentence(
         (Reference("surfaces"), "body", "body"),
         (References("lights"), ["key", "rim"], ("key", "rim")),
         (References("lights"), [], ()),
-        (PointOrName("lights"), "key", "key"),
-        (PointOrName("lights"), [1, 2, 3], (1.0, 2.0, 3.0)),
+        (WordOrName("lights", "eye"), "key", "key"),
+        (WordOrName("lights", "eye"), "eye", "eye"),
         (CurveKind({"linear": 1}), "linear", "linear"),
         (CurveKind({"linear": 1}), [[0, 0], [1, 0.5]], ((0.0, 0.0), (1.0, 0.5))),
     ],

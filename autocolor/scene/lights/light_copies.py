@@ -9,7 +9,8 @@ from typing import Final
 
 from autocolor.checks import Vector, either
 from autocolor.errors import UsageError
-from autocolor.scene.lights import Flap, Light
+from autocolor.scene.lights.flaps import Flap
+from autocolor.scene.lights.light import Light
 
 AXES: Final = ("x", "y", "z")
 """The axes of the world in the order of coordinates."""

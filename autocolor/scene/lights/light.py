@@ -2,7 +2,7 @@
 
 Paper: "Light Controls". A light has a position and an intensity. With a direction or an aim it is a directed
 light, which concentration and a cone can narrow; flaps can restrict any light. The effect of these controls
-is computed in `lighting/light_controls`.
+is computed in `lighting/light_controls`. What a light follows is worked out in `following`.
 """
 
 from __future__ import annotations
@@ -10,61 +10,26 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Unpack
+from typing import Annotated, ClassVar, Final, Unpack
 
 from autocolor.checks import Vector
-from autocolor.scene.changes import FlapChanges, FlapsChanges, LightChanges
+from autocolor.scene.changes import LightChanges
 from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
 from autocolor.scene.columns.problems import Problem
-from autocolor.scene.columns.row_kinds import Nested
+from autocolor.scene.columns.reference_kinds import WordOrName
+from autocolor.scene.columns.row_kinds import NamedRows, Nested
 from autocolor.scene.columns.rows import changed
-from autocolor.scene.columns.value_kinds import Number, Switch, Text, VectorKind
+from autocolor.scene.columns.value_kinds import Choice, Number, Switch, Text, VectorKind
+from autocolor.scene.lights.flaps import Flaps
+from autocolor.scene.lights.half_spaces import HalfSpace
+from autocolor.scene.lights.links import Links
 
+FALLOFFS: Final = ("none", "linear", "quadratic")
+"""What is left of a light at a distance, as a fraction f of its reach: all of it, 1 - f, or (1 - f)^2."""
 
-@dataclass(frozen=True, repr=False)
-class Flap(Row):
-    """A range of one object coordinate outside of which a light has no effect, and a switch.
-
-    Paper: "Light Flaps and Cones", Figure 9. A point at the minimum or the maximum is lit.
-    """
-
-    noun: ClassVar[str] = "flap"
-
-    minimum: Annotated[
-        float,
-        Column(Number(endless=-math.inf), Tier.LIGHT, "The smallest coordinate that is lit.", WORLD_UNITS),
-    ] = -math.inf
-    maximum: Annotated[
-        float,
-        Column(Number(endless=math.inf), Tier.LIGHT, "The largest coordinate that is lit.", WORLD_UNITS),
-    ] = math.inf
-    on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether the flap restricts the light.")] = True
-
-    def rules(self) -> Iterator[Problem]:
-        """The minimum must not be above the maximum."""
-        if self.minimum > self.maximum:
-            ends = f"{self.minimum:g} to {self.maximum:g}"
-            yield Problem((), f"the minimum must not be above the maximum, not {ends}; exchange them")
-
-    def replace(self, /, **changes: Unpack[FlapChanges]) -> Flap:
-        """The flap with some fields changed."""
-        return changed(self, changes)
-
-
-@dataclass(frozen=True, repr=False)
-class Flaps(Row):
-    """The flaps of one light in the X, Y and Z directions; None where there is no flap."""
-
-    noun: ClassVar[str] = "flaps"
-
-    x: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of X that is lit.")] = None
-    y: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Y that is lit.")] = None
-    z: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Z that is lit.")] = None
-
-    def replace(self, /, **changes: Unpack[FlapsChanges]) -> Flaps:
-        """The flaps with some changed; a table of fields changes only these fields of a flap."""
-        return changed(self, changes)
+EYE: Final = "eye"
+"""What a light that is fixed to the eye follows."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -130,9 +95,55 @@ class Light(Row):
     flaps: Annotated[
         Flaps, Column(Nested(Flaps), Tier.LIGHT, "The ranges of object coordinates that are lit.")
     ] = field(default_factory=Flaps)
+    inner_angle: Annotated[
+        float | None,
+        Column(
+            Number(at_least=0, at_most=180),
+            Tier.LIGHT,
+            "The angle up to which all of the light is left; if absent, the cone is sharp.",
+            "degrees",
+            bar=Bar(0, 90, 1),
+            start=0.0,
+        ),
+    ] = None
+    half_spaces: Annotated[
+        tuple[HalfSpace, ...],
+        Column(NamedRows(HalfSpace), Tier.LIGHT, "Flaps along any planes, by name."),
+    ] = ()
+    falloff: Annotated[
+        str,
+        Column(Choice(FALLOFFS), Tier.LIGHT, "How it falls with the distance, to nothing at its reach."),
+    ] = "none"
+    reach: Annotated[
+        float | None,
+        Column(
+            Number(at_least=0, above=True),
+            Tier.LIGHT,
+            "The distance at which nothing is left of a light that falls with the distance.",
+            WORLD_UNITS,
+        ),
+    ] = None
+    at_infinity: Annotated[
+        bool,
+        Column(Switch(), Tier.LIGHT, "Whether its rays are parallel, as if the position were endlessly far."),
+    ] = False
+    follows: Annotated[
+        str | None,
+        Column(
+            WordOrName("lights", EYE),
+            Tier.LIGHT,
+            "What it is fixed to: 'eye', or the name of another light, for the point at which that is aimed.",
+        ),
+    ] = None
+    links: Annotated[
+        Links, Column(Nested(Links, inline=True), Tier.LIGHT, "The surfaces and parts that it shines on.")
+    ] = field(default_factory=Links)
 
     def rules(self) -> Iterator[Problem]:
-        """At most one of direction and aim is given; without both, no control that needs one is given."""
+        """At most one of direction and aim is given; without both, no control that needs one is given.
+
+        An inner angle comes with a cone that is not narrower, and a falloff with a reach.
+        """
         if self.direction is not None and self.aim is not None:
             yield Problem((), "it must have a direction or an aim, not both; leave one out")
         if self.aim is not None and self.aim == self.position:
@@ -141,10 +152,25 @@ class Light(Row):
             for name, is_given in (
                 ("concentration", self.concentration > 0),
                 ("cone_angle", self.cone_angle is not None),
+                ("at_infinity", self.at_infinity is True),
             ):
                 if is_given:
                     rule = "must come with a direction or an aim, not with a point source; add an aim"
                     yield Problem((name,), rule)
+        yield from self._rules_of_controls()
+
+    def _rules_of_controls(self) -> Iterator[Problem]:
+        inner, outer = self.inner_angle, self.cone_angle
+        if inner is not None and outer is None:
+            yield Problem(("inner_angle",), "must come with a cone, not without one; add a cone_angle")
+        elif inner is not None and outer is not None and inner > outer:
+            rule = f"must not be above the cone_angle, not {inner:g} and {outer:g}; exchange them"
+            yield Problem(("inner_angle",), rule)
+        if self.falloff in FALLOFFS[1:] and self.reach is None:
+            yield Problem(("falloff",), f"must come with a reach, not {self.falloff!r} alone; add a reach")
+        if self.falloff in FALLOFFS[1:] and self.at_infinity is True:
+            rule = f"must be 'none' for a light at infinity, not {self.falloff!r}; change one of them"
+            yield Problem(("falloff",), rule)
 
     @property
     def shines(self) -> bool:

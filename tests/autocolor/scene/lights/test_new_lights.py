@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Light, Scene, View, scene_of
-from autocolor.scene.light_sets.new_lights import DISTANCE, TURNS, new_light_of
+from autocolor.scene.lights.new_lights import DISTANCE, TURNS, new_light_of
 from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import scenes
 

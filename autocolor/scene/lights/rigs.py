@@ -17,8 +17,9 @@ from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
 from autocolor.scene.columns.problems import REFUSED, Problem
 from autocolor.scene.columns.row_kinds import Rows
 from autocolor.scene.columns.value_kinds import VectorKind
-from autocolor.scene.light_sets.light_copies import AXES
-from autocolor.scene.lights import Flap, Flaps, Light
+from autocolor.scene.lights.flaps import Flap, Flaps
+from autocolor.scene.lights.light import Light
+from autocolor.scene.lights.light_copies import AXES
 
 
 @dataclass(frozen=True, repr=False)

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 
 from autocolor.scene.defaults import object_bounds, sphere_around, studio_axes
-from autocolor.scene.light_sets.light_copies import free_name
-from autocolor.scene.lights import Light
+from autocolor.scene.lights.light import Light
+from autocolor.scene.lights.light_copies import free_name
 from autocolor.scene.scene import Scene
 
 DISTANCE: Final = 4.0

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, UsageError, render
-from autocolor.scene.light_sets.light_copies import AXES, free_name, mirrored
+from autocolor.scene.lights.light_copies import AXES, free_name, mirrored
 from tests.autocolor.meshes import wall_scene
 from tests.autocolor.strategies import lights, short
 

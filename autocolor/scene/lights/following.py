@@ -1,0 +1,157 @@
+"""Lights that follow: where a light is that is fixed to the eye, or to the aim of another light.
+
+Paper: Figure 7 has one point light at the eye. Such a light stays there in every view. The position, the aim
+and the direction of a light that follows something are told in the coordinates of a frame:
+
+- that of the eye: its origin is the eye; x is to the right in the picture, y the view direction, z up in the
+  picture. A light at (0, 0, 0) is at the eye itself.
+- that of another light: its origin is the point at which that is aimed; its axes are those of the world.
+
+Flaps stay in object coordinates. Departs: the paper's lights are all fixed to the object.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from autocolor.arrays import Floats
+from autocolor.checks import Vector
+from autocolor.scene.columns.problems import Problem
+from autocolor.scene.columns.rows import with_values
+from autocolor.scene.lights.light import EYE, Light
+from autocolor.scene.view import View
+
+DOWN_TO_UP: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""From the axes of camera space, right, down and forward, to right, forward and up."""
+
+
+class Frame(NamedTuple):
+    """A place and the directions of three axes there: coordinates that turn and move with something.
+
+    `origin` is (3,) and `axes` (3, 3), whose rows are the unit vectors of x, y and z, in world coordinates.
+    """
+
+    origin: Floats
+    axes: Floats
+
+    def point_to_world(self, point: Vector) -> Vector:
+        """The world coordinates of a point of the frame."""
+        return _vector(self.origin + np.array(point) @ self.axes)
+
+    def point_from_world(self, point: Vector) -> Vector:
+        """The coordinates in the frame of a point of the world."""
+        return _vector(self.axes @ (np.array(point) - self.origin))
+
+    def direction_to_world(self, direction: Vector) -> Vector:
+        """The direction in world axes of one in those of the frame."""
+        return _vector(np.array(direction) @ self.axes)
+
+    def direction_from_world(self, direction: Vector) -> Vector:
+        """The direction in the axes of the frame of one in world axes."""
+        return _vector(self.axes @ np.array(direction))
+
+
+def eye_frame(view: View) -> Frame:
+    """The frame of the eye: x to the right, y along the view direction, z up in the picture."""
+    return Frame(np.array(view.eye), DOWN_TO_UP @ view.axes)
+
+
+def light_frame(light: Light) -> Frame:
+    """The frame of a light that is in world coordinates, for what it carries.
+
+    Its origin is the light. Y is the light's direction, x horizontal to the right of it, and z up. A point
+    source has the axes of the world. Assumed: for a vertical direction, what `View.axes` has.
+    """
+    axis = light.axis
+    if axis is None:
+        return Frame(np.array(light.position), np.eye(3))
+    return eye_frame(View(light.position, direction=axis))
+
+
+def frame_of(light: Light, lights: Sequence[Light], view: View) -> Frame | None:
+    """The frame in which a light of a scene is told; None for the world's."""
+    if light.follows is None:
+        return None
+    if light.follows == EYE:
+        return eye_frame(view)
+    followed = next(each for each in lights if each.name == light.follows)
+    aim = in_world(followed, frame_of(followed, lights, view)).aim
+    assert aim is not None
+    return Frame(np.array(aim), np.eye(3))
+
+
+def in_world(light: Light, frame: Frame | None) -> Light:
+    """The light of a frame in world coordinates, where it follows nothing."""
+    if frame is None:
+        return light
+    return with_values(
+        light,
+        {
+            "position": frame.point_to_world(light.position),
+            "aim": None if light.aim is None else frame.point_to_world(light.aim),
+            "direction": None if light.direction is None else frame.direction_to_world(light.direction),
+            "follows": None,
+        },
+    )
+
+
+def lights_in_world(lights: tuple[Light, ...], view: View) -> tuple[Light, ...]:
+    """The lights of a scene in world coordinates; the same ones where they follow nothing."""
+    if all(light.follows is None for light in lights):
+        return lights
+    return tuple(in_world(light, frame_of(light, lights, view)) for light in lights)
+
+
+def changes_in_frame(changes: Mapping[str, Any], frame: Frame | None) -> dict[str, Any]:
+    """Changes of a light whose places and directions are in world coordinates, as changes in a frame."""
+    turned = dict(changes)
+    if frame is not None:
+        for name in ("position", "aim"):
+            if turned.get(name) is not None:
+                turned[name] = frame.point_from_world(turned[name])
+        if turned.get("direction") is not None:
+            turned["direction"] = frame.direction_from_world(turned["direction"])
+    return turned
+
+
+def following_problems(lights: Sequence[Light]) -> Iterator[Problem]:
+    """The problems of lights that follow each other in a circle, or one that has no aim.
+
+    Names that are not in the table are left to the check of references.
+    """
+    by_name = {light.name: light for light in lights}
+    for light in lights:
+        if light.follows in (None, EYE):
+            continue
+        followed = by_name.get(str(light.follows))
+        if followed is None:
+            continue
+        label = f"light {light.name!r}: follows"
+        circle = _circle(light, by_name)
+        if circle:
+            path = " to ".join(map(repr, circle))
+            yield Problem((), f"{label} must not lead back to itself, from {path}; change one of them")
+        elif followed.aim is None:
+            yield Problem(
+                (), f"{label} must be a light with an aim, not {followed.name!r} without one; give it an aim"
+            )
+
+
+def _circle(light: Light, by_name: Mapping[str, Light]) -> list[str]:
+    """The names from a light to itself, if following leads back there; empty if it does not."""
+    names = [light.name]
+    while True:
+        follows = by_name[names[-1]].follows
+        if follows is None or follows == EYE or follows not in by_name:
+            return []
+        if follows in names:
+            return [*names, follows] if follows == light.name else []
+        names.append(follows)
+
+
+def _vector(components: Floats) -> Vector:
+    x, y, z = components.tolist()
+    return x, y, z
