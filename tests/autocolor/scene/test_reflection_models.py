@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -151,7 +152,7 @@ def test_the_factor_may_overwrite_the_cosines_of_incidence_too(
     for model in (Phong(exponent, growth), BlinnPhong(exponent, growth)):
         incidence, eye, view = (np.array(column, np.float32) for column in zip(*some, strict=True))
         expected = specular(model, incidence.tolist(), eye.tolist(), view.tolist())
-        assert model.specular(Cosines(incidence, eye, lambda each=view: each), out=incidence) is incidence
+        assert model.specular(Cosines(incidence, eye, partial(np.copy, view)), out=incidence) is incidence
         assert incidence.tolist() == expected
 
 

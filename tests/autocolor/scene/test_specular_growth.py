@@ -63,8 +63,8 @@ def test_glass_and_its_refractive_index_grow_alike() -> None:
 @given(angle_curves)
 def test_a_curve_is_met_at_its_points_and_is_linear_in_the_angle_between_them(curve: AngleCurve) -> None:
     growth = SpecularGrowth(incidence_curve=curve)
-    angles = np.degrees(np.arccos(COSINES.astype(np.float64)))
-    expected = np.interp(angles, *zip(*curve, strict=True)) / curve[0][1]
+    angles, shares = zip(*curve, strict=True)
+    expected = np.interp(np.degrees(np.arccos(COSINES.astype(np.float64))), angles, shares) / shares[0]
     assert factor(growth) == pytest.approx(expected, rel=1e-5, abs=1e-6)
     for (left, low), (right, high) in pairwise(curve):
         middle = np.float32(math.cos(math.radians((left + right) / 2)))
@@ -190,12 +190,12 @@ def test_what_tells_no_growth_is_refused_in_a_sentence(changes: dict[str, Any], 
 @pytest.mark.parametrize("way", WAYS)
 def test_cook_and_torrance_have_a_fresnel_term_and_refuse_a_second(way: dict[str, Any]) -> None:
     (key,) = way
-    for make in (
-        lambda: Surface("body").replace(model=CookTorrance(), **way),
-        lambda: Surface("body").replace(model="cook-torrance").replace(**way),
+    for surface, changes in (
+        (Surface("body"), {"model": CookTorrance(), **way}),
+        (Surface("body").replace(model="cook-torrance"), way),
     ):
         with pytest.raises(InputError) as refusal:
-            make()
+            surface.replace(**changes)
         assert refusal.value.problems == (
             f"surface 'body': {key} must go with model = 'phong' or 'blinn', not with 'cook-torrance'; leave"
             " it out, or change the other",
