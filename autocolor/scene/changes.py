@@ -90,7 +90,7 @@ class ReflectanceChanges(TypedDict, total=False):
     exponent: float
     base_reflectance: float | None
     refractive_index: float | None
-    incidence_curve: Sequence[Sequence[float]] | None
+    fresnel_curve: Sequence[Sequence[float]] | None
     roughness: float
     normal_reflectance: float
 
@@ -118,7 +118,7 @@ class SurfaceChanges(TypedDict, total=False):
     exponent: float
     base_reflectance: float | None
     refractive_index: float | None
-    incidence_curve: Sequence[Sequence[float]] | None
+    fresnel_curve: Sequence[Sequence[float]] | None
     roughness: float
     normal_reflectance: float
     object_color: str | Sequence[int]

@@ -42,14 +42,14 @@ START_CURVE: Final = ((0.0, 0.04), (50.0, 0.06), (70.0, 0.17), (80.0, 0.39), (90
 class SpecularGrowth(Row):
     """What a material reflects at each angle of incidence, in one of three ways; without, S is constant."""
 
-    alternatives: ClassVar[tuple[str, ...]] = ("base_reflectance", "refractive_index", "incidence_curve")
+    alternatives: ClassVar[tuple[str, ...]] = ("base_reflectance", "refractive_index", "fresnel_curve")
 
     base_reflectance: Annotated[
         float | None,
         Column(
             Number(LEAST_REFLECTANCE, 1),
             Tier.LIGHT,
-            "F0: what is reflected at normal incidence; the less it is, the more S grows with the angle.",
+            "F0: what is reflected at normal incidence; the less, the more S grows.",
             bar=Bar(0.01, 1, 0.01),
             start=0.04,
         ),
@@ -59,17 +59,17 @@ class SpecularGrowth(Row):
         Column(
             Number(LEAST_INDEX, 10),
             Tier.LIGHT,
-            "The refractive index from which F0 follows; S grows with the angle of incidence.",
+            "The refractive index, which tells F0: S grows with the angle of incidence.",
             bar=Bar(1.1, 4, 0.01),
             start=1.5,
         ),
     ] = None
-    incidence_curve: Annotated[
+    fresnel_curve: Annotated[
         AngleCurve | None,
         Column(
             AngleCurveKind(LEAST_REFLECTANCE, START_CURVE),
             Tier.LIGHT,
-            "Points [angle of incidence in degrees, share that is reflected]; S grows as the shares do.",
+            "Points [angle in degrees, share reflected]; S grows as the share does.",
         ),
     ] = None
 
@@ -89,8 +89,8 @@ class SpecularGrowth(Row):
     @property
     def largest(self) -> float:
         """The largest factor."""
-        if self.incidence_curve is not None:
-            shares = [share for _, share in self.incidence_curve]
+        if self.fresnel_curve is not None:
+            shares = [share for _, share in self.fresnel_curve]
             return max(shares) / shares[0]
         f0 = self.normal_reflectance
         return 1.0 if f0 is None else 1 / f0
@@ -100,10 +100,10 @@ class SpecularGrowth(Row):
 
         Cosines below 0 count as 0, and above 1 as 1.
         """
-        if self.incidence_curve is not None:
+        if self.fresnel_curve is not None:
             # Near normal incidence, an arc cosine of float32 has few digits.
             angles = np.degrees(np.arccos(np.clip(incidence, 0, 1, dtype=np.float64)))
-            xs, ys = zip(*self.incidence_curve, strict=True)
+            xs, ys = zip(*self.fresnel_curve, strict=True)
             factor: Singles = (np.interp(angles, xs, ys) / ys[0]).astype(np.float32)
             return factor
         f0 = self.normal_reflectance

@@ -234,12 +234,12 @@ def specular_factor(model: ReflectionModel, light: Vector, normal: Vector, eye: 
 def specular_growth(growth: SpecularGrowth, cosine: float) -> float:
     """How many times its value at normal incidence S is, at a cosine of the angle of incidence."""
     cosine = min(max(cosine, 0.0), 1.0)
-    if growth.incidence_curve is not None:
+    if growth.fresnel_curve is not None:
         angle = math.degrees(math.acos(cosine))
-        for (left, low), (right, high) in pairwise(growth.incidence_curve):
+        for (left, low), (right, high) in pairwise(growth.fresnel_curve):
             if left <= angle <= right:
                 share = low + (high - low) * (angle - left) / (right - left)
-                return share / growth.incidence_curve[0][1]
+                return share / growth.fresnel_curve[0][1]
     f0 = growth.base_reflectance
     if growth.refractive_index is not None:
         f0 = ((growth.refractive_index - 1) / (growth.refractive_index + 1)) ** 2

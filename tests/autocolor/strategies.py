@@ -133,7 +133,7 @@ growths = (
     st.just(SpecularGrowth())
     | st.builds(SpecularGrowth, base_reflectance=st.sampled_from([0.001, 0.04, 1.0]) | numbers(0.001, 1))
     | st.builds(SpecularGrowth, refractive_index=st.sampled_from([1.07, 1.5, 10.0]) | numbers(1.07, 10))
-    | st.builds(SpecularGrowth, incidence_curve=angle_curves)
+    | st.builds(SpecularGrowth, fresnel_curve=angle_curves)
 )
 exponents = st.sampled_from([0.0, 1.0, 5.0, 20.0, 50.0])
 models = (

@@ -143,7 +143,7 @@ def along_glass(cosines: Floats) -> Floats:
     [
         (SpecularGrowth(base_reflectance=0.04), schlick),
         (SpecularGrowth(refractive_index=1.5), schlick),
-        (SpecularGrowth(incidence_curve=GLASS), along_glass),
+        (SpecularGrowth(fresnel_curve=GLASS), along_glass),
     ],
     ids=["F0", "index", "curve"],
 )

@@ -23,7 +23,7 @@ GLASS: AngleCurve = ((0, 0.04), (30, 0.042), (60, 0.09), (75, 0.25), (85, 0.61),
 WAYS: list[dict[str, Any]] = [
     {"base_reflectance": 0.04},
     {"refractive_index": 1.5},
-    {"incidence_curve": GLASS},
+    {"fresnel_curve": GLASS},
 ]
 
 
@@ -62,7 +62,7 @@ def test_glass_and_its_refractive_index_grow_alike() -> None:
 
 @given(angle_curves)
 def test_a_curve_is_met_at_its_points_and_is_linear_in_the_angle_between_them(curve: AngleCurve) -> None:
-    growth = SpecularGrowth(incidence_curve=curve)
+    growth = SpecularGrowth(fresnel_curve=curve)
     angles, shares = zip(*curve, strict=True)
     expected = np.interp(np.degrees(np.arccos(COSINES.astype(np.float64))), angles, shares) / shares[0]
     assert factor(growth) == pytest.approx(expected, rel=1e-5, abs=1e-6)
@@ -76,7 +76,7 @@ def test_a_curve_is_met_at_its_points_and_is_linear_in_the_angle_between_them(cu
 def test_a_curve_through_points_of_schlicks_is_close_to_it() -> None:
     shares = 0.04 * schlick(0.04, np.cos(np.radians(np.arange(91.0))))
     curve = tuple(zip(range(91), np.clip(shares, 0, 1).tolist(), strict=True))
-    assert factor(SpecularGrowth(incidence_curve=curve)) == pytest.approx(schlick(0.04), rel=2e-3)
+    assert factor(SpecularGrowth(fresnel_curve=curve)) == pytest.approx(schlick(0.04), rel=2e-3)
 
 
 @given(growths, numbers(0, 1))
@@ -113,7 +113,7 @@ def test_the_factor_is_1_at_normal_incidence_and_its_largest_is_reached(growth: 
 @given(
     st.builds(SpecularGrowth, base_reflectance=numbers(0.001, 1))
     | st.builds(SpecularGrowth, refractive_index=numbers(1.07, 10))
-    | st.just(SpecularGrowth(incidence_curve=START_CURVE))
+    | st.just(SpecularGrowth(fresnel_curve=START_CURVE))
 )
 def test_s_never_falls_toward_grazing_incidence(growth: SpecularGrowth) -> None:
     assert (np.diff(factor(growth)) <= 0).all()
@@ -138,7 +138,7 @@ def test_telling_it_in_another_way_takes_the_first_one_back() -> None:
         before, surface = surface, surface.replace(**way)
         assert surface.reflectance.model == Phong(growth=SpecularGrowth(**way))
         assert before.replace(**difference(before, surface)) == surface  # type: ignore[arg-type]
-    assert surface.replace(incidence_curve=None) == Surface("body")
+    assert surface.replace(fresnel_curve=None) == Surface("body")
 
 
 def test_an_edit_of_it_costs_the_lights_on_its_surface_and_one_of_s_a_sum() -> None:
@@ -165,12 +165,12 @@ def test_an_edit_of_it_costs_the_lights_on_its_surface_and_one_of_s_a_sum() -> N
             "refractive_index must stand without base_reflectance, not beside it; leave one out",
         ),
         (
-            {"refractive_index": 1.5, "incidence_curve": GLASS},
-            "incidence_curve must stand without refractive_index, not beside it; leave one out",
+            {"refractive_index": 1.5, "fresnel_curve": GLASS},
+            "fresnel_curve must stand without refractive_index, not beside it; leave one out",
         ),
         (
-            {"incidence_curve": [[0, 0.04], [80, 1]]},
-            "incidence_curve must be 2 to 91 points [angle, share], with angles that rise from"
+            {"fresnel_curve": [[0, 0.04], [80, 1]]},
+            "fresnel_curve must be 2 to 91 points [angle, share], with angles that rise from"
             " 0 to 90 and shares from 0 to 1, the first at least 0.001, not [[0, 0.04], [80, 1]]; write them"
             " as in [[0.0, 0.04], [50.0, 0.06], [70.0, 0.17], [80.0, 0.39], [90.0, 1.0]]",
         ),

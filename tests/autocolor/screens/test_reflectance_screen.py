@@ -81,15 +81,15 @@ def test_s_grows_in_each_of_three_ways_without_a_word_typed(hand: Hand, model: s
     assert grown() == SpecularGrowth(refractive_index=1.5)
     hand.pull("refractive index", 0.3, 0.5)
     assert grown().refractive_index not in (None, 1.5)
-    hand.pick("incidence curve", BOX)
-    assert grown() == SpecularGrowth(incidence_curve=START_CURVE)
+    hand.pick("fresnel curve", BOX)
+    assert grown() == SpecularGrowth(fresnel_curve=START_CURVE)
     hand.pull("at 70 degrees", 0.3, 0.5)
-    (*_, before, changed, after, last) = grown().incidence_curve or ()
+    (*_, before, changed, after, last) = grown().fresnel_curve or ()
     assert changed[0] == 70
     assert changed[1] != 0.17
     assert (before, after, last) == (START_CURVE[1], *START_CURVE[3:])
     assert words_are_those_of_the_scene(hand)
-    hand.pick("incidence curve", BOX)
+    hand.pick("fresnel curve", BOX)
     assert grown() == SpecularGrowth()
     assert hand.viewer.studio.scene.surfaces == start.surfaces
 

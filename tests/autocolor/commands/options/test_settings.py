@@ -79,7 +79,7 @@ def test_every_kind_of_key_can_be_set(scene: Scene) -> None:
     [
         ("base_reflectance=0.04", "base_reflectance"),
         ("refractive_index=1.5", "refractive_index"),
-        ("incidence_curve=[[0, 0.04], [90, 1]]", "incidence_curve"),
+        ("fresnel_curve=[[0, 0.04], [90, 1]]", "fresnel_curve"),
     ],
 )
 def test_the_growth_of_s_is_set_in_any_way_unset_and_refused_beside_cook_and_torrance(

@@ -275,8 +275,8 @@ def test_rules_between_keys_are_checked(folder: Path) -> None:
         ("base_reflectance = 0.04", SpecularGrowth(base_reflectance=0.04)),
         ("refractive_index = 1.5", SpecularGrowth(refractive_index=1.5)),
         (
-            "incidence_curve = [[0, 0.04], [60, 0.1], [90, 1]]",
-            SpecularGrowth(incidence_curve=((0, 0.04), (60, 0.1), (90, 1))),
+            "fresnel_curve = [[0, 0.04], [60, 0.1], [90, 1]]",
+            SpecularGrowth(fresnel_curve=((0, 0.04), (60, 0.1), (90, 1))),
         ),
     ],
 )

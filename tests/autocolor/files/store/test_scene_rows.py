@@ -28,11 +28,11 @@ def test_the_growth_of_s_is_set_by_sql_as_in_a_scene_file(tmp_path: Path) -> Non
     run(
         path,
         "UPDATE surfaces SET refractive_index = 1.5 WHERE name = 'body'",
-        "UPDATE surfaces SET incidence_curve = '[[0, 0.04], [90, 1]]' WHERE name = 'glass'",
+        "UPDATE surfaces SET fresnel_curve = '[[0, 0.04], [90, 1]]' WHERE name = 'glass'",
     )
     scene = read_store(path).scene
     expected = small_scene().with_surface("body", refractive_index=1.5)
-    assert scene.surfaces == expected.with_surface("glass", incidence_curve=[(0, 0.04), (90, 1)]).surfaces
+    assert scene.surfaces == expected.with_surface("glass", fresnel_curve=[(0, 0.04), (90, 1)]).surfaces
     run(path, "UPDATE surfaces SET model = 'cook-torrance', exponent = NULL WHERE name = 'body'")
     with pytest.raises(InputError) as refused:
         read_store(path)
