@@ -23,4 +23,9 @@ def test_a_parameter_of_a_variant_tells_which_ones_it_goes_with() -> None:
     told = {
         line.split("`")[1]: "Goes with" in line for line in lines_of("", "", Surface) if line[:3] == "| `"
     }
-    assert {key for key, goes in told.items() if goes} == {"exponent", "roughness", "normal_reflectance"}
+    growth = {"base_reflectance", "refractive_index", "fresnel_curve"}
+    assert {key for key, goes in told.items() if goes} == growth | {
+        "exponent",
+        "roughness",
+        "normal_reflectance",
+    }

@@ -17,6 +17,7 @@ BEARING_FORMULAS = [
     "autocolor.scene.geometry.node_normals",
     "autocolor.scene.reflection_models",
     "autocolor.scene.scene",
+    "autocolor.scene.specular_growth",
     "autocolor.scene.surfaces",
     "autocolor.scene.view",
     "autocolor.visibility.camera_space",

@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from autocolor.scene.columns.column import Row, fields_of, keys_of
+from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.lights.flaps import Flap, Flaps
 from autocolor.scene.lights.half_spaces import HalfSpace
 from autocolor.scene.lights.light import Light
@@ -74,13 +75,25 @@ def classes_of_a_scene() -> str:
 
 def types_of(cls: type[Row]) -> dict[str, str]:
     """The type of each field and key."""
-    fields, keys = fields_of(cls), keys_of(cls)
-    columns = {name: field.column for name, field in fields.items()}
-    columns |= {key: each.column for key, each in keys.items()}
+    columns = {name: field.column for name, field in fields_of(cls).items()}
+    columns |= {key: each.column for key, each in keys_of(cls).items()}
+    may_be_none = optional_keys(cls)
     return {
-        name: column.kind.accepts() + (" | None" if name in fields and fields[name].is_optional else "")
+        name: column.kind.accepts() + (" | None" if name in may_be_none else "")
         for name, column in columns.items()
     }
+
+
+def optional_keys(cls: type[Row]) -> set[str]:
+    """The keys of a class that may be None, those of rows inside it too."""
+    found = {name for name, field in fields_of(cls).items() if field.is_optional}
+    for field in fields_of(cls).values():
+        kind = field.column.kind
+        if isinstance(kind, Variant):
+            found = found.union(*map(optional_keys, kind.classes.values()))
+        elif isinstance(kind, Nested) and kind.inline:
+            found |= optional_keys(kind.row_class)
+    return found
 
 
 def written(name: str, text: str, types: dict[str, str]) -> str:

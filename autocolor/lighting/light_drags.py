@@ -32,6 +32,7 @@ def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
     There the half vector is the normal, so that the specular factors of Phong and of Blinn are largest at P.
     That of Cook and Torrance still grows from there toward grazing light. Measured on a sphere of 420 lines:
     its largest value is a pixel farther for a roughness of 0.1, up to nine for 0.3, and up to sixty for 0.6.
+    So it is where S grows: with an F0 of 0.04 up to six pixels for N = 20, and one for N = 100.
 
     Raises UsageError on the background, where the normal does not face the eye, because no light has a
     highlight there, and for a light at P itself.

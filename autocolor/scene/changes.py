@@ -67,10 +67,10 @@ class LightChanges(TypedDict, total=False):
     at_infinity: bool
     follows: str | None
     links: Row | LinksChanges
-    only_surfaces: Sequence[str]
-    except_surfaces: Sequence[str]
-    only_parts: Sequence[str]
-    except_parts: Sequence[str]
+    only_surfaces: Sequence[str] | None
+    except_surfaces: Sequence[str] | None
+    only_parts: Sequence[str] | None
+    except_parts: Sequence[str] | None
 
 
 class PartChanges(TypedDict, total=False):
@@ -88,6 +88,9 @@ class ReflectanceChanges(TypedDict, total=False):
     specular: float
     model: str | Row
     exponent: float
+    base_reflectance: float | None
+    refractive_index: float | None
+    fresnel_curve: Sequence[Sequence[float]] | None
     roughness: float
     normal_reflectance: float
 
@@ -113,6 +116,9 @@ class SurfaceChanges(TypedDict, total=False):
     specular: float
     model: str | Row
     exponent: float
+    base_reflectance: float | None
+    refractive_index: float | None
+    fresnel_curve: Sequence[Sequence[float]] | None
     roughness: float
     normal_reflectance: float
     object_color: str | Sequence[int]

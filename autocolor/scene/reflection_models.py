@@ -27,7 +27,9 @@ import numpy as np
 from autocolor.arrays import Singles, power
 from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.column import Column, Row, Tier
+from autocolor.scene.columns.row_kinds import Nested
 from autocolor.scene.columns.value_kinds import Number
+from autocolor.scene.specular_growth import SpecularGrowth
 
 LEAST_FACING: Final = 0.3
 """Assumed: the least N.V to divide by, so that no silhouette outshines its surface by far.
@@ -69,6 +71,9 @@ class ReflectionModel(Row):
         raise NotImplementedError
 
 
+CONSTANT: Final = SpecularGrowth()
+"""An S that does not depend on the angle of incidence."""
+
 Model = TypeVar("Model", bound=type[ReflectionModel])
 
 MODELS: Final[dict[str, type[ReflectionModel]]] = {}
@@ -95,13 +100,24 @@ class Phong(ReflectionModel):
         Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.", bar=Bar(1, 200, 1)),
     ] = 20.0
 
+    growth: Annotated[
+        SpecularGrowth,
+        Column(Nested(SpecularGrowth, inline=True), Tier.LIGHT, "How S grows with the angle of incidence."),
+    ] = CONSTANT
+
+    @property
+    def largest(self) -> float:
+        """That of the growth."""
+        return self.growth.largest
+
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
-        """cos^N(E); a negative cosine counts as 0."""
+        """cos^N(E), times the growth of S; a negative cosine counts as 0."""
         # Most surfaces reflect some of the lights away from the eye.
         if self.exponent > 0 and cosines.eye.max(initial=0.0) <= 0:
             out[:] = 0
             return out
-        return power(cosines.eye, self.exponent, out=out)
+        growth = self.growth.factor(cosines.incidence)
+        return _grown(power(cosines.eye, self.exponent, out=out), growth)
 
 
 @registered("blinn")
@@ -114,10 +130,21 @@ class BlinnPhong(ReflectionModel):
         Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.", bar=Bar(1, 200, 1)),
     ] = 20.0
 
+    growth: Annotated[
+        SpecularGrowth,
+        Column(Nested(SpecularGrowth, inline=True), Tier.LIGHT, "How S grows with the angle of incidence."),
+    ] = CONSTANT
+
+    @property
+    def largest(self) -> float:
+        """That of the growth."""
+        return self.growth.largest
+
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
-        """(N.H)^N; a negative cosine counts as 0."""
+        """(N.H)^N, times the growth of S; a negative cosine counts as 0."""
         half = _half_vector(cosines.incidence, cosines.view(), cosines.eye)
-        return power(half.normal, self.exponent, out=out)
+        growth = self.growth.factor(cosines.incidence)
+        return _grown(power(half.normal, self.exponent, out=out), growth)
 
 
 @registered("cook-torrance")
@@ -185,6 +212,14 @@ class CookTorrance(ReflectionModel):
         fresnel: Singles = first * first * (1 + second * second)
         fresnel *= np.float32(0.5 / self.normal_reflectance)
         return fresnel
+
+
+def _grown(factor: Singles, growth: Singles | None) -> Singles:
+    """A specular factor times the growth of S, in its own array; itself if S is constant."""
+    if growth is None:
+        return factor
+    with np.errstate(under="ignore"):
+        return np.multiply(factor, growth, out=factor)
 
 
 class _HalfVector(NamedTuple):

@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any, Final, NamedTuple
 
 from autocolor.checks import Vector
+from autocolor.scene.columns.angle_kinds import AngleCurve, AngleCurveKind
 from autocolor.scene.columns.bars import Bar as Range
 from autocolor.scene.columns.bars import bar_within
 from autocolor.scene.columns.color_kinds import ColorKind, in_digits
@@ -79,6 +80,8 @@ def _rows_of_field(
         yield Entry(shown, told, value=in_digits(value), take=partial(_put, put, name))
     elif isinstance(kind, VectorKind) and value is not None:
         yield from _vector_rows(shown, name, column, value, put, world)
+    elif isinstance(kind, AngleCurveKind):
+        yield from _curve_rows(shown, name, kind, told, value, put)
     elif isinstance(kind, Variant):
         choose = partial(_put, put, name)
         yield Choice(shown, told, names=tuple(kind.classes), present=kind.name_of(value), choose=choose)
@@ -152,6 +155,27 @@ def _vector_rows(
         )
 
 
+def _curve_rows(
+    label: str, name: str, kind: AngleCurveKind, told: str, curve: AngleCurve | None, put: Put
+) -> Iterator[Widget]:
+    """A switch for a curve over angles, and a bar for the share of each of its points."""
+    begun = kind.start if curve is None else None
+    yield Switch(label, told, is_on=curve is not None, flip=partial(_put, put, name, begun))
+    curve = curve or ()
+    for number, (angle, share) in enumerate(curve):
+        limits = kind.share_kind(number)
+        usual = bar_within(limits.at_least, limits.at_most)
+        yield Bar(
+            f"at {angle:g} degrees",
+            told,
+            value=share,
+            low=usual.low,
+            high=usual.high,
+            step=usual.step,
+            put=partial(_put_share, put, name, curve, number),
+        )
+
+
 def _help(column: Column) -> str:
     """What the message line says of a number: what it is, and its unit."""
     return f"{column.help} In {column.unit}." if column.unit else column.help
@@ -163,6 +187,10 @@ def _put(put: Put, name: str, value: object) -> object:
 
 def _put_number(put: Put, name: str, is_whole: bool, value: float) -> object:
     return put({name: int(value) if is_whole and value == int(value) else value})
+
+
+def _put_share(put: Put, name: str, curve: AngleCurve, number: int, share: float) -> object:
+    return put({name: (*curve[:number], (curve[number][0], share), *curve[number + 1 :])})
 
 
 def _put_component(put: Put, name: str, vector: Vector, number: int, value: float) -> object:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy.typing as npt
 
 from autocolor import Light, Mesh, Paint, Reflectance, View
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
+from autocolor.scene.specular_growth import SpecularGrowth
 
 Vector = Sequence[float]
 
@@ -198,9 +200,9 @@ def specular_factor(model: ReflectionModel, light: Vector, normal: Vector, eye: 
     n_h, v_h = dot(normal, half), dot(eye, half)
     if isinstance(model, Phong):
         reflected = minus(times(2 * n_v, normal), eye)
-        return math.pow(max(dot(reflected, light), 0.0), model.exponent)
+        return specular_growth(model.growth, n_l) * math.pow(max(dot(reflected, light), 0.0), model.exponent)
     if isinstance(model, BlinnPhong):
-        return math.pow(max(n_h, 0.0), model.exponent)
+        return specular_growth(model.growth, n_l) * math.pow(max(n_h, 0.0), model.exponent)
     assert isinstance(model, CookTorrance)
     m, f0 = model.roughness, model.normal_reflectance
 
@@ -227,6 +229,23 @@ def specular_factor(model: ReflectionModel, light: Vector, normal: Vector, eye: 
     # No silhouette is divided by less than three tenths.
     factor = fresnel(v_h) * beckmann(n_h) * attenuation / max(n_v, 0.3)
     return factor / (fresnel(1.0) * beckmann(1.0))
+
+
+def specular_growth(growth: SpecularGrowth, cosine: float) -> float:
+    """How many times its value at normal incidence S is, at a cosine of the angle of incidence."""
+    cosine = min(max(cosine, 0.0), 1.0)
+    if growth.fresnel_curve is not None:
+        angle = math.degrees(math.acos(cosine))
+        for (left, low), (right, high) in pairwise(growth.fresnel_curve):
+            if left <= angle <= right:
+                share = low + (high - low) * (angle - left) / (right - left)
+                return share / growth.fresnel_curve[0][1]
+    f0 = growth.base_reflectance
+    if growth.refractive_index is not None:
+        f0 = ((growth.refractive_index - 1) / (growth.refractive_index + 1)) ** 2
+    if f0 is None:
+        return 1.0
+    return (f0 + (1 - f0) * (1 - cosine) ** 5) / f0
 
 
 def weights_in(corners: Sequence[Vector], point: Vector) -> list[float]:

@@ -17,6 +17,7 @@ from autocolor.scene.curves import CURVES
 from autocolor.scene.reflection_models import MODELS, BlinnPhong, CookTorrance, Phong
 from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from autocolor.scene.scalars.scalar import Scalar
+from autocolor.scene.specular_growth import SpecularGrowth
 
 Vector = tuple[float, float, float]
 
@@ -119,10 +120,25 @@ def lights(draw: st.DrawFn, /, name: str = "light", **given: Any) -> Light:
     return Light(name, position, **{**fields, **given})
 
 
+@st.composite
+def angle_curves_of(draw: st.DrawFn) -> tuple[tuple[float, float], ...]:
+    """Points (angle in degrees, share) of a curve, which need not rise."""
+    inner = draw(st.lists(st.integers(1, 89), max_size=4, unique=True))
+    angles = [0.0, *sorted(map(float, inner)), 90.0]
+    return tuple((angle, draw(numbers(0, 1) if angle else numbers(0.001, 1))) for angle in angles)
+
+
+angle_curves = angle_curves_of()
+growths = (
+    st.just(SpecularGrowth())
+    | st.builds(SpecularGrowth, base_reflectance=st.sampled_from([0.001, 0.04, 1.0]) | numbers(0.001, 1))
+    | st.builds(SpecularGrowth, refractive_index=st.sampled_from([1.07, 1.5, 10.0]) | numbers(1.07, 10))
+    | st.builds(SpecularGrowth, fresnel_curve=angle_curves)
+)
 exponents = st.sampled_from([0.0, 1.0, 5.0, 20.0, 50.0])
 models = (
-    st.builds(Phong, exponents)
-    | st.builds(BlinnPhong, exponents)
+    st.builds(Phong, exponents, growths)
+    | st.builds(BlinnPhong, exponents, growths)
     | st.builds(CookTorrance, st.sampled_from([0.1, 0.3, 1.0]), st.sampled_from([0.04, 0.5, 1.0]))
     | st.sampled_from([model() for model in MODELS.values()])
 )

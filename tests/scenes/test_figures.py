@@ -9,7 +9,7 @@ from PIL import Image
 
 import autocolor
 from ramtek_emu import Ramtek9300
-from scenes import figure_04, figure_10, figure_15, figure_curvature, figure_part, figures
+from scenes import figure_04, figure_10, figure_15, figure_curvature, figure_incidence, figure_part, figures
 
 EXPECTED = {
     "04": {"figure-04.png", "figure-04-a.png", "figure-04-b.png", "figure-04-c.png"},
@@ -21,6 +21,7 @@ EXPECTED = {
     "15": {"figure-15.png", "figure-15-a.png", "figure-15-b.png", "figure-15-c.png"},
     "part": {"figure-part.png", *(f"figure-part-{panel}.png" for panel in "abcd")},
     "curvature": {"figure-curvature.png", *(f"figure-curvature-{panel}.png" for panel in "abc")},
+    "incidence": {"figure-incidence.png", *(f"figure-incidence-{panel}.png" for panel in "abcd")},
 }
 
 
@@ -182,3 +183,23 @@ def test_the_roof_of_the_coupe_bulges_and_only_its_body_is_colored_by_curvature(
     colors = curved.entries[curved.words[~body]].astype(int) - plain.entries[plain.words[~body]]
     # Other surfaces have fewer levels, but the same colors.
     assert np.percentile(np.abs(colors), 95) < 12
+
+
+def test_the_lacquer_of_the_coupe_and_the_wet_floor_shine_under_the_lamp_behind_and_not_from_the_eye() -> (
+    None
+):
+    at_eye = figure_incidence.lit_coupe().only_lights("lamp")
+    behind = at_eye.with_light("lamp", position=figure_incidence.BEHIND)
+    times = {}
+    for where, scene in (("eye", at_eye), ("behind", behind)):
+        grown = scene
+        for name in figure_incidence.SURFACES:
+            grown = grown.with_surface(name, refractive_index=figure_incidence.LACQUER)
+        constant, more = (autocolor.render(each, 240, 320) for each in (scene, grown))
+        for name in figure_incidence.SURFACES:
+            is_there = constant.surface_number == constant.surfaces.index(name) + 1
+            brightest = [float(picture.intensity[is_there].max()) for picture in (constant, more)]
+            times[where, name] = brightest[1] / brightest[0]
+    assert all(0.999 < times["eye", name] < 1.02 for name in figure_incidence.SURFACES)
+    assert times["behind", "body"] > 3
+    assert times["behind", "floor"] > 1.5

@@ -9,13 +9,20 @@ from autocolor import Light, Mesh, Scene, Surface, View, scene_of
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
+from autocolor.scene.specular_growth import SpecularGrowth
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, sphere
 from tests.autocolor.strategies import lights, scenes
 
 RASTER = (12, 16)
-SOME_MODELS: list[ReflectionModel] = [Phong(5.0), Phong(30.0), BlinnPhong(5.0), CookTorrance(0.4)]
+SOME_MODELS: list[ReflectionModel] = [
+    Phong(5.0),
+    Phong(30.0),
+    Phong(5.0, SpecularGrowth(base_reflectance=0.04)),
+    BlinnPhong(5.0),
+    CookTorrance(0.4),
+]
 
 
 def points_of(scene: Scene) -> VisiblePoints:
@@ -108,6 +115,29 @@ def test_an_equal_model_is_not_computed_again_and_another_of_the_same_exponent_i
     before = illuminate(scene, points)
     after = illuminate(changed, points, Previous(scene, before))
     assert (after.light_planes["key"].values is before.light_planes["key"].values) == is_reused
+
+
+def test_an_edit_of_s_that_grows_keeps_every_plane_and_one_of_its_growth_its_own_surface_alone() -> None:
+    grown = SpecularGrowth(refractive_index=1.5)
+    scene = modeled(Phong(growth=grown), BlinnPhong(growth=grown))
+    points = points_of(scene)
+    before = illuminate(scene, points)
+    brighter = scene.with_surface("sphere", specular=0.9)
+    after = illuminate(brighter, points, Previous(scene, before))
+    assert same(after, illuminate(brighter, points))
+    assert not same(after, before)
+    assert [
+        planes.values is before.light_planes[name].values for name, planes in after.light_planes.items()
+    ] == [True] * len(scene.lights)
+    denser = scene.with_surface("cube", refractive_index=2.4)
+    changed = illuminate(denser, points, Previous(scene, before))
+    assert same(changed, illuminate(denser, points))
+    of_sphere, of_cube = points.slices
+    for name, planes in changed.light_planes.items():
+        old = before.light_planes[name].values
+        assert planes.values[:, of_sphere.pixels].tobytes() == old[:, of_sphere.pixels].tobytes()
+        assert planes.values[0, of_cube.pixels].tobytes() == old[0, of_cube.pixels].tobytes()
+        assert planes.values[1, of_cube.pixels].tobytes() != old[1, of_cube.pixels].tobytes()
 
 
 def test_a_light_off_keeps_its_planes_until_a_model_changes() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -10,9 +11,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Reflectance, Scene, View, render
-from autocolor.arrays import Singles
+from autocolor.arrays import Floats, Singles
 from autocolor.lighting.shading import controlled_light, shade
+from autocolor.scene.columns.angle_kinds import AngleCurve
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
+from autocolor.scene.specular_growth import SpecularGrowth
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, sphere, wall, wall_scene
@@ -33,7 +36,14 @@ LINES, ELEMENTS = 12, 16
 WALLS = [wall(), wall(7, 5)]
 
 
-MODELS: list[ReflectionModel] = [Phong(12.0), BlinnPhong(12.0), CookTorrance(0.3), CookTorrance(1.0, 0.5)]
+MODELS: list[ReflectionModel] = [
+    Phong(12.0),
+    Phong(12.0, SpecularGrowth(base_reflectance=0.04)),
+    BlinnPhong(12.0),
+    BlinnPhong(12.0, SpecularGrowth(refractive_index=1.5)),
+    CookTorrance(0.3),
+    CookTorrance(1.0, 0.5),
+]
 
 
 def planes_of(light: Light, points: VisiblePoints, model: ReflectionModel) -> Singles:
@@ -113,6 +123,73 @@ def test_a_point_source_on_a_wall_is_as_the_paper_says(
 ) -> None:
     light = Light("light", place, 1.5)
     assert_as_the_paper(wall_scene(mesh, reflectance, view, two_sided, lights=[light]))
+
+
+GLASS: AngleCurve = ((0, 0.04), (50, 0.06), (70, 0.17), (80, 0.39), (90, 1))
+
+
+def schlick(cosines: Floats) -> Floats:
+    """Schlick's factor of a refractive index of 1.5 over its F0, by the closed form."""
+    return np.asarray((0.04 + 0.96 * (1 - cosines) ** 5) / 0.04)
+
+
+def along_glass(cosines: Floats) -> Floats:
+    angles, shares = zip(*GLASS, strict=True)
+    return np.asarray(np.interp(np.degrees(np.arccos(cosines)), angles, shares) / 0.04)
+
+
+@pytest.mark.parametrize(
+    ("growth", "closed_form"),
+    [
+        (SpecularGrowth(base_reflectance=0.04), schlick),
+        (SpecularGrowth(refractive_index=1.5), schlick),
+        (SpecularGrowth(fresnel_curve=GLASS), along_glass),
+    ],
+    ids=["F0", "index", "curve"],
+)
+@pytest.mark.parametrize("model", [Phong, BlinnPhong])
+@pytest.mark.parametrize("angle", [10, 30, 45, 70, 80, 87])
+def test_s_on_a_wall_grows_by_the_closed_form_of_the_angle_of_incidence(
+    growth: SpecularGrowth,
+    closed_form: Callable[[Floats], Floats],
+    model: type[Phong | BlinnPhong],
+    angle: int,
+) -> None:
+    # The light and the eye mirror each other's places, so that the middle of the wall is a highlight.
+    away, aside = 20 * math.cos(math.radians(angle)), 20 * math.sin(math.radians(angle))
+    view = View((-aside, -away, 0.0), target=(0.0, 0.0, 0.0), field_of_view=6.0)
+    points = visible_surfaces(wall(), view, (1,), 61, 61)
+    place = np.array([aside, -away, 0.0])
+    light = Light("light", tuple(place.tolist()))
+    diffuse, specular = planes_of(light, points, model(4.0, growth))
+    plain = planes_of(light, points, model(4.0))
+    to_light = place - points.world_points
+    to_light /= np.linalg.norm(to_light, axis=1, keepdims=True)
+    to_eye = np.array(view.eye) - points.world_points
+    to_eye /= np.linalg.norm(to_eye, axis=1, keepdims=True)
+    cos_incidence = -to_light[:, 1]
+    if model is Phong:
+        cosines = (to_light * to_eye * [-1, 1, -1]).sum(axis=1)
+    else:
+        half = to_light + to_eye
+        cosines = -half[:, 1] / np.linalg.norm(half, axis=1)
+    assert len(cosines) > 100
+    assert np.degrees(np.arccos(cos_incidence)).mean() == pytest.approx(angle, abs=3)
+    assert diffuse.tobytes() == plain[0].tobytes()
+    assert specular == pytest.approx(plain[1] * closed_form(cos_incidence), rel=1e-5)
+    # Near grazing incidence, float32 rounds the half vector more than the reflected view.
+    error = 1e-5 if model is Phong else 1e-4
+    assert specular == pytest.approx(cosines**4 * closed_form(cos_incidence), rel=error)
+
+
+@pytest.mark.parametrize("model", [Phong, BlinnPhong])
+def test_s_that_grows_is_itself_at_normal_incidence(model: type[Phong | BlinnPhong]) -> None:
+    view = View((0.0, -4.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=0.01)
+    points = visible_surfaces(wall(), view, (1,), 3, 3)
+    light = Light("light", (0.0, -4.0, 0.0))
+    plain = planes_of(light, points, model(20.0))
+    for growth in (SpecularGrowth(base_reflectance=0.001), SpecularGrowth(refractive_index=1.5)):
+        assert planes_of(light, points, model(20.0, growth)) == pytest.approx(plain, rel=1e-6)
 
 
 @given(

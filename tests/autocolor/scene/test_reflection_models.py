@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,14 +22,15 @@ from autocolor.scene.reflection_models import (
     Phong,
     ReflectionModel,
 )
+from autocolor.scene.specular_growth import SpecularGrowth
 from tests.autocolor import reference
 from tests.autocolor.meshes import ramp
-from tests.autocolor.strategies import numbers
+from tests.autocolor.strategies import growths, numbers
 
 exponents = st.sampled_from([0.0, 1e-3, 0.3, 1.0, 5.0, 20.0, 100.0])
 models: st.SearchStrategy[ReflectionModel] = st.one_of(
-    st.builds(Phong, exponents),
-    st.builds(BlinnPhong, exponents),
+    st.builds(Phong, exponents, growths),
+    st.builds(BlinnPhong, exponents, growths),
     st.builds(CookTorrance, numbers(0.01, 1), numbers(0.001, 1)),
 )
 WIDEST = float(np.nextafter(np.float32(1), np.float32(2)))
@@ -74,7 +76,11 @@ def test_the_factor_is_that_of_the_slow_twin(
         error = 1e-4 + 1e-5 / model.roughness**2
         assert factor_at(model, light, eye) == pytest.approx(expected, rel=error, abs=1e-6 * model.largest)
     else:
-        assert factor_at(model, light, eye) == pytest.approx(expected, rel=2e-3, abs=2e-5)
+        # So much does a growth of S change where the cosine is rounded to float32.
+        growth = vars(model).get("growth", SpecularGrowth())
+        low, high = (reference.specular_growth(growth, light[2] + step) for step in (-2e-7, 2e-7))
+        error = 2e-5 * model.largest + 2 * abs(high - low)
+        assert factor_at(model, light, eye) == pytest.approx(expected, rel=2e-3, abs=error)
 
 
 @pytest.mark.parametrize("roughness", [0.15, 0.3, 0.6, 1.0])
@@ -125,6 +131,46 @@ def test_phong_is_the_power_of_one_cosine_and_asks_for_no_other(
     eye = np.array(cosines, np.float32)
     got = Phong(exponent).specular(Cosines(np.ones_like(eye), eye, unused), out=np.empty_like(eye))
     assert got.tobytes() == power(eye, exponent).tobytes()
+
+
+@given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths)
+def test_a_growth_multiplies_the_factor_without_it_by_a_function_of_incidence_alone(
+    some: list[tuple[float, float, float]], exponent: float, growth: SpecularGrowth
+) -> None:
+    rows = [list(column) for column in zip(*some, strict=True)]
+    times = growth.factor(np.array(rows[0], np.float32))
+    for model in (Phong, BlinnPhong):
+        plain = np.array(specular(model(exponent), *rows), np.float32)
+        grown = specular(model(exponent, growth), *rows)
+        assert grown == (plain if times is None else plain * times).tolist()
+
+
+@given(st.lists(st.tuples(cosines, cosines, cosines), min_size=1), exponents, growths)
+def test_the_factor_may_overwrite_the_cosines_of_incidence_too(
+    some: list[tuple[float, float, float]], exponent: float, growth: SpecularGrowth
+) -> None:
+    for model in (Phong(exponent, growth), BlinnPhong(exponent, growth)):
+        incidence, eye, view = (np.array(column, np.float32) for column in zip(*some, strict=True))
+        expected = specular(model, incidence.tolist(), eye.tolist(), view.tolist())
+        assert model.specular(Cosines(incidence, eye, partial(np.copy, view)), out=incidence) is incidence
+        assert incidence.tolist() == expected
+
+
+@pytest.mark.parametrize("model", [Phong, BlinnPhong])
+def test_a_model_without_growth_computes_none(
+    model: type[Phong | BlinnPhong], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("autocolor.scene.specular_growth._schlick", unused)
+    monkeypatch.setattr("autocolor.scene.reflection_models.np.multiply", unused)
+    assert specular(model(0.0), [0.5], [0.5], [0.5]) == [1]
+    assert model(7).largest == 1
+
+
+def test_a_growth_is_given_as_keys_too() -> None:
+    assert Phong(5, growth={"refractive_index": 1.5}) == Phong(5, SpecularGrowth(refractive_index=1.5))  # type: ignore[arg-type]
+    assert repr(Phong(5, SpecularGrowth(refractive_index=1.5))) == (
+        "Phong(exponent=5.0, growth=SpecularGrowth(refractive_index=1.5))"
+    )
 
 
 @pytest.mark.parametrize("exponent", [1e4, 1e7, 1e30, 1e300])

@@ -9,6 +9,7 @@ import pytest
 from autocolor import CookTorrance, Surface
 from autocolor.scene.columns.column import fields_of
 from autocolor.scene.reflection_models import MODELS
+from autocolor.scene.specular_growth import START_CURVE, SpecularGrowth
 from autocolor.widgets.bars import Bar
 from tests.autocolor.screens.boxes import boxes, hand_at, told, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand
@@ -52,11 +53,45 @@ def test_every_model_is_reached_and_every_parameter_of_it_can_be_set(hand: Hand)
         hand.pick("model")
         model = surface_of(hand).reflectance.model
         seen.append(type(model))
-        for name in fields_of(type(model)):
+        for name in fields_of(type(model)).keys() - {"growth"}:
             hand.pull(name.replace("_", " "), 0.3, 0.5)
             assert vars(surface_of(hand).reflectance.model)[name] != vars(model)[name]
     assert seen[-1:] + seen[:-1] == list(MODELS.values())
     assert CookTorrance in seen
+
+
+@pytest.mark.parametrize("model", ["phong", "blinn"])
+def test_s_grows_in_each_of_three_ways_without_a_word_typed(hand: Hand, model: str) -> None:
+    def grown() -> SpecularGrowth:
+        found = surface_of(hand).reflectance.model
+        assert isinstance(found, MODELS[model])
+        growth = vars(found)["growth"]
+        assert isinstance(growth, SpecularGrowth)
+        return growth
+
+    if model == "blinn":
+        hand.pick("model")
+    start = hand.viewer.studio.scene
+    hand.pick("base reflectance", BOX)
+    assert grown() == SpecularGrowth(base_reflectance=0.04)
+    hand.pull("base reflectance", 0.2, 0.4)
+    assert grown().base_reflectance not in (None, 0.04)
+    # Each way takes the place of the one before.
+    hand.pick("refractive index", BOX)
+    assert grown() == SpecularGrowth(refractive_index=1.5)
+    hand.pull("refractive index", 0.3, 0.5)
+    assert grown().refractive_index not in (None, 1.5)
+    hand.pick("fresnel curve", BOX)
+    assert grown() == SpecularGrowth(fresnel_curve=START_CURVE)
+    hand.pull("at 70 degrees", 0.3, 0.5)
+    (*_, before, changed, after, last) = grown().fresnel_curve or ()
+    assert changed[0] == 70
+    assert changed[1] != 0.17
+    assert (before, after, last) == (START_CURVE[1], *START_CURVE[3:])
+    assert words_are_those_of_the_scene(hand)
+    hand.pick("fresnel curve", BOX)
+    assert grown() == SpecularGrowth()
+    assert hand.viewer.studio.scene.surfaces == start.surfaces
 
 
 def test_the_number_of_levels_is_switched_and_set_in_whole_numbers(hand: Hand) -> None:

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import pytest
 
 from autocolor.checks import Color, Vector
+from autocolor.scene.columns.angle_kinds import AngleCurve, AngleCurveKind
 from autocolor.scene.columns.bars import Bar as Range
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
@@ -81,6 +82,10 @@ class Lamp(Row):
     shutters: Annotated[Shutters, Column(Nested(Shutters), MIX, "Its shutters.")] = field(
         default_factory=Shutters
     )
+    sheen: Annotated[
+        AngleCurve | None,
+        Column(AngleCurveKind(0.1, ((0.0, 0.2), (40.0, 0.4), (90.0, 1.0))), MIX, "Its sheen."),
+    ] = None
     curve: Annotated[str, Column(CurveKind({"linear": 1}), MIX, "Its curve.")] = "linear"
 
 
@@ -112,6 +117,7 @@ def test_each_kind_of_column_has_its_rows_in_their_order(table: Table) -> None:
         "name": Entry, "share": Bar, "tilt angle": Bar, "blades": Bar, "count": Bar, "reach": Bar,
         "on": Switch, "mode": Choice, "tint": Entry, "place x": Bar, "place y": Bar, "place z": Bar,
         "finish": Choice, "grain": Bar, "density": Bar, "shutters x": Switch, "shutters z": Switch,
+        "sheen": Switch,
     }  # fmt: skip
     assert {label: type(row) for label, row in table.rows().items()} == kinds
     assert list(table.rows()) == list(kinds)
@@ -196,6 +202,20 @@ def test_a_row_of_one_of_several_classes_has_the_parameters_of_that_class(table:
 def test_a_row_within_the_row_changes_in_its_place(table: Table) -> None:
     table.bar("density").put(0.5)
     assert table.lamp.haze == Haze(0.5)
+
+
+def test_a_curve_over_angles_is_switched_and_has_a_bar_for_each_of_its_points(table: Table) -> None:
+    table.rows()["sheen"].pick(Place(632, 8))
+    assert table.lamp.sheen == ((0, 0.2), (40, 0.4), (90, 1))
+    bars = [table.bar(f"at {angle} degrees") for angle in (0, 40, 90)]
+    assert [(bar.value, bar.low, bar.high) for bar in bars] == [(0.2, 0.1, 1), (0.4, 0, 1), (1, 0, 1)]
+    bars[1].put(0.75)
+    assert table.lamp.sheen == ((0, 0.2), (40, 0.75), (90, 1))
+    table.bar("at 0 degrees").put(0.125)
+    assert table.lamp.sheen == ((0, 0.125), (40, 0.75), (90, 1))
+    table.rows()["sheen"].pick(Place(632, 8))
+    assert table.lamp.sheen is None
+    assert "at 40 degrees" not in table.rows()
 
 
 def test_an_absent_row_is_made_by_its_switch_and_then_switched(table: Table) -> None:

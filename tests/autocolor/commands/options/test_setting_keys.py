@@ -42,6 +42,9 @@ def test_a_key_leads_to_a_table_a_row_and_a_path_in_it(scene: Scene, key: str, p
         ("surfaces.side.diffuse", 0.7),
         ("surfaces.side.exponent", 20.0),
         ("surfaces.side.roughness", 0.3),
+        ("surfaces.side.base_reflectance", None),
+        ("surfaces.side.refractive_index", None),
+        ("surfaces.side.fresnel_curve", None),
     ],
 )
 def test_a_field_is_found_wherever_it_is_inside_its_row(scene: Scene, key: str, default: object) -> None:

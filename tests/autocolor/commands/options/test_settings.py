@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor import Flaps, Scene, Surface, read_scene
+from autocolor import Flaps, Phong, Scene, Surface, read_scene
 from autocolor.commands.options.settings import created_again, reframed, value_of, with_settings
 from autocolor.errors import UsageError
 from autocolor.files.scene_sources import read_scene_with_report
@@ -72,6 +72,30 @@ def test_every_kind_of_key_can_be_set(scene: Scene) -> None:
     assert (side.reflectance.exponent, side.paint.light_color, side.levels) == (40, (1, 2, 3), 20)
     assert changed.part("side").surface == "front.low"
     assert changed.part("side").stage
+
+
+@pytest.mark.parametrize(
+    ("setting", "key"),
+    [
+        ("base_reflectance=0.04", "base_reflectance"),
+        ("refractive_index=1.5", "refractive_index"),
+        ("fresnel_curve=[[0, 0.04], [90, 1]]", "fresnel_curve"),
+    ],
+)
+def test_the_growth_of_s_is_set_in_any_way_unset_and_refused_beside_cook_and_torrance(
+    scene: Scene, setting: str, key: str
+) -> None:
+    grown = with_settings(scene, (f"surfaces.side.{setting}",))
+    model = grown.surface("side").reflectance.model
+    assert isinstance(model, Phong)
+    assert model.growth.largest == pytest.approx(25)
+    assert with_settings(grown, (f"surfaces.side.{key}=none",)).surface("side") == scene.surface("side")
+    with pytest.raises(UsageError) as refusal:
+        with_settings(scene, (f"surfaces.side.{setting}", "surfaces.side.model=cook-torrance"))
+    assert str(refusal.value) == (
+        f"--set: surface 'side': {key} must go with model = 'phong' or 'blinn', not with 'cook-torrance';"
+        " leave it out, or change the other"
+    )
 
 
 def test_a_scalar_is_set_where_there_was_none_in_any_order_and_unset(scene: Scene) -> None:

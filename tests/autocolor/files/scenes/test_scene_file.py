@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Reflectance
+from autocolor import BlinnPhong, Phong, Reflectance
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.meshes.formats import mesh_suffixes
 from autocolor.files.registry import suffix_rule
@@ -14,6 +14,7 @@ from autocolor.files.scenes.scene_file import read_scene_file
 from autocolor.files.scenes.scene_report import SceneReport
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.curves import CURVES
+from autocolor.scene.specular_growth import SpecularGrowth
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng hood\nf 1 2 3 4\ng roof\nf 1 2 3\n"
 MESH = '[[mesh]]\nfile = "car.obj"\n'
@@ -265,6 +266,39 @@ def test_rules_between_keys_are_checked(folder: Path) -> None:
         "scene.toml, line 9, lights[1] 'a': concentration must come with a direction or an aim, not with a"
         " point source; add an aim",
         "scene.toml, line 10, lights[2] 'b': it must have a direction or an aim, not both; leave one out",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("line", "growth"),
+    [
+        ("base_reflectance = 0.04", SpecularGrowth(base_reflectance=0.04)),
+        ("refractive_index = 1.5", SpecularGrowth(refractive_index=1.5)),
+        (
+            "fresnel_curve = [[0, 0.04], [60, 0.1], [90, 1]]",
+            SpecularGrowth(fresnel_curve=((0, 0.04), (60, 0.1), (90, 1))),
+        ),
+    ],
+)
+def test_s_grows_by_a_key_of_the_surface_with_the_models_that_have_no_fresnel_term(
+    folder: Path, line: str, growth: SpecularGrowth
+) -> None:
+    assert read(folder, MESH + f"[surfaces.hood]\n{line}\n").scene.surface("hood").reflectance == (
+        Reflectance(model=Phong(growth=growth))
+    )
+    blinn = read(folder, MESH + f'[surfaces.hood]\n{line}\nmodel = "blinn"\n').scene.surface("hood")
+    assert blinn.reflectance.model == BlinnPhong(growth=growth)
+    assert refusal(folder, MESH + f'[surfaces.hood]\n{line}\nmodel = "cook-torrance"\n') == [
+        f"scene.toml, line 4, [surfaces.hood]: {line.partition(' ')[0]} must go with model = 'phong' or"
+        " 'blinn', not with 'cook-torrance'; leave it out, or change the other"
+    ]
+
+
+def test_s_grows_in_one_way(folder: Path) -> None:
+    text = MESH + "[surfaces.hood]\nrefractive_index = 1.5\nbase_reflectance = 0.04\n"
+    assert refusal(folder, text) == [
+        "scene.toml, line 4, [surfaces.hood]: refractive_index must stand without base_reflectance, not"
+        " beside it; leave one out"
     ]
 
 

@@ -23,6 +23,25 @@ def test_a_row_that_is_added_needs_no_more_than_a_scene_file_does(tmp_path: Path
     assert scene.surface("metal").reflectance.model.roughness == 0.2  # type: ignore[attr-defined]
 
 
+def test_the_growth_of_s_is_set_by_sql_as_in_a_scene_file(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(
+        path,
+        "UPDATE surfaces SET refractive_index = 1.5 WHERE name = 'body'",
+        "UPDATE surfaces SET fresnel_curve = '[[0, 0.04], [90, 1]]' WHERE name = 'glass'",
+    )
+    scene = read_store(path).scene
+    expected = small_scene().with_surface("body", refractive_index=1.5)
+    assert scene.surfaces == expected.with_surface("glass", fresnel_curve=[(0, 0.04), (90, 1)]).surfaces
+    run(path, "UPDATE surfaces SET model = 'cook-torrance', exponent = NULL WHERE name = 'body'")
+    with pytest.raises(InputError) as refused:
+        read_store(path)
+    assert refused.value.problems == (
+        "small.sqlite: surfaces, row 1: refractive_index must go with model = 'phong' or 'blinn', not with"
+        " 'cook-torrance'; leave it out, or change the other",
+    )
+
+
 def test_tables_that_are_missing_are_created_and_told(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     run(path, "DROP TABLE surfaces", "DROP TABLE lights", "DROP TABLE view")

@@ -1,0 +1,52 @@
+"""S that grows with the angle of incidence; the paper says that it should, and has no figure of it.
+
+Paper: "The Lighting Model". The lamp is at the eye, where nothing changes, and then low behind the coupe,
+from where its light glances off hood, roof and floor.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import autocolor
+from scenes.figures import Sheet, open_studio, read_scene
+
+LACQUER: Final = 1.5
+"""The refractive index of clear lacquer, of glass, and nearly that of a wet floor."""
+
+SURFACES: Final[dict[str, dict[str, Any]]] = {
+    "body": {"specular": 0.15},
+    "glass": {"specular": 0.2},
+    "floor": {"specular": 0.11, "exponent": 30, "light_color": "#d0d8e0"},
+}
+"""What is lacquered or wet. Of so small an S little is seen unless it grows."""
+
+BEHIND: Final = (9.0, 7.0, 2.7)
+
+
+def lit_coupe() -> autocolor.Scene:
+    """The coupe in dimmed studio lights, with a lamp at the eye, exposed alike in all panels."""
+    coupe = read_scene("coupe")
+    dimmed = [coupe.light(name).replace(intensity=0.6) for name in ("key", "side")]
+    lamp = autocolor.Light("lamp", coupe.view.eye, 0.6, aim=(0.0, 0.0, 0.6), concentration=4)
+    coupe = coupe.replace(lights=[*dimmed, lamp], scaling="object", exposure={"object": (0.0, 1.1)})
+    for name, changes in SURFACES.items():
+        coupe = coupe.with_surface(name, **changes)
+    return coupe
+
+
+def main() -> None:
+    """Render once for each row of panels; in a row, three surfaces are computed again."""
+    studio, display = open_studio(lit_coupe())
+    sheet = Sheet("incidence")
+    for where, position, panels in (("at the Eye", studio.scene.view.eye, "ab"), ("Behind", BEHIND, "cd")):
+        studio.light("lamp", position=position)
+        for panel, index, material in zip(panels, (None, LACQUER), ("Constant", "of Lacquer"), strict=True):
+            for name in SURFACES:
+                studio.surface(name, refractive_index=index)
+            sheet.add(display.field(), f"{panel.upper()}. Lamp {where}, S {material}", panel)
+    sheet.write(across=2)
+
+
+if __name__ == "__main__":
+    main()
