@@ -369,7 +369,7 @@ def change_scene(table: str, row: int | None = None, **fields: Any) -> Callable[
 @pytest.mark.parametrize(
     ("edit", "sentence"),
     [
-        (change(format="autocolor picture 4"), "its format must be 'autocolor picture 3'"),
+        (change(format="autocolor picture 5"), "its format must be 'autocolor picture 4'"),
         (change(format="autocolor picture 2"), "it must have the keys of its format, not others"),
         (change(scale=0), "its scale must be a number above 0, not 0"),
         (change(scale=-1.5), "its scale must be a number above 0, not -1.5"),
@@ -456,6 +456,11 @@ WRONG_ARRAYS: list[tuple[str, npt.NDArray[Any]]] = [
     ("surface_number", np.zeros((LINES, ELEMENTS), np.int8)),
     ("surface_number", np.zeros((LINES, ELEMENTS, 1), np.uint8)),
     ("surface_number", np.array(1, np.uint8)),
+    ("part_number", np.ones((ELEMENTS, LINES), np.int32)),
+    ("part_number", np.ones((LINES, ELEMENTS), np.uint8)),
+    ("part_number", np.ones(LINES * ELEMENTS, np.int32)),
+    ("part_number", np.full((LINES, ELEMENTS), 2, np.int32)),
+    ("part_number", np.full((LINES, ELEMENTS), -1, np.int32)),
     ("coordinates", np.full((4, 3), np.nan)),
     ("coordinates", np.full((4, 3), 1e31)),
     ("coordinates", np.zeros((4, 2))),
