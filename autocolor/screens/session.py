@@ -243,8 +243,11 @@ class Session:
         Raises InputError or MissingInputError.
         """
         if path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE and is_rig(path):
-            self.edit(self.scene.with_rig(read_rig(path)))
-            self.tell(f"the lights of {path.name}, fitted to {self.scene.name}; undo goes back")
+            rig = read_rig(path)
+            self.edit(self.scene.with_rig(rig))
+            links = [[light.links for light in lights] for lights in (rig.lights, self.scene.lights)]
+            left_out = "" if links[0] == links[1] else ", without links to what it lacks"
+            self.tell(f"the lights of {path.name}, fitted to {self.scene.name}{left_out}; undo goes back")
             return
         if kind_of(path) == MESH:
             self.studio.open(path, up=self.mesh_up, scale=self.mesh_scale)

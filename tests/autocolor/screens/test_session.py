@@ -8,6 +8,7 @@ from PIL import Image
 
 from autocolor import InputError, Light, OutputError, Studio, read_rig, write_rig, write_scene
 from autocolor.files.state.recent import recent_files
+from autocolor.scene.lights.links import Links
 from autocolor.screens.session import MESSAGE_SECONDS, PICTURE, Session
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import wall_scene
@@ -142,6 +143,18 @@ def test_a_rig_in_a_scene_file_of_any_other_name_is_put_on_the_scene(
     assert [light.name for light in session.scene.lights] == ["lamp"]
     assert session.scene.name == "boxes"
     assert recent_files() == ()
+
+
+def test_a_rig_whose_lights_are_linked_to_what_is_not_there_is_put_on_the_scene_and_says_so(
+    session: Session, tmp_path: Path
+) -> None:
+    lamp = Light("lamp", (0, -2, 1), links=Links(only_surfaces=("wall",)))
+    write_rig(tmp_path / "lamps.toml", wall_scene(lights=[lamp]))
+    session.open(tmp_path / "lamps.toml")
+    assert session.scene.light("lamp").links == Links()
+    assert session.message == (
+        "the lights of lamps.toml, fitted to boxes, without links to what it lacks; undo goes back"
+    )
 
 
 def test_a_rig_that_is_broken_is_refused(session: Session, tmp_path: Path) -> None:
