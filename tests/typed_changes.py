@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from autocolor.scene.columns.column import Row, fields_of, keys_of
+from autocolor.scene.columns.row_kinds import Nested
 from autocolor.scene.lights.flaps import Flap, Flaps
 from autocolor.scene.lights.half_spaces import HalfSpace
 from autocolor.scene.lights.light import Light
@@ -77,8 +78,13 @@ def types_of(cls: type[Row]) -> dict[str, str]:
     fields, keys = fields_of(cls), keys_of(cls)
     columns = {name: field.column for name, field in fields.items()}
     columns |= {key: each.column for key, each in keys.items()}
+    optional = {name for name, field in fields.items() if field.is_optional}
+    for field in fields.values():
+        kind = field.column.kind
+        if isinstance(kind, Nested) and kind.inline:
+            optional |= {name for name, inner in fields_of(kind.row_class).items() if inner.is_optional}
     return {
-        name: column.kind.accepts() + (" | None" if name in fields and fields[name].is_optional else "")
+        name: column.kind.accepts() + (" | None" if name in optional else "")
         for name, column in columns.items()
     }
 
