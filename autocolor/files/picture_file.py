@@ -149,9 +149,16 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
     if invalid:
         raise InputError(f"a surface number must be that of a surface with polygons, not {min(invalid)}")
     parts = _parts(arrays, scene)
-    scalar = _shown_scalar(header.get(SHOWN, ()), scene, arrays)
+    scalar, limits = _shown_scalar(header.get(SHOWN, ()), scene, arrays)
     return Picture.from_rasters(
-        relative, numbers, tuple(names), float(scale), *scalar, parts, scene.mesh.part_names
+        relative,
+        numbers,
+        tuple(names),
+        float(scale),
+        scalar,
+        limits,
+        parts,
+        scene.mesh.part_names,
     )
 
 

@@ -67,7 +67,7 @@ def test_a_light_has_no_weight_on_a_surface_that_it_is_not_linked_to() -> None:
         ({"except_parts": ["middle", "right"]}, {1}),
         ({"only_parts": ["right"], "except_surfaces": ["other"]}, set()),
     ):
-        light = Light("key", (0, 0, 0), 2.0, links=Links(**links))  # type: ignore[arg-type]
+        light = Light("key", (0, 0, 0), 2.0, links=Links(**links))
         mix = light_mix(PHONG, both, [light], 0.0, parts)
         assert list(mix.lights["key"]) == [1, 2]
         assert {number for number, weights in mix.lights["key"].items() if any(weights)} == lit

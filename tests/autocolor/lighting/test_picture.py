@@ -50,7 +50,7 @@ def test_the_picture_is_the_ambient_and_the_sum_of_the_single_lights(scene: Scen
 def linked(scene: Scene, surface: str) -> Scene:
     """The scene with the lights that shine on a surface, none of them linked to surfaces."""
     lights = [
-        light.replace(only_surfaces=None, except_surfaces=None)
+        light.replace(links=light.links.replace(only_surfaces=None, except_surfaces=None))
         for light in scene.lights
         if light.links.shines_on_surface(surface)
     ]

@@ -57,7 +57,7 @@ def test_a_light_shines_on_what_is_named_or_on_all_but_what_is_excepted(
 @pytest.mark.parametrize("what", ["surfaces", "parts"])
 def test_names_and_excepted_names_do_not_come_together(what: str) -> None:
     with pytest.raises(InputError) as refused:
-        Links(**{f"only_{what}": ("a",), f"except_{what}": ("b",)})  # type: ignore[arg-type]
+        Links(**{f"only_{what}": ("a",), f"except_{what}": ("b",)})
     assert f"except_{what} must not come with only_{what}, not with both; leave one out" in str(refused.value)
 
 
@@ -84,13 +84,12 @@ def test_a_surface_that_a_light_is_linked_to_is_not_renamed_nor_removed_alone() 
     scene = scene.replace(surfaces=(*scene.surfaces, Surface("spare")))
     scene = scene.with_light("key", except_surfaces=["spare"])
     sentence = "light 'key': except_surfaces 'spare' is not in the surface table"
-    for edit in (
-        lambda: scene.with_surface("spare", name="other"),
-        lambda: scene.replace(surfaces=scene.surfaces[:2]),
-    ):
-        with pytest.raises(InputError) as refused:
-            edit()
-        assert str(refused.value).startswith(sentence)
+    with pytest.raises(InputError) as refused:
+        scene.with_surface("spare", name="other")
+    assert str(refused.value).startswith(sentence)
+    with pytest.raises(InputError) as refused:
+        scene.replace(surfaces=scene.surfaces[:2])
+    assert str(refused.value).startswith(sentence)
     renamed = scene.replace(
         surfaces=(*scene.surfaces[:2], Surface("other")),
         lights=(scene.light("key").replace(except_surfaces=["other"]),),
