@@ -18,8 +18,9 @@ from autocolor.scene.columns.bars import Bar as Range
 from autocolor.scene.columns.bars import bar_within
 from autocolor.scene.columns.color_kinds import ColorKind, in_digits
 from autocolor.scene.columns.column import WORLD_UNITS, Column, Field, Row, bar_of, fields_of
+from autocolor.scene.columns.named_row_kinds import NamedRows
 from autocolor.scene.columns.reference_kinds import Referring
-from autocolor.scene.columns.row_kinds import NamedRows, Nested, Variant
+from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.columns.value_kinds import Choice as ChoiceKind
 from autocolor.scene.columns.value_kinds import Number, Text, VectorKind, Whole
 from autocolor.scene.columns.value_kinds import Switch as SwitchKind

@@ -16,8 +16,9 @@ from typing import Any, Final
 
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Field, Kind, Row, fields_of
+from autocolor.scene.columns.named_row_kinds import NamedRows
 from autocolor.scene.columns.reference_kinds import Reference
-from autocolor.scene.columns.row_kinds import NamedRows, Nested, Rows, Variant
+from autocolor.scene.columns.row_kinds import Nested, Rows, Variant
 from autocolor.scene.columns.rows import plain
 from autocolor.scene.columns.value_kinds import (
     LARGEST_PLACE,

@@ -13,8 +13,9 @@ from autocolor.checks import Color, Vector
 from autocolor.scene.columns.bars import Bar as Range
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
+from autocolor.scene.columns.named_row_kinds import NamedRows
 from autocolor.scene.columns.reference_kinds import References, WordOrName
-from autocolor.scene.columns.row_kinds import NamedRows, Nested, Variant
+from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.columns.rows import changed
 from autocolor.scene.columns.value_kinds import Choice as ChoiceKind
 from autocolor.scene.columns.value_kinds import CurveKind, Number, Text, VectorKind, Whole
