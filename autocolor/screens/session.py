@@ -28,6 +28,7 @@ from autocolor.screens.files.file_on_disk import FileOnDisk
 from autocolor.studio import Studio
 from autocolor.widgets.column_rows import World
 from autocolor.widgets.labels import short_name
+from autocolor.widgets.name_rows import KnownNames
 from ramtek_emu import HostPort, instructions
 
 PICTURE: Final = "picture"
@@ -83,6 +84,7 @@ class Session:
         """The part that was pointed at last, if any."""
         self._light = ""
         self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
+        self._names = KnownNames(self._names_in, {})
         self._refused_to_leave: Scene | None = None
         """The scene whose changes leaving would have discarded, when the user was told so last."""
         self.news = News("", False, 0.0)
@@ -97,11 +99,14 @@ class Session:
 
     @property
     def world(self) -> World:
-        """The bounds of the object, from which bars of coordinates get their range."""
+        """The bounds of the object, from which bars get their range, and the names of the tables."""
         scene = self.scene
         if self._world is None or self._world[0] is not scene.mesh or self._world[1] != scene.parts:
-            self._world = scene.mesh, scene.parts, World(*scene.object_bounds)
+            self._world = scene.mesh, scene.parts, World(*scene.object_bounds, self._names)
         return self._world[2]
+
+    def _names_in(self, table: str) -> tuple[str, ...]:
+        return tuple(row.name for row in vars(self.scene)[table])
 
     def turn_to(self, screen: str) -> None:
         """Turn to a screen by its name."""

@@ -116,6 +116,14 @@ def test_one_light_alone_and_all(session: Session) -> None:
     assert session.message == "all lights on"
 
 
+def test_the_world_knows_the_names_in_the_tables_as_they_are_now(session: Session) -> None:
+    of = session.world.names.of
+    for table in ("lights", "surfaces", "parts"):
+        assert list(of(table)) == [row.name for row in vars(session.scene)[table]]
+    session.edit(session.scene.with_new_light("another", position=(0, 0, 9)))
+    assert of("lights")[-1] == "another"
+
+
 def test_the_world_is_that_of_the_object(session: Session) -> None:
     assert session.world.low == (0, 0, 0)
     assert session.world.high == (1, 1, 1)
