@@ -11,7 +11,9 @@ from autocolor import (
     Mesh,
     Rig,
     Scene,
+    Studio,
     Surface,
+    read_journal,
     read_rig,
     read_scene,
     render,
@@ -19,9 +21,12 @@ from autocolor import (
     write_rig,
     write_scene,
 )
+from autocolor.journal.history import History
+from autocolor.journal.places import Source, place_of
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.lights.links import Links
 from autocolor.scene.scene import cost_of_edit
+from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import grid
 from tests.autocolor.strategies import some_of
 
@@ -142,3 +147,21 @@ def test_links_are_kept_by_scene_files_and_rig_files(tmp_path: Path) -> None:
     assert render(again, 12, 16).intensity.tobytes() == render(scene, 12, 16).intensity.tobytes()
     write_rig(tmp_path / "rig.toml", scene)
     assert read_rig(tmp_path / "rig.toml").lights == scene.lights
+
+
+def test_links_are_undone_and_told_by_the_journal(tmp_path: Path) -> None:
+    source = Source(str(tmp_path / "scene"))
+    write_scene(source.path, panels())
+    studio = Studio(History(read_scene(source.path), place_of(source)), Ramtek9300())
+    before = studio.words.copy()
+    studio.light("key", only_surfaces=["glass"])
+    assert (studio.words != before).any()
+    studio.light("key", only_surfaces=None, except_parts=["b"])
+    (tmp_path / "session.py").write_text(studio.journal(beside=tmp_path / "beside"), "utf-8")
+    history = read_journal(tmp_path / "session.py").history
+    assert history.scene.light("key").links == Links(except_parts=("b",))
+    assert (Studio(history, Ramtek9300()).words == studio.words).all()
+    studio.undo()
+    assert studio.scene.light("key").links == Links(only_surfaces=("glass",))
+    studio.undo()
+    assert (studio.words == before).all()
