@@ -73,16 +73,16 @@ def _strengths(
     light: Light, visible: Mapping[int, Surface], parts: Sequence[Part]
 ) -> dict[int, tuple[float, float]]:
     """The light's intensity times D and S by number of the visible surfaces; 0 where it does not shine."""
-    links = light.links
-    of_parts = (
-        {part.surface for part in parts if links.shines_on_part(part.name)} if links.depend_on_parts else None
-    )
+    links, lit = light.links, {surface.name for surface in visible.values()}
+    if links.depend_on_parts:
+        lit_parts = links.lit_parts(part.name for part in parts)
+        lit &= {part.surface for part in parts if part.name in lit_parts}
     return {
         number: (
             light.intensity * surface.reflectance.diffuse,
             light.intensity * surface.reflectance.specular,
         )
-        if links.shines_on_surface(surface.name) and (of_parts is None or surface.name in of_parts)
+        if surface.name in lit and links.shines_on_surface(surface.name)
         else (0.0, 0.0)
         for number, surface in visible.items()
     }

@@ -32,8 +32,9 @@ class LinkedParts(LightControl):
         """The parts that the light is linked to, if it is."""
         if not light.links.depend_on_parts:
             return None
-        is_lit = [light.links.shines_on_part(name) for name in points.parts.names]
-        return cls(np.array([False, *is_lit]), points.parts.numbers)
+        names = points.parts.names
+        lit = light.links.lit_parts(names)
+        return cls(np.array([False, *(name in lit for name in names)]), points.parts.numbers)
 
     def lit_points(self, rows: Singles, pixels: slice) -> Booleans:
         """Whether each point is of a part that is lit."""

@@ -6,7 +6,7 @@ on, and its part is, too.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, Unpack
 
@@ -62,11 +62,11 @@ class Links(Row):
 
     def shines_on_surface(self, surface: str) -> bool:
         """Whether the light shines on the surface of that name."""
-        return _is_meant(surface, self.only_surfaces, self.except_surfaces)
+        return bool(_meant([surface], self.only_surfaces, self.except_surfaces))
 
-    def shines_on_part(self, part: str) -> bool:
-        """Whether the light shines on the part of that name, as far as its surface is lit."""
-        return _is_meant(part, self.only_parts, self.except_parts)
+    def lit_parts(self, parts: Iterable[str]) -> set[str]:
+        """Those of the parts of these names that the light shines on, as far as their surfaces are lit."""
+        return _meant(parts, self.only_parts, self.except_parts)
 
     def within(self, surfaces: Collection[str], parts: Collection[str]) -> Links:
         """The links without the names that are not among some surfaces and parts.
@@ -86,8 +86,10 @@ class Links(Row):
         return changed(self, kept) if any(kept[field] != vars(self)[field] for field in kept) else self
 
 
-def _is_meant(name: str, only: Names | None, excepted: Names | None) -> bool:
-    return (only is None or name in only) and (excepted is None or name not in excepted)
+def _meant(names: Iterable[str], only: Names | None, excepted: Names | None) -> set[str]:
+    """Those of the names that are among `only`, or not among the excepted ones."""
+    # A mesh may have many thousands of parts: no name is looked for in a list.
+    return (set(names) if only is None else set(names).intersection(only)).difference(excepted or ())
 
 
 def _kept(names: Names, known: Collection[str]) -> Names | None:

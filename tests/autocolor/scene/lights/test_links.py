@@ -50,13 +50,12 @@ def test_a_light_shines_on_what_is_named_or_on_all_but_what_is_excepted(
 ) -> None:
     for name in NAMES:
         assert Links().shines_on_surface(name)
-        assert Links().shines_on_part(name)
-        links = Links(only_surfaces=some, except_parts=others)
-        assert links.shines_on_surface(name) == (name in some)
-        assert links.shines_on_part(name) == (name not in others)
-        links = Links(except_surfaces=some, only_parts=others)
-        assert links.shines_on_surface(name) == (name not in some)
-        assert links.shines_on_part(name) == (name in others)
+        assert Links(only_surfaces=some).shines_on_surface(name) == (name in some)
+        assert Links(except_surfaces=some).shines_on_surface(name) == (name not in some)
+    assert Links().lit_parts(NAMES) == {*NAMES}
+    assert Links(only_parts=others).lit_parts(NAMES) == {*others}
+    assert Links(except_parts=others).lit_parts(NAMES) == {*NAMES} - {*others}
+    assert Links(only_parts=(*others, "elsewhere")).lit_parts(NAMES) == {*others}
 
 
 @pytest.mark.parametrize("what", ["surfaces", "parts"])
