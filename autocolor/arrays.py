@@ -33,6 +33,9 @@ Bytes = NDArray[np.uint8]
 RasterPlaces = NDArray[np.int16]
 """Lines and elements of a raster, which has at most 16,384 of each, for each of many nodes."""
 
+PartNumbers = NDArray[np.int32]
+"""Numbers of parts, of which a mesh may have any count, at each of many points."""
+
 LowBits = NDArray[np.uint32]
 """The low bits of hashes."""
 

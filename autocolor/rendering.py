@@ -3,9 +3,9 @@
 | changed | recomputed |
 |---|---|
 | mesh, view, the surface of a part, two_sided | everything |
-| a light's position, aim, concentration, flaps, cone | that light's two planes, the sum |
+| a light's position, aim, concentration, flaps, cone, links to parts | that light's two planes, the sum |
 | a surface's reflection model | all lights, for the chunks of points that contain the surface; the sum |
-| a light's intensity or switch, ambient, D, S | the sum |
+| a light's intensity, switch or links to surfaces, ambient, D, S | the sum |
 | the scalar's name, direction, stripes | its values |
 | anything else | nothing |
 """

@@ -64,6 +64,7 @@ class ArrayFileKind:
     values of `format` in the header that can be read, the one that is written first; `keys` are the other
     keys that the header has. `arrays` has the types of the members, and `series` those of series of members,
     each by the key of its list in the header. The `plain` formats have no series and none of their lists.
+    `added` are the names of the arrays that only the first format has.
     """
 
     noun: str
@@ -74,10 +75,12 @@ class ArrayFileKind:
     arrays: Mapping[str, ArrayType]
     series: Mapping[str, Series] = field(default_factory=dict)
     plain: tuple[str, ...] = ()
+    added: frozenset[str] = frozenset()
 
     def types(self, header: Mapping[str, Any]) -> dict[str, ArrayType]:
         """The types of all members but the header of a file with this one."""
-        types = dict(self.arrays)
+        is_older = header.get("format", self.formats[0]) != self.formats[0]
+        types = {name: each for name, each in self.arrays.items() if not (is_older and name in self.added)}
         for key, series in self.series.items():
             for number in range(len(header.get(key, ()))):
                 types[f"{series.member}_{number}"] = series.type

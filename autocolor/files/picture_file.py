@@ -1,10 +1,14 @@
 """Picture files: a picture and the scene that it was rendered from, as an .npz that numpy can open.
 
 The members are `header` (the scene without its mesh, as JSON in UTF-8), `relative_intensity` (lines,
-elements) float32, to be multiplied by the header's scale, `surface_number` (lines, elements) uint8, and the
-mesh: `coordinates` (nodes, 3) float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32, and
+elements) float32, to be multiplied by the header's scale, `surface_number` (lines, elements) uint8,
+`part_number` (lines, elements) int32, whose number k is the row k - 1 of the part table, and the mesh:
+`coordinates` (nodes, 3) float64, `node_numbers` (polygons, 4) and `part_numbers` (polygons,) int32, and
 `mesh_scalar_0` and so on, the values of each of its scalars, float64. If the scene shows a scalar, its values
 at the pixels are `scalar_0`, (lines, elements) float32; NaN is a missing one.
+
+Before version 4 there were no part numbers: the picture of such a file does not know its parts. Written
+again, its part numbers are all 0.
 
 `array_file` reads and writes them.
 """
@@ -49,17 +53,19 @@ PICTURE_FILE: Final = ArrayFileKind(
     noun="picture file",
     advice="save the picture again",
     largest=4 << 30,
-    formats=("autocolor picture 3",),
+    formats=("autocolor picture 4", "autocolor picture 3"),
     plain=PLAIN_FORMATS,
     keys=frozenset(("scale", "surfaces", "scene")),
     arrays={
         "relative_intensity": ("<f4", 2),
         "surface_number": ("|u1", 2),
+        "part_number": ("<i4", 2),
         "coordinates": ("<f8", 2),
         "node_numbers": ("<i4", 2),
         "part_numbers": ("<i4", 1),
     },
     series={KEY: MESH_SCALARS, SHOWN: Series("scalar", ("<f4", 2), most=1)},
+    added=frozenset(("part_number",)),
 )
 
 
@@ -95,6 +101,7 @@ def write_picture(
     arrays: dict[str, AnyArray] = {
         "relative_intensity": relative.reshape(picture.lines, picture.elements),
         "surface_number": picture.surface_number,
+        "part_number": picture.part_number,
         "coordinates": scene.mesh.coordinates,
         "node_numbers": scene.mesh.node_numbers,
         "part_numbers": scene.mesh.part_numbers,
@@ -138,12 +145,50 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
         )
     in_use = set(scene.mesh.parts_in_use)
     owned = {number for part, number in enumerate(scene.surface_number_of_part) if part in in_use}
-    scalar = _shown_scalar(header.get(SHOWN, ()), scene, arrays)
-    picture = Picture.from_rasters(relative, numbers, tuple(names), float(scale), *scalar)
-    invalid = {each.surface_number for each in picture.slices} - owned
+    invalid = set(np.flatnonzero(np.bincount(numbers.ravel())).tolist()) - owned - {0}
     if invalid:
         raise InputError(f"a surface number must be that of a surface with polygons, not {min(invalid)}")
-    return picture
+    parts = _parts(arrays, scene)
+    scalar, limits = _shown_scalar(header.get(SHOWN, ()), scene, arrays)
+    return Picture.from_rasters(
+        relative,
+        numbers,
+        tuple(names),
+        float(scale),
+        scalar,
+        limits,
+        parts,
+        scene.mesh.part_names,
+    )
+
+
+def _parts(arrays: Mapping[str, AnyArray], scene: Scene) -> AnyArray | None:
+    """The part numbers, (lines, elements), None if the file does not know them.
+
+    Raises InputError unless each is that of a part with polygons whose surface is the one there, or 0 where
+    there is none.
+    """
+    parts, surfaces = arrays.get("part_number"), arrays["surface_number"]
+    if parts is None:
+        return None
+    if parts.shape != surfaces.shape:
+        raise InputError(f"its arrays must be of one shape, not {surfaces.shape} and {parts.shape}")
+    if surfaces.any() and not parts.any():
+        return None
+    if parts.min() < 0 or parts.max() > len(scene.parts):
+        extreme = parts.min() if parts.min() < 0 else parts.max()
+        raise InputError(f"a part number must be 0 to {len(scene.parts)}, not {extreme}")
+    surface_of_part = np.zeros(1 + len(scene.parts), np.uint8)
+    for part in scene.mesh.parts_in_use:
+        surface_of_part[1 + part] = scene.surface_number_of_part[part]
+    wrong = (surface_of_part.take(parts) != surfaces) | ((parts > 0) & (surfaces == 0))
+    if wrong.any():
+        line, element = np.argwhere(wrong)[0].tolist()
+        raise InputError(
+            f"a part number must be that of a part of the surface there, not {parts[line, element]} (line"
+            f" {line}, element {element})"
+        )
+    return parts
 
 
 def _shown_scalar(

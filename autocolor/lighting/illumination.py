@@ -41,7 +41,7 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
         for surface in points.slices
     }
     lights = {light.name: light for light in scene.lights_in_world}
-    weights = light_mix(models, scene.surfaces, scene.lights, scene.ambient)
+    weights = light_mix(models, scene.surfaces, scene.lights, scene.ambient, scene.parts)
     changed = _changed_surfaces(models, previous)
     reusable = _reusable_planes(lights, previous)
     updates = {
@@ -73,7 +73,15 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
     _freeze(relative)
     names = tuple(surface.name for surface in scene.surfaces)
     return Picture(
-        points.lines, points.elements, names, points.pixels, points.slices, relative, weights.scale, planes
+        points.lines,
+        points.elements,
+        names,
+        points.pixels,
+        points.slices,
+        relative,
+        weights.scale,
+        planes,
+        visible_parts=points.parts,
     )
 
 

@@ -14,9 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Bytes, Indices, Singles
+from autocolor.arrays import AnyArray, Bytes, Indices, PartNumbers, Singles
 from autocolor.immutable import Immutable, read_only
 from autocolor.lighting.light_planes import DIFFUSE, SPECULAR, LightPlanes
+from autocolor.visibility.visible_parts import VisibleParts
 from autocolor.visibility.visible_points import SurfaceSlice, surface_slices
 
 
@@ -56,6 +57,9 @@ class Picture(Immutable):
 
     `scalar_values`, (n,) float32 in the order of `pixels` with NaN for missing values, are those of the
     scalar that colors the scene, and `scalar_limits` are its own range; both are None if there is none.
+
+    `visible_parts` has the part at each of `pixels`, None for a picture that does not know them: one made of
+    rasters, or of a file that was written before version 4.
     """
 
     lines: int
@@ -68,6 +72,7 @@ class Picture(Immutable):
     light_planes: Mapping[str, LightPlanes] = field(default_factory=dict, repr=False)
     scalar_values: Singles | None = field(default=None, repr=False)
     scalar_limits: tuple[float, float] | None = None
+    visible_parts: VisibleParts | None = field(default=None, repr=False)
 
     @classmethod
     def from_rasters(
@@ -78,10 +83,13 @@ class Picture(Immutable):
         scale: float,
         scalar: Singles | None = None,
         scalar_limits: tuple[float, float] | None = None,
+        part_number: PartNumbers | None = None,
+        parts: tuple[str, ...] = (),
     ) -> Picture:
         """A picture of relative intensities and surface numbers, both (lines, elements), without planes.
 
-        `scalar`, (lines, elements), are the values of a scalar where polygons are visible.
+        `scalar`, (lines, elements), are the values of a scalar where polygons are visible. `part_number`,
+        (lines, elements), are numbers of `parts` from 1 on there.
         """
         lines, elements = relative.shape
         numbers = surface_number.ravel()
@@ -100,6 +108,9 @@ class Picture(Immutable):
             scale,
             scalar_values=values,
             scalar_limits=scalar_limits,
+            visible_parts=None
+            if part_number is None
+            else VisibleParts.of_points(parts, part_number.ravel()[pixels]),
         )
 
     @cached_property
@@ -114,6 +125,21 @@ class Picture(Immutable):
         for surface in self.slices:
             numbers[surface.pixels] = surface.surface_number
         raster: Bytes = self._raster(numbers)
+        return raster
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The names of the parts of the mesh; none if the picture does not know them."""
+        return () if self.visible_parts is None else self.visible_parts.names
+
+    @cached_property
+    def part_number(self) -> PartNumbers:
+        """Part numbers, (lines, elements) int32: number k is parts[k - 1], 0 is none; read-only.
+
+        All are 0 if the picture does not know its parts.
+        """
+        none = np.zeros(len(self.pixels), np.int32)
+        raster: PartNumbers = self._raster(none if self.visible_parts is None else self.visible_parts.numbers)
         return raster
 
     @cached_property

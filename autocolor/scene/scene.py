@@ -313,9 +313,15 @@ class Scene(Row):
     def with_rig(self, rig: Rig) -> Scene:
         """The scene with the lights of a rig instead of its own, fitted to the size of its object.
 
-        Raises InputError if they cannot be (see `Rig.fitted`).
+        Links to surfaces and parts that the scene does not have are left out (see `Links.within`). Raises
+        InputError if the lights cannot be fitted (see `Rig.fitted`).
         """
-        return self.replace(lights=rig.fitted(*self.object_bounds))
+        surfaces, parts = ({row.name for row in rows} for rows in (self.surfaces, self.parts))
+        lights = [
+            light.replace(links=light.links.within(surfaces, parts))
+            for light in rig.fitted(*self.object_bounds)
+        ]
+        return self.replace(lights=lights)
 
     @property
     def rig(self) -> Rig:
@@ -337,7 +343,10 @@ class Scene(Row):
         # Tables refer to each other by name only: if no name changes, the references stay valid, but that a
         # light must keep the aim that another one follows. What is cached of a scene depends on its parts.
         is_followed = table == "lights" and any(light.follows is not None for light in self.lights)
-        is_referring = not references_of(type(row)).keys().isdisjoint(changes)
+        is_referring = any(
+            key in changes or reference.path[0] in changes
+            for key, reference in references_of(type(row)).items()
+        )
         if table == "parts" or "name" in changes or is_referring or is_followed:
             return changed(self, {table: rows})
         return with_values(self, {table: rows})

@@ -28,6 +28,7 @@ from autocolor.screens.files.file_on_disk import FileOnDisk
 from autocolor.studio import Studio
 from autocolor.widgets.column_rows import World
 from autocolor.widgets.labels import short_name
+from autocolor.widgets.name_rows import KnownNames
 from ramtek_emu import HostPort, instructions
 
 PICTURE: Final = "picture"
@@ -83,6 +84,7 @@ class Session:
         """The part that was pointed at last, if any."""
         self._light = ""
         self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
+        self._names = KnownNames(self._names_in, {})
         self._refused_to_leave: Scene | None = None
         """The scene whose changes leaving would have discarded, when the user was told so last."""
         self.news = News("", False, 0.0)
@@ -97,11 +99,14 @@ class Session:
 
     @property
     def world(self) -> World:
-        """The bounds of the object, from which bars of coordinates get their range."""
+        """The bounds of the object, from which bars get their range, and the names of the tables."""
         scene = self.scene
         if self._world is None or self._world[0] is not scene.mesh or self._world[1] != scene.parts:
-            self._world = scene.mesh, scene.parts, World(*scene.object_bounds)
+            self._world = scene.mesh, scene.parts, World(*scene.object_bounds, self._names)
         return self._world[2]
+
+    def _names_in(self, table: str) -> tuple[str, ...]:
+        return tuple(row.name for row in vars(self.scene)[table])
 
     def turn_to(self, screen: str) -> None:
         """Turn to a screen by its name."""
@@ -243,8 +248,11 @@ class Session:
         Raises InputError or MissingInputError.
         """
         if path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE and is_rig(path):
-            self.edit(self.scene.with_rig(read_rig(path)))
-            self.tell(f"the lights of {path.name}, fitted to {self.scene.name}; undo goes back")
+            rig = read_rig(path)
+            self.edit(self.scene.with_rig(rig))
+            links = [[light.links for light in lights] for lights in (rig.lights, self.scene.lights)]
+            left_out = "" if links[0] == links[1] else ", without links to what it lacks"
+            self.tell(f"the lights of {path.name}, fitted to {self.scene.name}{left_out}; undo goes back")
             return
         if kind_of(path) == MESH:
             self.studio.open(path, up=self.mesh_up, scale=self.mesh_scale)

@@ -8,6 +8,7 @@ import numpy as np
 
 from autocolor.arrays import Numbers, Singles, chunks_of_runs, dot, runs
 from autocolor.visibility.projection import Projection
+from autocolor.visibility.visible_parts import VisibleParts
 from autocolor.visibility.visible_points import (
     NORMAL,
     POINT,
@@ -71,6 +72,7 @@ def interpolated_points(
         spans.polygon_number,
         count,
         rows,
+        VisibleParts(projected.mesh.part_names, projected.mesh.part_numbers, spans.polygon_number, count),
     )
 
 

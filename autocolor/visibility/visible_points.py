@@ -16,6 +16,7 @@ import numpy as np
 
 from autocolor.arrays import Floats, Indices, Numbers, Singles
 from autocolor.scene.view import View
+from autocolor.visibility.visible_parts import VisibleParts
 
 PIXELS_AT_ONCE: Final = 1 << 17
 """As many as the caches hold of the arrays that one step needs."""
@@ -101,7 +102,7 @@ class VisiblePoints:
 
     `pixels`, (n,) intp, are their flat places in the raster. They come in spans of neighbors that see the
     same polygon, and the spans of a polygon mostly follow each other: `span_polygons` are rows of the polygon
-    table, `span_lengths` counts of pixels.
+    table, `span_lengths` counts of pixels. `parts` tells the part at each of them.
 
     `rows` is (12, n) float32: the point in camera space around `middle`, the unit normal, and the view
     direction reflected at the normal, each with its dot product with the point, so that every cosine to a
@@ -118,6 +119,7 @@ class VisiblePoints:
     span_polygons: Indices
     span_lengths: Indices
     rows: Singles
+    parts: VisibleParts
 
     @cached_property
     def chunks(self) -> tuple[PointChunk, ...]:

@@ -1,13 +1,15 @@
 """The rows of a menu for a row of a table, made from the descriptions of its columns.
 
 So a column that is added to a table appears on the screens by itself: a number as a bar, a switch as a box, a
-choice, a text, a vector as three bars, a row within a row with a heading of its own.
+choice, a text, a vector as three bars, a row within a row with its name before those of its columns, a list
+of names as a box for each.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final, NamedTuple
 
@@ -17,12 +19,15 @@ from autocolor.scene.columns.bars import Bar as Range
 from autocolor.scene.columns.bars import bar_within
 from autocolor.scene.columns.color_kinds import ColorKind, in_digits
 from autocolor.scene.columns.column import WORLD_UNITS, Column, Field, Row, bar_of, fields_of
+from autocolor.scene.columns.named_row_kinds import NamedRows
+from autocolor.scene.columns.reference_kinds import Referring
 from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.columns.value_kinds import Choice as ChoiceKind
 from autocolor.scene.columns.value_kinds import Number, Text, VectorKind, Whole
 from autocolor.scene.columns.value_kinds import Switch as SwitchKind
 from autocolor.widgets.bars import Bar
-from autocolor.widgets.widget import Choice, Entry, Switch, Widget
+from autocolor.widgets.name_rows import INDENT, KnownNames, reference_rows
+from autocolor.widgets.widget import Choice, Entry, Heading, Switch, Widget
 
 Put = Callable[[Mapping[str, object]], object]
 """Changes fields of the row, by name."""
@@ -31,95 +36,127 @@ AXES: Final = "xyz"
 
 
 class World(NamedTuple):
-    """The bounds of the object, from which bars of coordinates get their range."""
+    """The bounds of the object, from which bars of coordinates get their range, and the names of tables."""
 
     low: Vector
     high: Vector
+    names: KnownNames = KnownNames(lambda _: (), {})
+
+    @property
+    def size(self) -> float:
+        """The whole size of the object, from its least corner to its largest; 1 for a point."""
+        return math.dist(self.low, self.high) or 1.0
 
     def range_of(self, axis: str) -> Range:
         """The usual range of a coordinate: that of the object and its whole size around.
 
         Without an axis, it is that of all three.
         """
-        size = math.dist(self.low, self.high) or 1.0
         low, high = min(self.low), max(self.high)
         if axis:
             low, high = self.low[AXES.index(axis)], self.high[AXES.index(axis)]
-        return bar_within(low - size, high + size)
+        return bar_within(low - self.size, high + self.size)
+
+    def range_of_lengths(self, is_zero_left_out: bool) -> Range:
+        """The usual range of a length: up to the whole size of the object."""
+        usual = bar_within(0, self.size)
+        return usual._replace(low=usual.step) if is_zero_left_out else usual
 
 
-def rows_of(row: Row, put: Put, world: World, leave_out: Sequence[str] = (), label: str = "") -> list[Widget]:
+class _Menu(NamedTuple):
+    """What the rows of a row of a table are made with; `label` stands before the names of its columns.
+
+    `axis` is the axis of its coordinates, where it is a row for one axis.
+    """
+
+    put: Put
+    world: World
+    label: str = ""
+    axis: str = ""
+
+
+def rows_of(row: Row, put: Put, world: World, leave_out: Sequence[str] = ()) -> list[Widget]:
     """The rows for a row of a table, in the order of its columns; `put` is called with what is changed.
 
-    Columns of `leave_out`, tables, references and absent vectors have none. `label` stands before the names.
+    Columns of `leave_out`, tables, held ranges and absent vectors have none.
     """
-    found: list[Widget] = []
+    return list(_rows_in(_Menu(put, world), row, leave_out))
+
+
+def _rows_in(menu: _Menu, row: Row, leave_out: Sequence[str] = ()) -> Iterator[Widget]:
     for name, field in fields_of(type(row)).items():
         if name not in leave_out:
-            value = vars(row)[name]
-            found += _rows_of_field(f"{label}{name}", name, field, value, put, world)
-    return found
+            yield from _rows_of_field(menu, name, field, vars(row)[name])
 
 
-def _rows_of_field(
-    label: str, name: str, field: Field, value: Any, put: Put, world: World
-) -> Iterator[Widget]:
+def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator[Widget]:
     column = field.column
     kind, told = column.kind, column.help
-    shown = label.replace("_", " ")
+    shown = f"{menu.label}{name}".replace("_", " ")
+    put = partial(_put, menu.put, name)
     if isinstance(kind, (Number, Whole)):
-        yield _bar(shown, name, field, value, put, world)
+        yield _bar(menu, shown, name, field, value)
     elif isinstance(kind, SwitchKind):
-        yield Switch(shown, told, is_on=bool(value), flip=partial(_put, put, name, not value))
+        yield Switch(shown, told, is_on=bool(value), flip=partial(put, not value))
     elif isinstance(kind, ChoiceKind):
-        choose = partial(_put, put, name)
-        yield Choice(shown, told, names=kind.names, present=str(value), choose=choose)
+        yield Choice(shown, told, names=kind.names, present=str(value), choose=put)
     elif isinstance(kind, Text):
-        yield Entry(shown, told, value=str(value), take=partial(_put, put, name))
+        yield Entry(shown, told, value=str(value), take=put)
     elif isinstance(kind, ColorKind):
-        yield Entry(shown, told, value=in_digits(value), take=partial(_put, put, name))
+        yield Entry(shown, told, value=in_digits(value), take=put)
     elif isinstance(kind, VectorKind) and value is not None:
-        yield from _vector_rows(shown, name, column, value, put, world)
+        yield from _vector_rows(menu, shown, name, column, value)
     elif isinstance(kind, AngleCurveKind):
-        yield from _curve_rows(shown, name, kind, told, value, put)
+        yield from _curve_rows(menu, shown, name, kind, told, value)
+    elif isinstance(kind, Referring):
+        yield from reference_rows(shown, field, kind, value, put, menu.world.names)
     elif isinstance(kind, Variant):
-        choose = partial(_put, put, name)
-        yield Choice(shown, told, names=tuple(kind.classes), present=kind.name_of(value), choose=choose)
-        yield from rows_of(value, put, world)
+        yield Choice(shown, told, names=tuple(kind.classes), present=kind.name_of(value), choose=put)
+        yield from _rows_in(menu, value)
+    elif isinstance(kind, Nested) and kind.inline:
+        yield from _rows_in(menu, value)
     elif isinstance(kind, Nested):
-        yield from _nested_rows(label, name, kind, told, value, put, world)
+        axis = name if name in AXES else ""
+        # In a narrow menu the name of the row itself is enough before those of its fields.
+        inside = _Menu(put, menu.world, f"{name} ", axis)
+        yield from _rows_of_row(inside, shown, told, value)
+    elif isinstance(kind, NamedRows):
+        if value:
+            yield Heading(shown)
+        for row in value:
+            inside = _Menu(partial(_put, put, row.name), menu.world, INDENT)
+            for each in _rows_of_row(inside, row.name, told, row, ("name",)):
+                # Others have rows of the same labels.
+                yield replace(each, within=f"{name}.{row.name}", help=f"{row.name}: {each.help}")
 
 
-def _nested_rows(
-    label: str, name: str, kind: Nested, told: str, value: Any, put: Put, world: World
+def _rows_of_row(
+    menu: _Menu, label: str, told: str, row: Row | None, leave_out: Sequence[str] = ()
 ) -> Iterator[Widget]:
-    """The rows of a row within a row; of an absent one, a switch that makes it."""
-    if kind.inline:
-        yield from rows_of(value, put, world)
+    """The rows of a row within a row, after its own switch if it has one; of an absent row, what makes it."""
+    if row is None:
+        yield Switch(label, told, is_on=False, flip=partial(menu.put, {}))
         return
-    inner = partial(_put, put, name)
-    shown = label.replace("_", " ")
-    if value is None:
-        yield Switch(shown, told, is_on=False, flip=partial(inner, {}))
-        return
-    if "on" in fields_of(kind.row_class):
-        flip = partial(inner, {"on": not value.on})
-        yield Switch(shown, told, is_on=value.on, flip=flip)
-    # In a narrow menu the name of the row itself is enough before those of its fields.
-    yield from rows_of(value, inner, world, leave_out=("on",), label=f"{name} ")
+    if "on" in fields_of(type(row)):
+        is_on = vars(row)["on"]
+        yield Switch(label, told, is_on=is_on, flip=partial(_put, menu.put, "on", not is_on))
+    yield from _rows_in(menu, row, (*leave_out, "on"))
 
 
-def _bar(label: str, name: str, field: Field, value: float | None, put: Put, world: World) -> Bar:
+def _bar(menu: _Menu, label: str, name: str, field: Field, value: float | None) -> Bar:
     """The bar of a number; one that may be absent, or without a limit, has a box that switches it."""
-    column = field.column
+    column, put, axis = field.column, menu.put, menu.axis
     kind = column.kind
-    axis = next((word for word in label.split() if len(word) == 1 and word in AXES), "")
-    usual = world.range_of(axis) if column.unit == WORLD_UNITS else bar_of(column) or Range(0, 1, 0.01)
+    usual = bar_of(column) or Range(0, 1, 0.01)
+    if column.unit == WORLD_UNITS and isinstance(kind, Number) and kind.at_least == 0:
+        usual = menu.world.range_of_lengths(is_zero_left_out=kind.above)
+    elif column.unit == WORLD_UNITS:
+        usual = menu.world.range_of(axis)
     endless = kind.endless if isinstance(kind, Number) else None
     flip: Callable[[], object] | None = None
     present = value
     if endless is not None:
-        limit = (world.low if endless < 0 else world.high)[AXES.find(axis)] if axis else 0.0
+        limit = (menu.world.low if endless < 0 else menu.world.high)[AXES.find(axis)] if axis else 0.0
         present = None if value == endless else value
         flip = partial(_put, put, name, limit if present is None else endless)
     elif field.is_optional:
@@ -139,11 +176,10 @@ def _bar(label: str, name: str, field: Field, value: float | None, put: Put, wor
     )
 
 
-def _vector_rows(
-    label: str, name: str, column: Column, value: Vector, put: Put, world: World
-) -> Iterator[Widget]:
+def _vector_rows(menu: _Menu, label: str, name: str, column: Column, value: Vector) -> Iterator[Widget]:
     for number, axis in enumerate(AXES):
-        usual = world.range_of(axis) if column.unit == WORLD_UNITS else Range(-1, 1, 0.01)
+        is_place = column.unit == WORLD_UNITS
+        usual = menu.world.range_of(axis) if is_place else Range(-1, 1, 0.01)
         yield Bar(
             f"{label} {axis}",
             _help(column),
@@ -151,16 +187,16 @@ def _vector_rows(
             low=usual.low,
             high=usual.high,
             step=usual.step,
-            put=partial(_put_component, put, name, value, number),
+            put=partial(_put_component, menu.put, name, value, number),
         )
 
 
 def _curve_rows(
-    label: str, name: str, kind: AngleCurveKind, told: str, curve: AngleCurve | None, put: Put
+    menu: _Menu, label: str, name: str, kind: AngleCurveKind, told: str, curve: AngleCurve | None
 ) -> Iterator[Widget]:
     """A switch for a curve over angles, and a bar for the share of each of its points."""
     begun = kind.start if curve is None else None
-    yield Switch(label, told, is_on=curve is not None, flip=partial(_put, put, name, begun))
+    yield Switch(label, told, is_on=curve is not None, flip=partial(_put, menu.put, name, begun))
     curve = curve or ()
     for number, (angle, share) in enumerate(curve):
         limits = kind.share_kind(number)
@@ -172,7 +208,7 @@ def _curve_rows(
             low=usual.low,
             high=usual.high,
             step=usual.step,
-            put=partial(_put_share, put, name, curve, number),
+            put=partial(_put_share, menu.put, name, curve, number),
         )
 
 

@@ -8,7 +8,7 @@ from typing import Final
 from autocolor.widgets.areas import Area
 from autocolor.widgets.colors import HEIGHT, NIGHT, SLATE, WIDTH
 from autocolor.widgets.items import Item, filled
-from autocolor.widgets.widget import ROW_LINES, Gap, Widget
+from autocolor.widgets.widget import ROW_LINES, Gap, Heading, Widget
 
 MESSAGE_LINES: Final = 16
 """The height of the message line, at the bottom of every screen."""
@@ -59,8 +59,10 @@ def pages_of(rows: Sequence[Widget], lines: int = MOST_LINES) -> list[list[Widge
     used = 0
     for row in rows:
         if used + lines_of(row) > lines - ROW_LINES:
-            pages.append([])
-            used = 0
+            # A heading goes with what is below it.
+            headings = [pages[-1].pop()] if len(pages[-1]) > 1 and isinstance(pages[-1][-1], Heading) else []
+            pages.append(headings)
+            used = sum(map(lines_of, headings))
         pages[-1].append(row)
         used += lines_of(row)
     return pages

@@ -57,11 +57,13 @@ class Widget:
     help: str = ""
     why_not: str = ""
     area: Area = NOWHERE
+    within: str = ""
+    """What it belongs to, where other things have rows of the same label."""
 
     @property
     def key(self) -> str:
         """What tells it from the others of its screen, however often it is made anew."""
-        return self.label
+        return f"{self.within}.{self.label}" if self.within else self.label
 
     @property
     def typed(self) -> Typed | None:

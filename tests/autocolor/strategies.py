@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Mesh, Paint, Part, Reflectance, Scene, Surface, View
 from autocolor.scene.curves import CURVES
+from autocolor.scene.lights.links import Links
 from autocolor.scene.reflection_models import MODELS, BlinnPhong, CookTorrance, Phong
 from autocolor.scene.scalars.mesh_scalars import MeshScalar
 from autocolor.scene.scalars.scalar import Scalar
@@ -135,6 +136,25 @@ growths = (
     | st.builds(SpecularGrowth, refractive_index=st.sampled_from([1.07, 1.5, 10.0]) | numbers(1.07, 10))
     | st.builds(SpecularGrowth, fresnel_curve=angle_curves)
 )
+
+
+def some_of(names: list[str]) -> st.SearchStrategy[tuple[str, ...]]:
+    """Some of the names, perhaps none."""
+    return st.lists(st.sampled_from(names), unique=True).map(tuple)
+
+
+@st.composite
+def links(draw: st.DrawFn, surfaces: list[str], parts: list[str]) -> Links:
+    """Links to any of these surfaces and parts; half of the lights have none."""
+    fields: dict[str, Any] = {}
+    if draw(st.booleans()):
+        for what, names in (("surfaces", surfaces), ("parts", parts)):
+            which = draw(st.sampled_from(["", "only", "except"]))
+            if which:
+                fields[f"{which}_{what}"] = draw(some_of(names))
+    return Links(**fields)
+
+
 exponents = st.sampled_from([0.0, 1.0, 5.0, 20.0, 50.0])
 models = (
     st.builds(Phong, exponents, growths)
@@ -212,12 +232,15 @@ def scenes(draw: st.DrawFn) -> Scene:
     """A scene with everything in it."""
     mesh = draw(meshes())
     mesh = mesh.with_scalars(*draw(mesh_scalars(mesh)))
-    names = ["body", "glass"]
+    names, parts = ["body", "glass"], list(mesh.part_names)
     return Scene(
         mesh,
         tuple(Part(name, draw(st.sampled_from(names)), draw(st.booleans())) for name in mesh.part_names),
         tuple(draw(surfaces(name)) for name in names),
-        tuple(draw(lights(name)) for name in draw(st.sampled_from([(), ("key",), ("key", "fill", "rim")]))),
+        tuple(
+            draw(lights(name, links=draw(links(names, parts))))
+            for name in draw(st.sampled_from([(), ("key",), ("key", "fill", "rim")]))
+        ),
         draw(views() | outside_views()),
         ambient=draw(numbers(0, 1)),
         scaling=draw(st.sampled_from(["surface", "object"])),

@@ -50,6 +50,8 @@ MIXES = [
     lambda scene: scene.with_surface("cube", diffuse=0.1, specular=2),
     lambda scene: scene.replace(lights=scene.lights[::-1]),
     lambda scene: scene.replace(lights=scene.lights[:2]),
+    lambda scene: scene.with_light("key", only_surfaces=["cube"]),
+    lambda scene: scene.with_light("key", except_surfaces=["cube"]),
 ]
 KEY_LIGHT = [
     lambda scene: scene.with_light("key", position=(4, -3, 2)),
@@ -58,6 +60,8 @@ KEY_LIGHT = [
     lambda scene: scene.with_light("key", cone_angle=10),
     lambda scene: scene.with_light("key", flaps={"x": {"minimum": 0.3}}),
     lambda scene: scene.with_light("key", name="lamp"),
+    lambda scene: scene.with_light("key", only_parts=["cube"]),
+    lambda scene: scene.with_light("key", except_parts=["cube"], only_surfaces=["sphere"]),
 ]
 SCALARS = [
     lambda scene: scene.replace(scalar={"name": "x"}),
@@ -237,6 +241,7 @@ def test_what_is_kept_gives_the_same_picture_as_a_fresh_one(edit: Any) -> None:
     fresh = render(edit(two_surfaces()), 24, 32)
     assert after.picture.intensity.tobytes() == fresh.intensity.tobytes()
     assert after.picture.surface_number.tobytes() == fresh.surface_number.tobytes()
+    assert after.picture.part_number.tobytes() == fresh.part_number.tobytes()
 
 
 EXPONENT = [lambda scene: scene.with_surface("sphere", exponent=3)]

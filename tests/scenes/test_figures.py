@@ -9,7 +9,16 @@ from PIL import Image
 
 import autocolor
 from ramtek_emu import Ramtek9300
-from scenes import figure_04, figure_10, figure_15, figure_curvature, figure_incidence, figure_part, figures
+from scenes import (
+    figure_04,
+    figure_10,
+    figure_15,
+    figure_curvature,
+    figure_incidence,
+    figure_links,
+    figure_part,
+    figures,
+)
 
 EXPECTED = {
     "04": {"figure-04.png", "figure-04-a.png", "figure-04-b.png", "figure-04-c.png"},
@@ -20,6 +29,7 @@ EXPECTED = {
     "10": {"figure-10.png", *(f"figure-10-{panel}.png" for panel in "abcdef")},
     "15": {"figure-15.png", "figure-15-a.png", "figure-15-b.png", "figure-15-c.png"},
     "part": {"figure-part.png", *(f"figure-part-{panel}.png" for panel in "abcd")},
+    "links": {"figure-links.png", *(f"figure-links-{panel}.png" for panel in "abcdef")},
     "curvature": {"figure-curvature.png", *(f"figure-curvature-{panel}.png" for panel in "abc")},
     "incidence": {"figure-incidence.png", *(f"figure-incidence-{panel}.png" for panel in "abcd")},
 }
@@ -139,6 +149,29 @@ def test_under_a_light_at_the_eye_the_glass_of_the_coupe_is_darker_than_its_pain
         gray[picture.surface_number == picture.surfaces.index(name) + 1] for name in ("glass", "body")
     )
     assert np.percentile(glass, 95) < np.percentile(body, 95)
+
+
+def test_the_panels_of_the_links_differ_from_that_of_everything_only_where_the_light_is_not() -> None:
+    coupe = figure_links.coupe()
+    every = autocolor.render(coupe, 240, 320)
+    for _, links, _ in figure_links.ON_THE_COUPE[1:]:
+        picture = autocolor.render(coupe.with_light("more", **links), 240, 320)
+        names = links.get("only_parts") or links["only_surfaces"]
+        of = ("part_number", "parts") if "only_parts" in links else ("surface_number", "surfaces")
+        numbers, known = (getattr(picture, field) for field in of)
+        is_linked = np.isin(numbers, [known.index(name) + 1 for name in names])
+        assert np.allclose(picture.intensity[is_linked], every.intensity[is_linked], atol=1e-5)
+        is_darker = picture.intensity < every.intensity - 1e-3
+        assert not (is_darker & is_linked).any()
+        assert is_darker[~is_linked & (picture.surface_number > 0)].mean() > 0.5
+
+
+def test_without_the_lamp_on_the_plane_the_bright_spot_of_figure_4_is_gone_and_the_side_stays() -> None:
+    point = autocolor.read_scene(figures.SCENES / "pyramid")
+    linked = point.with_light("lamp", **figure_links.ON_THE_PYRAMID[1][1])
+    before, after = (autocolor.render(scene, 240, 320).ranges.surfaces for scene in (point, linked))
+    assert after["plane"].maximum == after["plane"].minimum == pytest.approx(point.ambient)
+    assert after["pyramid"].maximum == pytest.approx(before["pyramid"].maximum)
 
 
 def test_the_bands_of_the_machined_part_keep_its_shading_and_flat_codes_do_not() -> None:

@@ -14,6 +14,9 @@ from autocolor.errors import InputError
 from autocolor.files.scenes.scene_text import FILE_TABLES, sparse_entry, sparse_tables
 from autocolor.files.scenes.toml_edit import TomlText
 from autocolor.files.scenes.toml_text import KeyPath, parsed_toml
+from autocolor.scene.columns.column import fields_of
+from autocolor.scene.columns.named_row_kinds import without_name
+from autocolor.scene.columns.reference_kinds import RangesByName
 from autocolor.scene.columns.rows import plain, with_values
 from autocolor.scene.scene import Scene
 
@@ -22,6 +25,11 @@ MOST_ROUNDS: Final = 6
 
 NEW_ROW: Final = 1 << 20
 """The number of the first row that is added to `[[lights]]` or `[[mesh]]`; the text has fewer."""
+
+ORDERED: Final = tuple(
+    (name,) for name, field in fields_of(Scene).items() if isinstance(field.column.kind, RangesByName)
+)
+"""The paths of tables whose keys have an order: a new one that is not the last cannot be added."""
 
 ReadText = Callable[[bytes], Scene]
 """Reads the text of a scene file, with the mesh that it is to have; raises InputError."""
@@ -154,7 +162,7 @@ def _change(text: TomlText, path: KeyPath, before: Tables, after: Tables, told: 
                 _set_all(text, path, {key: told[key]})
         elif isinstance(value, Mapping) and isinstance(before[key], Mapping):
             kept = [name for name in before[key] if name in value]
-            if kept == list(value)[: len(kept)]:
+            if here not in ORDERED or kept == list(value)[: len(kept)]:
                 _change(text, here, before[key], value, told.get(key, value))
             else:
                 text.set(here, value)
@@ -183,14 +191,14 @@ def _change_named(
         if old is not None and (name in written or table == "parts"):
             _change(text, (table, name), old, row, keys)
         elif old != row or is_moved:
-            _set_all(text, (table, name), {key: value for key, value in keys.items() if key != "name"})
+            _set_all(text, (table, name), without_name(keys))
     if is_moved and not text.arrange(table, names):
         # Rows without headers of their own cannot be moved, but new ones stand after them.
         kept = [name for name in written if name in names]
         if kept != names[: len(kept)]:
             text.remove((table,))
             for name, keys in zip(names, told, strict=True):
-                _set_all(text, (table, name), {key: value for key, value in keys.items() if key != "name"})
+                _set_all(text, (table, name), without_name(keys))
 
 
 def _change_lights(

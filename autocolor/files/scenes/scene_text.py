@@ -8,10 +8,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from autocolor.scene.columns.column import Row, fields_of
+from autocolor.scene.columns.named_row_kinds import NamedRows, without_name
 from autocolor.scene.columns.row_kinds import Nested, Rows
 from autocolor.scene.columns.rows import made, plain
 from autocolor.scene.geometry.node_normals import CREASE_ANGLE
 from autocolor.scene.lights.flaps import Flap
+from autocolor.scene.lights.half_spaces import HalfSpace
 from autocolor.scene.lights.light import Light
 from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.scene import Scene
@@ -31,6 +33,7 @@ ALWAYS_WRITTEN: Final[dict[type[Row], tuple[str, ...]]] = {
     Light: ("name", "position"),
     View: ("eye", "direction", "target"),
     Flap: (),
+    HalfSpace: ("name", "point", "direction"),
     Scalar: ("name",),
 }
 """The keys that are written even if `without_defaults` leaves out others."""
@@ -92,6 +95,10 @@ def sparse_row(row: Row) -> dict[str, object]:
     default, of_model = plain(made(type(row), given)), plain(made(type(row), {**given, **model}))
     if isinstance(row, Light):
         keys["flaps"] = {axis: sparse_row(flap) for axis, flap in vars(row.flaps).items() if flap is not None}
+    for name, field in fields_of(type(row)).items():
+        if isinstance(field.column.kind, NamedRows) and name in keys:
+            inner = {each.name: sparse_row(each) for each in vars(row)[name]}
+            keys[name] = {key: without_name(each) for key, each in inner.items()}
     return {
         key: value
         for key, value in keys.items()
@@ -103,8 +110,7 @@ def _rows(name: str, kind: Rows, rows: Any) -> Iterator[str]:
     """The rows of a table, as [name.ROW] tables or as [[name]] tables."""
     for keys in rows:
         if kind.by_name:
-            others = {key: value for key, value in keys.items() if key != "name"}
-            yield table_text(f"[{name}.{toml_key(keys['name'])}]", others)
+            yield table_text(f"[{name}.{toml_key(keys['name'])}]", without_name(keys))
         else:
             yield table_text(f"[[{name}]]", keys)
 

@@ -16,8 +16,9 @@ from typing import Any, Final
 
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import Field, Kind, Row, fields_of
-from autocolor.scene.columns.reference_kinds import Reference
-from autocolor.scene.columns.row_kinds import NamedRows, Nested, Rows, Variant
+from autocolor.scene.columns.named_row_kinds import NamedRows
+from autocolor.scene.columns.reference_kinds import Reference, WordOrName
+from autocolor.scene.columns.row_kinds import Nested, Rows, Variant
 from autocolor.scene.columns.rows import plain
 from autocolor.scene.columns.value_kinds import (
     LARGEST_PLACE,
@@ -35,6 +36,9 @@ NUMBER: Final = "number"
 
 AXES: Final = ("x", "y", "z")
 LARGEST_FLOAT: Final = 1.7976931348623157e308
+
+OF_TEXT: Final = (Text, Choice, ColorKind, Reference, WordOrName, Variant)
+"""The kinds whose values are text."""
 
 OF_JSON: Final = ("[", "{", '"')
 """What the text of a value begins with that is JSON."""
@@ -67,7 +71,7 @@ class SqlColumn:
             return "REAL"
         if isinstance(self.kind, (Whole, Switch)):
             return "INTEGER"
-        return "TEXT" if isinstance(self.kind, (Text, Choice, ColorKind, Reference, Variant)) else "ANY"
+        return "TEXT" if isinstance(self.kind, OF_TEXT) else "ANY"
 
     @property
     def checks(self) -> Iterator[str]:
@@ -88,7 +92,7 @@ class SqlColumn:
         elif isinstance(kind, (Choice, Variant)):
             names = kind.names if isinstance(kind, Choice) else kind.classes
             yield f"{name} IN ({', '.join(map(literal, names))})"
-        elif isinstance(kind, Reference) or (isinstance(kind, Text) and not kind.may_be_empty):
+        elif isinstance(kind, (Reference, WordOrName)) or (isinstance(kind, Text) and not kind.may_be_empty):
             yield f"{name} <> ''"
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Any, Final, NamedTuple
 
@@ -10,6 +11,9 @@ from autocolor.errors import InputError
 
 Path = tuple[str | int, ...]
 """The keys and row numbers that lead from a row to a value inside it."""
+
+BARE: Final = re.compile(r"[\w-]{1,100}")
+"""Names in a path that need no quotes."""
 
 
 class Problem(NamedTuple):
@@ -28,10 +32,13 @@ class Problem(NamedTuple):
 
         >>> Problem(("flaps", "z", "on"), "must be true or false, not 3").sentence
         'flaps.z.on must be true or false, not 3'
+        >>> Problem(("half_spaces", "left door", "on"), "must be true or false, not 3").sentence
+        "half_spaces.'left door'.on must be true or false, not 3"
         """
         key = ""
         for part in self.path[:-1] if self.names_key else self.path:
-            key += f"[{part + 1}]" if isinstance(part, int) else f".{part}" if key else part
+            name = part if isinstance(part, str) and BARE.fullmatch(part) else shown(part)
+            key += f"[{part + 1}]" if isinstance(part, int) else f".{name}" if key else name
         return f"{key}{'' if self.text.startswith('must ') else ':'} {self.text}" if key else self.text
 
     def under(self, path: Path) -> Problem:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any, Final
 
 from autocolor.checks import either, listed, nearest, shown
@@ -13,9 +12,6 @@ from autocolor.scene.columns.problems import REFUSED, Path, Problem, RowError
 from autocolor.scene.columns.rows import changed, cost, difference, made, plain
 
 MOST_ROWS: Final = 1_000_000
-
-MOST_NAMED_ROWS: Final = 64
-"""Assumed: the most rows inside another one; more would hardly be told apart on a screen."""
 
 
 @dataclass(frozen=True)
@@ -178,80 +174,6 @@ class Rows(Kind):
         pairs = zip(one, other, strict=True)
         costs = [cost(a, b) for a, b in pairs if a is not b]
         return max((each for each in costs if each is not None), default=None)
-
-
-@dataclass(frozen=True)
-class NamedRows(Kind):
-    """Rows of a class with unique names, inside another row; they are sorted by name.
-
-    Files write them as a table of tables by name. A change is such a table, too: it changes the keys of the
-    rows that are there, adds rows, and removes those for which it has None.
-    """
-
-    row_class: type[Row]
-
-    def accepts(self) -> str:
-        name = self.row_class.__name__
-        return f"Mapping[str, Row | {name}Changes | None] | Sequence[Row]"
-
-    def rule(self) -> str:
-        return f"must be a table of {self.row_class.noun}s by name"
-
-    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
-        if isinstance(value, Mapping):
-            return self.changed((), value, path, problems)
-        if not isinstance(value, (list, tuple)) or not all(type(row) is self.row_class for row in value):
-            problems.append(Problem(path, f"{self.rule()}, not {shown(value)}"))
-            return REFUSED
-        rows: list[Any] = sorted(value, key=lambda row: row.name)
-        for one, other in pairwise(rows):
-            if one.name == other.name:
-                text = "must have a unique name, not that of another; rename it"
-                problems.append(Problem((*path, one.name), text))
-                return REFUSED
-        return tuple(rows)
-
-    def changed(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
-        rows = {row.name: row for row in present} if isinstance(present, tuple) else {}
-        nested = Nested(self.row_class)
-        if len(rows) + len(table) > MOST_NAMED_ROWS:
-            text = f"must be at most {MOST_NAMED_ROWS}, not {len(rows) + len(table):,}; leave some out"
-            problems.append(Problem(path, text))
-            return REFUSED
-        for name, given in table.items():
-            if given is None:
-                rows.pop(name, None)
-            elif name in rows and isinstance(given, Mapping):
-                rows[name] = nested.changed(rows[name], given, (*path, name), problems)
-            else:
-                keys = {"name": name, **given} if isinstance(given, Mapping) else given
-                rows[name] = nested.held(keys, (*path, name), problems)
-        if any(row is REFUSED for row in rows.values()):
-            return REFUSED
-        return self.held(tuple(rows.values()), path, problems)
-
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
-        return {name: {row.name: _without_name(plain(row)) for row in value} or None}
-
-    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
-        before, after = ({row.name: row for row in rows} for rows in (one, other))
-        told: dict[str, object] = {gone: None for gone in before if gone not in after}
-        for key, row in after.items():
-            if key not in before:
-                told[key] = _without_name(plain(row))
-            elif inner := difference(before[key], row):
-                told[key] = inner
-        return {name: told} if told else {}
-
-    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
-        if [row.name for row in one] != [row.name for row in other]:
-            return own
-        costs = [cost(a, b) for a, b in zip(one, other, strict=True) if a is not b]
-        return max((each for each in costs if each is not None), default=None)
-
-
-def _without_name(keys: Mapping[str, object]) -> dict[str, object]:
-    return {key: value for key, value in keys.items() if key != "name"}
 
 
 def _refused(error: RowError, path: Path, problems: list[Problem]) -> Any:

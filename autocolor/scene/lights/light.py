@@ -16,9 +16,10 @@ from autocolor.checks import Vector
 from autocolor.scene.changes import LightChanges
 from autocolor.scene.columns.bars import Bar
 from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
+from autocolor.scene.columns.named_row_kinds import NamedRows
 from autocolor.scene.columns.problems import Problem
 from autocolor.scene.columns.reference_kinds import WordOrName
-from autocolor.scene.columns.row_kinds import NamedRows, Nested
+from autocolor.scene.columns.row_kinds import Nested
 from autocolor.scene.columns.rows import changed
 from autocolor.scene.columns.value_kinds import Choice, Number, Switch, Text, VectorKind
 from autocolor.scene.lights.flaps import Flaps

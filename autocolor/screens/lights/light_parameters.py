@@ -64,7 +64,7 @@ def choose_kind(session: Session, light: Light, kind: str) -> None:
         absent = {name: _default(name) for name in ("direction", "aim", "concentration", "cone_angle")}
         put_light(session, light.name, absent)
     elif kind == AIM:
-        put_light(session, light.name, {"aim": aim_of(light, *session.world)})
+        put_light(session, light.name, {"aim": aim_of(light, session.world.low, session.world.high)})
     else:
         put_light(session, light.name, {"direction": light.axis or DOWN})
 

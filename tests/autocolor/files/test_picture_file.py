@@ -19,12 +19,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, Light, Scene, UsageError, read_picture, read_scene, render, write_picture
+from autocolor import (
+    Flap,
+    Flaps,
+    Light,
+    Mesh,
+    Scene,
+    UsageError,
+    read_picture,
+    read_scene,
+    render,
+    scene_of,
+    write_picture,
+)
 from autocolor.errors import InputError, MissingInputError, OutputError, WriteError
 from autocolor.files.picture_file import PICTURE_FILE, SavedPicture
 from autocolor.mapping.display_image import display_image
 from autocolor.scene.scalars.mesh_scalars import MeshScalar
-from tests.autocolor.meshes import cube, wall, wall_scene
+from tests.autocolor.meshes import cube, grid, wall, wall_scene
 from tests.autocolor.strategies import scenes
 
 LINES, ELEMENTS = 9, 12
@@ -144,6 +156,8 @@ def test_a_picture_comes_back_with_its_scene(tmp_path: Path) -> None:
     assert equal_scenes(again.scene, scene)
     assert (again.picture.intensity == picture.intensity).all()
     assert (again.picture.surface_number == picture.surface_number).all()
+    assert again.picture.part_number.tobytes() == picture.part_number.tobytes()
+    assert again.picture.parts == picture.parts == ("wall",)
     assert again.picture.surfaces == picture.surfaces
     assert again.picture.ranges == picture.ranges
     assert (display_image(again.scene, again.picture).words == display_image(scene, picture).words).all()
@@ -193,6 +207,8 @@ def test_every_scene_that_renders_comes_back_with_equal_words(
     write_picture(path, picture, scene)
     again = read_picture(path)
     assert equal_scenes(again.scene, scene)
+    assert again.picture.part_number.tobytes() == picture.part_number.tobytes()
+    assert again.picture.parts == picture.parts
     then = display_image(again.scene, again.picture)
     assert (then.words == now.words).all()
     assert (then.entries == now.entries).all()
@@ -206,6 +222,7 @@ def test_numpy_can_open_a_picture_file(tmp_path: Path) -> None:
         scale = json.loads(arrays["header"].tobytes())["scale"]
         assert (arrays["relative_intensity"] * np.float32(scale) == picture.intensity).all()
         assert (arrays["surface_number"] == picture.surface_number).all()
+        assert (arrays["part_number"] == picture.part_number).all()
         assert (arrays["coordinates"] == scene.mesh.coordinates).all()
 
 
@@ -369,7 +386,7 @@ def change_scene(table: str, row: int | None = None, **fields: Any) -> Callable[
 @pytest.mark.parametrize(
     ("edit", "sentence"),
     [
-        (change(format="autocolor picture 4"), "its format must be 'autocolor picture 3'"),
+        (change(format="autocolor picture 5"), "its format must be 'autocolor picture 4'"),
         (change(format="autocolor picture 2"), "it must have the keys of its format, not others"),
         (change(scale=0), "its scale must be a number above 0, not 0"),
         (change(scale=-1.5), "its scale must be a number above 0, not -1.5"),
@@ -456,6 +473,11 @@ WRONG_ARRAYS: list[tuple[str, npt.NDArray[Any]]] = [
     ("surface_number", np.zeros((LINES, ELEMENTS), np.int8)),
     ("surface_number", np.zeros((LINES, ELEMENTS, 1), np.uint8)),
     ("surface_number", np.array(1, np.uint8)),
+    ("part_number", np.ones((ELEMENTS, LINES), np.int32)),
+    ("part_number", np.ones((LINES, ELEMENTS), np.uint8)),
+    ("part_number", np.ones(LINES * ELEMENTS, np.int32)),
+    ("part_number", np.full((LINES, ELEMENTS), 2, np.int32)),
+    ("part_number", np.full((LINES, ELEMENTS), -1, np.int32)),
     ("coordinates", np.full((4, 3), np.nan)),
     ("coordinates", np.full((4, 3), 1e31)),
     ("coordinates", np.zeros((4, 2))),
@@ -469,6 +491,40 @@ WRONG_ARRAYS: list[tuple[str, npt.NDArray[Any]]] = [
     ("part_numbers", np.array([{"a": 1}], object)),
     ("header", np.array(["{}"])),
 ]
+
+
+def panels() -> Scene:
+    """Two walls side by side, of one surface, and a part without polygons."""
+    mesh = Mesh.joined([grid(1, 1, (x, 0, 0), (1, 0, 0), (0, 0, 1), name) for x, name in enumerate("ab")])
+    mesh = Mesh(mesh.coordinates, mesh.node_numbers, mesh.part_numbers, ("a", "b", "none"))
+    return scene_of(mesh)
+
+
+def test_part_numbers_that_break_a_rule_are_refused_in_a_sentence(tmp_path: Path) -> None:
+    again = saved(tmp_path / "panels.npz", panels())
+    assert again.picture.parts == ("a", "b", "none")
+    numbers = again.picture.part_number
+    assert set(numbers.ravel().tolist()) == {0, 1, 2}
+    whole = (tmp_path / "panels.npz").read_bytes()
+    line, element = np.argwhere(numbers == 1)[0].tolist()
+    empty_line, empty = np.argwhere(numbers == 0)[0].tolist()
+    at, not_there = f"(line {line}, element {element})", f"(line {empty_line}, element {empty})"
+    of_surface = "a part number must be that of a part of the surface there"
+    for place, number, sentence in (
+        ((line, element), 4, "a part number must be 0 to 3, not 4"),
+        ((line, element), -1, "a part number must be 0 to 3, not -1"),
+        ((line, element), 0, f"{of_surface}, not 0 {at}"),
+        ((line, element), 3, f"{of_surface}, not 3 {at}"),
+        ((empty_line, empty), 1, f"{of_surface}, not 1 {not_there}"),
+        ((empty_line, empty), 3, f"{of_surface}, not 3 {not_there}"),
+    ):
+        changed = numbers.copy()
+        changed[place] = number
+        with pytest.raises(InputError) as caught:
+            read_bytes(with_array(whole, "part_number", changed), tmp_path)
+        assert str(caught.value) == f"changed.npz: {sentence}; save the picture again"
+    # Another part of the same surface may be there.
+    read_bytes(with_array(whole, "part_number", np.where(numbers > 0, 2, 0).astype(np.int32)), tmp_path)
 
 
 WRONG_SCALARS: list[tuple[str, npt.NDArray[Any]]] = [

@@ -69,20 +69,32 @@ def test_the_values_of_the_first_picture_files_give_the_same_scene(scene: Scene)
     assert columns(read_again(old, scene)) == columns(scene)
 
 
-@pytest.mark.parametrize("old", ["autocolor picture 1", "autocolor picture 2"])
+@pytest.mark.parametrize("old", ["autocolor picture 1", "autocolor picture 2", "autocolor picture 3"])
 def test_a_picture_file_of_an_older_format_is_still_read(tmp_path: Path, old: str) -> None:
     scene = wall_scene(ambient=0.5)
     picture = render(scene, 6, 8)
     write_picture(tmp_path / "new.npz", picture, scene)
     header, arrays = read_array_file(PICTURE_FILE, tmp_path / "new.npz")
-    header = {key: header[key] for key in PICTURE_FILE.keys}
-    older = dataclasses.replace(PICTURE_FILE, formats=(old,), series={})
+    if old == "autocolor picture 3":
+        header = {key: header[key] for key in (*PICTURE_FILE.keys, *PICTURE_FILE.series)}
+    else:
+        header = {key: header[key] for key in PICTURE_FILE.keys}
+    del arrays["part_number"]
+    older = dataclasses.replace(PICTURE_FILE, formats=(old,), added=frozenset())
+    older = dataclasses.replace(older, arrays={name: PICTURE_FILE.arrays[name] for name in arrays})
     if old == "autocolor picture 1":
         header["scene"] = nested(header["scene"])
     (tmp_path / "old.npz").write_bytes(array_file_bytes(older, header, arrays))
     again = read_picture(tmp_path / "old.npz")
     assert columns(again.scene) == columns(scene)
     assert (again.picture.intensity == picture.intensity).all()
+    assert (again.picture.surface_number == picture.surface_number).all()
+    # It does not know its parts, also once it is written again.
+    write_picture(tmp_path / "again.npz", again.picture, again.scene)
+    for each in (again, read_picture(tmp_path / "again.npz")):
+        assert each.picture.parts == ()
+        assert each.picture.part_number.shape == (6, 8)
+        assert not each.picture.part_number.any()
 
 
 def test_what_is_absent_or_endless_is_left_out() -> None:

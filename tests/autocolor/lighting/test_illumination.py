@@ -52,7 +52,10 @@ def test_the_picture_is_the_weighted_sum_of_the_planes(scene: Scene) -> None:
         if light.on and light.intensity > 0:
             diffuse, specular = picture.light_planes[light.name].values.astype(np.float64)
             for surface in points.slices:
-                reflectance = scene.surfaces[surface.surface_number - 1].reflectance
+                name = scene.surfaces[surface.surface_number - 1].name
+                if not light.links.shines_on_surface(name):
+                    continue
+                reflectance = scene.surface(name).reflectance
                 both = reflectance.diffuse * diffuse + reflectance.specular * specular
                 expected[surface.pixels] += light.intensity * both[surface.pixels]
     assert picture.relative * picture.scale == pytest.approx(expected, abs=4e-6 * max([*expected, 1e-30]))

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor import InputError, Light, Reflectance, Surface, render
+from autocolor import InputError, Light, Part, Reflectance, Surface, render
 from autocolor.lighting.light_mix import light_mix
+from autocolor.scene.lights.links import Links
 from autocolor.scene.reflection_models import CookTorrance, Phong, ReflectionModel
 from tests.autocolor.meshes import sphere, wall_scene
 from tests.autocolor.strategies import lights, numbers, surfaces
@@ -51,6 +52,35 @@ def test_only_visible_surfaces_have_weights() -> None:
     both = (Surface("one"), Surface("other"))
     mix = light_mix({2: Phong()}, both, [Light("key", (0, 0, 0))], 0.0)
     assert list(mix.lights["key"]) == [2]
+
+
+def test_a_light_has_no_weight_on_a_surface_that_it_is_not_linked_to() -> None:
+    both = (Surface("one"), Surface("other"))
+    parts = (Part("left", "one"), Part("middle", "other"), Part("right", "other"))
+    for links, lit in (
+        ({"only_surfaces": ["one"]}, {1}),
+        ({"except_surfaces": ["one"]}, {2}),
+        ({"only_surfaces": []}, set()),
+        ({"except_surfaces": []}, {1, 2}),
+        ({"only_parts": ["left"]}, {1}),
+        ({"except_parts": ["middle"]}, {1, 2}),
+        ({"except_parts": ["middle", "right"]}, {1}),
+        ({"only_parts": ["right"], "except_surfaces": ["other"]}, set()),
+    ):
+        light = Light("key", (0, 0, 0), 2.0, links=Links(**links))
+        mix = light_mix(PHONG, both, [light], 0.0, parts)
+        assert list(mix.lights["key"]) == [1, 2]
+        assert {number for number, weights in mix.lights["key"].items() if any(weights)} == lit
+
+
+def test_a_light_of_any_intensity_is_not_refused_for_surfaces_that_it_does_not_reach() -> None:
+    strong = Light("key", (2, -3, 3), 1e39)
+    for links in ({"except_surfaces": ["sphere"]}, {"except_parts": ["sphere"]}):
+        scene = wall_scene(sphere(), lights=[strong.replace(**links)], ambient=0.5)  # type: ignore[arg-type]
+        picture = render(scene, 12, 16)
+        assert set(picture.intensity[picture.surface_number > 0].tolist()) == {0.5}
+    with pytest.raises(InputError, match="surface 'sphere' under light 'key': intensities must stay below"):
+        render(wall_scene(sphere(), lights=[strong.replace(only_parts=["sphere"])]), 12, 16)
 
 
 def test_nothing_at_all_has_a_scale_of_1() -> None:

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,7 +11,7 @@ from autocolor import Light, Picture, Scene, render
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import level_ranges
 from tests.autocolor.meshes import sphere, wall_scene
-from tests.autocolor.strategies import scenes
+from tests.autocolor.strategies import lights, scenes
 
 
 def close_to(expected: object, largest: float) -> object:
@@ -43,6 +45,60 @@ def test_the_picture_is_the_ambient_and_the_sum_of_the_single_lights(scene: Scen
     picture = render(scene, 12, 16)
     ambient = np.where(picture.surface_number > 0, scene.ambient, 0.0)
     assert picture.intensity == close_to(sum(singles, ambient), picture.ranges.whole.maximum)
+
+
+def linked(scene: Scene, surface: str) -> Scene:
+    """The scene with the lights that shine on a surface, none of them linked to surfaces."""
+    lights = [
+        light.replace(links=light.links.replace(only_surfaces=None, except_surfaces=None))
+        for light in scene.lights
+        if light.links.shines_on_surface(surface)
+    ]
+    return scene.replace(lights=lights)
+
+
+@given(scenes())
+def test_each_surface_is_as_in_a_picture_with_no_other_lights_than_shine_on_it(scene: Scene) -> None:
+    picture = render(scene, 12, 16)
+    for number, surface in enumerate(scene.surfaces, 1):
+        alone = render(linked(scene, surface.name), 12, 16)
+        here = picture.surface_number == number
+        largest = max(picture.ranges.whole.maximum, alone.ranges.whole.maximum)
+        assert picture.intensity[here] == close_to(alone.intensity[here], largest)
+
+
+@given(scenes(), lights(), st.sampled_from(["only", "except"]))
+def test_a_light_linked_to_a_surface_is_to_the_bit_one_without_d_and_s_on_the_others(
+    scene: Scene, light: Light, which: str
+) -> None:
+    # A surface without reflection keeps the scale: one that the light shines on has D = 1.
+    scene = scene.replace(ambient=0.0, lights=()).with_surface("body", diffuse=1.0, specular=0.5)
+    dark = scene.with_surface("glass", diffuse=0.0, specular=0.0)
+    names = ["body"] if which == "only" else ["glass"]
+    linked = light.replace(**{f"{which}_surfaces": names})  # type: ignore[arg-type]
+    one, other = (
+        render(each.replace(lights=(shining,)), 12, 16) for each, shining in ((scene, linked), (dark, light))
+    )
+    assert one.intensity.tobytes() == other.intensity.tobytes()
+
+
+@given(scenes())
+def test_the_part_at_a_pixel_has_the_surface_there(scene: Scene) -> None:
+    picture = render(scene, 9, 13)
+    assert picture.parts == scene.mesh.part_names
+    assert (picture.part_number.shape, picture.part_number.dtype.name) == ((9, 13), "int32")
+    assert not picture.part_number.flags.writeable
+    surfaces = np.array([0, *scene.surface_number_of_part])
+    assert (surfaces[picture.part_number] == picture.surface_number).all()
+
+
+def test_a_picture_works_its_part_numbers_out_when_they_are_asked_for() -> None:
+    picture = render(wall_scene(sphere()), 12, 16)
+    assert picture.visible_parts is not None
+    assert "numbers" not in vars(picture.visible_parts)
+    assert picture.part_number.max() == 1
+    with_scalar = dataclasses.replace(picture, scalar_values=None)
+    assert with_scalar.visible_parts is picture.visible_parts
 
 
 @given(scenes(), st.sampled_from([1e-20, 1e-6, 0.1, 1 / 3, 2.0, 3.7, 1e6, 1e20]))
@@ -95,7 +151,8 @@ def test_the_planes_of_the_lights_add_up_to_the_picture(scene: Scene) -> None:
             for number, surface in enumerate(scene.surfaces, 1):
                 d, s = surface.reflectance.diffuse, surface.reflectance.specular
                 both = light.intensity * (d * plane.diffuse + s * plane.specular)
-                total += np.where(picture.surface_number == number, both, 0)
+                if light.links.shines_on_surface(surface.name):
+                    total += np.where(picture.surface_number == number, both, 0)
     assert picture.intensity == close_to(total, picture.ranges.whole.maximum)
 
 
@@ -128,8 +185,15 @@ def test_a_picture_from_its_own_rasters_is_the_same_picture(scene: Scene) -> Non
     relative = np.zeros(9 * 13, np.float32)
     relative[picture.pixels] = picture.relative
     again = Picture.from_rasters(
-        relative.reshape(9, 13), picture.surface_number, picture.surfaces, picture.scale
+        relative.reshape(9, 13),
+        picture.surface_number,
+        picture.surfaces,
+        picture.scale,
+        part_number=picture.part_number,
+        parts=picture.parts,
     )
+    assert again.part_number.tobytes() == picture.part_number.tobytes()
+    assert again.parts == picture.parts
     assert again.intensity.tobytes() == picture.intensity.tobytes()
     assert again.surface_number.tobytes() == picture.surface_number.tobytes()
     assert again.ranges == picture.ranges
@@ -152,3 +216,6 @@ def test_a_picture_from_its_rasters_has_the_scalar() -> None:
     assert again.scalar is not None
     assert again.scalar.tobytes() == picture.scalar.tobytes()
     assert again.scalar_limits == picture.scalar_limits
+    # It was not told its parts.
+    assert again.parts == ()
+    assert not again.part_number.any()

@@ -8,6 +8,7 @@ from PIL import Image
 
 from autocolor import InputError, Light, OutputError, Studio, read_rig, write_rig, write_scene
 from autocolor.files.state.recent import recent_files
+from autocolor.scene.lights.links import Links
 from autocolor.screens.session import MESSAGE_SECONDS, PICTURE, Session
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import wall_scene
@@ -115,6 +116,14 @@ def test_one_light_alone_and_all(session: Session) -> None:
     assert session.message == "all lights on"
 
 
+def test_the_world_knows_the_names_in_the_tables_as_they_are_now(session: Session) -> None:
+    of = session.world.names.of
+    for table in ("lights", "surfaces", "parts"):
+        assert list(of(table)) == [row.name for row in vars(session.scene)[table]]
+    session.edit(session.scene.with_new_light("another", position=(0, 0, 9)))
+    assert of("lights")[-1] == "another"
+
+
 def test_the_world_is_that_of_the_object(session: Session) -> None:
     assert session.world.low == (0, 0, 0)
     assert session.world.high == (1, 1, 1)
@@ -142,6 +151,18 @@ def test_a_rig_in_a_scene_file_of_any_other_name_is_put_on_the_scene(
     assert [light.name for light in session.scene.lights] == ["lamp"]
     assert session.scene.name == "boxes"
     assert recent_files() == ()
+
+
+def test_a_rig_whose_lights_are_linked_to_what_is_not_there_is_put_on_the_scene_and_says_so(
+    session: Session, tmp_path: Path
+) -> None:
+    lamp = Light("lamp", (0, -2, 1), links=Links(only_surfaces=("wall",)))
+    write_rig(tmp_path / "lamps.toml", wall_scene(lights=[lamp]))
+    session.open(tmp_path / "lamps.toml")
+    assert session.scene.light("lamp").links == Links()
+    assert session.message == (
+        "the lights of lamps.toml, fitted to boxes, without links to what it lacks; undo goes back"
+    )
 
 
 def test_a_rig_that_is_broken_is_refused(session: Session, tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import pytest
 
@@ -14,6 +14,8 @@ from autocolor.scene.columns.angle_kinds import AngleCurve, AngleCurveKind
 from autocolor.scene.columns.bars import Bar as Range
 from autocolor.scene.columns.color_kinds import ColorKind
 from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
+from autocolor.scene.columns.named_row_kinds import NamedRows
+from autocolor.scene.columns.reference_kinds import References, WordOrName
 from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.columns.rows import changed
 from autocolor.scene.columns.value_kinds import Choice as ChoiceKind
@@ -22,7 +24,8 @@ from autocolor.scene.columns.value_kinds import Switch as SwitchKind
 from autocolor.widgets.areas import Area
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.column_rows import World, rows_of
-from autocolor.widgets.widget import Choice, Entry, Place, Switch, Widget
+from autocolor.widgets.name_rows import KnownNames
+from autocolor.widgets.widget import Choice, Entry, Heading, Place, Switch, Widget
 
 MIX = Tier.MIX
 WORLD = World((-1.0, -2.0, 0.0), (1.0, 2.0, 1.0))
@@ -59,6 +62,21 @@ class Coarse(Row):
 
 
 @dataclass(frozen=True)
+class Hood(Row):
+    """One of any number, by name."""
+
+    noun: ClassVar[str] = "hood"
+
+    name: Annotated[str, Column(Text(), MIX, "Its name.")]
+    point: Annotated[Vector, Column(VectorKind(), MIX, "Where it is.", WORLD_UNITS)] = (0.0, 0.0, 0.0)
+    width: Annotated[float, Column(Number(at_least=0), MIX, "How wide.", WORLD_UNITS)] = 0.0
+    length: Annotated[float | None, Column(Number(at_least=0, above=True), MIX, "How long.", WORLD_UNITS)] = (
+        None
+    )
+    on: Annotated[bool, Column(SwitchKind(), MIX, "Whether it is used.")] = True
+
+
+@dataclass(frozen=True)
 class Lamp(Row):
     """One column of each kind."""
 
@@ -87,6 +105,9 @@ class Lamp(Row):
         Column(AngleCurveKind(0.1, ((0.0, 0.2), (40.0, 0.4), (90.0, 1.0))), MIX, "Its sheen."),
     ] = None
     curve: Annotated[str, Column(CurveKind({"linear": 1}), MIX, "Its curve.")] = "linear"
+    hoods: Annotated[tuple[Hood, ...], Column(NamedRows(Hood), MIX, "Its hoods.")] = ()
+    follows: Annotated[str | None, Column(WordOrName("lamps", "sun"), MIX, "What it follows.")] = None
+    walls: Annotated[tuple[str, ...] | None, Column(References("walls"), MIX, "Its walls.")] = None
 
 
 class Table:
@@ -117,7 +138,7 @@ def test_each_kind_of_column_has_its_rows_in_their_order(table: Table) -> None:
         "name": Entry, "share": Bar, "tilt angle": Bar, "blades": Bar, "count": Bar, "reach": Bar,
         "on": Switch, "mode": Choice, "tint": Entry, "place x": Bar, "place y": Bar, "place z": Bar,
         "finish": Choice, "grain": Bar, "density": Bar, "shutters x": Switch, "shutters z": Switch,
-        "sheen": Switch,
+        "sheen": Switch, "follows": Choice, "walls": Switch,
     }  # fmt: skip
     assert {label: type(row) for label, row in table.rows().items()} == kinds
     assert list(table.rows()) == list(kinds)
@@ -243,3 +264,47 @@ def test_a_point_without_size_has_a_range_too() -> None:
     nowhere = World((3.0, 3.0, 3.0), (3.0, 3.0, 3.0))
     usual = nowhere.range_of("x")
     assert (usual.low, usual.high) == (2, 4)
+
+
+def test_a_length_reaches_from_nothing_to_the_size_of_the_object() -> None:
+    table = Table(Lamp(hoods=(Hood("left"),)))
+    assert (table.bar("  width").low, table.bar("  width").high) == pytest.approx((0, SIZE))
+    # One that must be above 0 begins with a step.
+    table.bar("  length").pick(Place(632, 8))
+    assert table.lamp.hoods[0].length == table.bar("  length").step == table.bar("  length").low
+
+
+def test_each_row_by_name_has_a_box_and_below_it_its_rows() -> None:
+    table = Table(Lamp(hoods=(Hood("left"), Hood("x", on=False))))
+    rows = rows_of(
+        table.lamp, table.put, WORLD, leave_out=[name for name in vars(table.lamp) if name != "hoods"]
+    )
+    inside = ["  point x", "  point y", "  point z", "  width", "  length"]
+    assert [row.label for row in rows] == ["hoods", "left", *inside, "x", *inside]
+    assert isinstance(rows[0], Heading)
+    assert len({row.key for row in rows}) == len(rows)
+    assert rows[8].help == "x: Where it is. In world units."
+    first, second = rows[1].at(AREA), rows[7].at(AREA)
+    assert isinstance(first, Switch)
+    assert isinstance(second, Switch)
+    assert (first.is_on, second.is_on) == (True, False)
+    second.pick(Place(632, 8))
+    assert table.lamp.hoods == (Hood("left"), Hood("x"))
+    point = rows[2]
+    assert isinstance(point, Bar)
+    point.put(0.5)
+    assert table.lamp.hoods == (Hood("left", point=(0.5, 0.0, 0.0)), Hood("x"))
+    # Its name is that of an axis, but its coordinates are of all three.
+    width = rows[11]
+    assert isinstance(width, Bar)
+    assert width.high == pytest.approx(SIZE)
+
+
+def test_names_of_other_tables_are_chosen_among_those_that_the_world_knows() -> None:
+    tables = {"lamps": ("lamp", "sky"), "walls": ("north", "south")}
+    world = World(WORLD.low, WORLD.high, KnownNames(tables.__getitem__, {}))
+    table = Table()
+    for label in ("follows", "walls", "  south"):
+        rows = {row.label: row.at(AREA) for row in rows_of(table.lamp, table.put, world)}
+        rows[label].pick(Place(632, 8))
+    assert (table.lamp.follows, table.lamp.walls) == ("sun", ("south",))

@@ -4,9 +4,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.widgets.menu import GAP_LINES, MENU, MOST_LINES, laid_out, menu_items, pages_of
-from autocolor.widgets.widget import ROW_LINES, Button, Gap, Widget
+from autocolor.widgets.widget import ROW_LINES, Button, Gap, Heading, Widget
 
-rows = st.lists(st.sampled_from([Button, Gap]), max_size=120).map(
+rows = st.lists(st.sampled_from([Button, Gap, Heading]), max_size=120).map(
     lambda kinds: [kind(str(number)) for number, kind in enumerate(kinds)]
 )
 
@@ -18,6 +18,15 @@ def test_the_pages_of_a_menu_have_all_rows_in_their_order(rows: list[Widget]) ->
     for page in pages:
         shown = [*page, Button("more")] if len(pages) > 1 else page
         assert [row.label for row in laid_out(shown)] == [row.label for row in shown]
+
+
+def test_a_heading_is_on_the_page_of_what_is_below_it() -> None:
+    rows = [Button(str(number)) for number in range(60)]
+    rows_a_page = len(pages_of(rows)[0])
+    headed = [*rows[: rows_a_page - 1], Heading("more of it"), *rows[rows_a_page - 1 :]]
+    first, second, *_ = pages_of(headed)
+    assert len(first) == rows_a_page - 1
+    assert second[0].label == "more of it"
 
 
 @given(rows)

@@ -117,6 +117,21 @@ def test_flaps_are_set_whole_or_field_by_field(scene: Scene) -> None:
     assert (flaps.x.maximum, flaps.x.on, flaps.z.maximum) == (0.25, False, 0.5)
 
 
+def test_a_light_is_linked_to_names_in_a_list_and_unlinked_by_none(scene: Scene) -> None:
+    linked = with_settings(
+        scene, ('lights.key.only_surfaces=["side", "front.low"]', 'lights.key.except_parts=["side"]')
+    )
+    links = linked.light("key").links
+    assert (links.only_surfaces, links.except_parts) == (("side", "front.low"), ("side",))
+    # One list takes the place of the other in one go.
+    other = with_settings(linked, ("lights.key.except_surfaces=[]", "lights.key.only_surfaces=none"))
+    assert other.light("key").links == links.replace(only_surfaces=None, except_surfaces=())
+    with pytest.raises(UsageError) as refused:
+        with_settings(scene, ('lights.key.only_surfaces=["sid"]',))
+    sentence = "light 'key': only_surfaces 'sid' is not in the surface table; did you mean 'side'?"
+    assert str(refused.value) == f"--set: {sentence}"
+
+
 def test_the_order_of_the_settings_of_a_row_does_not_matter(scene: Scene) -> None:
     # Each alone would break a rule.
     settings = ("lights.key.2.concentration=5", "lights.key.2.aim=[0, 0, 0]")

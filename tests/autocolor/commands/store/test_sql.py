@@ -9,6 +9,8 @@ from click.testing import CliRunner, Result
 from autocolor import read_scene, write_scene
 from autocolor.commands.store.sql import sql
 from autocolor.errors import AutocolorError
+from autocolor.scene.lights.half_spaces import HalfSpace
+from autocolor.scene.lights.links import Links
 from tests.autocolor.files.store.stores import small_scene, small_store, tables_of
 
 LIGHTS = "SELECT name, intensity FROM lights"
@@ -97,6 +99,52 @@ def test_a_change_that_would_be_wrong_is_refused_as_a_whole(tmp_path: Path, fold
     text = (folder / "scene.toml").read_bytes()
     refused(folder, "UPDATE polygons SET node1 = 9", "--write")
     assert (folder / "scene.toml").read_bytes() == text
+
+
+HALF_SPACE = '{"left": {"point": [0, 0, 0], "direction": [0, 0, 1], "edge_width": %s}}'
+
+
+def test_half_spaces_and_links_are_changed_as_json(tmp_path: Path, folder: Path) -> None:
+    for path in (small_store(tmp_path), folder):
+        values = f"half_spaces = '{HALF_SPACE % 0.5}', only_parts = '[\"hood\"]', follows = 'eye'"
+        result = asked(path, f"UPDATE lights SET {values} WHERE name = 'rim'", "--write")
+        assert result.exit_code == 0, result.output
+        light = read_scene(path).light("rim")
+        assert light.half_spaces == (HalfSpace("left", (0, 0, 0), (0, 0, 1), 0.5),)
+        assert (light.links, light.follows) == (Links(only_parts=("hood",)), "eye")
+        query = (
+            "SELECT json_extract(half_spaces, '$.left.edge_width') AS width FROM lights WHERE name = 'rim'"
+        )
+        assert json.loads(asked(path, query, "--json").stdout) == [{"width": 0.5}]
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (
+            f"half_spaces = '{HALF_SPACE % -1}'",
+            "lights, row 1: half_spaces.left.edge_width must be a finite number of at least 0, not -1",
+        ),
+        (
+            "follows = 'key'",
+            "light 'key': follows must not lead back to itself, from 'key' to 'key'; change one of them",
+        ),
+        (
+            "except_parts = '[\"hod\"]'",
+            "light 'key': except_parts 'hod' is not in the part table; did you mean 'hood'?",
+        ),
+    ],
+)
+def test_half_spaces_and_names_that_are_wrong_are_told_and_not_saved(
+    tmp_path: Path, change: str, told: str
+) -> None:
+    path = small_store(tmp_path)
+    before = tables_of(path)
+    error = refused(path, f"UPDATE lights SET {change} WHERE name = 'key'", "--write")
+    assert str(error).splitlines() == ["nothing was changed", f"small.sqlite: {told}"]
+    assert tables_of(path) == before
+    empty = refused(path, "UPDATE lights SET follows = ''", "--write")
+    assert "follows must be 'eye' or the name of one of the lights, and a changed row does not" in str(empty)
 
 
 @pytest.mark.parametrize(

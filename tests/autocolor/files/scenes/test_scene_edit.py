@@ -17,13 +17,16 @@ from autocolor.files.scenes.scene_edit import (
 )
 from autocolor.files.scenes.scene_file import report_of_text
 from autocolor.scene.columns.rows import with_values
-from tests.autocolor.strategies import of_mesh, scenes
+from tests.autocolor.linked_scenes import linked_scenes
+from tests.autocolor.strategies import of_mesh
 
 MESH = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\no part 0\nf 1 2 3 4\no part 1\nf 1 2 3\n"
 
 INLINE = """\
 # Mine.
-lights = [ {name="key", position=[1,2,3]}, {name="b", position=[1,2,3], flaps={x={minimum=0}}} ]
+lights = [ {name="key", position=[1,2,3]}, {name="b", position=[1,2,3], flaps={x={minimum=0}},\
+ half_spaces={left={point=[0,0,0], direction=[1,0,0]}, b={point=[1,0,0], direction=[1,0,0], on=false}},\
+ only_parts=["part 0"], follows="eye"} ]
 mesh = [ {file="car.obj"} ]
 view = { eye = [1,2,3], target=[0,0,0] }
 parts = { "part 0" = {surface="body"}, "part 1".surface = "glass" }
@@ -52,6 +55,10 @@ position = [1,2,3]
 direction = [1,2,3]
 flaps.x.minimum = 0.5
 flaps.z.on = false
+half_spaces.left.point = [0,0,0]
+half_spaces.left.direction = [1,0,0]
+half_spaces."barn door" = { point = [1,0,0], direction = [1,0,0], edge_width = 0.1 }
+except_surfaces = ["glass", "body"]
 """
 
 HEADERS = """\
@@ -77,6 +84,12 @@ position = [1,2,3]
 minimum = 0.5
 [lights.flaps.z]
 on = false
+[lights.half_spaces.right]
+point = [0,0,0]
+direction = [1,0,0]
+[lights.half_spaces.b]
+point = [0,0,0]
+direction = [1,0,0]
 [[lights]]
 name = "key"
 position = [1,2,3]
@@ -103,7 +116,7 @@ def edited(text: str, scene: Scene, meshes: list[MeshReport]) -> str:
 
 
 @pytest.mark.parametrize("text", [INLINE, DOTTED, HEADERS])
-@given(drawn=scenes())
+@given(drawn=linked_scenes())
 def test_a_file_in_any_style_is_changed_to_any_scene(
     text: str, drawn: Scene, meshes: list[MeshReport]
 ) -> None:
@@ -223,3 +236,163 @@ def test_a_text_is_completed_with_all_that_it_does_not_tell(text: str, meshes: l
     assert after.count(b"# Mine.") == 1
     assert after.count(b"two_sided") == len(scene.surfaces)
     assert completed(after, scene) == after
+
+
+LEFT = "{ point = [0,0,0], direction = [1,0,0] }  # the left door"
+FORMS = {
+    "lines": f"""\
+half_spaces.left = {LEFT}
+# the roof
+half_spaces.top = {{point=[0,0,1],direction=[0,0,-1]}}
+""",
+    "inline": """\
+half_spaces = { left = {point=[0,0,0],direction=[1,0,0]}, top = {point=[0,0,1],direction=[0,0,-1]} } # mine
+""",
+    "dotted": """\
+half_spaces.left.point = [0,0,0]
+half_spaces.left.direction = [1,0,0] # the left door
+half_spaces.top.point = [0,0,1]
+# the roof
+half_spaces.top.direction = [0,0,-1]
+""",
+    "headers": """\
+[lights.half_spaces.left]
+point = [0,0,0] # of the left door
+direction = [1,0,0]
+
+# the roof
+[lights.half_spaces.top]
+point = [0,0,1]
+direction = [0,0,-1]
+""",
+    "header": """\
+[lights.half_spaces] # mine
+left = { point = [0,0,0], direction = [1,0,0] }
+top = { point = [0,0,1], direction = [0,0,-1] }
+""",
+}
+BEFORE = """\
+# Mine.
+[[mesh]]
+file = "car.obj"
+[[lights]]
+name = "key"
+position = [1,2,3]
+"""
+AFTER = """\
+[[lights]]
+# the other
+name = "fill"
+position = [3,2,1]
+"""
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize(
+    ("changes", "old", "new"),
+    [
+        ({"left": {"point": (0, 0, 2)}}, "[0,0,0]", "[0.0, 0.0, 2.0]"),
+        ({"top": {"direction": (0, 1, -1)}}, "[0,0,-1]", "[0.0, 1.0, -1.0]"),
+    ],
+)
+def test_a_key_of_a_half_space_is_changed_where_it_stands(
+    form: str, changes: dict[str, object], old: str, new: str, meshes: list[MeshReport]
+) -> None:
+    text = BEFORE + FORMS[form] + AFTER
+    after = edited(text, read(text.encode(), meshes).with_light("key", half_spaces=changes), meshes)  # type: ignore[arg-type]
+    assert after == text.replace(old, new)
+
+
+NEW = {"point": (1.0, 1.0, 1.0), "direction": (0.0, 0.0, 1.0)}
+NEW_TEXT = "{ point = [1.0, 1.0, 1.0], direction = [0.0, 0.0, 1.0] }"
+
+
+@pytest.mark.parametrize(
+    ("form", "changes", "old", "new"),
+    [
+        # A key that was left out.
+        ("lines", {"left": {"edge_width": 0.1}}, "[1,0,0] }", "[1,0,0], edge_width = 0.1 }"),
+        ("inline", {"left": {"edge_width": 0.1}}, "[1,0,0]}", "[1,0,0], edge_width = 0.1 }"),
+        (
+            "dotted",
+            {"left": {"edge_width": 0.1}},
+            "# the left door\n",
+            "# the left door\nhalf_spaces.left.edge_width = 0.1\n",
+        ),
+        ("headers", {"left": {"edge_width": 0.1}}, "[1,0,0]\n", "[1,0,0]\nedge_width = 0.1\n"),
+        ("header", {"left": {"edge_width": 0.1}}, "[1,0,0] }", "[1,0,0], edge_width = 0.1 }"),
+        # Another one, whose name is before the others or after them.
+        ("lines", {"back": NEW}, "[0,0,-1]}\n", f"[0,0,-1]}}\nhalf_spaces.back = {NEW_TEXT}\n"),
+        ("inline", {"back": NEW}, "[0,0,-1]} }", f"[0,0,-1]}}, back = {NEW_TEXT} }}"),
+        ("dotted", {"z": NEW}, "[0,0,-1]\n", f"[0,0,-1]\nhalf_spaces.z = {NEW_TEXT}\n"),
+        (
+            "headers",
+            {"my door": NEW},
+            "[0,0,-1]\n",
+            f'[0,0,-1]\n[lights.half_spaces]\n"my door" = {NEW_TEXT}\n\n',
+        ),
+        ("header", {"z": NEW}, "[0,0,-1] }\n", f"[0,0,-1] }}\nz = {NEW_TEXT}\n"),
+        # One that is taken away.
+        ("lines", {"left": None}, f"half_spaces.left = {LEFT}\n", ""),
+        (
+            "inline",
+            {"left": None},
+            "{ left = {point=[0,0,0],direction=[1,0,0]}, top = {point=[0,0,1],direction=[0,0,-1]} }",
+            "{ top = {point=[0,0,1],direction=[0,0,-1]} }",
+        ),
+        (
+            "dotted",
+            {"left": None},
+            "half_spaces.left.point = [0,0,0]\nhalf_spaces.left.direction = [1,0,0] # the left door\n",
+            "",
+        ),
+        (
+            "headers",
+            {"left": None},
+            "[lights.half_spaces.left]\npoint = [0,0,0] # of the left door\ndirection = [1,0,0]\n\n",
+            "",
+        ),
+        ("header", {"left": None}, "left = { point = [0,0,0], direction = [1,0,0] }\n", ""),
+    ],
+)
+def test_half_spaces_come_and_go_among_the_others(
+    form: str, changes: dict[str, object], old: str, new: str, meshes: list[MeshReport]
+) -> None:
+    text = BEFORE + FORMS[form] + AFTER
+    after = edited(text, read(text.encode(), meshes).with_light("key", half_spaces=changes), meshes)  # type: ignore[arg-type]
+    assert old in text
+    assert after == text.replace(old, new)
+
+
+def test_the_first_half_space_and_a_soft_flap_have_lines_of_their_own(meshes: list[MeshReport]) -> None:
+    text = BEFORE + "flaps.z.minimum = 0.5 # the roof\nflaps.x = { maximum = 1 }\n" + AFTER
+    scene = read(text.encode(), meshes).with_light(
+        "key",
+        half_spaces={"a b": NEW},  # type: ignore[dict-item]
+        flaps={"z": {"edge_width": 0.25}, "x": {"edge_width": 0.5}, "y": {"minimum": 0}},
+        only_surfaces=[],
+        follows="eye",
+    )
+    after = edited(text, scene, meshes)
+    assert (
+        after
+        == BEFORE
+        + (
+            "flaps.z.minimum = 0.5 # the roof\nflaps.z.edge_width = 0.25\n"
+            "flaps.x = { maximum = 1, edge_width = 0.5 }\nflaps.y = { minimum = 0.0 }\n"
+            f'half_spaces."a b" = {NEW_TEXT}\nfollows = "eye"\nonly_surfaces = []\n'
+        )
+        + AFTER
+    )
+    back = scene.with_light(
+        "key",
+        half_spaces=(),
+        only_surfaces=None,
+        follows=None,
+        flaps={"z": {"edge_width": 0.0}, "x": {"edge_width": 0.0}, "y": None},
+    )
+    assert edited(after, back, meshes) == (
+        text.replace("the roof\n", "the roof\nflaps.z.edge_width = 0.0\n").replace(
+            " 1 }", " 1, edge_width = 0.0 }"
+        )
+    )

@@ -11,15 +11,19 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, Scene
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.files.scenes.scene_text import scene_text
-from tests.autocolor.strategies import of_mesh, scenes
+from tests.autocolor.linked_scenes import linked_scenes
+from tests.autocolor.strategies import of_mesh
 
 MESH = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\no {}\nf 1 2 3 4\no {}\nf 1 2 3\n"
 
 
-def read_back(folder: Path, scene: Scene, mesh_files: tuple[dict[str, str], ...]) -> Scene:
-    (folder / "scene.toml").write_text(scene_text(scene, mesh_files), encoding="utf-8")
+def read_back(
+    folder: Path, scene: Scene, mesh_files: tuple[dict[str, str], ...], without_defaults: bool = False
+) -> Scene:
+    text = scene_text(scene, mesh_files, without_defaults=without_defaults)
+    (folder / "scene.toml").write_text(text, encoding="utf-8")
     report = read_scene_with_report(folder)
-    assert report.created == ()
+    assert without_defaults or report.created == ()
     return report.scene
 
 
@@ -34,16 +38,17 @@ def same(one: Scene, other: Scene) -> bool:
     )
 
 
-@given(drawn=scenes(), up=st.sampled_from("xyz"))
+@pytest.mark.parametrize("without_defaults", [False, True])
+@given(drawn=linked_scenes(), up=st.sampled_from("xyz"))
 def test_a_scene_that_was_written_reads_back_equal(
-    drawn: Scene, up: str, tmp_path_factory: pytest.TempPathFactory
+    without_defaults: bool, drawn: Scene, up: str, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     folder = tmp_path_factory.mktemp("scene")
     (folder / "car.obj").write_text(MESH.format(*drawn.mesh.part_names))
     mesh = read_scene_with_report(folder / "car.obj", up=up).scene.mesh
     angle = drawn.mesh.crease_angle
     scene = of_mesh(drawn, dataclasses.replace(mesh, crease_angle=angle))
-    assert same(scene, read_back(folder, scene, ({"file": "car.obj", "up": up},)))
+    assert same(scene, read_back(folder, scene, ({"file": "car.obj", "up": up},), without_defaults))
 
 
 @given(
@@ -81,7 +86,37 @@ def test_ends_of_flaps_that_are_nowhere_are_left_out(tmp_path: Path) -> None:
     report = read_scene_with_report(tmp_path / "car.obj")
     scene = report.scene.with_light("key", flaps=Flaps(z=Flap(minimum=0.5), x=Flap(on=False)))
     text = scene_text(scene, report.mesh_files)
-    flaps = "flaps.x = { on = false, edge_width = 0.0 }\nflaps.z = { minimum = 0.5, on = true, edge_width = 0.0 }\n"
-    assert flaps in text
+    assert "flaps.x = { on = false, edge_width = 0.0 }\n" in text
+    assert "flaps.z = { minimum = 0.5, on = true, edge_width = 0.0 }\n" in text
     (tmp_path / "scene.toml").write_text(text)
     assert same(scene, read_scene_with_report(tmp_path).scene)
+
+
+def test_half_spaces_have_a_line_each_and_links_are_lists(tmp_path: Path) -> None:
+    (tmp_path / "car.obj").write_text(MESH.format("hood", "roof"))
+    report = read_scene_with_report(tmp_path / "car.obj")
+    scene = report.scene.with_light(
+        "key",
+        half_spaces={
+            "left": {"point": (1, 0, 0), "direction": (1, 0, 0)},
+            "a door": {"point": (0, 0, 0), "direction": (0, 1, 0), "edge_width": 0.5, "on": False},
+        },
+        flaps=Flaps(z=Flap(minimum=0.5)),
+        only_parts=["hood"],
+        except_surfaces=[],
+        follows="eye",
+    )
+    text = scene_text(scene, report.mesh_files, without_defaults=True)
+    assert (
+        """
+flaps.z = { minimum = 0.5 }
+half_spaces."a door" = { point = [0.0, 0.0, 0.0], direction = [0.0, 1.0, 0.0], edge_width = 0.5, on = false }
+half_spaces.left = { point = [1.0, 0.0, 0.0], direction = [1.0, 0.0, 0.0] }
+follows = "eye"
+except_surfaces = []
+only_parts = ["hood"]
+"""
+        in text
+    )
+    whole = scene_text(scene, report.mesh_files)
+    assert "direction = [1.0, 0.0, 0.0], edge_width = 0.0, carried = false, on = true }\n" in whole

@@ -87,3 +87,75 @@ def test_more_than_one_row_of_a_table_of_one_is_refused(tmp_path: Path) -> None:
     run(path, "INSERT INTO view SELECT * FROM view")
     with pytest.raises(InputError, match="view must have one row, not 2; leave one"):
         read_store(path)
+
+
+NEW_COLUMNS = (
+    "inner_angle", "half_spaces", "falloff", "reach", "at_infinity", "follows", "only_surfaces",
+    "except_surfaces", "only_parts", "except_parts", "flaps_x_edge_width", "flaps_y_edge_width",
+    "flaps_z_edge_width",
+)  # fmt: skip
+
+
+def test_a_store_that_lacks_columns_gives_their_defaults(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "UPDATE lights SET flaps_z_maximum = 0.5 WHERE name = 'rim'")
+    others = [name for _, name, *_ in run(path, "PRAGMA table_info(lights)") if name not in NEW_COLUMNS]
+    kept = ", ".join(f'"{name}"' for name in others)
+    run(
+        path,
+        f"CREATE TABLE before AS SELECT {kept} FROM lights",
+        "DROP TABLE lights",
+        "ALTER TABLE before RENAME TO lights",
+    )
+    expected = small_scene().with_light("rim", flaps={"z": {"maximum": 0.5}})
+    assert read_store(path).scene.lights == expected.lights
+
+
+def test_rows_by_name_and_names_are_read_from_what_any_tool_writes(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(
+        path,
+        "UPDATE lights SET half_spaces = json_object('left', json_object("
+        "'point', json_array(0, 0, 1), 'direction', json_array(1, 0, 0))) WHERE name = 'rim'",
+        "UPDATE lights SET only_parts = '[\"hood\"]', follows = 'key' WHERE name = 'rim'",
+    )
+    assert read_store(path).scene.light("rim") == small_scene().light("rim").replace(
+        half_spaces={"left": {"point": (0, 0, 1), "direction": (1, 0, 0)}},
+        only_parts=["hood"],
+        follows="key",
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (
+            """half_spaces = '{"left": {"point": [0,0,0], "direction": [0,0,1], "edge_width": -1}}'""",
+            "lights, row 1: half_spaces.left.edge_width must be a finite number of at least 0, not -1",
+        ),
+        (
+            """half_spaces = '{"left": '""",
+            "lights, row 1: half_spaces must be a table of half-spaces by name, not '{\"left\": '",
+        ),
+        ("half_spaces = 3", "lights, row 1: half_spaces must be a table of half-spaces by name, not 3"),
+        ("only_parts = 'hood'", "lights, row 1: only_parts must be a list of names, not 'hood'"),
+        (
+            """only_parts = '["hod"]'""",
+            "light 'key': only_parts 'hod' is not in the part table; did you mean 'hood'?",
+        ),
+        (
+            "follows = 'rm'",
+            "light 'key': follows 'rm' is not in the light table; did you mean 'rim'?",
+        ),
+        (
+            "follows = 'rim'",
+            "light 'key': follows must be a light with an aim, not 'rim' without one; give it an aim",
+        ),
+    ],
+)
+def test_what_is_wrong_with_them_is_told_with_its_place(tmp_path: Path, change: str, told: str) -> None:
+    path = small_store(tmp_path)
+    run(path, f"UPDATE lights SET {change} WHERE name = 'key'")
+    with pytest.raises(InputError) as refused:
+        read_store(path)
+    assert list(refused.value.problems) == [f"small.sqlite: {told}"]

@@ -120,6 +120,25 @@ def test_a_row_in_a_row_that_is_absent_has_no_infinite_limits() -> None:
     assert row_table(MadeUp, shut)["inner"] == {"low": -math.inf, "shut": True}
 
 
+def test_rows_by_name_and_lists_of_names_are_json_and_names_are_text() -> None:
+    row = Light(
+        "key",
+        (0, 0, 1),
+        half_spaces={"left": {"point": (0, 0, 0), "direction": (0, 0, 1)}},  # type: ignore[arg-type]
+        follows="rim",
+    ).replace(only_parts=["hood", "roof"], except_surfaces=[])
+    values = row_values(row)
+    assert values["half_spaces"] == (
+        '{"left": {"point": [0.0, 0.0, 0.0], "direction": [0.0, 0.0, 1.0], "edge_width": 0.0,'
+        ' "carried": false, "on": true}}'
+    )
+    assert (values["only_parts"], values["except_surfaces"]) == ('["hood", "roof"]', "[]")
+    assert (values["only_surfaces"], values["follows"]) == (None, "rim")
+    assert row_values(Light("key", (0, 0, 1)))["half_spaces"] is None
+    types = {column.name: column.type for column in columns_of(Light)}
+    assert [types[name] for name in ("half_spaces", "only_parts", "follows")] == ["ANY", "ANY", "TEXT"]
+
+
 def test_text_stands_as_it_is_and_lists_as_json() -> None:
     assert [in_sql(each) for each in ("linear", ((0, 0.5), (1, 1)), '["x"]', True, None)] == [
         "linear",

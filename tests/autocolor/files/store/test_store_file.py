@@ -18,13 +18,13 @@ from autocolor.files.scene_writing import write_scene
 from autocolor.files.store.store_file import read_store, store_bytes, write_store
 from autocolor.scene.creation import scene_of
 from tests.autocolor.files.store.stores import is_equal, run, small_scene, small_store, tables_of
-from tests.autocolor.strategies import scenes
+from tests.autocolor.linked_scenes import linked_scenes
 
 ONE_FILE = settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 @ONE_FILE
-@given(scene=scenes())
+@given(scene=linked_scenes())
 def test_a_store_gives_the_scene_back_that_was_written(tmp_path: Path, scene: Scene) -> None:
     path = tmp_path / "any.sqlite"
     path.write_bytes(store_bytes(scene))
@@ -34,7 +34,7 @@ def test_a_store_gives_the_scene_back_that_was_written(tmp_path: Path, scene: Sc
 
 
 @ONE_FILE
-@given(scene=scenes())
+@given(scene=linked_scenes())
 def test_a_store_and_a_directory_become_each_other_table_by_table(tmp_path: Path, scene: Scene) -> None:
     first, second = tmp_path / "first.sqlite", tmp_path / "second.sqlite"
     first.write_bytes(store_bytes(scene.replace(name="folder")))

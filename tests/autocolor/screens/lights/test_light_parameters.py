@@ -18,7 +18,6 @@ from autocolor.screens.lights.light_parameters import (
 )
 from autocolor.screens.session import Session
 from autocolor.studio import Studio
-from autocolor.widgets.widget import Choice
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube
 
@@ -81,7 +80,7 @@ def test_a_point_source_has_no_concentration_and_no_cone() -> None:
 
 def test_the_row_of_the_kind_goes_on_to_the_next() -> None:
     session = session_of(AIMED)
-    (row,) = [row for row in parameter_rows(session, AIMED) if isinstance(row, Choice)]
+    (row,) = [row for row in parameter_rows(session, AIMED) if row.label == "kind"]
     row.nudge(1)
     assert kind_of(session.scene.light("key")) == DIRECTION
 

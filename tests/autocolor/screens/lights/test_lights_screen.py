@@ -8,6 +8,7 @@ import pytest
 
 from autocolor import Light, read_rig
 from autocolor.scene.columns.column import fields_of
+from autocolor.scene.lights.links import Links
 from autocolor.screens.lights.light_parameters import AIM, DIRECTION, POINT
 from autocolor.widgets.bars import Bar
 from tests.autocolor.screens.boxes import (
@@ -240,3 +241,30 @@ def test_sixteen_lights_with_long_names_are_all_reached(tmp_path: Path) -> None:
     assert hand.viewer.session.light_name == lights[-1].name
     hand.pull("light", 1.0, 0.45)
     assert hand.viewer.session.light_name == lights[7].name
+
+
+def test_a_light_is_linked_to_surfaces_by_pointing(hand: Hand) -> None:
+    before = hand.viewer.studio.scene
+    hand.pick("only surfaces", BOX)
+    assert light_of(hand).links == Links(only_surfaces=())
+    hand.pick("  high", BOX)
+    assert light_of(hand).links == Links(only_surfaces=("high",))
+    assert words_are_those_of_the_scene(hand)
+    # Both lists at once are refused in a sentence.
+    hand.pick("except surfac.", BOX)
+    assert light_of(hand).links == Links(only_surfaces=("high",))
+    rule = "except_surfaces must not come with only_surfaces, not with both; leave one out"
+    assert told(hand) == (f"light 'key': {rule}", True)
+    hand.pick("only surfaces", BOX)
+    assert light_of(hand) == before.light("key")
+    assert words_are_those_of_the_scene(hand)
+
+
+def test_a_light_is_kept_off_a_part_by_pointing(hand: Hand) -> None:
+    hand.pick("except parts", BOX)
+    hand.pick("  low", BOX)
+    assert light_of(hand).links == Links(except_parts=("low",))
+    assert words_are_those_of_the_scene(hand)
+    undo(hand)
+    undo(hand)
+    assert light_of(hand) == KEY
