@@ -14,7 +14,7 @@ from typing import Annotated, Any, Final, TypeVar, Unpack
 
 from autocolor.arrays import Floats
 from autocolor.checks import Color, Vector, nearest, shown
-from autocolor.errors import UsageError
+from autocolor.errors import InputError, UsageError
 from autocolor.immutable import read_only
 from autocolor.scene.changes import (
     LightChanges,
@@ -37,6 +37,7 @@ from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import object_bounds, object_coordinates
 from autocolor.scene.lights.following import (
     changes_in_frame,
+    followers_of,
     following_problems,
     frame_of,
     lights_in_world,
@@ -214,7 +215,7 @@ class Scene(Row):
         They are turned to those of what the light follows, if anything. Raises UsageError or InputError.
         """
         light = self.light(name)
-        frame = frame_of(light, self.lights, self.view)
+        frame = frame_of(light, {each.name: each for each in self.lights_in_world}, self.view)
         return self.with_light(name, **changes_in_frame(changes, frame))
 
     def surface(self, name: str) -> Surface:
@@ -276,6 +277,11 @@ class Scene(Row):
         Raises UsageError if there is none of that name, InputError if another light follows it.
         """
         place = _place("light", self.lights, name)
+        followers = followers_of(name, self.lights)
+        if followers:
+            raise InputError(
+                f"light {name!r} must stay while {followers[0]!r} follows it; let that follow something else"
+            )
         return changed(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
 
     def with_copied_light(self, name: str, new_name: str | None = None) -> Scene:
