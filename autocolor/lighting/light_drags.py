@@ -64,8 +64,8 @@ def cone_placed(scene: Scene, seen: Seen | None, light: str, add: bool = False) 
     """The scene with a light whose cone ends at a point: its angle is that of the point from the direction.
 
     The angle is at least LEAST_CONE and at most 180 degrees. A light without a cone gets one with `add`.
-    Raises UsageError on the background, for a light at the point itself, for a point source, and for a light
-    without a cone unless one is to be added.
+    Raises UsageError on the background, for a light at the point itself, for a point source, for a light at
+    infinity, where cones have no effect, and for a light without a cone unless one is to be added.
     """
     seen = _on_surface(seen, "a cone")
     row = scene.light_in_world(light)
@@ -73,6 +73,11 @@ def cone_placed(scene: Scene, seen: Seen | None, light: str, add: bool = False) 
     if axis is None:
         raise UsageError(
             f"a cone must have a direction or an aim, not be of the point source {light!r}; add an aim"
+        )
+    if row.at_infinity:
+        raise UsageError(
+            f"a cone must end around a light that is somewhere, not around {light!r} at infinity; switch"
+            " at_infinity off"
         )
     if row.cone_angle is None and not add:
         raise UsageError(f"light {light!r} must have a cone to be changed, not none; add one")

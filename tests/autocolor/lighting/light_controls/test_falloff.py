@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ FALLING = st.sampled_from(["linear", "quadratic"])
 @pytest.mark.parametrize("falloff", ["linear", "quadratic"])
 @pytest.mark.parametrize("reach", [1.2, 1.7, 9.0])
 def test_on_a_wall_the_light_falls_with_the_distance_to_nothing_at_its_reach(
-    falloff: str, reach: float
+    falloff: Any, reach: float
 ) -> None:
     light = Light("light", (0.25, -1.0, 0.125))
     free = wall_scene(lights=[light])

@@ -264,7 +264,7 @@ def test_moving_an_aim_computes_that_light_and_its_followers_and_nothing_else() 
     assert after.picture.intensity.tobytes() == render(moved, 24, 32).intensity.tobytes()
     # Its intensity and its position are its own.
     for changes, expected in (({"intensity": 0.5}, True), ({"position": (3, -3, 3)}, False)):
-        edited = rendering(scene.with_light("key", **changes), 24, 32, before)  # type: ignore[arg-type]
+        edited = rendering(scene.with_light("key", **changes), 24, 32, before)
         planes = edited.picture.light_planes
         assert planes["fill"].values is before.picture.light_planes["fill"].values
         assert (planes["key"].values is before.picture.light_planes["key"].values) == expected
