@@ -105,6 +105,14 @@ def in_world(light: Light, frame: Frame | None) -> Light:
     )
 
 
+def in_frame(light: Light, frame: Frame | None, follows: str | None) -> Light:
+    """A light of the world in the coordinates of the frame of what it is to follow; inverse of `in_world`."""
+    if frame is None:
+        return light
+    told = {name: vars(light)[name] for name in ("position", "aim", "direction")}
+    return with_values(light, {**changes_in_frame(told, frame), "follows": follows})
+
+
 def lights_in_world(lights: tuple[Light, ...], view: View) -> tuple[Light, ...]:
     """The lights of a scene in world coordinates; the same ones where they follow nothing."""
     if all(light.follows is None for light in lights):

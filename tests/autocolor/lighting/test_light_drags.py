@@ -13,6 +13,7 @@ from autocolor.lighting.highlights import highlight_of
 from autocolor.lighting.light_controls.flap_sides import Axis, FlapEnd
 from autocolor.lighting.light_drags import LEAST_CONE, cone_placed, flap_placed, highlight_placed
 from autocolor.rendering import rendering
+from autocolor.scene.columns.rows import with_values
 from autocolor.visibility.sight import Seen, Sight, seen_at
 from tests.autocolor.meshes import sphere, wall, wall_scene
 from tests.autocolor.reference import dot, minus, plus, times, unit
@@ -164,8 +165,8 @@ def test_any_light_on_the_coupe_gets_its_highlight_where_it_is_wanted_and_is_fou
         assert light.aim == pytest.approx(seen.point, abs=1e-12)
     # All else stays, and so does what follows it.
     after = placed.light("lamp")
-    rest = {"position": before.position, "aim": before.aim, "direction": before.direction}
-    assert after.replace(**{name: value for name, value in rest.items() if value is not None}) == before
+    places = {"position": before.position, "aim": before.aim, "direction": before.direction}
+    assert with_values(after, places) == before
     if is_followed and before.aim is not None:
         beside = placed.light_in_world("beside").position
         assert beside == pytest.approx(plus(seen.point, (0, 0, 0.5)), abs=1e-9)
