@@ -293,3 +293,37 @@ def test_a_follower_lights_what_a_light_placed_there_lights(view: View, key: Lig
     assert render(scene, 8, 8).intensity.tobytes() == render(placed, 8, 8).intensity.tobytes()
     assert minus(placed.light("b").position, position) == pytest.approx([0.1, 0.2, 0.3])
     assert dot(placed.light("b").aim or (0, 0, 0), (1, 0, 0)) == pytest.approx(9.1)
+
+
+@pytest.mark.parametrize("follows", ["eye", "key"])
+def test_a_light_that_begins_to_follow_stays_where_it_is(follows: str) -> None:
+    scene = car().with_view(angle=25).with_light("key", aim=(0.2, 0.1, 0.0))
+    before = scene.light("fill").replace(aim=(0.5, 0.5, 0.5))
+    scene = scene.with_light("fill", aim=before.aim)
+    following = scene.with_light_following("fill", follows)
+    assert following.light("fill").follows == follows
+    assert following.light("fill").position != before.position
+    for back in (following, following.with_light_following("fill", None)):
+        light = back.light_in_world("fill")
+        assert light.position == pytest.approx(before.position)
+        assert light.aim == pytest.approx(before.aim)
+    assert back.light("fill").follows is None
+
+
+@given(lights(follows="eye"), st.sampled_from("xyz"), vectors())
+def test_the_mirrored_copy_of_a_follower_is_mirrored_in_the_world_and_follows(
+    light: Light, axis: str, eye: Vector
+) -> None:
+    scene = car().with_view(eye=(eye[0] + 5, eye[1], eye[2]), angle=30)
+    scene = scene.replace(lights=(*scene.lights, light.replace(name="lamp", flaps={})))
+    both = scene.with_mirrored_light("lamp", axis, 0.25, "other")
+    one, other = both.light_in_world("lamp"), both.light_in_world("other")
+    assert both.light("other").follows == "eye"
+    place = "xyz".index(axis)
+    mirrored = np.array(one.position)
+    mirrored[place] = 0.5 - mirrored[place]
+    assert other.position == pytest.approx(mirrored, abs=1e-9)
+    if one.axis is not None:
+        turned = np.array(one.axis)
+        turned[place] *= -1
+        assert other.axis == pytest.approx(turned, abs=1e-9)
