@@ -119,11 +119,24 @@ class Studio(StudioSession):
         return seen_at(self.sight, line, element)
 
     def highlight_of(self, light: str, surface: str | None = None) -> tuple[int, int] | None:
-        """The line and element where a light's highlight is, on one surface or on all; None if nowhere."""
+        """The line and element where a light's highlight is, on one surface or on all; None if nowhere.
+
+        This is the pixel with the largest cos(E), wherever the light is: also for one that follows the eye or
+        another light, or is at infinity. Raises UsageError for an unknown light or surface.
+
+            studio.place_highlight("key", 200, 320)
+            studio.highlight_of("key", studio.seen_at(200, 320).surface)   # (200, 320)
+        """
         return highlight_of(self.sight, light, surface)
 
     def place_highlight(self, light: str, line: int, element: int) -> None:
-        """Move a light so that its highlight is at a pixel; for drags, `edit` with `highlight_placed`."""
+        """Move a light so that the middle of its highlight, cos(E) = 1, is at what is seen at a pixel.
+
+        The light keeps its distance from that point. One with an aim is aimed at the point, the direction of
+        one that has a direction leads there, and a point source stays one; what the light follows stays, too.
+        One step to undo; for drags, `edit` with `highlight_placed`. Raises UsageError for an unknown light, a
+        pixel that is not there, the background, and where the surface turns away from the eye.
+        """
         self.edit(highlight_placed(self.scene, self.seen_at(line, element), light))
 
     def recolor(self, surface: str, /, **changes: Unpack[PaintChanges]) -> None:

@@ -27,11 +27,11 @@ def highlight_of(sight: Sight, light: str, surface: str | None = None) -> tuple[
 
     This is the inverse of `highlight_placed`. It is that of one surface if it is named, else of all. None
     where no visible point has both cos(E) and cos(I) above 0. Whether the light is on, or what its controls
-    leave of it, does not matter. Measured on the coupe: 1.4 ms. Raises UsageError for an unknown light or
-    surface.
+    leave of it, does not matter. A light that follows something is taken where it is now. Measured on the
+    coupe: 1.4 ms. Raises UsageError for an unknown light or surface.
     """
     scene, points = sight.scene, sight.points
-    camera = camera_light(scene.light(light), points, directed=False)
+    camera = camera_light(scene.light_in_world(light), points, directed=False)
     number = None if surface is None else scene.surfaces.index(scene.surface(surface)) + 1
     nearly: list[Indices] = [
         _nearly_brightest(points, camera, each)

@@ -26,8 +26,10 @@ def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
     """The scene with a light moved so that the middle of its highlight, cos(E) = 1, is at a point P.
 
     The light keeps its distance from P, and moves to where the view is reflected to: to P plus the distance
-    times R. If it has an aim, that becomes P; if it has a direction, that leads to P. Assumed: of the places
-    that give this highlight, the one at the same distance changes the light at P least.
+    times R. If it has an aim, that becomes P; if it has a direction, that leads to P; a point source stays
+    one. Assumed: of the places that give this highlight, the one at the same distance changes the light at P
+    least. A light at infinity moves and turns in the same way, so that it has this highlight whether it is at
+    infinity or not. One that follows something moves in its coordinates, and follows it from then on.
 
     There the half vector is the normal, so that the specular factors of Phong and of Blinn are largest at P.
     That of Cook and Torrance still grows from there toward grazing light. Measured on a sphere of 420 lines:
@@ -38,7 +40,7 @@ def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
     highlight there, and for a light at P itself.
     """
     seen = _on_surface(seen, "a highlight")
-    row = scene.light(light)
+    row = scene.light_in_world(light)
     point, reflected = np.array(seen.point), np.array(seen.reflected_view)
     # N.R = N.V is cos(I) of the light in its new place.
     if reflected @ np.array(seen.normal) <= 0:
@@ -53,25 +55,30 @@ def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
             " move it first"
         )
     if row.aim is not None:
-        return scene.with_light(light, position=position.tolist(), aim=seen.point)
+        return scene.with_light_in_world(light, position=position.tolist(), aim=seen.point)
     if row.direction is not None:
-        return scene.with_light(light, position=position.tolist(), direction=(-reflected).tolist())
-    return scene.with_light(light, position=position.tolist())
+        return scene.with_light_in_world(light, position=position.tolist(), direction=(-reflected).tolist())
+    return scene.with_light_in_world(light, position=position.tolist())
 
 
 def cone_placed(scene: Scene, seen: Seen | None, light: str, add: bool = False) -> Scene:
     """The scene with a light whose cone ends at a point: its angle is that of the point from the direction.
 
     The angle is at least LEAST_CONE and at most 180 degrees. A light without a cone gets one with `add`.
-    Raises UsageError on the background, for a light at the point itself, for a point source, and for a light
-    without a cone unless one is to be added.
+    Raises UsageError on the background, for a light at the point itself, for a point source, for a light at
+    infinity, where cones have no effect, and for a light without a cone unless one is to be added.
     """
     seen = _on_surface(seen, "a cone")
-    row = scene.light(light)
+    row = scene.light_in_world(light)
     axis = row.axis
     if axis is None:
         raise UsageError(
             f"a cone must have a direction or an aim, not be of the point source {light!r}; add an aim"
+        )
+    if row.at_infinity:
+        raise UsageError(
+            f"a cone must end around a light that is somewhere, not around {light!r} at infinity; switch"
+            " at_infinity off"
         )
     if row.cone_angle is None and not add:
         raise UsageError(f"light {light!r} must have a cone to be changed, not none; add one")

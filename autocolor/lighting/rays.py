@@ -28,21 +28,27 @@ class CameraLight(NamedTuple):
     """A light in camera space, ready for the visible points of one view.
 
     `position` is relative to the middle of the object. Points at a squared distance of at most `close` are
-    close to the light. `direction` is a unit vector, or None if no light control uses cos(L).
+    close to the light. `direction` is a unit vector, or None if no light control uses cos(L). A light at
+    infinity is at FARTHEST against its direction.
     """
 
     position: Floats
     close: float
     direction: Floats | None
+    is_at_infinity: bool = False
 
 
 def camera_light(light: Light, points: VisiblePoints, directed: bool) -> CameraLight:
     """A light in the camera space of some visible points, with its direction if it is `directed`."""
+    if light.at_infinity:
+        assert light.axis is not None
+        direction = points.camera_direction(light.axis)
+        return CameraLight(-FARTHEST * direction, 0.0, direction if directed else None, True)
     position = points.camera_point(light.position)
     position *= min(FARTHEST / max(float(np.abs(position).max()), 1.0), 1.0)
     close = CLOSE * max(float(position @ position), points.radius**2)
-    direction = points.camera_direction(light.axis) if directed and light.axis is not None else None
-    return CameraLight(position, close, direction)
+    ahead = points.camera_direction(light.axis) if directed and light.axis is not None else None
+    return CameraLight(position, close, ahead)
 
 
 class Rays(NamedTuple):
@@ -73,10 +79,18 @@ class Rays(NamedTuple):
 
 
 def rays_to(light: CameraLight, rows: Singles) -> Rays:
-    """The rays to a light from the points in some rows."""
+    """The rays to a light from the points in some rows.
+
+    Departs: those to a light at infinity are parallel, which the paper's are not. All are as long, and cos(L)
+    is 1 everywhere, so that concentration and cones leave all of the light.
+    """
     direction = light.direction
-    squares, ahead = _squares_and_ahead(rows, light.position, direction)
     close, close_rows = np.empty(0, np.intp), rows[:, :0]
+    if light.is_at_infinity:
+        length = np.full(rows.shape[1], FARTHEST, np.float32)
+        cos_light = None if direction is None else np.ones_like(length)
+        return Rays(length, cos_light, rows, light.position, close, close_rows)
+    squares, ahead = _squares_and_ahead(rows, light.position, direction)
     if squares.min() <= light.close:
         close = np.flatnonzero(squares <= light.close)
         close_rows = rows.take(close, axis=1)

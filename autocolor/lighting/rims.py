@@ -41,7 +41,7 @@ def rims(sight: Sight, light: str) -> Mapping[Rim, Indices]:
     Raises UsageError for an unknown light.
     """
     points = sight.points
-    inside = _inside(points, sight.scene.light(light))
+    inside = _inside(points, sight.scene.light_in_world(light))
     if not inside:
         return {}
     # Set one flag for each rim, and spread the flags and the places over the raster.

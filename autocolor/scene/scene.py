@@ -14,7 +14,7 @@ from typing import Annotated, Any, Final, TypeVar, Unpack
 
 from autocolor.arrays import Floats
 from autocolor.checks import Color, Vector, nearest, shown
-from autocolor.errors import UsageError
+from autocolor.errors import InputError, UsageError
 from autocolor.immutable import read_only
 from autocolor.scene.changes import (
     LightChanges,
@@ -36,9 +36,12 @@ from autocolor.scene.columns.value_kinds import Choice, CurveKind, Instance, Num
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import object_bounds, object_coordinates
 from autocolor.scene.lights.following import (
+    Frame,
     changes_in_frame,
+    followers_of,
     following_problems,
     frame_of,
+    in_frame,
     lights_in_world,
 )
 from autocolor.scene.lights.light import Light
@@ -213,9 +216,21 @@ class Scene(Row):
 
         They are turned to those of what the light follows, if anything. Raises UsageError or InputError.
         """
-        light = self.light(name)
-        frame = frame_of(light, self.lights, self.view)
-        return self.with_light(name, **changes_in_frame(changes, frame))
+        return self.with_light(name, **changes_in_frame(changes, self._frame_of(name)))
+
+    def with_light_following(self, name: str, follows: str | None) -> Scene:
+        """The scene with a light that follows "eye", another light or nothing, and stays where it is now.
+
+        Raises UsageError if there is no light of that name, InputError if it cannot follow that.
+        """
+        world = self.light_in_world(name)
+        places = {each: vars(world)[each] for each in ("position", "aim", "direction")}
+        followed = self.with_light(name, follows=follows)
+        return followed.with_light(name, **changes_in_frame(places, followed._frame_of(name)))
+
+    def _frame_of(self, name: str) -> Frame | None:
+        world = {each.name: each for each in self.lights_in_world}
+        return frame_of(self.light(name), world, self.view)
 
     def surface(self, name: str) -> Surface:
         """The surface of that name. Raises UsageError, with the closest valid name, if there is none."""
@@ -276,6 +291,11 @@ class Scene(Row):
         Raises UsageError if there is none of that name, InputError if another light follows it.
         """
         place = _place("light", self.lights, name)
+        followers = followers_of(name, self.lights)
+        if followers:
+            raise InputError(
+                f"light {name!r} must stay while {followers[0]!r} follows it; let that follow something else"
+            )
         return changed(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
 
     def with_copied_light(self, name: str, new_name: str | None = None) -> Scene:
@@ -294,17 +314,20 @@ class Scene(Row):
         """The scene with a mirrored copy of one light after the others; the light itself stays.
 
         It is mirrored in the plane where the coordinate of the axis, "x", "y" or "z", is `about`, by default
-        in the middle of the object: position, aim or direction, and the flap of that axis. Its name is like
-        "key mirrored" unless one is given. Raises UsageError for an unknown light or axis, InputError if the
+        in the middle of the object: position, aim or direction, and the flap of that axis. One that follows
+        something is mirrored where it is now, and its copy follows, too. Its name is like "key mirrored"
+        unless one is given. Raises UsageError for an unknown light or axis, InputError if the
         new name is taken.
         """
-        light, number = self.light(name), axis_number(axis)
+        light, number = self.light_in_world(name), axis_number(axis)
         if about is None:
             low, high = self.object_bounds
             about = (low[number] + high[number]) / 2
         if new_name is None:
             new_name = self._free_light_name(f"{name} mirrored")
-        return changed(self, {"lights": (*self.lights, mirrored(light, new_name, axis, about))})
+        copy = mirrored(light, new_name, axis, about)
+        copy = in_frame(copy, self._frame_of(name), self.light(name).follows)
+        return changed(self, {"lights": (*self.lights, copy)})
 
     def with_all_lights_on(self) -> Scene:
         """The scene with all lights switched on, as they are again after `only_lights`."""

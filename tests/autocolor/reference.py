@@ -78,7 +78,7 @@ def light_at(light: Light, point: Vector, normal: Vector, eye: Vector, reflectan
         return Lit(0.0, math.inf)
     left = controlled(light, point)
     # Figure 1: the angle of incidence I.
-    to_light = unit(minus(light.position, point))
+    to_light = ray_to(light, point)
     cos_i = dot(normal, to_light)
     from_jump = min(left.from_jump, abs(cos_i))
     if left.intensity == 0 or cos_i <= 0:
@@ -99,7 +99,7 @@ def controlled(light: Light, point: Vector) -> Lit:
         if flap is not None and flap.on:
             lit = lit and flap.minimum <= coordinate <= flap.maximum
             jumps += [abs(coordinate - flap.minimum), abs(coordinate - flap.maximum)]
-    to_light = unit(minus(light.position, point))
+    to_light = ray_to(light, point)
     # Figure 3: the angle L between the light's direction and the ray from the light to the point.
     multiplier = 1.0
     toward = light.direction
@@ -116,7 +116,19 @@ def controlled(light: Light, point: Vector) -> Lit:
             lit = lit and cos_l >= math.cos(math.radians(light.cone_angle))
             if light.cone_angle < 180:
                 jumps.append(abs(cos_l - math.cos(math.radians(light.cone_angle))))
+    if light.falloff != "none":
+        assert light.reach is not None
+        left = max(1 - math.dist(light.position, point) / light.reach, 0.0)
+        multiplier *= left if light.falloff == "linear" else left * left
     return Lit(multiplier if lit else 0.0, min(jumps))
+
+
+def ray_to(light: Light, point: Vector) -> list[float]:
+    """The unit vector from a point to a light, which is the same everywhere if the light is at infinity."""
+    if light.at_infinity:
+        assert light.axis is not None
+        return times(-1, light.axis)
+    return unit(minus(light.position, point))
 
 
 def level_of(fraction: float, levels: int) -> int:

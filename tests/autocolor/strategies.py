@@ -118,6 +118,9 @@ def lights(draw: st.DrawFn, /, name: str = "light", **given: Any) -> Light:
         fields["cone_angle"] = draw(st.none() | numbers(1, 180))
     if draw(st.booleans()):
         fields["flaps"] = draw(flaps())
+    fields["falloff"] = draw(st.sampled_from(["none", "none", "linear", "quadratic"]))
+    fields["reach"] = draw(numbers(0.5, 9)) if fields["falloff"] != "none" else None
+    fields["at_infinity"] = "direction" in fields and fields["reach"] is None and draw(st.booleans())
     return Light(name, position, **{**fields, **given})
 
 

@@ -7,12 +7,13 @@ and the direction of a light that follows something are told in the coordinates 
   picture. A light at (0, 0, 0) is at the eye itself.
 - that of another light: its origin is the point at which that is aimed; its axes are those of the world.
 
+A light of a scene may be named like the eye; it can follow others, but what follows "eye" follows the eye.
 Flaps stay in object coordinates. Departs: the paper's lights are all fixed to the object.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -26,6 +27,10 @@ from autocolor.scene.view import View
 
 DOWN_TO_UP: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """From the axes of camera space, right, down and forward, to right, forward and up."""
+
+
+MOST_TOLD: Final = 8
+"""Assumed: names of a circle that a message has room for."""
 
 
 class Frame(NamedTuple):
@@ -71,14 +76,16 @@ def light_frame(light: Light) -> Frame:
     return eye_frame(View(light.position, direction=axis))
 
 
-def frame_of(light: Light, lights: Sequence[Light], view: View) -> Frame | None:
-    """The frame in which a light of a scene is told; None for the world's."""
+def frame_of(light: Light, world: Mapping[str, Light], view: View) -> Frame | None:
+    """The frame in which a light of a scene is told; None for the world's.
+
+    `world` has the light that it follows, if any, in world coordinates.
+    """
     if light.follows is None:
         return None
     if light.follows == EYE:
         return eye_frame(view)
-    followed = next(each for each in lights if each.name == light.follows)
-    aim = in_world(followed, frame_of(followed, lights, view)).aim
+    aim = world[light.follows].aim
     assert aim is not None
     return Frame(np.array(aim), np.eye(3))
 
@@ -98,11 +105,28 @@ def in_world(light: Light, frame: Frame | None) -> Light:
     )
 
 
+def in_frame(light: Light, frame: Frame | None, follows: str | None) -> Light:
+    """A light of the world in the coordinates of the frame of what it is to follow; inverse of `in_world`."""
+    if frame is None:
+        return light
+    told = {name: vars(light)[name] for name in ("position", "aim", "direction")}
+    return with_values(light, {**changes_in_frame(told, frame), "follows": follows})
+
+
 def lights_in_world(lights: tuple[Light, ...], view: View) -> tuple[Light, ...]:
     """The lights of a scene in world coordinates; the same ones where they follow nothing."""
     if all(light.follows is None for light in lights):
         return lights
-    return tuple(in_world(light, frame_of(light, lights, view)) for light in lights)
+    by_name = {light.name: light for light in lights}
+    world: dict[str, Light] = {}
+    for light in lights:
+        # Walk to what follows nothing else that is to be found, and come back.
+        chain = [light]
+        while chain[-1].follows not in (None, EYE) and chain[-1].follows not in world:
+            chain.append(by_name[str(chain[-1].follows)])
+        for each in reversed(chain):
+            world[each.name] = in_world(each, frame_of(each, world, view))
+    return tuple(world[light.name] for light in lights)
 
 
 def changes_in_frame(changes: Mapping[str, Any], frame: Frame | None) -> dict[str, Any]:
@@ -117,39 +141,66 @@ def changes_in_frame(changes: Mapping[str, Any], frame: Frame | None) -> dict[st
     return turned
 
 
+def followers_of(name: str, lights: Sequence[Light]) -> list[str]:
+    """The names of the lights that follow the light of a name, not those that follow them in turn."""
+    return [light.name for light in lights if light.follows == name != EYE]
+
+
+def names_to_follow(light: Light, lights: Sequence[Light]) -> list[str]:
+    """The names of the other lights that a light can follow: those with an aim that do not follow it."""
+    by_name = {each.name: each for each in lights}
+    return [
+        each.name
+        for each in lights
+        if each.aim is not None and each.name != EYE and light.name not in _path(each, by_name)
+    ]
+
+
 def following_problems(lights: Sequence[Light]) -> Iterator[Problem]:
-    """The problems of lights that follow each other in a circle, or one that has no aim.
+    """The problems of lights that follow each other in a circle, each told once, or one that has no aim.
 
     Names that are not in the table are left to the check of references.
     """
     by_name = {light.name: light for light in lights}
+    clear: set[str] = set()
     for light in lights:
-        if light.follows in (None, EYE):
+        if light.follows in (None, EYE) or str(light.follows) not in by_name:
             continue
-        followed = by_name.get(str(light.follows))
-        if followed is None:
-            continue
-        label = f"light {light.name!r}: follows"
-        circle = _circle(light, by_name)
-        if circle:
-            path = " to ".join(map(repr, circle))
-            yield Problem((), f"{label} must not lead back to itself, from {path}; change one of them")
+        path = _path(light, by_name, clear)
+        circle, followed = path[path.index(path[-1]) :], by_name[str(light.follows)]
+        if len(circle) > 1:
+            rule = f"must not lead back to it, as {_told(circle)} does; change one of them"
+            yield Problem((), f"light {circle[0]!r}: follows {rule}")
         elif followed.aim is None:
-            yield Problem(
-                (), f"{label} must be a light with an aim, not {followed.name!r} without one; give it an aim"
-            )
+            rule = f"must be a light with an aim, not {followed.name!r} without one; give it an aim"
+            yield Problem((), f"light {light.name!r}: follows {rule}")
+        clear.update(path)
 
 
-def _circle(light: Light, by_name: Mapping[str, Light]) -> list[str]:
-    """The names from a light to itself, if following leads back there; empty if it does not."""
-    names = [light.name]
+def _path(light: Light, by_name: Mapping[str, Light], clear: Container[str] = ()) -> list[str]:
+    """The names from a light to what follows no other light, is `clear`, or is on the path already."""
+    path = {light.name: None}
     while True:
-        follows = by_name[names[-1]].follows
+        follows = by_name[next(reversed(path))].follows
         if follows is None or follows == EYE or follows not in by_name:
-            return []
-        if follows in names:
-            return [*names, follows] if follows == light.name else []
-        names.append(follows)
+            return list(path)
+        if follows in path:
+            return [*path, follows]
+        if follows in clear:
+            return list(path)
+        path[follows] = None
+
+
+def _told(path: Sequence[str]) -> str:
+    """A path in words; of a long one, its beginning and its end.
+
+    >>> _told(["key", "fill", "key"])
+    "'key' to 'fill' to 'key'"
+    """
+    names = [repr(name) for name in path]
+    if len(names) > MOST_TOLD:
+        names = [*names[: MOST_TOLD - 2], "...", names[-1]]
+    return " to ".join(names)
 
 
 def _vector(components: Floats) -> Vector:

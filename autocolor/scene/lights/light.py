@@ -38,7 +38,8 @@ class Light(Row):
     """One light.
 
     It has a direction, or an aim (its direction is then from the position to the aim), or neither; then it is
-    a point source. Paper: "Light Direction and Concentration", "Light Flaps and Cones".
+    a point source. Paper: "Light Direction and Concentration", "Light Flaps and Cones". The rays of a light
+    at infinity all have its direction: its concentration and its cone have no effect, its flaps still have.
     """
 
     noun: ClassVar[str] = "light"

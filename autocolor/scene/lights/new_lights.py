@@ -38,7 +38,7 @@ def new_light_of(scene: Scene) -> Light:
         outward = math.sin(turn) * right - math.cos(turn) * away
         toward = math.cos(elevation) * outward + math.sin(elevation) * up
         places.append(center + DISTANCE * radius * toward)
-    taken = [np.array(light.position) for light in scene.lights]
+    taken = [np.array(light.position) for light in scene.lights_in_world]
     free = [place for place in places if all(math.dist(place, other) >= radius for other in taken)]
     return Light(
         free_name(NAME, [light.name for light in scene.lights]),

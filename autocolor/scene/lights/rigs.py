@@ -1,7 +1,8 @@
 """Rigs: the lights of a scene with the size of its object, to light another one in the same way.
 
 Assumed: lights keep their directions and their places relative to the object. They are moved with the middle
-of its box, and are nearer or farther as the diagonal of the box is shorter or longer. Their intensities stay,
+of its box, and are nearer or farther as the diagonal of the box is shorter or longer; those that follow
+something, from what they follow. Their intensities stay,
 as the light at a point does not depend on its distance.
 """
 
@@ -62,7 +63,10 @@ class Rig(Row):
 
 
 def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
-    """The light with each coordinate scaled about one point and moved with it to another."""
+    """The light with each coordinate scaled about one point and moved with it to another.
+
+    The places of a light that follows something are scaled from there.
+    """
 
     def point(coordinates: Vector) -> list[float]:
         return [coordinate(number, value) for number, value in enumerate(coordinates)]
@@ -70,15 +74,18 @@ def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
     def coordinate(axis: int, value: float) -> float:
         return new[axis] + scale * (value - old[axis])
 
+    def place(coordinates: Vector) -> list[float]:
+        return point(coordinates) if light.follows is None else [scale * each for each in coordinates]
+
     flaps = {
         axis: Flap(coordinate(number, flap.minimum), coordinate(number, flap.maximum), flap.on)
         for number, axis in enumerate(AXES)
         if (flap := getattr(light.flaps, axis)) is not None
     }
     return light.replace(
-        position=point(light.position),
+        position=place(light.position),
         direction=light.direction,
-        aim=None if light.aim is None else point(light.aim),
+        aim=None if light.aim is None else place(light.aim),
         flaps=Flaps(**flaps),
     )
 

@@ -50,7 +50,7 @@ class Grip(NamedTuple):
             return scene.view.eye
         if self.what == TARGET:
             return target_in(scene)
-        light = next((each for each in scene.lights if each.name == self.light), None)
+        light = next((each for each in scene.lights_in_world if each.name == self.light), None)
         if light is None or self.what == LIGHT:
             return None if light is None else light.position
         if self.what == FLAP:
@@ -68,11 +68,12 @@ class Grip(NamedTuple):
         if self.what == TARGET:
             return scene.with_view(direction=_step(scene.view.eye, point))
         if self.what == LIGHT:
-            return scene.with_light(self.light, position=point)
+            return scene.with_light_in_world(self.light, position=point)
         if self.what == AIM:
-            return scene.with_light(self.light, aim=point)
+            return scene.with_light_in_world(self.light, aim=point)
         if self.what == DIRECTION:
-            return scene.with_light(self.light, direction=_step(scene.light(self.light).position, point))
+            start = scene.light_in_world(self.light).position
+            return scene.with_light_in_world(self.light, direction=_step(start, point))
         value, flap = point[AXES.index(self.axis)], getattr(scene.light(self.light).flaps, self.axis)
         value = min(value, flap.maximum) if self.end == "minimum" else max(value, flap.minimum)
         flaps: Any = {self.axis: {self.end: value}}

@@ -40,6 +40,7 @@ class SideItems:
         self._still: Kept[list[Item]] = Kept()
         self._chosen: Kept[list[Item]] = Kept()
         self._numerals: Kept[list[Numeral]] = Kept()
+        self._lights: Kept[tuple[Light, ...]] = Kept()
         title = f"{side.name}   {AXES[side.right]} >  {AXES[side.up]} ^"
         self._label = text(title, side.area.left + 8, side.area.top + 4, GRAY)
 
@@ -58,7 +59,8 @@ class SideItems:
         that is being placed, through which lines run across the views.
         """
         side, view = self._side, scene.view
-        lights = list(enumerate(scene.lights, start=1))
+        in_world = self._lights.of(lambda: scene.lights_in_world, scene.lights, scene.view)
+        lights = list(enumerate(in_world, start=1))
         ours = [each for each in lights if each[1].name == chosen]
         others = [each for each in lights if each[1].name != chosen]
         tables = [light for _, light in others]

@@ -17,7 +17,7 @@ def shown_points(scene: Scene) -> Floats:
     small, and is drawn as far as it is in the views.
     """
     points = [*object_bounds(scene.mesh, scene.parts), np.array(scene.view.eye), target_of(scene)]
-    for light in scene.lights:
+    for light in scene.lights_in_world:
         points.append(np.array(light.position))
         if light.aim is not None:
             points.append(np.array(light.aim))

@@ -10,7 +10,8 @@ from typing import Any, Final
 
 from autocolor.checks import Vector
 from autocolor.scene.columns.column import fields_of
-from autocolor.scene.lights.light import Light
+from autocolor.scene.lights.following import names_to_follow
+from autocolor.scene.lights.light import EYE, Light
 from autocolor.screens.session import Session
 from autocolor.widgets.column_rows import rows_of
 from autocolor.widgets.widget import Choice, Widget
@@ -19,6 +20,12 @@ POINT: Final = "point source"
 DIRECTION: Final = "direction"
 AIM: Final = "aim"
 """The kinds of lights: those with an axis have a direction, or an aim."""
+
+WORLD: Final = "world"
+"""The choice of following nothing."""
+
+OF_AN_AXIS: Final = ("direction", "aim", "concentration", "cone_angle", "inner_angle", "at_infinity")
+"""The columns that only a light with an axis has."""
 
 DOWN: Final = (0.0, 0.0, -1.0)
 """The direction of a light that had none."""
@@ -33,10 +40,15 @@ def kind_of(light: Light) -> str:
 
 def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()) -> list[Widget]:
     """The rows of the columns of a light, without some, and of its kind, before what only some kinds have."""
-    rows = rows_of(light, partial(put_light, session, light.name), session.world, leave_out)
+    rows = rows_of(light, partial(_put_with_reach, session, light), session.world, leave_out)
+    # What a light follows is chosen among what it can follow, and it stays where it is.
+    if "follows" not in leave_out:
+        found = [row for row in rows if row.label != "follows"]
+        place = next((number for number, row in enumerate(rows) if row.label == "follows"), len(found))
+        rows = [*found[:place], _follows_row(session, light), *found[place:]]
     # A point source has no axis: what needs one cannot be used, and says so.
     if kind_of(light) == POINT:
-        needing = ("concentration", "cone angle")
+        needing = ("concentration", "cone angle", "inner angle", "at infinity")
         rows = [replace(row, why_not=NEEDS_AXIS) if row.label in needing else row for row in rows]
     axis = ("direction", "aim", "concentration")
     before = next((number for number, row in enumerate(rows) if row.label.startswith(axis)), len(rows))
@@ -60,13 +72,18 @@ def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
 def choose_kind(session: Session, light: Light, kind: str) -> None:
     """Make a light one of another kind; one that has a direction or an aim keeps where it shines."""
     if kind == POINT:
-        # Without an axis there is no concentration and no cone.
-        absent = {name: _default(name) for name in ("direction", "aim", "concentration", "cone_angle")}
-        put_light(session, light.name, absent)
-    elif kind == AIM:
-        put_light(session, light.name, {"aim": aim_of(light, session.world.low, session.world.high)})
+        # Without an axis there is no concentration, no cone and no direction to come from.
+        put_light(session, light.name, {name: _default(name) for name in OF_AN_AXIS})
+        return
+    scene = session.scene
+    light = scene.light_in_world(light.name)
+    if kind == AIM:
+        scene = scene.with_light_in_world(
+            light.name, aim=aim_of(light, session.world.low, session.world.high)
+        )
     else:
-        put_light(session, light.name, {"direction": light.axis or DOWN})
+        scene = scene.with_light_in_world(light.name, direction=light.axis or DOWN)
+    session.edit(scene)
 
 
 def aim_of(light: Light, low: Vector, high: Vector) -> Vector:
@@ -84,6 +101,29 @@ def aim_of(light: Light, low: Vector, high: Vector) -> Vector:
     distance = ahead if ahead > 0 else math.hypot(*away) or 1.0
     x, y, z = (a + distance * b for a, b in zip(light.position, axis, strict=True))
     return x, y, z
+
+
+def choose_follows(session: Session, name: str, follows: str) -> None:
+    """Let a light follow the eye or another light, or nothing; it stays where it is now."""
+    session.edit(session.scene.with_light_following(name, None if follows == WORLD else follows))
+
+
+def _follows_row(session: Session, light: Light) -> Choice:
+    """The choice of what a light follows: the world, the eye, or an aim that does not move with it."""
+    return Choice(
+        "follows",
+        "What it moves with: nothing in the world, the eye, or the aim of another light.",
+        names=(WORLD, EYE, *names_to_follow(light, session.scene.lights)),
+        present=light.follows or WORLD,
+        choose=partial(choose_follows, session, light.name),
+    )
+
+
+def _put_with_reach(session: Session, light: Light, changes: Mapping[str, Any]) -> None:
+    """Change fields of a light; one that is to fall with the distance gets a reach, the object's size."""
+    if changes.get("falloff", "none") != "none" and light.reach is None:
+        changes = {**changes, "reach": math.dist(session.world.low, session.world.high) or 1.0}
+    put_light(session, light.name, changes)
 
 
 def _default(name: str) -> object:

@@ -47,6 +47,10 @@ class HandleKey(NamedTuple):
     place: tuple[int, int] | None = None
 
 
+Source = tuple[Vector, Vector | None]
+"""Where the rays of a light come from: its position and, of one at infinity, its direction."""
+
+
 class LightHandles:
     """The handles of the chosen light in an area of the picture; without `has_rims`, its highlight alone."""
 
@@ -54,9 +58,10 @@ class LightHandles:
         self.session = session
         self._area = area
         self._has_rims = has_rims
-        self._highlight: tuple[Vector, VisiblePoints, str, tuple[int, int] | None] | None = None
-        """The position of a light, the visible points, the chosen surface, and the line and element of its
-        highlight: those that it was placed at, which need not be searched and may be one of several."""
+        self._highlight: tuple[Source, VisiblePoints, str, tuple[int, int] | None] | None = None
+        """Where the rays of a light come from, the visible points, the chosen surface, and the line and
+        element of its highlight: those that it was placed at, which need not be searched and may be one of
+        several."""
         self._rims: tuple[Light, VisiblePoints, Sequence[Handle], Sequence[Item]] | None = None
         """A light, the visible points, and the handles and marks at its rims."""
 
@@ -96,28 +101,30 @@ class LightHandles:
         else:
             scene = flap_placed(scene, seen, key.light, *key.what)
         session.edit(scene)
-        light = scene.light(key.light)
+        light = scene.light_in_world(key.light)
         if key.what == HIGHLIGHT:
             points = session.studio.sight.points
-            self._highlight = light.position, points, session.surface_name, (line, element)
+            self._highlight = _source_of(light), points, session.surface_name, (line, element)
         session.tell(told(light, key.what))
 
     def _seen_light(self) -> Light | None:
-        """The chosen light, if it is on and what is shown is the finished picture of the scene."""
+        """The chosen light where it is, if it is on and the finished picture of the scene is shown."""
         session, light = self.session, self.session.chosen_light
-        is_seen = light is not None and light.on
-        return light if is_seen and not session.studio.is_coarse and not session.comparing.is_on else None
+        if light is None or not light.on or session.studio.is_coarse or session.comparing.is_on:
+            return None
+        return session.scene.light_in_world(light.name)
 
     def _at_highlight(self, light: Light) -> list[Handle]:
         """The handle at the highlight on the chosen surface, else on any other, if it is in the area."""
         studio, surface = self.session.studio, self.session.surface_name
         points = studio.sight.points
         known = self._highlight
-        if known is None or known[0] != light.position or known[1] is not points or known[2] != surface:
+        source = _source_of(light)
+        if known is None or known[0] != source or known[1] is not points or known[2] != surface:
             if self.session.moving:
                 return []
             place = (surface and studio.highlight_of(light.name, surface)) or studio.highlight_of(light.name)
-            known = self._highlight = light.position, points, surface, place
+            known = self._highlight = source, points, surface, place
         if known[3] is None:
             return []
         line, element = known[3]
@@ -170,6 +177,10 @@ def highlight_items(element: int, line: int, area: Area) -> list[Item]:
     around = area_of(strokes.reshape(-1, 2), margin=1, limit=area)
     shadow = strokes + np.array((1, 0, 1, 0))
     return [segments(shadow, BLACK, around), segments(strokes, YELLOW, around)]
+
+
+def _source_of(light: Light) -> Source:
+    return light.position, light.axis if light.at_infinity else None
 
 
 def name_of(rim: Rim) -> str:

@@ -93,7 +93,7 @@ def test_it_is_the_pixel_with_the_largest_cosine_of_all_and_of_each_surface(ligh
     for surface in scene.surfaces:
         scene = scene.with_surface(surface.name, reflectance=Reflectance(0.5, 0.5, Phong(1.0)))
     # Controls and switches are left out of it.
-    bare = Light(light.name, light.position)
+    bare = Light(light.name, light.position, direction=light.direction, at_infinity=light.at_infinity)
     cosines = render(scene.replace(lights=[bare]), LINES, ELEMENTS).planes[light.name].specular
     sight = sight_of(rendered(scene.replace(lights=[light])))
     numbers_at = rendered(scene).picture.surface_number

@@ -1,16 +1,19 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, Light, Scene, UsageError, View
+from autocolor import Flap, Flaps, Light, Scene, UsageError, View, read_scene
+from autocolor.lighting.highlights import highlight_of
 from autocolor.lighting.light_controls.flap_sides import Axis, FlapEnd
 from autocolor.lighting.light_drags import LEAST_CONE, cone_placed, flap_placed, highlight_placed
 from autocolor.rendering import rendering
+from autocolor.scene.columns.rows import with_values
 from autocolor.visibility.sight import Seen, Sight, seen_at
 from tests.autocolor.meshes import sphere, wall, wall_scene
 from tests.autocolor.reference import dot, minus, plus, times, unit
@@ -110,6 +113,94 @@ def test_a_one_sided_wall_seen_from_behind_gets_no_highlight_and_a_two_sided_one
         else:
             with pytest.raises(UsageError, match="the normal faces the eye"):
                 highlight_placed(scene, seen, "light")
+
+
+CAR = rendering(read_scene(Path(__file__).parents[3] / "scenes" / "coupe"), 48, 64)
+
+KINDS: list[dict[str, Any]] = [
+    {},
+    {"direction": (0.3, 1.0, -0.2), "cone_angle": 40},
+    {"aim": (-0.5, 0.2, 0.4), "concentration": 9},
+    {"direction": (1.0, 0.5, -0.5), "at_infinity": True},
+    {"aim": (0.25, 0.0, 0.5), "at_infinity": True, "intensity": 0.5},
+]
+
+
+@given(
+    st.integers(0, 47),
+    st.integers(0, 63),
+    far_positions,
+    st.sampled_from(KINDS),
+    st.sampled_from([None, "eye", "key"]),
+    st.booleans(),
+)
+def test_any_light_on_the_coupe_gets_its_highlight_where_it_is_wanted_and_is_found_there(
+    line: int, element: int, position: Vector, kind: dict[str, Any], follows: str | None, is_followed: bool
+) -> None:
+    before = Light("lamp", position, follows=follows, **kind)
+    scene = CAR.scene.replace(lights=(*CAR.scene.lights, before))
+    if is_followed and before.aim is not None:
+        scene = scene.with_new_light("beside", position=(0, 0, 0.5), follows="lamp")
+    sight = Sight(scene, CAR.points)
+    seen = seen_at(sight, line, element)
+    assume(seen is not None)
+    assert seen is not None
+    assume(dot(seen.normal, unit(minus(scene.view.eye, seen.point))) > 1e-3)
+    distance = math.dist(scene.light_in_world("lamp").position, seen.point)
+    assume(distance > 1e-3)
+
+    placed = highlight_placed(scene, seen, "lamp")
+    light = placed.light_in_world("lamp")
+    assert math.dist(light.position, seen.point) == pytest.approx(distance, rel=1e-9)
+    to_light = unit(minus(light.position, seen.point))
+    assert dot(to_light, seen.reflected_view) == pytest.approx(1.0, abs=1e-12)
+    reflected = minus(times(2 * dot(to_light, seen.normal), seen.normal), to_light)
+    assert dot(reflected, unit(minus(scene.view.eye, seen.point))) == pytest.approx(1.0, abs=1e-6)
+    if before.direction is None and before.aim is None:
+        assert light.axis is None
+    else:
+        assert light.axis == pytest.approx(times(-1, to_light), abs=1e-9)
+        assert (light.aim is None) == (before.aim is None)
+    if before.aim is not None:
+        assert light.aim == pytest.approx(seen.point, abs=1e-12)
+    # All else stays, and so does what follows it.
+    after = placed.light("lamp")
+    places = {"position": before.position, "aim": before.aim, "direction": before.direction}
+    assert with_values(after, places) == before
+    if is_followed and before.aim is not None:
+        beside = placed.light_in_world("beside").position
+        assert beside == pytest.approx(plus(seen.point, (0, 0, 0.5)), abs=1e-9)
+
+    # The inverse finds the pixel, or one whose cosine is equal up to rounding.
+    found = highlight_of(Sight(placed, CAR.points), "lamp", seen.surface)
+    assert found is not None
+    there = seen_at(sight, *found)
+    assert there is not None
+    toward = to_light if light.at_infinity else unit(minus(light.position, there.point))
+    assert found == (line, element) or dot(toward, there.reflected_view) > 1 - 1e-6
+
+
+def test_a_cone_and_a_flap_of_a_light_at_the_eye_end_at_what_is_seen() -> None:
+    lamp = Light("lamp", (0, 0, 0), direction=(0, 1, 0), cone_angle=5, follows="eye")
+    scene = CAR.scene.replace(lights=(*CAR.scene.lights, lamp))
+    seen = seen_at(Sight(scene, CAR.points), 24, 20)
+    assert seen is not None
+    view = scene.view
+    angle = cone_placed(scene, seen, "lamp").light("lamp").cone_angle
+    cosine = dot(view.axes[2].tolist(), unit(minus(seen.point, view.eye)))
+    assert angle == pytest.approx(math.degrees(math.acos(cosine)))
+    flapped = flap_placed(scene, seen, "lamp", "x", "maximum", add=True).light("lamp")
+    assert (flapped.flaps.x, flapped.follows) == (Flap(maximum=seen.point[0]), "eye")
+
+
+def test_a_light_at_infinity_has_no_cone_to_be_dragged() -> None:
+    scene = lit(Light("light", (0, -3, 0), direction=(0, 1, 0), cone_angle=30, at_infinity=True))
+    with pytest.raises(UsageError) as caught:
+        cone_placed(scene, at((0.25, 0.0, 0.25)), "light")
+    assert str(caught.value) == (
+        "a cone must end around a light that is somewhere, not around 'light' at infinity; switch"
+        " at_infinity off"
+    )
 
 
 @given(points, far_positions, directions)

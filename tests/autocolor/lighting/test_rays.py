@@ -76,6 +76,23 @@ def test_the_rays_to_a_light_beyond_all_are_parallel(toward: Vector, distance: f
     assert rays.cosines_with(NORMAL) == pytest.approx(expected, abs=1e-5)
 
 
+@given(outside_views(), vectors(numbers(-9, 9)), directions)
+def test_the_rays_to_a_light_at_infinity_are_against_its_axis_wherever_it_is(
+    view: View, position: Vector, direction: Vector
+) -> None:
+    points = points_of(view)
+    light = Light("light", position, direction=direction, at_infinity=True)
+    rays = rays_to(camera_light(light, points, directed=True), points.rows)
+    assert rays.cos_light is not None
+    assert (rays.cos_light == 1).all()
+    assert not len(rays.close)
+    toward = np.array(times(-1, unit(direction)))
+    assert rays.cosines_with(NORMAL) == pytest.approx(points.world_normals @ toward, abs=1e-6)
+    reflected = points.rows[REFLECTED_VIEW].T.astype(np.float64) @ view.axes
+    assert rays.cosines_with(REFLECTED_VIEW) == pytest.approx(reflected @ toward, abs=1e-6)
+    assert rays_to(camera_light(light, points, directed=False), points.rows).cos_light is None
+
+
 def test_a_light_has_a_direction_only_where_one_is_asked_for() -> None:
     points = points_of(View((1, -5, 2), target=(0, 0, 0)))
     light = Light("light", (3, -3, 3), direction=(0, 2, 0))

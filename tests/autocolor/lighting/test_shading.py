@@ -388,6 +388,8 @@ def test_the_size_of_the_world_does_not_change_the_picture(light: Light, power: 
         px, py, pz = light.position
         x, y, z = light.flaps.x, light.flaps.y, light.flaps.z
         moved = light.replace(position=(px * size, py * size, pz * size), flaps=Flaps(one(x), one(y), one(z)))
+        if light.reach is not None:
+            moved = moved.replace(reach=light.reach * size)
         view = View((0.5 * size, -4.0 * size, 1.0 * size), target=(0.0, 0.0, 0.0))
         return wall_scene(wall(2, 2, half=size), view=view, lights=[moved])
 
@@ -428,7 +430,7 @@ def test_under_every_model_the_controls_leave_their_multiple_of_the_light(
 ) -> None:
     assume(max(map(abs, light.position)) > 0.05)
     points = visible_surfaces(sphere(24, 16), view, (1,), LINES, ELEMENTS)
-    free = Light("light", light.position)
+    free = Light("light", light.position, direction=light.direction, at_infinity=light.at_infinity)
     whole, left = planes_of(free, points, model), planes_of(light, points, model)
     multipliers = [controlled(light, point) for point in points.world_points.tolist()]
     clear = np.array([each.from_jump > 1e-2 for each in multipliers])
@@ -506,3 +508,41 @@ def test_no_ray_is_computed_where_flaps_leave_everything_dark(monkeypatch: pytes
     for chunk in points.chunks:
         shade(planes, controlled_light(light, points), points, chunk, {1: Phong()})
     assert not planes.any()
+
+
+@given(light=lights(on=True, intensity=1.0, direction=(1.0, 2.0, -0.5)), view=wall_views())
+def test_a_light_at_infinity_gives_what_it_gives_a_million_times_as_far_away(
+    light: Light, view: View
+) -> None:
+    light = light.replace(falloff="none", concentration=0, cone_angle=None, at_infinity=True)
+    assert light.axis is not None
+    x, y, z = times(-1e7, light.axis)
+    far = light.replace(position=(x, y, z), at_infinity=False)
+    for mesh in (wall(3, 2), sphere(24, 16)):
+        scene = wall_scene(mesh, view=view, lights=[light])
+        at_infinity, moved = (render(each, 30, 40) for each in (scene, scene.replace(lights=[far])))
+        largest = max(float(moved.intensity.max()), 1e-3)
+        assert at_infinity.intensity == pytest.approx(moved.intensity, abs=1e-5 * largest)
+
+
+def test_at_infinity_concentration_and_cone_leave_all_of_the_light_and_flaps_do_not() -> None:
+    light = Light("light", (0.3, -2, 0.1), aim=(0, 0, 0), at_infinity=True)
+    whole, narrow, flapped = (
+        render(wall_scene(lights=[each]), 12, 16)
+        for each in (
+            light,
+            light.replace(concentration=40, cone_angle=1),
+            light.replace(flaps={"x": {"minimum": 0}}),
+        )
+    )
+    near = render(wall_scene(lights=[light.replace(at_infinity=False)]), 12, 16)
+    assert not np.allclose(whole.intensity, near.intensity, rtol=0.01)
+    assert narrow.intensity.tobytes() == whole.intensity.tobytes()
+    assert (flapped.intensity[:, :7] == 0).all()
+    assert (flapped.intensity[:, 9:] == whole.intensity[:, 9:]).all()
+
+
+def test_no_ray_is_computed_beyond_the_reach_of_a_light(monkeypatch: pytest.MonkeyPatch) -> None:
+    light = Light("light", (0, -3, 0), falloff="linear", reach=2.5)
+    monkeypatch.setattr("autocolor.lighting.shading.rays_to", None)
+    assert not render(wall_scene(lights=[light]), 12, 16).intensity.any()

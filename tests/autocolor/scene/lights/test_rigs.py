@@ -74,3 +74,24 @@ def test_a_rig_whose_minimum_is_above_its_maximum_is_refused_by_its_axis() -> No
     )
     with pytest.raises(InputError, match="rig: minimum must be three finite numbers of at most 1e36, not 3"):
         Rig(3, (1, 1, 1))  # type: ignore[arg-type]
+
+
+def test_lights_that_follow_keep_their_place_beside_what_they_follow_and_are_as_many_sizes_from_it() -> None:
+    rig = Rig(
+        (0, 0, 0),
+        (1, 1, 1),
+        (
+            Light("key", (0.5, -3.5, 2.5), aim=(0.5, 0.5, 0.0)),
+            Light("beside", (0, 0, 2), aim=(1, 0, 0), follows="key"),
+            Light("lamp", (0, 0, 0), follows="eye"),
+            Light("left", (-1, 0, 0), direction=(1, 3, 0), follows="eye"),
+        ),
+    )
+    _, beside, lamp, left = rig.fitted((-1, -1, -1), (1, 1, 1))
+    assert beside == Light("beside", (0, 0, 4), aim=(2, 0, 0), follows="key")
+    assert lamp == rig.lights[2]
+    assert left == Light("left", (-2, 0, 0), direction=(1, 3, 0), follows="eye")
+    small = scene_of(cube(), lights=rig.lights)
+    large = scene_of(cube(2.0), lights=()).with_rig(small.rig)
+    one, other = (render(each, 60, 80).intensity for each in (small, large))
+    assert np.allclose(one, other, atol=1e-5)

@@ -128,3 +128,19 @@ def test_the_line_of_a_flap_of_the_chosen_light_can_be_taken_hold_of_anywhere() 
         assert min(abs(each.line - line) for each in handles) <= BETWEEN // 2
     grips = map(grip_of, handles_in(scene, VIEWS, "key"))
     assert {each.light for each in grips if each.what == FLAP} == {"key"}
+
+
+@pytest.mark.parametrize("follows", ["eye", "key"])
+def test_a_light_that_follows_is_taken_hold_of_and_put_where_it_is_in_the_world(follows: str) -> None:
+    spot = Light("spot", (0.5, 1.0, -0.5), direction=(0.0, 1.0, 0.0), follows=follows)
+    scene = boxed(KEY, spot)
+    assert Grip(LIGHT, light="spot").point_in(scene, VIEWS) == scene.light_in_world("spot").position
+    moved = Grip(LIGHT, light="spot").put(scene, PLACE)
+    assert Grip(LIGHT, light="spot").point_in(moved, VIEWS) == pytest.approx(PLACE)
+    assert moved.light("spot").follows == follows
+    turned = Grip(DIRECTION, light="spot").put(moved, (1.5, -2.0, 8.0)).light_in_world("spot")
+    assert turned.axis == pytest.approx((0.0, 0.0, 1.0), abs=1e-12)
+    aimed = Grip(AIM, light="spot").put(moved, (0.0, 1.0, 2.0)).light_in_world("spot")
+    assert aimed.aim == pytest.approx((0.0, 1.0, 2.0))
+    handles = {handle.key for handle in handles_in(scene, VIEWS, "spot")}
+    assert Grip(LIGHT, "top", "spot") in handles

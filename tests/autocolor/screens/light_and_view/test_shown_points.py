@@ -34,6 +34,13 @@ def test_a_stage_is_left_out_of_the_scale() -> None:
 def test_all_that_can_be_grabbed_is_in_each_of_the_fitted_views(scene: Scene) -> None:
     views = fitted_views(shown_points(scene))
     for side in SIDES:
-        for light in scene.lights:
+        for light in scene.lights_in_world:
             assert side.area.has(*views.position(side, light.position))
         assert side.area.has(*views.position(side, scene.view.eye))
+
+
+def test_lights_that_follow_are_shown_where_they_are() -> None:
+    lights = [Light("lamp", (0.0, 0.0, 0.0), follows="eye"), Light("key", (1.0, 2.0, 3.0), aim=(0, 0.5, 0.5))]
+    lights.append(Light("beside", (0.0, 0.0, 1.0), follows="key"))
+    found = [tuple(point) for point in shown_points(scene_of(cube(), view=VIEW, lights=lights)).tolist()]
+    assert found[4:] == [VIEW.eye, (1, 2, 3), (0, 0.5, 0.5), (0, 0.5, 1.5)]

@@ -297,3 +297,22 @@ def test_what_can_be_grabbed_is_marked_before(at_lights: Hand) -> None:
     assert max(abs(mark[0] - element - 2), abs(mark[1] - line)) <= REACH
     assert mark[::-1] in {(a, b) for a, b in rims(hand.viewer.studio.sight, "key")["cone"].tolist()}
     assert hand.viewer.board.message[0] == "end of the cone of key"
+
+
+def test_the_highlight_of_a_light_that_follows_or_is_at_infinity_goes_where_it_is_picked(
+    at_lights: Hand,
+) -> None:
+    hand = at_lights
+    studio = hand.viewer.studio
+    studio.light("key", at_infinity=True)
+    studio.edit(studio.scene.with_light_following("key", "eye"))
+    for place in (PLACE, (300, 220)):
+        hand.drag(hand.handle("highlight of key"), (330, 240), place)
+        assert studio.highlight_of("key") == place[::-1]
+        assert hand.handle("highlight of key") == place
+        assert (key(hand).follows, key(hand).at_infinity) == ("eye", True)
+    position = zip("xyz", scene_of(hand).light_in_world("key").position, strict=True)
+    assert hand.viewer.message == "key: " + "  ".join(f"{axis} {place:.2f}" for axis, place in position)
+    # Its cross is where the highlight is after it was turned in place.
+    hand.viewer.studio.light("key", direction=(0.1, 1.0, 0.0))
+    assert hand.handle("highlight of key") == (studio.highlight_of("key") or (0, 0))[::-1]
