@@ -56,6 +56,9 @@ class Picture(Immutable):
 
     `scalar_values`, (n,) float32 in the order of `pixels` with NaN for missing values, are those of the
     scalar that colors the scene, and `scalar_limits` are its own range; both are None if there is none.
+
+    `normals`, (3, n) float32 in the order of `pixels`, are unit vectors in camera space; None unless the
+    words of the scene stand for normals.
     """
 
     lines: int
@@ -68,6 +71,7 @@ class Picture(Immutable):
     light_planes: Mapping[str, LightPlanes] = field(default_factory=dict, repr=False)
     scalar_values: Singles | None = field(default=None, repr=False)
     scalar_limits: tuple[float, float] | None = None
+    normals: Singles | None = field(default=None, repr=False)
 
     @classmethod
     def from_rasters(
