@@ -127,13 +127,15 @@ def test_where_words_are_in_use_they_are_those_of_the_pixels_and_each_surface_ha
     seen = np.unique(image.words)
     assert seen.tolist() == [0, *image.normals.words.tolist()]
     first, levels = image.ranges["shell"]
-    assert first <= seen[1] and seen[-1] < first + levels
+    assert first <= seen[1]
+    assert seen[-1] < first + levels
     assert (image.words == 0).tolist() == (image.picture.surface_number == 0).tolist()
 
 
 def test_the_normal_of_a_word_is_near_that_of_each_of_its_pixels() -> None:
     image = image_of(ball_scene(20), 240, 320)
-    assert image.normals is not None and image.picture.normals is not None
+    assert image.normals is not None
+    assert image.picture.normals is not None
     normals = np.zeros((1024, 3), np.float32)
     normals[image.normals.words] = image.normals.normals.T
     cosines = (normals[image.words.ravel()[image.picture.pixels]].T * image.picture.normals).sum(axis=0)
