@@ -7,6 +7,7 @@
 | a surface's reflection model | all lights, for the chunks of points that contain the surface; the sum |
 | a light's intensity, switch or links to surfaces, ambient, D, S | the sum |
 | the scalar's name, direction, stripes | its values |
+| what words stand for | nothing, but the picture has normals or not |
 | anything else | nothing |
 """
 
@@ -31,7 +32,7 @@ from autocolor.scalars.scalar_values import scalar_values
 from autocolor.scene.columns.column import Tier
 from autocolor.scene.columns.rows import cost, with_values
 from autocolor.scene.scalars.scalar import Scalar
-from autocolor.scene.scene import Scene, check_scene, costs_at_least
+from autocolor.scene.scene import NORMALS, Scene, check_scene, costs_at_least
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from autocolor.visibility.watkins import watkins
@@ -94,9 +95,9 @@ def rendering(
     check_scene(scene)
     if before is not None and (before.picture.lines, before.picture.elements) != (lines, elements):
         before = None
-    if before is not None and _sees_the_same(before.scene, scene):
+    if before is not None and sees_the_same(before.scene, scene):
         if not costs_at_least(before.scene, scene, Tier.MIX):
-            return Rendering(scene, before.points, before.picture)
+            return Rendering(scene, before.points, _with_normals(before.picture, scene, before.points))
         points = before.points
     else:
         before = None
@@ -114,7 +115,7 @@ def rendering(
         previous = None if before is None else Previous(before.scene, before.picture)
         with timed(LOG, "illumination"):
             picture = illuminate(scene, points, previous)
-    picture = _with_scalar(picture, scene, points, before)
+    picture = _with_normals(_with_scalar(picture, scene, points, before), scene, points)
     LOG.debug("%r", picture)
     return Rendering(scene, points, picture)
 
@@ -143,6 +144,14 @@ def _with_scalar(picture: Picture, scene: Scene, points: VisiblePoints, before: 
     return dataclasses.replace(picture, scalar_values=values, scalar_limits=limits)
 
 
+def _with_normals(picture: Picture, scene: Scene, points: VisiblePoints) -> Picture:
+    """The picture with the normals of its points where words stand for normals, else without."""
+    normals = points.normals if scene.words == NORMALS else None
+    if picture.normals is normals:
+        return picture
+    return dataclasses.replace(picture, normals=normals)
+
+
 def _stage(scene: Scene) -> list[bool]:
     """Which parts are stage: their coordinates are left out of the range of a scalar."""
     return [part.stage for part in scene.parts]
@@ -159,7 +168,7 @@ def _is_lit_the_same(old: Scene, new: Scene) -> bool:
     return not costs_at_least(with_values(old, {"scalar": new.scalar}), new, Tier.MIX)
 
 
-def _sees_the_same(old: Scene, new: Scene) -> bool:
+def sees_the_same(old: Scene, new: Scene) -> bool:
     """Whether two scenes have the same visible points, including the surface number of each."""
     is_other = costs_at_least(old, new, Tier.FRAME)
     return not is_other and old.surface_number_of_part == new.surface_number_of_part

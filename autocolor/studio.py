@@ -15,6 +15,10 @@ must be recomputed and sent.
 | contrast, background | the entries that differ, no words |
 | the legend switched on or off | all words |
 
+Where words stand for normals (`normals`), a light, ambient, D, S and a reflection model send the entries that
+differ, no words, and so do mapping, scaling and exposure. No light plane is computed for that: the picture is
+rendered when it is asked for.
+
 The legend of a scalar is drawn over the words, after them and again whenever it changes.
 """
 
@@ -36,11 +40,11 @@ from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.mapping.pacing import block_for, blocks_of
-from autocolor.rendering import rendering
+from autocolor.rendering import rendering, sees_the_same
 from autocolor.scan_lines import words_by_line
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns.column import Tier, fields_of
-from autocolor.scene.scene import AUTO, Scene, cost_of_edit
+from autocolor.scene.scene import AUTO, LEVELS, NORMALS, Scene, cost_of_edit
 from autocolor.scene.surfaces import Paint
 from autocolor.sending import configuration_of, send_image, shown_colors
 from autocolor.visibility.sight import Seen, Sight, seen_at
@@ -78,6 +82,8 @@ class Studio(StudioSession):
     @property
     def picture(self) -> Picture:
         """The current picture; of a half or a quarter of the lines and elements while `is_coarse`."""
+        if self._shown.normals is not None:
+            self._light_picture()
         return self._shown.picture
 
     @property
@@ -188,6 +194,14 @@ class Studio(StudioSession):
             )
         self.edit(self.scene.without_scalar())
 
+    def normals(self, on: bool = True) -> None:
+        """Let words stand for normals, so that lights change entries alone; or for levels again.
+
+        Lights and the eye are then taken as far away, and what depends on the place of a point is left out:
+        see `mapping.normals.far_light`. Raises InputError where a scalar colors surfaces.
+        """
+        self.edit(self.scene.replace(words=NORMALS if on else LEVELS))
+
     def hold_exposure(self, ranges: Mapping[str, Sequence[float]] | None = None) -> None:
         """Keep the intensity ranges of the current picture, so that less light looks darker from now on.
 
@@ -195,7 +209,7 @@ class Studio(StudioSession):
         """
         if ranges is None:
             self.refine()
-            held = held_exposure(self.picture, self.scene.scaling, self.scene.exposure)
+            held = held_exposure(self._shown.mapped, self.scene.scaling, self.scene.exposure)
             self.edit(self.scene.replace(exposure=held))
         else:
             self.edit(self.scene.replace(exposure=ranges))
@@ -267,20 +281,30 @@ class Studio(StudioSession):
         """Recompute and send what an edit changed. If that raises an error, the session is unchanged."""
         before, rendered, block = self._shown, self._rendering, self._shown.block
         begun = perf_counter()
-        if costs >= Tier.MIX:
+        if costs >= Tier.MIX or scene.words != before.scene.words:
             if not moving:
                 block = 1
             elif costs == Tier.FRAME:
                 block = block_for(blocks_of(*self._size), *self._pace)
             # Else what is visible stays: what was computed for it is used again.
-            lines, elements = (size // block for size in self._size)
-            rendered = rendering(scene, lines, elements, rendered)
+            if not (block == before.block and _differs_in_light_alone(before, rendered.scene, scene)):
+                lines, elements = (size // block for size in self._size)
+                rendered = rendering(scene, lines, elements, rendered)
         now = display_image(scene, rendered.picture, before, block)
         if self.sends:
             send_image(self._display, now, before)
         self._rendering, self._shown = rendered, now
         if costs == Tier.FRAME:
             self._pace = block, perf_counter() - begun
+
+    def _light_picture(self) -> None:
+        """Render what edits of lights left out while words stand for normals; nothing is sent."""
+        shown = self._shown
+        lines, elements = (size // shown.block for size in self._size)
+        rendered = rendering(self.scene, lines, elements, self._rendering)
+        if rendered.picture is not shown.picture:
+            self._shown = display_image(self.scene, rendered.picture, shown, shown.block)
+        self._rendering = rendered
 
     def _repr_png_(self) -> bytes:
         from ramtek_emu.png import png_bytes
@@ -296,3 +320,8 @@ class Studio(StudioSession):
     def __repr__(self) -> str:
         undo, redo = len(self._history.to_undo), len(self._history.to_redo)
         return f"Studio({self.scene.name!r}, to undo {undo}, to redo {redo})"
+
+
+def _differs_in_light_alone(before: DisplayImage, rendered: Scene, scene: Scene) -> bool:
+    """Whether words stand for normals in an image and still do in a scene that sees what was rendered."""
+    return before.normals is not None and scene.words == NORMALS and sees_the_same(rendered, scene)

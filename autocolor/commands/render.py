@@ -11,6 +11,7 @@ from typing import Final
 import click
 
 from autocolor.commands.completion import complete_lights
+from autocolor.commands.options.normals import normals_option, with_normals
 from autocolor.commands.options.raster_size import size_option
 from autocolor.commands.options.settings import created_again, reframed, set_option, with_settings
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
@@ -51,6 +52,7 @@ Examples:
     help="Use only this light; repeat it for more than one.",
 )
 @set_option
+@normals_option
 @size_option
 @click.option(
     "--hold-exposure",
@@ -66,6 +68,7 @@ def render(
     save: str | None,
     lights: tuple[str, ...],
     settings: tuple[str, ...],
+    normals: bool,
     size: tuple[int, int],
     hold_exposure: bool,
     force: bool,
@@ -73,14 +76,14 @@ def render(
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
     elements, lines = size
     report = reframed(read(source), elements / lines)
-    original = report.scene
+    original = with_normals(report.scene, normals)
     if hold_exposure:
+        from autocolor.mapping.display_image import display_image
         from autocolor.mapping.exposure import held_exposure
         from autocolor.rendering import render as rendered
 
-        original = original.replace(
-            exposure=held_exposure(rendered(original, lines, elements), original.scaling, original.exposure)
-        )
+        mapped = display_image(original, rendered(original, lines, elements)).mapped
+        original = original.replace(exposure=held_exposure(mapped, original.scaling, original.exposure))
     edited = created_again(report, with_settings(original, settings), elements / lines)
     if lights:
         edited = edited.only_lights(*lights)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from autocolor.commands.options.normals import normals_option, with_normals
 from autocolor.commands.options.settings import created_again, set_option, with_settings
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.errors import UsageError
@@ -24,6 +25,7 @@ EXAMPLES: Final = """\b
 Examples:
   autocolor view scenes/coupe
   autocolor view car.obj --up y --full-screen
+  autocolor view scenes/coupe --normals
   autocolor view --recover
   autocolor view scenes/coupe --set background=navy --set lights.key.cone_angle=none
 """
@@ -41,6 +43,7 @@ Examples:
 )
 @click.option("--sessions", is_flag=True, help="List the sessions that did not end orderly.")
 @click.option("--forget", metavar="SESSION", help="Remove a session that did not end orderly.")
+@normals_option
 @click.option("--full-screen", is_flag=True, help="Open the window in full screen.")
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @click.pass_context
@@ -48,6 +51,7 @@ def view(
     context: click.Context,
     source: SceneSource | None,
     settings: tuple[str, ...],
+    normals: bool,
     recover: str | None,
     sessions: bool,
     forget: str | None,
@@ -60,8 +64,9 @@ def view(
         raise UsageError(
             f"view must have one of SCENE, --recover, --sessions and --forget, not {sum(asked)}; name a scene"
         )
-    if settings and source is None:
-        raise UsageError("--set is for SCENE, not for sessions; leave it out")
+    for option, is_given in (("--set", bool(settings)), ("--normals", normals)):
+        if is_given and source is None:
+            raise UsageError(f"{option} is for SCENE, not for sessions; leave it out")
     if sessions or forget is not None:
         from autocolor.commands.sessions.left_sessions import forget_session, list_sessions
 
@@ -78,7 +83,7 @@ def view(
 
         place = place_of(Source(source.path, source.up, source.surfaces, source.scale))
         report = read(source)
-        edited = created_again(report, with_settings(report.scene, settings))
+        edited = created_again(report, with_normals(with_settings(report.scene, settings), normals))
         note_file(source.path)
         # What is opened after it has the same up axis and scale.
         show(

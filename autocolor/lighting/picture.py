@@ -60,6 +60,9 @@ class Picture(Immutable):
 
     `visible_parts` has the part at each of `pixels`, None for a picture that does not know them: one made of
     rasters, or of a file that was written before version 4.
+
+    `normals`, (3, n) float32 in the order of `pixels`, are unit vectors in camera space; None unless the
+    words of the scene stand for normals.
     """
 
     lines: int
@@ -73,6 +76,7 @@ class Picture(Immutable):
     scalar_values: Singles | None = field(default=None, repr=False)
     scalar_limits: tuple[float, float] | None = None
     visible_parts: VisibleParts | None = field(default=None, repr=False)
+    normals: Singles | None = field(default=None, repr=False)
 
     @classmethod
     def from_rasters(

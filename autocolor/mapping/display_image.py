@@ -9,18 +9,26 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Words
+from autocolor.arrays import Bytes, Singles, Words
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
+from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.band_division import bands_by_surface
 from autocolor.mapping.color_blending import entries_of
 from autocolor.mapping.exposure import mapped_ranges
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
+from autocolor.mapping.normals.cells import spread_of
+from autocolor.mapping.normals.normal_words import (
+    WordNormals,
+    fill_entries,
+    light_at_words,
+    words_of_normals,
+)
 from autocolor.mapping.scalar_bands import DARKEST, Bands, band_entries
 from autocolor.scene.columns.column import Tier
-from autocolor.scene.scene import Scene, check_scene, costs_at_least
+from autocolor.scene.scene import NORMALS, Scene, check_scene, costs_at_least
 from autocolor.scene.surfaces import Surface
 
 MAPPING: Final = ("scaling", "mapping", "exposure", "dither")
@@ -33,6 +41,9 @@ class DisplayImage:
 
     `bands` are those of the surfaces that a scalar colors. Each pixel of the picture is shown as a block of
     `block` x `block` words.
+
+    Where words stand for normals, `normals` are these, and `lit` is the light at them. Then nothing but the
+    visible points is taken from the picture, whose intensities may be those of an earlier light.
     """
 
     scene: Scene
@@ -41,6 +52,13 @@ class DisplayImage:
     words: Words
     block: int = 1
     bands: Mapping[str, Bands] = field(default_factory=dict)
+    normals: WordNormals | None = None
+    lit: Picture | None = None
+
+    @property
+    def mapped(self) -> Picture:
+        """The picture whose intensities are mapped: of the pixels, or of the words that stand for normals."""
+        return self.picture if self.lit is None else self.lit
 
     @cached_property
     def entries(self) -> Bytes:
@@ -50,6 +68,8 @@ class DisplayImage:
         table[SCREENS.first :] = SCREEN_COLORS
         for name, (first, levels) in self.ranges.items():
             table[first : first + levels] = self.entries_of(self.scene.surface(name))
+        if self.lit is not None:
+            fill_entries(table, self.scene, self.lit, self.ranges, self._shown_floors)
         table.flags.writeable = False
         return table
 
@@ -60,19 +80,27 @@ class DisplayImage:
         return colors
 
     def entries_of(self, surface: Surface) -> Bytes:
-        """The entries of one surface, (levels, 3) uint8, read-only."""
+        """The entries of one surface's levels or bands, (levels, 3) uint8, read-only.
+
+        Where words stand for normals, these are the colors of its paint from the lowest level up.
+        """
         has_floor = self.scene.contrast == "floor"
-        floor = self._floors.get(surface.name, 0.0) if has_floor else 0.0
+        floor = self._shown_floors.get(surface.name, 0.0)
         scalar, bands = self.scene.scalar, self.bands.get(surface.name)
         if scalar is not None and bands is not None:
             ends = scalar.below if bands.has_below else None, scalar.above if bands.has_above else None
             return band_entries(scalar.scale, ends, scalar.missing, bands, floor if has_floor else DARKEST)
         return entries_of(surface.paint, self.ranges[surface.name].levels, floor)
 
+    @property
+    def _shown_floors(self) -> Mapping[str, float]:
+        """The floors by surface name; none where the lowest level is black."""
+        return self._floors if self.scene.contrast == "floor" else {}
+
     @cached_property
     def _floors(self) -> Mapping[str, float]:
         """The mapped minimum as a fraction of the maximum, for each visible surface by name."""
-        ranges = mapped_ranges(self.picture, self.scene.scaling, self.scene.exposure)
+        ranges = mapped_ranges(self.mapped, self.scene.scaling, self.scene.exposure)
         return {
             self.picture.surfaces[number - 1]: extent.minimum / extent.maximum if extent.maximum > 0 else 0.0
             for number, extent in ranges.items()
@@ -88,6 +116,7 @@ class DisplayImage:
         """
         if (
             self.ranges is before.ranges
+            and self.normals is before.normals is None
             and self.bands == before.bands
             and self.scene.background == before.scene.background
             and self._has_floors_of(before)
@@ -134,16 +163,21 @@ def display_image(
     on the surfaces and on what is visible, not on the light. Those of an earlier image are kept for larger
     blocks, as a coarse picture is soon followed by a finer one. Raises InputError if an intensity is not
     finite.
+
+    The words of a picture without normals, such as one of a file, stand for levels in every scene.
     """
     bands = _bands(scene, picture, before)
-    ranges = None if before is None else _kept_ranges(before, scene, bands, block)
+    ranges = None if before is None else _kept_ranges(before, scene, picture, bands, block)
     if ranges is None:
         fixed = {name: each.levels for name, each in bands.items()}
         ranges = level_ranges(scene.surfaces, _covered(scene, picture), scene.division, fixed)
         if before is not None and before.ranges == ranges:
             ranges = before.ranges
+    if _normals_of(scene, picture) is not None:
+        return _image_of_normals(scene, picture, ranges, before, block)
     if (
         before is not None
+        and before.normals is None
         and before.picture is picture
         and before.ranges is ranges
         and before.bands == bands
@@ -152,10 +186,44 @@ def display_image(
         words = before.words
     else:
         words = words_of(picture, ranges, scene.scaling, scene.mapping, scene.exposure, scene.dither, bands)
-        if block > 1:
-            words = words.repeat(block, axis=0).repeat(block, axis=1)
-            words.flags.writeable = False
+        words = _in_blocks(words, block)
     return DisplayImage(scene, picture, ranges, words, block, bands)
+
+
+def _normals_of(scene: Scene, picture: Picture) -> Singles | None:
+    """The normals that words stand for, (3, n); None where they stand for levels."""
+    return picture.normals if scene.words == NORMALS else None
+
+
+def _image_of_normals(
+    scene: Scene,
+    picture: Picture,
+    ranges: Mapping[str, LevelRange],
+    before: DisplayImage | None,
+    block: int,
+) -> DisplayImage:
+    """The display image of a picture whose words stand for normals.
+
+    Words and normals are those of an earlier image of the same visible points, whatever lights them.
+    """
+    if (
+        before is not None
+        and before.normals is not None
+        and before.picture.normals is picture.normals
+        and before.ranges is ranges
+    ):
+        words, normals = before.words, before.normals
+    else:
+        words, normals = words_of_normals(picture, ranges)
+        words = _in_blocks(words, block)
+    return DisplayImage(
+        scene, picture, ranges, words, block, normals=normals, lit=light_at_words(scene, normals)
+    )
+
+
+def _in_blocks(words: Words, block: int) -> Words:
+    """Words repeated in both directions, read-only."""
+    return words if block == 1 else read_only(words.repeat(block, axis=0).repeat(block, axis=1))
 
 
 def _bands(scene: Scene, picture: Picture, before: DisplayImage | None) -> Mapping[str, Bands]:
@@ -167,14 +235,15 @@ def _bands(scene: Scene, picture: Picture, before: DisplayImage | None) -> Mappi
 
 
 def _kept_ranges(
-    before: DisplayImage, scene: Scene, bands: Mapping[str, Bands], block: int
+    before: DisplayImage, scene: Scene, picture: Picture, bands: Mapping[str, Bands], block: int
 ) -> Mapping[str, LevelRange] | None:
     """The ranges of an earlier image if they are those of the scene, too; None if they must be divided."""
     if {name: each.levels for name, each in bands.items()} != {
         name: each.levels for name, each in before.bands.items()
     }:
         return None
-    if block > 1:
+    is_same_sight = before.normals is not None and before.picture.normals is picture.normals
+    if block > 1 or is_same_sight:
         return before.ranges if _claims(before.scene) == _claims(scene) else None
     # The ranges of a coarse picture are those of the picture before it, in which other pixels were visible.
     is_divided_anew = before.block > 1 or costs_at_least(before.scene, scene, Tier.LEVELS)
@@ -184,14 +253,26 @@ def _kept_ranges(
 def _claims(scene: Scene) -> tuple[object, ...]:
     """What the ranges depend on, apart from what is visible."""
     used = {scene.parts[number].surface for number in scene.mesh.parts_in_use}
-    return scene.division, *((each.name, each.levels) for each in scene.surfaces if each.name in used)
+    return (
+        scene.division,
+        scene.words,
+        *((each.name, each.levels) for each in scene.surfaces if each.name in used),
+    )
 
 
 def _covered(scene: Scene, picture: Picture) -> Mapping[str, int]:
-    """How many pixels each surface in use covers."""
+    """How many pixels each surface in use covers.
+
+    Where words stand for normals, times how much of the sphere its normals take: a floor needs but one.
+    Assumed: so a surface gets levels in proportion to the square root of both.
+    """
     covered = {scene.parts[number].surface: 0 for number in scene.mesh.parts_in_use}
+    normals = _normals_of(scene, picture)
     for surface in picture.slices:
-        covered[picture.surfaces[surface.surface_number - 1]] = surface.stop - surface.start
+        count = surface.stop - surface.start
+        if normals is not None:
+            count *= spread_of(normals[:, surface.pixels])
+        covered[picture.surfaces[surface.surface_number - 1]] = count
     return covered
 
 

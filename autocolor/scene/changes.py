@@ -166,6 +166,7 @@ class SceneFields(TypedDict, total=False):
     exposure: str | Mapping[str, Sequence[float]] | Sequence[tuple[str, Sequence[float]]]
     dither: Literal["off", "ordered"]
     division: Literal["covered", "equal"]
+    words: Literal["levels", "normals"]
     background: str | Sequence[int]
     scalar: Row | ScalarChanges | None
     name: str

@@ -59,6 +59,9 @@ SCALINGS: Final = ("surface", "object")
 CONTRASTS: Final = ("stretch", "floor")
 DIVISIONS: Final = ("covered", "equal")
 DITHERS: Final = ("off", "ordered")
+LEVELS: Final = "levels"
+NORMALS: Final = "normals"
+"""What words stand for."""
 
 AUTO: Final = "auto"
 OBJECT: Final = "object"
@@ -142,6 +145,14 @@ class Scene(Row):
             "Whether surfaces get more levels the more of the picture they cover, or all the same number.",
         ),
     ] = "covered"
+    words: Annotated[
+        str,
+        Column(
+            Choice((LEVELS, NORMALS)),
+            Tier.LEVELS,
+            "Whether words stand for levels, or for normals, so that lights change entries alone.",
+        ),
+    ] = LEVELS
     background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (
         0,
         0,
@@ -157,7 +168,10 @@ class Scene(Row):
     ] = "scene"
 
     def rules(self) -> Iterator[Problem]:
-        """The parts are those of the mesh, all references are valid, and there are at most MOST_SURFACES."""
+        """The parts are those of the mesh, all references are valid, and there are at most MOST_SURFACES.
+
+        Words do not stand for normals where a scalar colors surfaces: a band is told by the place of a point.
+        """
         if self.mesh is not REFUSED and self.parts is not REFUSED:
             names = [part.name for part in self.parts]
             if names != list(self.mesh.part_names):
@@ -165,6 +179,9 @@ class Scene(Row):
                 yield Problem((), f"{rule} {list(self.mesh.part_names)}, not {names}")
         if self.mesh is not REFUSED and isinstance(self.scalar, Scalar):
             yield from name_problems(self.scalar.name, self.mesh.scalars)
+        if self.words == NORMALS and self.scalar is not None:
+            rule = "must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or take the"
+            yield Problem(("words",), f"{rule} scalar away")
         # Finding the closest valid name is slow, and a file may contain many invalid names.
         yield from islice(self._reference_problems(), MOST_PROBLEMS)
         if self.lights is not REFUSED:

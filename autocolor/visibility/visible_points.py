@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats, Indices, Numbers, Singles
+from autocolor.immutable import read_only
 from autocolor.scene.view import View
 from autocolor.visibility.visible_parts import VisibleParts
 
@@ -151,6 +152,11 @@ class VisiblePoints:
     def polygon_numbers(self) -> Indices:
         """Rows of the polygon table, (n,), in the order of `pixels`."""
         return np.repeat(self.span_polygons, self.span_lengths)
+
+    @cached_property
+    def normals(self) -> Singles:
+        """The unit normals in camera space, (3, n) float32, in the order of `pixels`; read-only."""
+        return read_only(self.rows[NORMAL])
 
     @property
     def world_points(self) -> Floats:

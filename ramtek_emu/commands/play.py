@@ -21,6 +21,7 @@ from ramtek_emu.commands.displays import (
 EXAMPLES: Final = """\b
 Examples:
   ramtek play drawing.ramtek
+  ramtek play circling_light.ramtek --loads-per-second 30
   ramtek play drawing.ramtek -o drawing.png --configuration princeton_9300
   old_program | ramtek play - -o drawing.png --record drawing.ramtek
 """
@@ -30,6 +31,12 @@ Examples:
 @click.argument("stream", type=click.Path())
 @display_options
 @click.option("--window", is_flag=True, help="Open the window even if a picture is written.")
+@click.option(
+    "--loads-per-second",
+    type=click.IntRange(1, 1000),
+    metavar="RATE",
+    help="In the window, load the table at most so often: an animation of table loads.",
+)
 def play(
     stream: str,
     output: str | None,
@@ -39,11 +46,15 @@ def play(
     force: bool,
     record: str | None,
     window: bool,
+    loads_per_second: int | None,
 ) -> None:
     """Run STREAM, a file of 16-bit words with the low byte first; - is stdin.
 
     Without -o or --snapshot it is shown in a window. What it asks to read back is read by nobody.
     """
+    in_window = window or (output is None and snapshot is None)
+    if loads_per_second is not None and not in_window:
+        raise click.UsageError("--loads-per-second is for the window; add --window, or leave it out")
     refuse_outputs(force, output, snapshot, record)
     file = open_stream(stream)
     display = display_asked_for(configuration, start)
@@ -54,7 +65,11 @@ def play(
     read = reader_of(file)
     with recording(record, force) as kept:
         session = HostSession(display, kept)
-        if window or (output is None and snapshot is None):
+        if in_window:
+            if loads_per_second is not None:
+                from ramtek_emu.host.paced_reader import PacedReader
+
+                read = PacedReader(read, loads_per_second, display.configuration)
             show(display, PolledPipe(session, read).serve_for)
         else:
             serve_pipe(session, read, None)

@@ -136,7 +136,7 @@ def level_of(fraction: float, levels: int) -> int:
     return math.floor(fraction * (levels - 1) + 0.5)
 
 
-def entry_of(paint: Paint, levels: int, level: int, floor: float = 0.0) -> tuple[int, ...]:
+def entry_of(paint: Paint, levels: int, level: float, floor: float = 0.0) -> tuple[int, ...]:
     """Figure 12: one entry of a range, its object and light color mixed and then darkened."""
     begin = math.floor(paint.blend * (levels - 1) + 0.5)
     shift = 0.0

@@ -26,7 +26,7 @@ def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -
         return []
     low, high = dict(exposure)[name]
     # What is held may lie beyond: a bar whose range followed it would run away from a drag.
-    usual = bar_within(0.0, BEYOND * (session.studio.picture.ranges.whole.maximum or 1.0))
+    usual = bar_within(0.0, BEYOND * (session.studio.image.mapped.ranges.whole.maximum or 1.0))
     least = LEAST_SHARE * usual.high
 
     def hold(minimum: float, maximum: float) -> object:

@@ -163,7 +163,7 @@ class MappingScreen(OverPicture):
     def _curve(self) -> Curve:
         session, scene = self.session, self.session.scene
         curve = curve_of(
-            session.studio.picture, scene.scaling, scene.mapping, scene.exposure, session.surface_name
+            session.studio.image.mapped, scene.scaling, scene.mapping, scene.exposure, session.surface_name
         )
         levels, shares = (ACROSS, np.zeros_like(ACROSS)) if curve is None else curve
         return Curve(session.surface_name, levels, shares, self._points(), self._touched)

@@ -98,7 +98,7 @@ class OverPicture(Screen):
         bands, scalar = studio.image.bands.get(name), studio.scene.scalar
         if bands is None or scalar is None:
             return Pointed(name, part, f"level {word - first} of {levels - 1}")
-        values, block = studio.picture.scalar, studio.image.block
+        values, block = studio.image.picture.scalar, studio.image.block
         value = float("nan") if values is None else float(values[line // block, element // block])
         shown = "missing" if math.isnan(value) else f"{value:.5g}"
         return Pointed(name, part, f"{scalar.name} {shown}, shade {(word - first) % bands.shades + 1}")

@@ -19,6 +19,7 @@ from autocolor.screens.lights.light_parameters import (
 )
 from autocolor.screens.session import Session
 from autocolor.studio import Studio
+from autocolor.widgets.widget import Choice
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube
 
