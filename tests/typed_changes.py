@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from autocolor.scene.columns.column import Row, fields_of, keys_of
+from autocolor.scene.columns.row_kinds import Nested
 from autocolor.scene.lights.flaps import Flap, Flaps
 from autocolor.scene.lights.half_spaces import HalfSpace
 from autocolor.scene.lights.light import Light
@@ -77,10 +78,23 @@ def types_of(cls: type[Row]) -> dict[str, str]:
     fields, keys = fields_of(cls), keys_of(cls)
     columns = {name: field.column for name, field in fields.items()}
     columns |= {key: each.column for key, each in keys.items()}
+    optional = optional_keys(cls)
     return {
-        name: column.kind.accepts() + (" | None" if name in fields and fields[name].is_optional else "")
+        name: column.kind.accepts() + (" | None" if name in optional else "")
         for name, column in columns.items()
     }
+
+
+def optional_keys(cls: type[Row]) -> set[str]:
+    """The keys that may be None, also those of rows inside."""
+    found = set()
+    for name, field in fields_of(cls).items():
+        kind = field.column.kind
+        if field.is_optional:
+            found.add(name)
+        if isinstance(kind, Nested) and kind.inline:
+            found |= optional_keys(kind.row_class)
+    return found
 
 
 def written(name: str, text: str, types: dict[str, str]) -> str:

@@ -67,10 +67,10 @@ class LightChanges(TypedDict, total=False):
     at_infinity: bool
     follows: str | None
     links: Row | LinksChanges
-    only_surfaces: Sequence[str]
-    except_surfaces: Sequence[str]
-    only_parts: Sequence[str]
-    except_parts: Sequence[str]
+    only_surfaces: Sequence[str] | None
+    except_surfaces: Sequence[str] | None
+    only_parts: Sequence[str] | None
+    except_parts: Sequence[str] | None
 
 
 class PartChanges(TypedDict, total=False):
