@@ -23,6 +23,7 @@ from autocolor import (
 from autocolor.files.rig_file import is_rig
 from autocolor.files.scenes.toml_text import LARGEST_TEXT
 from autocolor.scene.lights.half_spaces import HalfSpace
+from autocolor.scene.lights.links import Links
 from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.meshes import cube
 
@@ -148,6 +149,12 @@ def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
             Rig((0, 0, 0), (1, 1, 1), (Light("\ud800", (0, 0, 1)),)),
             InputError,
             "a name in a file must be text in UTF-8; rename it",
+        ),
+        (
+            "rig.toml",
+            Rig((0, 0, 0), (1, 1, 1), (Light("key", (0, 0, 1), links=Links(only_parts=("\ud800",))),)),
+            InputError,
+            "light 'key': a name in a file must be text in UTF-8; rename it",
         ),
         (
             "rig.toml",
