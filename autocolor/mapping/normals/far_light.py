@@ -22,6 +22,7 @@ from autocolor.lighting.picture import Picture
 from autocolor.scene.columns.rows import with_values
 from autocolor.scene.lights.light import Light
 from autocolor.scene.scene import Scene
+from autocolor.visibility.visible_parts import VisibleParts
 from autocolor.visibility.visible_points import (
     NORMAL,
     REFLECTED_VIEW,
@@ -31,6 +32,7 @@ from autocolor.visibility.visible_points import (
 )
 
 ORIGIN: Final = (0.0, 0.0, 0.0)
+NOTHING: Final[Indices] = np.empty(0, np.intp)
 
 
 def light_at_normals(
@@ -57,8 +59,9 @@ def light_at_normals(
         middle=np.zeros(3),
         pixels=numbers,
         slices=slices,
-        span_polygons=np.empty(0, np.intp),
-        span_lengths=np.empty(0, np.intp),
+        span_polygons=NOTHING,
+        span_lengths=NOTHING,
+        parts=VisibleParts((), NOTHING, NOTHING, NOTHING),
         rows=rows,
     )
     lights = tuple(far_light(light, middle) for light in scene.lights_in_world)
