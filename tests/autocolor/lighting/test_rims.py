@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Flap, Flaps, Light, Mesh, Scene, UsageError, View, render
-from autocolor.lighting.rims import Rim, rims
+from autocolor.lighting.rims import Plane, Rim, rims
 from autocolor.rendering import rendering
 from autocolor.visibility.sight import Sight
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
@@ -115,6 +115,7 @@ def test_the_rims_of_all_controls_are_found_by_themselves() -> None:
         if rim == "cone":
             alone = alone.replace(cone_angle=6)
         else:
+            assert not isinstance(rim, Plane)
             axis, end = rim
             limit = getattr(getattr(flaps, axis), end)
             alone = alone.replace(flaps=Flaps(**{axis: Flap(**{end: limit})}))
