@@ -1,8 +1,8 @@
 """Rigs: the lights of a scene with the size of its object, to light another one in the same way.
 
 Assumed: lights keep their directions and their places relative to the object. They are moved with the middle
-of its box, and are nearer or farther as the diagonal of the box is shorter or longer. Their intensities stay,
-as the light at a point does not depend on its distance.
+of its box, and are nearer or farther as the diagonal of the box is shorter or longer. Widths and reaches are
+scaled with it. Their intensities stay, as the light at a point does not depend on its distance.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
 from autocolor.scene.columns.problems import REFUSED, Problem
 from autocolor.scene.columns.row_kinds import Rows
 from autocolor.scene.columns.value_kinds import VectorKind
-from autocolor.scene.lights.flaps import Flap, Flaps
+from autocolor.scene.lights.flaps import Flaps
+from autocolor.scene.lights.half_spaces import HalfSpace
 from autocolor.scene.lights.light import Light
 from autocolor.scene.lights.light_copies import AXES
 
@@ -70,8 +71,16 @@ def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
     def coordinate(axis: int, value: float) -> float:
         return new[axis] + scale * (value - old[axis])
 
+    def half_space(row: HalfSpace) -> HalfSpace:
+        moved = [scale * value for value in row.point] if row.carried else point(row.point)
+        return row.replace(point=moved, edge_width=scale * row.edge_width)
+
     flaps = {
-        axis: Flap(coordinate(number, flap.minimum), coordinate(number, flap.maximum), flap.on)
+        axis: flap.replace(
+            minimum=coordinate(number, flap.minimum),
+            maximum=coordinate(number, flap.maximum),
+            edge_width=scale * flap.edge_width,
+        )
         for number, axis in enumerate(AXES)
         if (flap := getattr(light.flaps, axis)) is not None
     }
@@ -80,6 +89,8 @@ def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
         direction=light.direction,
         aim=None if light.aim is None else point(light.aim),
         flaps=Flaps(**flaps),
+        half_spaces=[half_space(row) for row in light.half_spaces],
+        reach=None if light.reach is None else scale * light.reach,
     )
 
 
