@@ -53,7 +53,8 @@ def test_a_half_space_along_an_axis_is_a_flap_bit_for_bit(
     view: View, axis: str, is_minimum: bool, limit: float, point: Vector, edge_width: float
 ) -> None:
     number = "xyz".index(axis)
-    flap = Flap(edge_width=edge_width).replace(**{"minimum" if is_minimum else "maximum": limit})
+    flap = Flap(edge_width=edge_width)
+    flap = flap.replace(minimum=limit) if is_minimum else flap.replace(maximum=limit)
     with_flap = Light("light", (0.2, -1, 0.1), flaps=Flaps(**{axis: flap}))
     x, y, z = (limit if row == number else other for row, other in enumerate(point))
     direction = [0.0, 0.0, 0.0]
