@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from autocolor.scene.creation import scene_of as scene_of
     from autocolor.scene.lights.flaps import Flap as Flap
     from autocolor.scene.lights.flaps import Flaps as Flaps
+    from autocolor.scene.lights.half_spaces import HalfSpace as HalfSpace
     from autocolor.scene.lights.light import Light as Light
     from autocolor.scene.lights.rigs import Rig as Rig
     from autocolor.scene.mesh import Mesh as Mesh
@@ -64,6 +65,7 @@ _HOME: Final = {
     "CookTorrance": "scene.reflection_models",
     "Flap": "scene.lights.flaps",
     "Flaps": "scene.lights.flaps",
+    "HalfSpace": "scene.lights.half_spaces",
     "InputError": "errors",
     "LevelRange": "mapping.level_ranges",
     "Light": "scene.lights.light",

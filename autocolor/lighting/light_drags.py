@@ -1,4 +1,4 @@
-"""How a light changes when its highlight, or an end of its cone or of a flap, is dragged to what is seen.
+"""How a light changes when its highlight, or an end of one of its controls, is dragged to what is seen.
 
 Paper: "Light Controls". The paper moves lights in three views; here they follow a point of the picture. These
 are functions from a scene to a scene, for `Studio.edit`.
@@ -11,10 +11,12 @@ from typing import Final, get_args
 
 import numpy as np
 
-from autocolor.checks import either, shown
+from autocolor.checks import either, nearest, shown
 from autocolor.errors import UsageError
 from autocolor.lighting.light_controls.flap_sides import Axis, FlapEnd, flaps_of
 from autocolor.scene.lights.flaps import Flap
+from autocolor.scene.lights.following import light_frame
+from autocolor.scene.lights.vectors import unit_vector
 from autocolor.scene.scene import Scene
 from autocolor.visibility.sight import Seen
 
@@ -64,7 +66,8 @@ def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
 def cone_placed(scene: Scene, seen: Seen | None, light: str, add: bool = False) -> Scene:
     """The scene with a light whose cone ends at a point: its angle is that of the point from the direction.
 
-    The angle is at least LEAST_CONE and at most 180 degrees. A light without a cone gets one with `add`.
+    The angle is at least LEAST_CONE and at most 180 degrees. A soft edge keeps its inner angle, or that of
+    the cone if that is smaller. A light without a cone gets one with `add`.
     Raises UsageError on the background, for a light at the point itself, for a point source, for a light at
     infinity, where cones have no effect, and for a light without a cone unless one is to be added.
     """
@@ -90,7 +93,10 @@ def cone_placed(scene: Scene, seen: Seen | None, light: str, add: bool = False) 
     # The arc tangent is exact at all angles, which the arc cosine is not.
     toward /= np.abs(toward).max()
     angle = math.degrees(math.atan2(float(np.linalg.norm(np.cross(axis, toward))), float(toward @ axis)))
-    return scene.with_light(light, cone_angle=min(max(angle, LEAST_CONE), 180.0))
+    angle = min(max(angle, LEAST_CONE), 180.0)
+    if row.inner_angle is None:
+        return scene.with_light(light, cone_angle=angle)
+    return scene.with_light(light, cone_angle=angle, inner_angle=min(row.inner_angle, angle))
 
 
 def flap_placed(
@@ -119,6 +125,27 @@ def flap_placed(
     else:
         flap = flap.replace(maximum=max(coordinate, flap.minimum))
     return scene.with_light(light, flaps=row.flaps.replace(**{axis: flap}))
+
+
+def half_space_placed(scene: Scene, seen: Seen | None, light: str, name: str) -> Scene:
+    """The scene with a light one of whose half-spaces ends at a point: its plane moves along its direction.
+
+    Its own point moves by as little as leads the plane there; so does that of one that the light carries.
+    Raises UsageError on the background, and for a light without this half-space.
+    """
+    seen = _on_surface(seen, "a half-space")
+    row = scene.light_in_world(light)
+    half_space = next((each for each in row.half_spaces if each.name == name), None)
+    if half_space is None:
+        known = nearest(name, [each.name for each in row.half_spaces])
+        raise UsageError(f"there is no half-space {shown(name)} of light {light!r}{known or '; add one'}")
+    point = seen.point
+    if half_space.carried:
+        point = light_frame(row).point_from_world(point)
+    direction = np.array(unit_vector(half_space.direction))
+    start = np.array(half_space.point)
+    moved = start + (direction @ (np.array(point) - start)) * direction
+    return scene.with_light(light, half_spaces={name: {"point": moved.tolist()}})
 
 
 def _on_surface(seen: Seen | None, what: str) -> Seen:

@@ -1,15 +1,17 @@
-"""Rims: the pixels where the cone and the flaps of a light end, which a pointer can grab."""
+"""Rims: the pixels where the cone, the flaps and the half-spaces of a light end, which a pointer can grab."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Bytes, Indices, dot
+from autocolor.arrays import Booleans, Bytes, Indices, chunks, dot
 from autocolor.lighting.light_controls.cone import Cone
-from autocolor.lighting.light_controls.flap_sides import Axis, FlapEnd, flap_sides, is_inside
+from autocolor.lighting.light_controls.flap_sides import Axis, FlapEnd, flap_sides
+from autocolor.lighting.light_controls.half_spaces import half_space_sides
+from autocolor.lighting.light_controls.sides import is_inside
 from autocolor.lighting.rays import camera_light, rays_to
 from autocolor.scene.lights.light import Light
 from autocolor.visibility.projection import focal_length
@@ -18,11 +20,21 @@ from autocolor.visibility.visible_points import NORMAL, POINT, VisiblePoints
 
 CONE: Final = "cone"
 
-Rim = Literal["cone"] | tuple[Axis, FlapEnd]
-"""What ends at a rim: the cone, or an end of the flap along an axis."""
 
-VISIBLE: Final = np.uint8(1 << 7)
-"""The flag of a visible pixel; those below it are of the rims, of which a light has at most seven."""
+class Plane(NamedTuple):
+    """What ends at the rim of a half-space: its plane, by the name of the half-space."""
+
+    half_space: str
+
+
+Rim = Literal["cone"] | tuple[Axis, FlapEnd] | Plane
+"""What ends at a rim: the cone, an end of the flap along an axis, or a half-space."""
+
+AT_ONCE: Final = 7
+"""The rims that are found together: the most that a light without half-spaces has."""
+
+VISIBLE: Final = np.uint8(1 << AT_ONCE)
+"""The flag of a visible pixel; those below it are of the rims."""
 
 LARGEST_GAP: Final = 4.0
 """Assumed: in pixels at their distance; a neighbor that lies further before or behind the tangent plane is
@@ -30,20 +42,27 @@ another surface, or one behind the silhouette."""
 
 
 def rims(sight: Sight, light: str) -> Mapping[Rim, Indices]:
-    """The pixels at which the cone and the flaps of a light end, (n, 2): line and element, from the top.
+    """The pixels at which the cone, the flaps and the half-spaces of a light end, (n, 2): line and element.
 
-    There is one array for the cone, if there is any, and for each finite end of the flaps that are on; it is
-    empty where that end is not to be seen. Its pixels are inside, and one of the four neighbors of each is
-    outside on the same surface: so no silhouette is a rim. Each rim is that of one control by itself, also
-    where another leaves nothing of the light.
+    There is one array for the cone, if there is any, one for each finite end of the flaps that are on, and
+    one for each half-space that is on; it is empty where that end is not to be seen. Its pixels are inside,
+    and one of the four neighbors of each is outside on the same surface: so no silhouette is a rim. Each rim
+    is that of one control by itself, also where another leaves nothing of the light. At a soft edge, it is
+    where nothing is left.
 
     Measured on the coupe: a cone takes 2 ms, and all seven rims 4; beside another busy process up to 10.
     Raises UsageError for an unknown light.
     """
+    inside = list(_inside(sight.points, sight.scene.light_in_world(light)).items())
+    found: dict[Rim, Indices] = {}
+    for some in chunks(len(inside), AT_ONCE):
+        found |= _ends(sight, dict(inside[some]))
+    return found
+
+
+def _ends(sight: Sight, inside: Mapping[Rim, Booleans]) -> dict[Rim, Indices]:
+    """The pixels at which some rims are, at most `AT_ONCE`; `inside` has their sides of the points."""
     points = sight.points
-    inside = _inside(points, sight.scene.light_in_world(light))
-    if not inside:
-        return {}
     # Set one flag for each rim, and spread the flags and the places over the raster.
     flags = np.full(len(points.pixels), VISIBLE)
     for bit, each in enumerate(inside.values()):
@@ -70,7 +89,7 @@ def rims(sight: Sight, light: str) -> Mapping[Rim, Indices]:
 
 
 def _inside(points: VisiblePoints, light: Light) -> dict[Rim, Booleans]:
-    """Whether each point is inside the cone and inside each end of the flaps, as in shading."""
+    """Whether each point is inside the cone, each end of the flaps and each half-space, as in shading."""
     inside: dict[Rim, Booleans] = {}
     cone = Cone.of(light, points)
     if cone is not None:
@@ -81,7 +100,9 @@ def _inside(points: VisiblePoints, light: Light) -> dict[Rim, Booleans]:
             assert cosines is not None
             np.greater_equal(cosines, np.float32(cone.least_cosine), out=inside[CONE][chunk.pixels])
     for rim, side in flap_sides(light, points).items():
-        inside[rim] = is_inside(side.astype(np.float32), points.rows)
+        inside[rim] = is_inside(side, points.rows)
+    for name, side in half_space_sides(light, points).items():
+        inside[Plane(name)] = is_inside(side, points.rows)
     return inside
 
 

@@ -106,6 +106,10 @@ class Screen:
         """A key that nothing else takes was pressed; returns False if it does nothing here."""
         return False
 
+    def escape(self) -> bool:
+        """Give up what was begun here; returns False if there is nothing, and the screen is left."""
+        return False
+
     def idle(self) -> bool:
         """Do a part of what can wait while nothing moves; returns whether something looks different now."""
         return False

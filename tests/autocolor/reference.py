@@ -19,6 +19,8 @@ from autocolor.scene.specular_growth import SpecularGrowth
 
 Vector = Sequence[float]
 
+WORLD_AXES: list[Vector] = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
+
 
 def plus(a: Vector, b: Vector) -> list[float]:
     return [x + y for x, y in zip(a, b, strict=True)]
@@ -72,7 +74,7 @@ class Lit(NamedTuple):
 def light_at(light: Light, point: Vector, normal: Vector, eye: Vector, reflectance: Reflectance) -> Lit:
     """The light that reaches the eye: the paper's formula with all of its controls.
 
-    `from_jump` is the least of the differences that decide: of cosines, and of coordinates to flaps.
+    `from_jump` is the least of the differences that decide: of cosines, and of distances from planes.
     """
     if not light.on:
         return Lit(0.0, math.inf)
@@ -93,34 +95,65 @@ def light_at(light: Light, point: Vector, normal: Vector, eye: Vector, reflectan
 def controlled(light: Light, point: Vector) -> Lit:
     """What all controls leave of a light of intensity 1 at a point."""
     jumps = [math.inf]
-    lit = True
-    # Figure 9: the flaps that are on.
-    for coordinate, flap in zip(point, (light.flaps.x, light.flaps.y, light.flaps.z), strict=True):
-        if flap is not None and flap.on:
-            lit = lit and flap.minimum <= coordinate <= flap.maximum
-            jumps += [abs(coordinate - flap.minimum), abs(coordinate - flap.maximum)]
     to_light = ray_to(light, point)
-    # Figure 3: the angle L between the light's direction and the ray from the light to the point.
     multiplier = 1.0
     toward = light.direction
     if light.aim is not None:
         toward = tuple(minus(light.aim, light.position))  # type: ignore[assignment]
+    # Figure 9: the flaps that are on.
+    inside: list[tuple[float, float]] = []
+    for coordinate, flap in zip(point, (light.flaps.x, light.flaps.y, light.flaps.z), strict=True):
+        if flap is not None and flap.on:
+            inside.append((coordinate - flap.minimum, flap.edge_width))
+            inside.append((flap.maximum - coordinate, flap.edge_width))
+    # The half-spaces that are on; those that are carried have the light's axes.
+    for half_space in light.half_spaces:
+        if half_space.on:
+            from_plane = minus(point, half_space.point)
+            if half_space.carried:
+                axes = WORLD_AXES if toward is None else frame(toward)
+                from_light = minus(point, light.position)
+                from_plane = minus([dot(axis, from_light) for axis in axes], half_space.point)
+            inside.append((dot(from_plane, unit(half_space.direction)), half_space.edge_width))
+    for distance, width in inside:
+        jumps.append(abs(distance))
+        multiplier *= soft(distance, width)
+    # Figure 3: the angle L between the light's direction and the ray from the light to the point.
     if toward is not None:
         cos_l = -dot(unit(toward), to_light)
         if light.concentration > 0:
-            multiplier = max(cos_l, 0.0) ** light.concentration
+            multiplier *= max(cos_l, 0.0) ** light.concentration
             if light.concentration < 1:
                 jumps.append(abs(cos_l))
-        # Figure 10: the cone angle A.
+        # Figure 10: the cone angle A, and the inner angle of a soft one.
         if light.cone_angle is not None:
-            lit = lit and cos_l >= math.cos(math.radians(light.cone_angle))
+            rim = math.cos(math.radians(light.cone_angle))
+            inner = rim if light.inner_angle is None else math.cos(math.radians(light.inner_angle))
+            multiplier *= soft(cos_l - rim, inner - rim)
             if light.cone_angle < 180:
-                jumps.append(abs(cos_l - math.cos(math.radians(light.cone_angle))))
+                jumps.append(abs(cos_l - rim))
     if light.falloff != "none":
         assert light.reach is not None
         left = max(1 - math.dist(light.position, point) / light.reach, 0.0)
         multiplier *= left if light.falloff == "linear" else left * left
-    return Lit(multiplier if lit else 0.0, min(jumps))
+    return Lit(multiplier, min(jumps))
+
+
+def soft(inside: float, width: float) -> float:
+    """What an edge leaves of the light at a distance inside: all of it from the width on."""
+    if inside >= width:
+        return 1.0
+    if inside <= 0:
+        return 0.0
+    fraction = inside / width
+    return 3 * fraction**2 - 2 * fraction**3
+
+
+def frame(toward: Vector) -> list[Vector]:
+    """The axes of a light: horizontal to the right of its direction, along it, and up."""
+    x, y, z = along = unit(toward)
+    right = unit((y, -x, 0.0) if x or y else (-z, 0.0, x))
+    return [right, along, cross(right, along)]
 
 
 def ray_to(light: Light, point: Vector) -> list[float]:

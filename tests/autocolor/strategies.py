@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, Light, Mesh, Paint, Part, Reflectance, Scene, Surface, View
+from autocolor import Flap, Flaps, HalfSpace, Light, Mesh, Paint, Part, Reflectance, Scene, Surface, View
 from autocolor.scene.curves import CURVES
 from autocolor.scene.lights.links import Links
 from autocolor.scene.reflection_models import MODELS, BlinnPhong, CookTorrance, Phong
@@ -94,6 +94,10 @@ def outside_views(draw: st.DrawFn) -> View:
 rasters = st.tuples(st.integers(1, 24), st.integers(1, 24))
 
 
+edge_widths = st.just(0.0) | numbers(0.01, 2)
+"""Sharp edges, and soft ones that begin and end among the polygons."""
+
+
 @st.composite
 def flaps(draw: st.DrawFn) -> Flaps:
     """Flaps in any of the directions, some of them switched off."""
@@ -102,9 +106,25 @@ def flaps(draw: st.DrawFn) -> Flaps:
         if draw(st.booleans()):
             return None
         ends = sorted((draw(numbers(-1.5, 1.5)), draw(numbers(-1.5, 1.5))))
-        return Flap(ends[0], ends[1], draw(st.booleans()))
+        return Flap(ends[0], ends[1], draw(st.booleans()), draw(edge_widths))
 
     return Flaps(one(), one(), one())
+
+
+half_spaces = st.lists(
+    st.builds(
+        HalfSpace,
+        st.sampled_from(["left", "right", "door 3"]),
+        vectors(),
+        directions,
+        edge_widths,
+        st.booleans(),
+        st.booleans(),
+    ),
+    max_size=3,
+    unique_by=lambda each: each.name,
+).map(tuple)
+"""Half-spaces in any direction, some of them soft, carried or switched off."""
 
 
 @st.composite
@@ -116,11 +136,15 @@ def lights(draw: st.DrawFn, /, name: str = "light", **given: Any) -> Light:
         fields["direction"] = draw(directions)
         fields["concentration"] = draw(st.sampled_from([0.0, 1.0, 2.5, 10.0, 40.0]))
         fields["cone_angle"] = draw(st.none() | numbers(1, 180))
+        if fields["cone_angle"] is not None:
+            fields["inner_angle"] = draw(st.none() | numbers(0, fields["cone_angle"]))
     if draw(st.booleans()):
         fields["flaps"] = draw(flaps())
     fields["falloff"] = draw(st.sampled_from(["none", "none", "linear", "quadratic"]))
     fields["reach"] = draw(numbers(0.5, 9)) if fields["falloff"] != "none" else None
     fields["at_infinity"] = "direction" in fields and fields["reach"] is None and draw(st.booleans())
+    if draw(st.booleans()):
+        fields["half_spaces"] = draw(half_spaces)
     return Light(name, position, **{**fields, **given})
 
 

@@ -100,3 +100,16 @@ def controls_of(light: Light, points: VisiblePoints) -> tuple[LightControl, ...]
 @cache
 def _import_controls() -> None:
     import_modules_of("autocolor.lighting.light_controls")
+
+
+def ramp(fraction: Singles) -> Singles:
+    """What a soft edge leaves at a fraction t of its width: nothing up to 0, all of it from 1 on.
+
+    Between it is t^2 (3 - 2 t), in place. Assumed: of the polynomials that begin and end with a slope of 0,
+    so that neither end shows as a seam, this has the lowest degree. Infinite fractions are not allowed.
+    """
+    np.clip(fraction, 0, 1, out=fraction)
+    rest = np.multiply(fraction, -2)
+    rest += 3
+    rest *= fraction
+    return np.multiply(fraction, rest, out=fraction)

@@ -7,15 +7,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Literal
 
-import numpy as np
-
-from autocolor.arrays import Booleans, Floats, Singles
-from autocolor.lighting.light_controls.control import ROUNDING, LightControl, registered
+from autocolor.lighting.light_controls.control import registered
+from autocolor.lighting.light_controls.sides import Side, Sides, side_of
 from autocolor.scene.lights.flaps import Flap
 from autocolor.scene.lights.light import Light
-from autocolor.visibility.visible_points import POINT, VisiblePoints
+from autocolor.visibility.visible_points import VisiblePoints
 
 Axis = Literal["x", "y", "z"]
 """The object coordinate that a flap restricts."""
@@ -23,33 +21,21 @@ Axis = Literal["x", "y", "z"]
 FlapEnd = Literal["minimum", "maximum"]
 """The fields of a flap that are coordinates."""
 
-FAR_FLAP: Final = 1e30
-"""In units; farther than any point, and float32 can hold it."""
-
 
 @registered
 @dataclass(frozen=True, eq=False)
-class FlapSides(LightControl):
+class FlapSides(Sides):
     """The sides of all flaps that are on.
 
     Paper: "Light Flaps and Cones": a flap is a range of an object coordinate, a box and no shadow. A point on
-    a side is inside. `sides` is (sides, 4); see `is_inside`.
+    a side is inside. What is left near soft ends is computed in `soft_sides`.
     """
-
-    sides: Singles
 
     @classmethod
     def of(cls, light: Light, points: VisiblePoints) -> FlapSides | None:
         """The sides that are not at infinity."""
         sides = flap_sides(light, points)
-        return cls(np.array(list(sides.values()), np.float32)) if sides else None
-
-    def lit_points(self, rows: Singles, pixels: slice) -> Booleans:
-        """Whether each point is inside all flaps."""
-        lit = is_inside(self.sides[0], rows)
-        for side in self.sides[1:]:
-            np.logical_and(lit, is_inside(side, rows), out=lit)
-        return lit
+        return cls.made_of(list(sides.values())) if sides else None
 
 
 def flaps_of(light: Light) -> dict[Axis, Flap | None]:
@@ -57,27 +43,18 @@ def flaps_of(light: Light) -> dict[Axis, Flap | None]:
     return {"x": light.flaps.x, "y": light.flaps.y, "z": light.flaps.z}
 
 
-def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd], Floats]:
-    """The sides, (4,) each, of the flaps that are on, but for those at infinity; see `is_inside`."""
-    sides: dict[tuple[Axis, FlapEnd], Floats] = {}
-    # A surface that lies on a side is lit: allow for the rounding of its points to float32.
-    slack = 4 * ROUNDING * points.radius
+def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd], Side]:
+    """The sides of the flaps that are on, but for those at infinity."""
+    sides: dict[tuple[Axis, FlapEnd], Side] = {}
     for row, (axis, flap) in enumerate(flaps_of(light).items()):
         if flap is None or not flap.on:
             continue
-        coordinate = points.world_coordinate(row)
         ends: dict[FlapEnd, tuple[float, float]] = {
             "minimum": (1.0, flap.minimum),
             "maximum": (-1.0, flap.maximum),
         }
         for end, (sign, limit) in ends.items():
             if math.isfinite(limit):
-                in_units = min(max(sign * limit / points.unit, -FAR_FLAP), FAR_FLAP)
-                sides[axis, end] = sign * coordinate - np.array([0, 0, 0, in_units - slack])
+                x, y, z = (sign if number == row else 0.0 for number in range(3))
+                sides[axis, end] = side_of(points, (x, y, z), sign * limit, flap.edge_width)
     return sides
-
-
-def is_inside(side: Singles, rows: Singles) -> Booleans:
-    """Whether each point is on the inner side of a plane: where its product with (P, 1) is at least 0."""
-    inside: Booleans = side[:3] @ rows[POINT] >= -side[3]
-    return inside

@@ -7,7 +7,6 @@ is computed in `lighting/light_controls`. What a light follows is worked out in 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, Final, Unpack
@@ -25,6 +24,7 @@ from autocolor.scene.columns.value_kinds import Choice, Number, Switch, Text, Ve
 from autocolor.scene.lights.flaps import Flaps
 from autocolor.scene.lights.half_spaces import HalfSpace
 from autocolor.scene.lights.links import Links
+from autocolor.scene.lights.vectors import unit_vector
 
 FALLOFFS: Final = ("none", "linear", "quadratic")
 """What is left of a light at a distance, as a fraction f of its reach: all of it, 1 - f, or (1 - f)^2."""
@@ -188,11 +188,7 @@ class Light(Row):
             toward = tuple(a - p for a, p in zip(self.aim, self.position, strict=True))  # type: ignore[assignment]
         else:
             return None
-        # Scale by the largest component first, as squares of very large or small ones over- or underflow.
-        largest = max(abs(component) for component in toward)
-        scaled = tuple(component / largest for component in toward)
-        length = math.hypot(*scaled)
-        return (scaled[0] / length, scaled[1] / length, scaled[2] / length)
+        return unit_vector(toward)
 
     def replace(self, /, **changes: Unpack[LightChanges]) -> Light:
         """The light with some fields changed; a new direction removes the aim, and vice versa.

@@ -2,8 +2,8 @@
 
 Assumed: lights keep their directions and their places relative to the object. They are moved with the middle
 of its box, and are nearer or farther as the diagonal of the box is shorter or longer; those that follow
-something, from what they follow. Their intensities stay,
-as the light at a point does not depend on its distance.
+something, from what they follow. Widths and reaches are scaled with it. Their intensities stay, as the light
+at a point does not depend on its distance.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
 from autocolor.scene.columns.problems import REFUSED, Problem
 from autocolor.scene.columns.row_kinds import Rows
 from autocolor.scene.columns.value_kinds import VectorKind
-from autocolor.scene.lights.flaps import Flap, Flaps
+from autocolor.scene.lights.flaps import Flaps
+from autocolor.scene.lights.half_spaces import HalfSpace
 from autocolor.scene.lights.light import Light
 from autocolor.scene.lights.light_copies import AXES
 
@@ -77,8 +78,16 @@ def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
     def place(coordinates: Vector) -> list[float]:
         return point(coordinates) if light.follows is None else [scale * each for each in coordinates]
 
+    def half_space(row: HalfSpace) -> HalfSpace:
+        moved = [scale * value for value in row.point] if row.carried else point(row.point)
+        return row.replace(point=moved, edge_width=scale * row.edge_width)
+
     flaps = {
-        axis: Flap(coordinate(number, flap.minimum), coordinate(number, flap.maximum), flap.on)
+        axis: flap.replace(
+            minimum=coordinate(number, flap.minimum),
+            maximum=coordinate(number, flap.maximum),
+            edge_width=scale * flap.edge_width,
+        )
         for number, axis in enumerate(AXES)
         if (flap := getattr(light.flaps, axis)) is not None
     }
@@ -87,6 +96,8 @@ def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
         direction=light.direction,
         aim=None if light.aim is None else place(light.aim),
         flaps=Flaps(**flaps),
+        half_spaces=[half_space(row) for row in light.half_spaces],
+        reach=None if light.reach is None else scale * light.reach,
     )
 
 

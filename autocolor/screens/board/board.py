@@ -254,7 +254,7 @@ class Board:
         elif self.has_focus or (comes_and_goes and (self.is_pinned or self._is_open)):
             self.close()
         else:
-            return False
+            return self.screen.escape()
         return True
 
     def key(self, name: str, typed: str) -> bool:

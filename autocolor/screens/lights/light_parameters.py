@@ -63,7 +63,14 @@ def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()
 
 
 def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
-    """Change fields of a light; one that gets another name stays chosen."""
+    """Change fields of a light; one that gets another name stays chosen.
+
+    A cone that becomes narrower than its inner angle, or absent, takes that along.
+    """
+    inner = session.scene.light(name).inner_angle
+    if "cone_angle" in changes and inner is not None:
+        outer = changes["cone_angle"]
+        changes = {"inner_angle": None if outer is None else min(inner, outer), **changes}
     session.change_light(name, **changes)
     if "name" in changes:
         session.choose_light(str(changes["name"]))

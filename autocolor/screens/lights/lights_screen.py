@@ -7,7 +7,10 @@ from functools import partial
 
 from autocolor.scene.lights.light import Light
 from autocolor.scene.lights.new_lights import new_light_of
+from autocolor.screens.input.gestures import Gesture
+from autocolor.screens.lights.half_space_rows import half_space_rows
 from autocolor.screens.lights.light_parameters import parameter_rows
+from autocolor.screens.lights.plane_picking import PlanePicking
 from autocolor.screens.picture.light_handles import LightHandles
 from autocolor.screens.picture.over_picture import OverPicture
 from autocolor.screens.screen import Handle
@@ -23,17 +26,30 @@ class LightsScreen(OverPicture):
 
     name = "lights"
     title = "lights"
-    help = "The chosen light: drag its highlight, and where its cone and its flaps end"
+    help = "The chosen light: drag its highlight, and where its cone, flaps and half-spaces end"
 
     def __init__(self, session: Session) -> None:
         super().__init__(session)
         self._handles = LightHandles(session, WORK, has_rims=True)
+        self._picking = PlanePicking(session, WORK)
 
     def items(self) -> Sequence[Item]:
-        return [*super().items(), *self._handles.items()]
+        return [*super().items(), *(self._picking if self._picking.is_on else self._handles).items()]
 
     def handles(self) -> Sequence[Handle]:
-        return self._handles.handles()
+        return () if self._picking.is_on else self._handles.handles()
+
+    def pick(self, gesture: Gesture) -> None:
+        if self._picking.is_on:
+            self._picking.pick(gesture.element, gesture.line)
+        else:
+            super().pick(gesture)
+
+    def escape(self) -> bool:
+        return self._picking.end()
+
+    def leave(self) -> None:
+        self._picking.end()
 
     def place(self, handle: Handle, element: int, line: int) -> None:
         self._handles.place(handle, element, line)
@@ -56,7 +72,9 @@ class LightsScreen(OverPicture):
             ),
             *self._verbs(light),
             Gap("parameters gap"),
-            *parameter_rows(self.session, light),
+            *parameter_rows(self.session, light, leave_out=("half_spaces",)),
+            Gap("half-spaces gap"),
+            *half_space_rows(self.session, light, self._picking),
         ]
 
     def _verbs(self, light: Light) -> list[Widget]:

@@ -1,4 +1,4 @@
-"""Direct handling of the chosen light in the picture: its highlight, and where its cone and its flaps end.
+"""Direct handling of the chosen light in the picture: its highlight, and where its controls end.
 
 The highlight is dragged to the pixel where it is to be, and a rim to a pixel through which it is to go. The
 light follows; see `lighting.light_drags`.
@@ -15,8 +15,8 @@ import numpy as np
 from autocolor.arrays import Indices
 from autocolor.checks import Vector
 from autocolor.lighting.light_controls.flap_sides import flaps_of
-from autocolor.lighting.light_drags import cone_placed, flap_placed, highlight_placed
-from autocolor.lighting.rims import CONE, Rim, rims
+from autocolor.lighting.light_drags import cone_placed, flap_placed, half_space_placed, highlight_placed
+from autocolor.lighting.rims import CONE, Plane, Rim, rims
 from autocolor.scene.lights.light import Light
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
@@ -98,6 +98,8 @@ class LightHandles:
             scene = highlight_placed(scene, seen, key.light)
         elif key.what == CONE:
             scene = cone_placed(scene, seen, key.light)
+        elif isinstance(key.what, Plane):
+            scene = half_space_placed(scene, seen, key.light, key.what.half_space)
         else:
             scene = flap_placed(scene, seen, key.light, *key.what)
         session.edit(scene)
@@ -185,7 +187,9 @@ def _source_of(light: Light) -> Source:
 
 def name_of(rim: Rim) -> str:
     """What the message line calls what ends at a rim."""
-    return "cone" if rim == CONE else f"flap {rim[0]}, {rim[1]},"
+    if rim == CONE:
+        return "cone"
+    return f"half-space {rim.half_space}" if isinstance(rim, Plane) else f"flap {rim[0]}, {rim[1]},"
 
 
 def told(light: Light, what: Literal["highlight"] | Rim) -> str:
@@ -195,6 +199,10 @@ def told(light: Light, what: Literal["highlight"] | Rim) -> str:
         return f"{light.name}: " + "  ".join(f"{axis} {place:.2f}" for axis, place in places)
     if what == CONE:
         return f"{light.name}: cone angle {light.cone_angle:.1f} degrees"
+    if isinstance(what, Plane):
+        half_space = next(each for each in light.half_spaces if each.name == what.half_space)
+        places = zip("xyz", half_space.point, strict=True)
+        return f"{what.half_space}: " + "  ".join(f"{axis} {place:.2f}" for axis, place in places)
     axis, end = what
     flap = flaps_of(light)[axis]
     assert flap is not None

@@ -4,16 +4,24 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, Light, Scene, UsageError, View, read_scene
+from autocolor import Flap, Flaps, HalfSpace, Light, Scene, UsageError, View, read_scene
 from autocolor.lighting.highlights import highlight_of
 from autocolor.lighting.light_controls.flap_sides import Axis, FlapEnd
-from autocolor.lighting.light_drags import LEAST_CONE, cone_placed, flap_placed, highlight_placed
+from autocolor.lighting.light_drags import (
+    LEAST_CONE,
+    cone_placed,
+    flap_placed,
+    half_space_placed,
+    highlight_placed,
+)
 from autocolor.rendering import rendering
 from autocolor.scene.columns.rows import with_values
+from autocolor.scene.lights.carried import set_down
 from autocolor.visibility.sight import Seen, Sight, seen_at
 from tests.autocolor.meshes import sphere, wall, wall_scene
 from tests.autocolor.reference import dot, minus, plus, times, unit
@@ -313,3 +321,44 @@ def test_a_flap_is_not_dragged_to_the_background() -> None:
     assert str(caught.value) == (
         "a flap must be dragged to a surface, not to the background; choose another pixel"
     )
+
+
+def test_the_inner_angle_of_a_cone_stays_within_it() -> None:
+    light = Light("light", (0.0, -2.0, 0.0), aim=(0.0, 0.0, 0.0), cone_angle=30, inner_angle=20)
+    wide = cone_placed(lit(light), at((3.0, 0.0, 0.0)), "light").light("light")
+    assert wide.cone_angle == pytest.approx(math.degrees(math.atan2(3, 2)))
+    assert wide.inner_angle == 20
+    narrow = cone_placed(lit(light), at((0.5, 0.0, 0.0)), "light").light("light")
+    assert narrow.cone_angle == pytest.approx(math.degrees(math.atan2(0.5, 2)))
+    assert narrow.inner_angle == narrow.cone_angle
+
+
+@given(points, vectors(), directions, st.booleans(), st.none() | directions)
+def test_a_half_space_ends_at_the_point_and_moves_along_its_direction(
+    point: Vector, start: Vector, direction: Vector, carried: bool, toward: Vector | None
+) -> None:
+    planes = (
+        HalfSpace("left", start, direction, edge_width=0.3, carried=carried),
+        HalfSpace("right", start, direction, on=False),
+    )
+    light = Light("light", (0.3, -2.0, 0.5), direction=toward, half_spaces=planes)
+    placed = half_space_placed(lit(light), at(point), "light", "left").light("light")
+    left, right = placed.half_spaces
+    assert right == planes[1]
+    assert left == planes[0].replace(point=left.point)
+    in_world = set_down(left, placed)
+    assert dot(minus(in_world.point, point), unit(in_world.direction)) == pytest.approx(0, abs=1e-9)
+    across = np.cross(minus(left.point, start), unit(direction))
+    assert across == pytest.approx(np.zeros(3), abs=1e-9)
+
+
+def test_a_half_space_that_is_not_there_and_the_background_are_refused() -> None:
+    light = Light("light", (0.0, -2.0, 0.0), half_spaces=(HalfSpace("left", (0, 0, 0), (1, 0, 0)),))
+    with pytest.raises(UsageError) as refusal:
+        half_space_placed(lit(light), at((0.0, 0.0, 0.0)), "light", "lef")
+    assert str(refusal.value) == "there is no half-space 'lef' of light 'light'; did you mean 'left'?"
+    with pytest.raises(UsageError) as refusal:
+        half_space_placed(lit(light), at((0.0, 0.0, 0.0)), "other", "left")
+    assert str(refusal.value) == "there is no half-space 'left' of light 'other'; add one"
+    with pytest.raises(UsageError, match=r"^a half-space must be dragged to a surface, not to the back"):
+        half_space_placed(lit(light), None, "light", "left")

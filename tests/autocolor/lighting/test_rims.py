@@ -7,8 +7,8 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given
 
-from autocolor import Flap, Flaps, Light, Mesh, Scene, UsageError, View, render
-from autocolor.lighting.rims import Rim, rims
+from autocolor import Flap, Flaps, HalfSpace, Light, Mesh, Scene, UsageError, View, render
+from autocolor.lighting.rims import Plane, Rim, rims
 from autocolor.rendering import rendering
 from autocolor.visibility.sight import Sight
 from tests.autocolor.meshes import cube, grid, sphere, wall, wall_scene
@@ -115,6 +115,7 @@ def test_the_rims_of_all_controls_are_found_by_themselves() -> None:
         if rim == "cone":
             alone = alone.replace(cone_angle=6)
         else:
+            assert not isinstance(rim, Plane)
             axis, end = rim
             limit = getattr(getattr(flaps, axis), end)
             alone = alone.replace(flaps=Flaps(**{axis: Flap(**{end: limit})}))
@@ -170,3 +171,45 @@ def test_the_rim_of_a_coarse_picture_is_in_the_middle_of_its_blocks() -> None:
 def test_the_rims_of_an_unknown_light_are_refused() -> None:
     with pytest.raises(UsageError, match=r"there is no light 'kee'"):
         rims(sight_of(wall_scene()), "kee")
+
+
+@pytest.mark.parametrize("view", VIEWS)
+@pytest.mark.parametrize("edge_width", [0.0, 0.4])
+@pytest.mark.parametrize("carried", [False, True])
+def test_the_rim_of_a_half_space_is_where_the_light_ends(
+    view: View, edge_width: float, carried: bool
+) -> None:
+    plane = HalfSpace("left", (0.13, 0.2, 0.1), (1.0, 0.1, 0.5), edge_width, carried)
+    light = Light("light", (0.2, -9.0, 0.1), aim=(0.0, 0.0, 0.0), half_spaces=(plane,))
+    scene = wall_scene(wall(3, 2, half=2.5), view=view, lights=[light])
+    picture = render(scene, LINES, ELEMENTS)
+    lit = picture.planes["light"].diffuse > 0
+    found = rims(sight_of(scene), "light")
+    assert list(found) == [Plane("left")]
+    twin = [
+        p for p in lit_beside_dark(lit | (picture.surface_number == 0)) if picture.surface_number[tuple(p)]
+    ]
+    assert len(twin) > 20
+    assert found[Plane("left")].tolist() == twin
+
+
+def test_a_soft_cone_ends_at_its_cone_angle() -> None:
+    light = Light("light", (0.1, -3.0, 0.05), direction=(0.0, 1.0, 0.0), cone_angle=9)
+    found = [
+        rims(sight_of(wall_scene(wall(half=2.0), view=FILLING, lights=[each])), "light")["cone"].tolist()
+        for each in (light, light.replace(inner_angle=4))
+    ]
+    assert found[0] == found[1]
+
+
+def test_any_number_of_half_spaces_have_rims_of_their_own() -> None:
+    planes = tuple(
+        HalfSpace(f"plane {number}", (0.1 * number - 0.9, 0, 0), (1, 0, 0.1)) for number in range(19)
+    )
+    light = Light("light", (0.2, -6.0, 0.1), half_spaces=planes, flaps=Flaps(z=Flap(-0.5, 0.5)))
+    found = rims(sight_of(wall_scene(wall(half=2.0), view=FILLING, lights=[light])), "light")
+    assert len(found) == 21
+    for plane in planes:
+        alone = light.replace(half_spaces=(plane,), flaps=Flaps())
+        rim = rims(sight_of(wall_scene(wall(half=2.0), view=FILLING, lights=[alone])), "light")
+        assert found[Plane(plane.name)].tolist() == rim[Plane(plane.name)].tolist() != []

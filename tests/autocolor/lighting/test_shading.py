@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, Light, Mesh, Reflectance, Scene, View, render
+from autocolor import Flap, Flaps, HalfSpace, Light, Mesh, Reflectance, Scene, View, render
 from autocolor.arrays import Floats, Singles
 from autocolor.lighting.shading import controlled_light, shade
 from autocolor.scene.columns.angle_kinds import AngleCurve
@@ -383,13 +383,21 @@ def test_flaps_that_are_off_change_nothing() -> None:
 def test_the_size_of_the_world_does_not_change_the_picture(light: Light, power: int) -> None:
     def scaled(size: float) -> Scene:
         def one(flap: Flap | None) -> Flap | None:
-            return None if flap is None else Flap(flap.minimum * size, flap.maximum * size, flap.on)
+            if flap is None:
+                return None
+            return Flap(flap.minimum * size, flap.maximum * size, flap.on, flap.edge_width * size)
+
+        def plane(row: HalfSpace) -> HalfSpace:
+            return row.replace(point=[size * each for each in row.point], edge_width=size * row.edge_width)
 
         px, py, pz = light.position
         x, y, z = light.flaps.x, light.flaps.y, light.flaps.z
-        moved = light.replace(position=(px * size, py * size, pz * size), flaps=Flaps(one(x), one(y), one(z)))
-        if light.reach is not None:
-            moved = moved.replace(reach=light.reach * size)
+        moved = light.replace(
+            position=(px * size, py * size, pz * size),
+            flaps=Flaps(one(x), one(y), one(z)),
+            half_spaces=[plane(row) for row in light.half_spaces],
+            reach=None if light.reach is None else light.reach * size,
+        )
         view = View((0.5 * size, -4.0 * size, 1.0 * size), target=(0.0, 0.0, 0.0))
         return wall_scene(wall(2, 2, half=size), view=view, lights=[moved])
 

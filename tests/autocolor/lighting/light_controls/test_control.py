@@ -11,6 +11,9 @@ from autocolor.lighting.light_controls.concentration import Concentration
 from autocolor.lighting.light_controls.cone import Cone
 from autocolor.lighting.light_controls.control import CONTROLS, LightControl, LitPoints, controls_of
 from autocolor.lighting.light_controls.flap_sides import FlapSides
+from autocolor.lighting.light_controls.half_spaces import HalfSpaces
+from autocolor.lighting.light_controls.soft_cone import SoftCone
+from autocolor.lighting.light_controls.soft_sides import SoftSides
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.lighting.light_controls.lit_points import wall_points
@@ -28,7 +31,13 @@ def test_a_light_has_the_controls_that_its_fields_ask_for(light: Light) -> None:
     used = {type(control) for control in controls_of(light, wall_points())}
     limits = [flap for flap in (light.flaps.x, light.flaps.y, light.flaps.z) if flap is not None and flap.on]
     assert (FlapSides in used) == bool(limits)
+    planes = [half_space for half_space in light.half_spaces if half_space.on]
+    assert (HalfSpaces in used) == bool(planes)
+    widths = [flap.edge_width for flap in limits] + [plane.edge_width for plane in planes]
+    assert (SoftSides in used) == any(width > 0 for width in widths)
     assert (Cone in used) == (light.cone_angle is not None)
+    is_soft = light.inner_angle is not None and light.inner_angle != light.cone_angle
+    assert (SoftCone in used) == is_soft
     assert (Concentration in used) == (light.concentration > 0)
 
 

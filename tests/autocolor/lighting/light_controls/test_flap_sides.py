@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light
 from autocolor.lighting.light_controls.control import controls_of
-from autocolor.lighting.light_controls.flap_sides import flap_sides, flaps_of, is_inside
+from autocolor.lighting.light_controls.flap_sides import flap_sides, flaps_of
+from autocolor.lighting.light_controls.sides import is_inside
 from tests.autocolor.lighting.light_controls.lit_points import wall_points
 from tests.autocolor.strategies import lights, numbers
 
@@ -23,7 +24,7 @@ def test_a_point_is_inside_a_side_of_a_flap_up_to_its_coordinate(
             assert ((axis, end) in sides) == (flap is not None and flap.on)
             if flap is None or not flap.on:
                 continue
-            inside = is_inside(sides[axis, end].astype(np.float32), rows)
+            inside = is_inside(sides[axis, end], rows)
             for point, value in zip(world, inside.tolist(), strict=True):
                 beyond = point[number] - flap.minimum if end == "minimum" else flap.maximum - point[number]
                 assert value == (beyond >= 0) or abs(beyond) < 1e-5

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, UsageError, render
+from autocolor.scene.lights.carried import set_down
 from autocolor.scene.lights.light_copies import AXES, free_name, mirrored
 from tests.autocolor.meshes import wall_scene
 from tests.autocolor.strategies import lights, short
@@ -43,7 +44,26 @@ def test_a_light_mirrored_twice_is_where_it_was(light: Light, axis: str, about: 
         assert (one is None) == (other is None)
         if one is not None:
             assert (other.minimum, other.maximum) == pytest.approx((one.minimum, one.maximum))
-            assert other.on == one.on
+            assert (other.on, other.edge_width) == (one.on, one.edge_width)
+    assert [each.name for each in back.half_spaces] == [each.name for each in light.half_spaces]
+    for plane, same in zip(light.half_spaces, back.half_spaces, strict=True):
+        assert same.point == pytest.approx(plane.point)
+        assert same == plane.replace(point=same.point)
+
+
+@given(lights(), st.sampled_from(AXES), short)
+def test_the_half_spaces_of_a_mirrored_light_are_mirrored_in_the_world(
+    light: Light, axis: str, about: float
+) -> None:
+    there = mirrored(light, "there", axis, about)
+    number = AXES.index(axis)
+    for plane, copy in zip(light.half_spaces, there.half_spaces, strict=True):
+        assert copy.carried == plane.carried
+        one, other = set_down(plane, light), set_down(copy, there)
+        point, direction = list(one.point), list(one.direction)
+        point[number], direction[number] = 2 * about - point[number], -direction[number]
+        assert other.point == pytest.approx(point, abs=1e-9)
+        assert other.direction == pytest.approx(direction, abs=1e-9)
 
 
 def test_position_aim_and_one_flap_are_mirrored_and_nothing_else() -> None:

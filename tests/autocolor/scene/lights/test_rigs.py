@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from autocolor import Flap, Flaps, InputError, Light, Rig, Scene, render, scene_of
+from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Rig, Scene, render, scene_of
 from autocolor.scene.columns.rows import made, plain
 from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import scenes
@@ -45,11 +45,20 @@ def test_a_rig_is_fitted_to_the_middle_and_the_size_of_the_object() -> None:
 
 
 def test_an_object_twice_as_large_looks_the_same_with_a_fitted_rig() -> None:
-    lights = [Light("key", (-2, -3, 4), aim=(0.5, 0.2, 0.9), concentration=6, flaps=Flaps(z=Flap(0.3)))]
-    small = scene_of(cube(), lights=lights)
+    planes = (
+        HalfSpace("across", (0.2, 0, 0.3), (1, 0, 1), edge_width=0.3),
+        HalfSpace("door", (-0.1, 0, 0), (1, 0, 0), edge_width=0.2, carried=True),
+    )
+    flaps = Flaps(x=Flap(0.1, edge_width=0.4), z=Flap(0.3))
+    key = Light("key", (-2, -3, 4), aim=(0.5, 0.2, 0.9), concentration=6, flaps=flaps, half_spaces=planes)
+    small = scene_of(cube(), lights=[key, key.replace(name="bare", half_spaces=(), flaps=Flaps())])
     large = scene_of(cube(2.0), lights=()).with_rig(small.rig)
     one, other = (render(each, 60, 80).intensity for each in (small, large))
     assert np.ptp(one) > 0.1
+    assert np.allclose(one, other, atol=1e-5)
+    alone = (each.with_light("bare", on=False) for each in (small, large))
+    one, other = (render(each, 60, 80).intensity for each in alone)
+    assert np.ptp(one) > 0.01
     assert np.allclose(one, other, atol=1e-5)
 
 

@@ -94,6 +94,20 @@ def test_the_cone_is_switched_off_and_on_again(hand: Hand) -> None:
     assert light_of(hand).cone_angle == 30
 
 
+def test_the_inner_angle_goes_with_a_cone_that_becomes_narrower_and_when_it_is_switched_off(
+    hand: Hand,
+) -> None:
+    hand.pick("inner angle", BOX)
+    hand.pull("inner angle", 0.2, 0.5)
+    assert light_of(hand).inner_angle == pytest.approx(45, abs=3)
+    hand.pull("cone angle", 0.6, 0.2)
+    narrow = light_of(hand)
+    assert narrow.cone_angle is not None
+    assert narrow.inner_angle == narrow.cone_angle < 30
+    hand.pick("cone angle", BOX)
+    assert (light_of(hand).cone_angle, light_of(hand).inner_angle) == (None, None)
+
+
 def test_flaps_are_made_and_switched_and_keep_their_values(hand: Hand) -> None:
     hand.pick("flaps x", BOX)
     flap = light_of(hand).flaps.x
