@@ -14,6 +14,7 @@ from autocolor.files.scenes.scene_meshes import MeshEntry
 from autocolor.scene.columns.column import WORLD_UNITS, Column, Kind, Row, Tier, bar_of, fields_of, keys_of
 from autocolor.scene.columns.row_kinds import Nested, Variant
 from autocolor.scene.columns.rows import plain
+from autocolor.scene.columns.value_kinds import Number
 from autocolor.scene.lights.flaps import Flap
 from autocolor.scene.lights.half_spaces import HalfSpace
 from autocolor.scene.lights.light import Light
@@ -52,7 +53,12 @@ TABLES: tuple[tuple[str, str, type[Row]], ...] = (
     ("`[surfaces.NAME]`", "", Surface),
     ("`[[lights]]`", "", Light),
     ("`flaps.x`, `flaps.y`, `flaps.z` of a light", "", Flap),
-    ("`half_spaces.NAME` of a light", "", HalfSpace),
+    (
+        "`half_spaces.NAME` of a light",
+        "One for each half-space, such as `half_spaces.left = { point = [0, 0, 0], direction = [1, 0, 0] }`."
+        " `--set` and Python change the keys of one that is there; `none`, in Python `None`, removes it.",
+        HalfSpace,
+    ),
 )
 
 LEFT_OUT = {
@@ -108,8 +114,11 @@ def going_with(kind: Kind, key: str) -> str:
 def on_a_bar(column: Column) -> str:
     """The usual range and the step of a number, and what it starts with when it is switched on, if absent."""
     bar = bar_of(column)
+    if bar is None and column.unit == WORLD_UNITS:
+        is_length = isinstance(column.kind, Number) and column.kind.at_least == 0
+        return "up to the size of the object" if is_length else "that of the object"
     if bar is None:
-        return "that of the object" if column.unit == WORLD_UNITS else ""
+        return ""
     start = "" if column.start is None else f", from {column.start:g}"
     return f"{bar.low:g} to {bar.high:g} by {bar.step:g}{start}"
 

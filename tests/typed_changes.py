@@ -78,15 +78,23 @@ def types_of(cls: type[Row]) -> dict[str, str]:
     fields, keys = fields_of(cls), keys_of(cls)
     columns = {name: field.column for name, field in fields.items()}
     columns |= {key: each.column for key, each in keys.items()}
-    optional = {name for name, field in fields.items() if field.is_optional}
-    for field in fields.values():
-        kind = field.column.kind
-        if isinstance(kind, Nested) and kind.inline:
-            optional |= {name for name, inner in fields_of(kind.row_class).items() if inner.is_optional}
+    optional = optional_keys(cls)
     return {
         name: column.kind.accepts() + (" | None" if name in optional else "")
         for name, column in columns.items()
     }
+
+
+def optional_keys(cls: type[Row]) -> set[str]:
+    """The keys that may be None, also those of rows inside."""
+    found = set()
+    for name, field in fields_of(cls).items():
+        kind = field.column.kind
+        if field.is_optional:
+            found.add(name)
+        if isinstance(kind, Nested) and kind.inline:
+            found |= optional_keys(kind.row_class)
+    return found
 
 
 def written(name: str, text: str, types: dict[str, str]) -> str:

@@ -8,7 +8,7 @@ that fails, the mesh is removed again, and the old scene file still names the ol
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
@@ -34,6 +34,7 @@ from autocolor.files.store.store_file import STORE_SUFFIXES, write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of
 from autocolor.scene.columns.column import Row, row_label
+from autocolor.scene.columns.rows import plain
 from autocolor.scene.geometry.node_normals import CREASE_ANGLE
 from autocolor.scene.scene import Scene, check_scene
 
@@ -107,10 +108,21 @@ def _target(path: str | os.PathLike[str]) -> Path:
 
 
 def refuse_names(rows: Iterable[Row]) -> None:
-    """Raise InputError if the name of a row has a character that UTF-8 does not."""
+    """Raise InputError if a name in a row, its own or another, has a character that UTF-8 does not."""
     for row in rows:
-        if any(0xD800 <= ord(letter) < 0xE000 for letter in vars(row)["name"]):
+        if any(0xD800 <= ord(letter) < 0xE000 for text in _texts_in(plain(row)) for letter in text):
             raise InputError(f"{row_label(row)}: a name in a file must be text in UTF-8; rename it")
+
+
+def _texts_in(value: object) -> Iterator[str]:
+    """The texts in a plain value, also those inside, and the keys of tables."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, (list, tuple, Mapping)):
+        inner = value.values() if isinstance(value, Mapping) else value
+        yield from value if isinstance(value, Mapping) else ()
+        for each in inner:
+            yield from _texts_in(each)
 
 
 @contextmanager

@@ -390,8 +390,8 @@ def _missing_names(
             if wanted not in found:
                 table = f"the {reference.kind.table.removesuffix('s')} table"
                 label = f"{row_label(row)}: " if row_label(row) else ""
-                text = f"{label}{key} {shown(wanted)} is not in {table}{nearest(wanted, known)}"
-                yield Problem((), text)
+                close = nearest(wanted, [*reference.kind.words, *known])
+                yield Problem((), f"{label}{key} {shown(wanted)} is not in {table}{close}")
 
 
 def check_scene(value: object) -> None:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.scene.columns.color_kinds import ColorKind, color_names
-from autocolor.scene.columns.column import Field, Kind, Row, fields_of, keys_of
+from autocolor.scene.columns.column import Column, Field, Kind, Row, fields_of, keys_of
+from autocolor.scene.columns.named_row_kinds import NamedRows
+from autocolor.scene.columns.reference_kinds import RangesByName, Referring
 from autocolor.scene.columns.row_kinds import Nested, Rows, Variant
 from autocolor.scene.columns.rows import plain
 from autocolor.scene.columns.value_kinds import Choice, Instance
 from autocolor.scene.scalars.color_scales import COLOR_SCALES
+from autocolor.scene.scalars.scalar import Scalar
 from autocolor.scene.scalars.scalar_kinds import ScaleKind
 from autocolor.scene.scene import Scene
 
@@ -45,16 +48,14 @@ def place_of(scene: Scene, key: str) -> Place:
         raise UsageError(f"--set {key}: there is no field of this name{nearest(table, kinds)}")
     if not isinstance(kind, (Nested, Rows)):
         return Place("", "", (table,))
-    names = {"": ""}
+    row: Row | None = None
     if isinstance(kind, Rows):
-        # A name may contain periods and may be quoted: take the longest one that matches.
-        rows = [row.name for row in vars(scene)[table]]
-        names = {written: row for row in rows for written in (row, f'"{row}"', f"'{row}'")}
-        start = max((name for name in names if f"{rest}.".startswith(f"{name}.")), key=len, default=None)
-        if start is None and "." in rest:
+        rows = {each.name: each for each in vars(scene)[table]}
+        name, field = _name_and_rest(rest, rows)
+        if name is None and "." in rest:
             wrong = rest.partition(".")[0]
             raise UsageError(f"--set {key}: there is no {table[:-1]} {wrong!r}{nearest(wrong, rows)}")
-        name, field = (None, "") if start is None else (names[start], rest[len(start) + 1 :])
+        row = None if name is None else rows[name]
     else:
         name, field = "", rest
     if key == table and fields_of(Scene)[table].is_optional:
@@ -64,10 +65,42 @@ def place_of(scene: Scene, key: str) -> Place:
         raise UsageError(f"--set {key}: it must name one field; write it as in {EXAMPLES[table]}")
     if field == "name" and isinstance(kind, Rows):
         raise UsageError(f"--set {key}: a name cannot be set; change it in the scene file")
-    path = tuple(field.split("."))
+    path = _path_in(row, field, key)
     if len(path) > MOST_PARTS:
         raise UsageError(f"--set {key}: there is no such field; write it as in {EXAMPLES[table]}")
     return Place(table, name, path)
+
+
+def _name_and_rest(text: str, names: Iterable[str]) -> tuple[str | None, str]:
+    """The name that a text begins with, None if it is none of them, and what follows it after a period.
+
+    A name may contain periods and may be quoted: the longest one that matches is taken.
+    """
+    written = {each: name for name in names for each in (name, f'"{name}"', f"'{name}'")}
+    start = max((each for each in written if f"{text}.".startswith(f"{each}.")), key=len, default=None)
+    return (None, "") if start is None else (written[start], text[len(start) + 1 :])
+
+
+def _path_in(row: Row | None, field: str, key: str) -> tuple[str, ...]:
+    """The path of a field in a row. Raises UsageError for a row by name inside it that is not there."""
+    outer, _, rest = field.partition(".")
+    of_row = None if row is None else fields_of(type(row)).get(outer)
+    if row is None or of_row is None or not isinstance(of_row.column.kind, NamedRows) or not rest:
+        return tuple(field.split("."))
+    names = [each.name for each in vars(row)[outer]]
+    name, inner = _name_and_rest(rest, names)
+    if inner == "name":
+        raise UsageError(f"--set {key}: a name cannot be set; change it in the scene file")
+    if name is not None:
+        return (outer, name, *inner.split(".")) if inner else (outer, name)
+    if rest[0] in "\"'" and rest[0] == rest[-1]:
+        return outer, rest[1:-1]
+    wrong, _, inner = rest.partition(".")
+    if inner:
+        advice = nearest(wrong, names) or "; give a new one whole, as a table"
+        noun = of_row.column.kind.row_class.noun
+        raise UsageError(f"--set {key}: there is no {noun} {wrong!r}{advice}")
+    return outer, wrong
 
 
 def field_of(place: Place) -> Field | None:
@@ -96,6 +129,10 @@ def _field_at(cls: type[Row], path: Sequence[str]) -> Field | None:
         return _field_at(kind.row_class, path)
     if len(path) == 1:
         return field
+    if isinstance(kind, NamedRows):
+        # Each row may be absent.
+        whole = Field(Column(Nested(kind.row_class), field.column.tier, field.column.help), True, None)
+        return whole if len(path) == 2 else _field_at(kind.row_class, path[2:])
     return _field_at(kind.row_class, path[1:]) if isinstance(kind, Nested) else None
 
 
@@ -119,22 +156,38 @@ def keys_after(scene: Scene, start: str) -> list[str]:
         if not rest:
             return [f"{start}{name}." for name in names]
         if rest in names:
-            return _fields_after(start, kind.row_class, leave_out=("name",))
+            (row,) = (row for row in vars(scene)[table] if row.name == rest)
+            return _fields_after(start, kind.row_class, row)
     elif not rest and isinstance(kind, Nested):
         return _fields_after(start, kind.row_class)
     place = place_of(scene, start[:-1])
     field = field_of(place)
     inner = None if field is None else field.column.kind
+    if isinstance(inner, NamedRows):
+        present = vars(_row_at(scene, place))[place.path[0]]
+        return [f"{start}{row.name}." for row in present]
     return _fields_after(start, inner.row_class) if isinstance(inner, Nested) else []
 
 
-def _fields_after(start: str, cls: type[Row], leave_out: Sequence[str] = ()) -> list[str]:
-    keys = {key: _field_at(cls, (key,)) for key in keys_of(cls) if key not in leave_out}
-    return [
-        f"{start}{key}{'.' if isinstance(field.column.kind, Nested) else '='}"
-        for key, field in keys.items()
-        if field is not None
-    ]
+def _fields_after(start: str, cls: type[Row], row: Row | None = None) -> list[str]:
+    """The keys of a class after a start; rows by name go on where the row has some."""
+    keys = {key: _field_at(cls, (key,)) for key in keys_of(cls)}
+    found = []
+    for key, field in keys.items():
+        if field is None or (key == "name" and cls is not Scalar):
+            continue
+        goes_on = isinstance(field.column.kind, Nested)
+        goes_on |= isinstance(field.column.kind, NamedRows) and row is not None and bool(vars(row)[key])
+        found.append(f"{start}{key}{'.' if goes_on else '='}")
+    return found
+
+
+def _row_at(scene: Scene, place: Place) -> Any:
+    """The row of a place; the scene itself for its own fields, None for a row that it has not."""
+    if not place.table:
+        return scene
+    rows = vars(scene)[place.table]
+    return next((each for each in rows if each.name == place.name), None) if place.name else rows
 
 
 def _values(scene: Scene, key: str) -> list[str]:
@@ -152,10 +205,9 @@ def _values(scene: Scene, key: str) -> list[str]:
         return list(COLOR_SCALES)
     if (place.table, place.path) == ("scalar", ("name",)):
         return list(scene.scalar_names)
-    row: Any = scene
-    if place.table:
-        rows = vars(scene)[place.table]
-        row = next((each for each in rows if each.name == place.name), None) if place.name else rows
+    if isinstance(kind, Referring) and not isinstance(kind, RangesByName):
+        return [*kind.words, *(each.name for each in vars(scene)[kind.table])]
+    row = _row_at(scene, place)
     value: Any = {} if row is None else plain(row)
     for part in place.path:
         value = value.get(part) if isinstance(value, dict) else None

@@ -11,6 +11,8 @@ from autocolor.commands.options.usage import as_usage
 from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from autocolor.files.scenes.scene_report import SceneReport
     from autocolor.scene.columns.column import Field
     from autocolor.scene.scene import Scene
@@ -38,7 +40,8 @@ set_option = click.option(
 def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
     """The scene with each KEY=VALUE set, such as `lights.key.intensity=2` or `ambient=0.2`.
 
-    A key is the path of a field in a scene file. A value is written as in a scene file, but needs no quotes;
+    A key is the path of a field in a scene file. A value is written as in a scene file, but needs no quotes,
+    and a list of names no brackets: `lights.key.only_surfaces=body,glass`;
     `none` unsets a field that may be absent, such as `view.target`. The settings of one row are applied
     together, so that their order does not matter, except that the last value of a field counts. Raises
     UsageError for an unknown key or an invalid value.
@@ -54,7 +57,7 @@ def with_settings(scene: Scene, settings: tuple[str, ...]) -> Scene:
             )
         key, text = key.strip(), text.strip()
         place = place_of(scene, key)
-        value = _unset(field_of(place), key, text) if text.lower() == UNSET else value_of(text)
+        value = _value_at(scene, field_of(place), key, text)
         _put(changes.setdefault((place.table, place.name), {}), place.path, value, key)
     with as_usage("--set: "):
         for (table, name), fields in changes.items():
@@ -108,6 +111,31 @@ def _changed(scene: Scene, table: str, name: str, fields: Changes) -> Scene:
     if table == "scalar":
         return scene.with_scalar(**fields)
     return scene.with_view(**fields)
+
+
+def _value_at(scene: Scene, field: Field | None, key: str, text: str) -> object:
+    """The value for a field. Raises UsageError for a field that must have one and is to be unset."""
+    from autocolor.scene.columns.reference_kinds import References, Referring
+
+    kind = None if field is None else field.column.kind
+    names = [row.name for row in vars(scene)[kind.table]] if isinstance(kind, Referring) else []
+    if text.lower() == UNSET:
+        is_absent = field is not None and field.is_optional and isinstance(kind, Referring)
+        return None if is_absent and text not in names else _unset(field, key, text)
+    value = value_of(text)
+    return _names_of(value, names) if isinstance(kind, References) and isinstance(value, str) else value
+
+
+def _names_of(text: str, known: Sequence[str]) -> list[str]:
+    """The names in a text: one that is known, or else several between commas, in brackets or without.
+
+    >>> _names_of("body", []), _names_of("[body, glass]", []), _names_of("a, b", ["a, b"])
+    (['body'], ['body', 'glass'], ['a, b'])
+    """
+    if text in known:
+        return [text]
+    listed = text[1:-1] if text.startswith("[") and text.endswith("]") else text
+    return [name.strip().strip("\"'") for name in listed.split(",") if name.strip()]
 
 
 def _unset(field: Field | None, key: str, text: str) -> object:

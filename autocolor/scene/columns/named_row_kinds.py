@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
-from autocolor.checks import listed, shown
+from autocolor.checks import listed, nearest, shown
 from autocolor.scene.columns.column import Kind, Row, Tier, keys_of
 from autocolor.scene.columns.problems import REFUSED, Path, Problem
 from autocolor.scene.columns.row_kinds import Nested
@@ -59,8 +59,13 @@ class NamedRows(Kind):
                 text = f"{self.rule()}, not by {shown(name)}; name it by at least one character"
                 problems.append(Problem(path, text))
                 rows[name] = REFUSED
+            elif given is None and name in rows:
+                del rows[name]
             elif given is None:
-                rows.pop(name, None)
+                advice = nearest(name, rows) or "; leave it out"
+                text = f"there is no {self.row_class.noun} of this name{advice}"
+                problems.append(Problem((*path, name), text))
+                rows[name] = REFUSED
             elif name in rows and isinstance(given, Mapping):
                 rows[name] = Nested(self.row_class).changed(rows[name], given, (*path, name), problems)
             else:

@@ -19,6 +19,11 @@ class Referring(Leaf):
 
     table: str
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What may stand for a name, and is none."""
+        return ()
+
     def names_in(self, value: Any) -> Sequence[str]:
         """The names that a value refers to."""
         raise NotImplementedError
@@ -46,6 +51,10 @@ class WordOrName(Referring):
     """A word that means the same in every scene, or else the name of a row of another table."""
 
     word: str
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        return (self.word,)
 
     def rule(self) -> str:
         return f"must be {self.word!r} or the name of one of the {self.table}"
@@ -88,6 +97,10 @@ class RangesByName(Referring):
 
     none: str
     others: str
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        return (self.others,)
 
     def rule(self) -> str:
         return (

@@ -36,8 +36,8 @@ from autocolor.errors import InputError, MissingInputError, OutputError, WriteEr
 from autocolor.files.picture_file import PICTURE_FILE, SavedPicture
 from autocolor.mapping.display_image import display_image
 from autocolor.scene.scalars.mesh_scalars import MeshScalar
+from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.meshes import cube, grid, wall, wall_scene
-from tests.autocolor.strategies import scenes
 
 LINES, ELEMENTS = 9, 12
 
@@ -194,7 +194,7 @@ def test_a_picture_of_another_scalar_than_its_scene_is_not_written(tmp_path: Pat
     assert list(tmp_path.iterdir()) == []
 
 
-@given(scene=scenes())
+@given(scene=linked_scenes())
 def test_every_scene_that_renders_comes_back_with_equal_words(
     scene: Scene, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

@@ -17,8 +17,8 @@ from autocolor.files.picture_file import PICTURE_FILE
 from autocolor.files.plain_scene import plain_scene, scene_of_plain
 from autocolor.scene.columns.column import keys_of
 from autocolor.scene.surfaces import Paint, Reflectance, Surface
+from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.meshes import wall_scene
-from tests.autocolor.strategies import scenes
 
 NESTED = (("reflectance", Reflectance), ("paint", Paint))
 
@@ -49,7 +49,7 @@ def nested(values: dict[str, Any]) -> dict[str, Any]:
     return {**values, "surfaces": rows}
 
 
-@given(scenes())
+@given(linked_scenes())
 def test_a_scene_comes_back_from_its_values_through_json(scene: Scene) -> None:
     text = json.dumps(plain_scene(scene), allow_nan=False)
     again = read_again(json.loads(text), scene)
@@ -57,7 +57,7 @@ def test_a_scene_comes_back_from_its_values_through_json(scene: Scene) -> None:
     assert json.dumps(plain_scene(again), allow_nan=False) == text
 
 
-@given(scenes())
+@given(linked_scenes())
 def test_the_values_of_the_first_picture_files_give_the_same_scene(scene: Scene) -> None:
     values = json.loads(json.dumps(plain_scene(scene)))
     old = nested(values)

@@ -22,9 +22,12 @@ from autocolor import (
 )
 from autocolor.files.rig_file import is_rig
 from autocolor.files.scenes.toml_text import LARGEST_TEXT
+from autocolor.scene.lights.half_spaces import HalfSpace
+from autocolor.scene.lights.links import Links
+from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.meshes import cube
-from tests.autocolor.strategies import scenes
 
+DOORS = (HalfSpace("left", (0, 0, 0), (1, 0, 0), 1 / 3), HalfSpace("my door", (0, 0, 0), (0, 1, 0), on=False))
 BOUNDS = "minimum = [0, 0, 0]\nmaximum = [1, 1, 1]\n"
 
 
@@ -34,7 +37,7 @@ def given_text(folder: Path, text: str) -> Path:
     return path
 
 
-@given(scene=scenes())
+@given(scene=linked_scenes())
 def test_a_rig_read_back_puts_the_same_lights_on_the_same_scene(
     tmp_path_factory: pytest.TempPathFactory, scene: Scene
 ) -> None:
@@ -48,7 +51,7 @@ def test_every_control_of_a_light_is_kept(tmp_path: Path) -> None:
     lights = (
         Light('a "name"\n', (0.1, 1e-300, -1e36), 1e30, False, flaps=Flaps(x=Flap(), y=Flap(0.5, on=False))),
         Light("spot", (0, 0, 2), aim=(1 / 3, 0, 0), concentration=2.5, cone_angle=0.1),
-        Light("sun", (0, 0, 9), direction=(0, 0, -1e-9)),
+        Light("sun", (0, 0, 9), direction=(0, 0, -1e-9), half_spaces=DOORS, follows="spot"),
     )
     rig = Rig((-1, -1, 0), (1, 1, 1 / 7), lights)
     write_rig(tmp_path / "rig.toml", rig)
@@ -146,6 +149,12 @@ def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
             Rig((0, 0, 0), (1, 1, 1), (Light("\ud800", (0, 0, 1)),)),
             InputError,
             "a name in a file must be text in UTF-8; rename it",
+        ),
+        (
+            "rig.toml",
+            Rig((0, 0, 0), (1, 1, 1), (Light("key", (0, 0, 1), links=Links(only_parts=("\ud800",))),)),
+            InputError,
+            "light 'key': a name in a file must be text in UTF-8; rename it",
         ),
         (
             "rig.toml",

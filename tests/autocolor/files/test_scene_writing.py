@@ -417,6 +417,15 @@ def test_a_name_that_utf_8_lacks_is_refused(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_name_inside_a_row_that_utf_8_lacks_is_refused(tmp_path: Path) -> None:
+    scene = scene_of(cube()).with_light(
+        "key", half_spaces={"a\ud800": {"point": (0, 0, 0), "direction": (0, 0, 1)}}
+    )
+    with pytest.raises(InputError, match="light 'key': a name in a file must be text in UTF-8; rename it"):
+        write_scene(tmp_path / "cube", scene)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_fields_at_their_defaults_are_left_out(tmp_path: Path) -> None:
     scene = scene_of(
         cube(),

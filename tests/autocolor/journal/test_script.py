@@ -14,16 +14,29 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import autocolor
-from autocolor import InputError, Mesh, Scene, Studio, UsageError, View, read_journal, read_scene, scene_of
+from autocolor import (
+    InputError,
+    Light,
+    Mesh,
+    Scene,
+    Studio,
+    UsageError,
+    View,
+    read_journal,
+    read_scene,
+    scene_of,
+)
 from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
 from autocolor.journal.meshes_beside import MeshesBeside
 from autocolor.journal.opening import checksum_of, opened
 from autocolor.journal.places import Source
 from autocolor.journal.reading import session_of
 from autocolor.journal.script import call_between, journal_text, literal, step_line
+from autocolor.scene.changes import HalfSpaceChanges, LightChanges
 from autocolor.scene.lights.new_lights import new_light_of
 from autocolor.scene.scene import AUTO
 from ramtek_emu import Ramtek9300
+from tests.autocolor.linked_scenes import linked
 from tests.autocolor.meshes import cube
 from tests.autocolor.sessions import SMALL, car, held
 from tests.autocolor.strategies import MAPPINGS, colors, exposures, lights, numbers, surfaces, views
@@ -31,6 +44,12 @@ from tests.autocolor.test_studio import any_edits, apply, recolorings
 
 CAR = car()
 NAMES = ["key", "fill", "rim"]
+
+
+def linked_lights(lights: tuple[Light, ...]) -> st.SearchStrategy[tuple[Light, ...]]:
+    """The lights with half-spaces and links, following each other."""
+    return linked(CAR.replace(lights=lights)).map(lambda scene: scene.lights)
+
 
 columns_of_scenes = st.fixed_dictionaries(
     {},
@@ -43,7 +62,7 @@ columns_of_scenes = st.fixed_dictionaries(
         ),
         "surfaces": st.tuples(*(surfaces(name) for name in ("body", "glass", "wheels"))),
         "lights": st.tuples(*(lights(name) for name in NAMES)).flatmap(
-            lambda three: st.integers(0, 3).map(lambda count: three[:count])
+            lambda three: st.integers(0, 3).flatmap(lambda count: linked_lights(three[:count]))
         ),
         "view": views(),
         "ambient": numbers(0, 1),
@@ -192,6 +211,38 @@ def test_a_drag_after_a_redo_and_one_that_came_back_are_given_by_the_script(writ
     assert states(read, other) == expected
 
 
+def test_what_a_light_has_by_name_is_told_by_what_was_changed(written: Path) -> None:
+    scene = read_scene(written)
+    door: HalfSpaceChanges = {"point": (0, 0, 1), "direction": (0, 1, 0)}
+    steps: list[LightChanges] = [
+        {"half_spaces": {"left": door}},
+        {"half_spaces": {"my 'door'": door, "left": {"edge_width": 0.5}}},
+        {"half_spaces": {"left": {"name": "right"}}, "follows": "eye"},
+        {"half_spaces": {"right": None}, "only_surfaces": ["body", "glass"]},
+        {"half_spaces": (), "only_surfaces": None, "except_surfaces": [], "follows": None},
+    ]
+    display = Ramtek9300(SMALL)
+    studio = Studio(scene, display)
+    for changes in steps:
+        studio.light("key", **changes)
+    text = studio.journal(written)
+    new = "'point': [0.0, 0.0, 1.0], 'direction': [0.0, 1.0, 0.0]"
+    sharp = f"{{{new}, 'edge_width': 0.0, 'carried': False, 'on': True}}"
+    soft = sharp.replace("0.0, 'carried'", "0.5, 'carried'")
+    assert text.splitlines()[-5:] == [
+        f"studio.light('key', half_spaces={{'left': {sharp}}})",
+        f"studio.light('key', half_spaces={{'left': {{'edge_width': 0.5}}, \"my 'door'\": {sharp}}})",
+        f"studio.light('key', half_spaces={{'left': None, 'right': {soft}}}, follows='eye')",
+        "studio.light('key', half_spaces={'right': None}, only_surfaces=['body', 'glass'])",
+        "studio.light('key', half_spaces={\"my 'door'\": None}, follows=None, only_surfaces=None,"
+        " except_surfaces=[])",
+    ]
+    again = session_of(text).history
+    assert again.scene.replace(mesh=scene.mesh).equals(studio.scene)
+    assert len(again.to_undo) == len(steps)
+    assert run_script(text)[0].scene.replace(mesh=scene.mesh).equals(studio.scene)
+
+
 def lines_of(*scenes: Scene) -> list[str]:
     return [step_line(Edit(before, after), CAR, MeshesBeside()) for before, after in pairwise(scenes)]
 
@@ -213,7 +264,7 @@ def test_each_kind_of_step_has_the_narrowest_line() -> None:
         "studio.light('key', on=False, cone_angle=None)",
         "studio.view(direction=[0.0, 1.0, 0.0], target=None, angle=3.0)",
         "studio.add_light('rim', position=[1.0, 2.0, 3.0], intensity=1.0, on=True,"
-        " concentration=0.0, flaps={})",
+        " concentration=0.0, flaps={}, falloff='none', at_infinity=False)",
         "studio.remove_light('key')",
         "studio.edit(studio.scene.with_part('pane', stage=True))",
         "studio.edit(studio.scene.replace(ambient=0.5, background='#000080'))",

@@ -6,11 +6,14 @@ import pytest
 
 from autocolor import Scene, read_scene
 from autocolor.commands.options.setting_keys import Place, field_of, keys_after, place_of
+from autocolor.scene.changes import HalfSpaceChanges
 
 
 @pytest.fixture
 def scene(folder: Path) -> Scene:
-    return read_scene("scene")
+    plane: HalfSpaceChanges = {"point": (0, 0, 0), "direction": (0, 0, 1)}
+    rows = {"left": plane, "a.b": plane}
+    return read_scene("scene").with_light("key", half_spaces=rows, only_parts=["side"])
 
 
 @pytest.mark.parametrize(
@@ -24,6 +27,12 @@ def scene(folder: Path) -> Scene:
         ("lights.key.2.aim", ("lights", "key.2", ("aim",))),
         ('surfaces."front.low".blend', ("surfaces", "front.low", ("blend",))),
         ("lights.key.flaps.z.minimum", ("lights", "key", ("flaps", "z", "minimum"))),
+        ("lights.key.half_spaces", ("lights", "key", ("half_spaces",))),
+        ("lights.key.half_spaces.left", ("lights", "key", ("half_spaces", "left"))),
+        ("lights.key.half_spaces.new", ("lights", "key", ("half_spaces", "new"))),
+        ("lights.key.half_spaces.'ne.w'", ("lights", "key", ("half_spaces", "ne.w"))),
+        ("lights.key.half_spaces.a.b.on", ("lights", "key", ("half_spaces", "a.b", "on"))),
+        ("lights.key.only_parts", ("lights", "key", ("only_parts",))),
     ],
 )
 def test_a_key_leads_to_a_table_a_row_and_a_path_in_it(scene: Scene, key: str, place: Place) -> None:
@@ -38,6 +47,10 @@ def test_a_key_leads_to_a_table_a_row_and_a_path_in_it(scene: Scene, key: str, p
         ("lights.key.cone_angle", None),
         ("lights.key.flaps.z", None),
         ("lights.key.flaps.z.on", True),
+        ("lights.key.half_spaces.left.edge_width", 0.0),
+        ("lights.key.half_spaces.a.b.on", True),
+        ("lights.key.follows", None),
+        ("lights.key.except_surfaces", None),
         ("surfaces.side.blend", 0.6),
         ("surfaces.side.diffuse", 0.7),
         ("surfaces.side.exponent", 20.0),
@@ -66,6 +79,18 @@ def test_a_key_that_its_row_has_not_has_no_field() -> None:
         ("lights.key.", {"lights.key.aim=", "lights.key.flaps.", "lights.key.cone_angle="}),
         ("lights.key.flaps.", {"lights.key.flaps.x.", "lights.key.flaps.y.", "lights.key.flaps.z."}),
         ("lights.key.flaps.z.", {"lights.key.flaps.z.minimum=", "lights.key.flaps.z.on="}),
+        ("lights.key.", {"lights.key.half_spaces.", "lights.key.follows=", "lights.key.only_parts="}),
+        ("lights.key.2.", {"lights.key.2.half_spaces="}),
+        ("lights.key.half_spaces.", {"lights.key.half_spaces.a.b.", "lights.key.half_spaces.left."}),
+        (
+            "lights.key.half_spaces.a.b.",
+            {"lights.key.half_spaces.a.b.point=", "lights.key.half_spaces.a.b.on="},
+        ),
+        ("lights.key.half_spaces.left.on=", {"lights.key.half_spaces.left.on=false"}),
+        ("lights.key.half_spaces.left.edge_width=", {"lights.key.half_spaces.left.edge_width=0.0"}),
+        ("lights.key.follows=", {"lights.key.follows=eye", "lights.key.follows=key.2"}),
+        ("lights.key.only_parts=", {"lights.key.only_parts=side", "lights.key.only_parts=front.low"}),
+        ("parts.side.surface=", {"parts.side.surface=side", "parts.side.surface=front.low"}),
         ("view.", {"view.eye=", "view.field_of_view="}),
         ("scalar.", {"scalar.name=", "scalar.limits=", "scalar.bands="}),
         ("scalar.name=", {"scalar.name=x", "scalar.name=mean curvature"}),
@@ -81,7 +106,7 @@ def test_the_keys_after_a_start_are_those_of_its_table(scene: Scene, start: str,
     found = keys_after(scene, start)
     assert some <= set(found)
     assert all(each.startswith(start) for each in found)
-    assert "lights.key.name=" not in found
+    assert not {"lights.key.name=", "lights.key.half_spaces.a.b.name="} & set(found)
 
 
 def test_every_key_that_is_offered_can_be_set(scene: Scene) -> None:

@@ -340,3 +340,130 @@ def test_a_view_and_lights_that_the_scene_gives_stay_where_they_are(folder: Path
     settings = ("parts.side.stage=true", "view.field_of_view=10")
     edited = with_settings(report.scene, settings)
     assert created_again(report, edited) is edited
+
+
+DOOR = "{point = [0, 0, 0], direction = [1, 0, 0]}"
+WHOLE = (
+    f"lights.key.half_spaces.left={DOOR}",
+    f"lights.key.half_spaces.barn door={DOOR}",
+    f'lights.key.half_spaces."a.b"={DOOR}',
+)
+
+
+def test_half_spaces_are_added_set_field_by_field_and_removed(scene: Scene) -> None:
+    added = with_settings(scene, WHOLE)
+    assert [row.name for row in added.light("key").half_spaces] == ["a.b", "barn door", "left"]
+    changed = with_settings(
+        added,
+        (
+            "lights.key.half_spaces.left.on=false",
+            "lights.key.half_spaces.barn door.edge_width=0.5",
+            'lights.key.half_spaces."barn door".carried=true',
+            "lights.key.half_spaces.a.b=none",
+        ),
+    )
+    door, left = changed.light("key").half_spaces
+    assert (door.name, door.edge_width, door.carried, left.name, left.on) == (
+        "barn door", 0.5, True, "left", False,
+    )  # fmt: skip
+    same = with_settings(added, ("lights.key.half_spaces.a.b.on=false",)).light("key").half_spaces
+    assert [row.on for row in same] == [False, True, True]
+    assert with_settings(added, ("lights.key.half_spaces=none",)).light("key").half_spaces == ()
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["side,front.low", "side, front.low", "[side, front.low]", '["side", "front.low"]', "side,'front.low'"],
+)
+def test_a_list_of_names_needs_neither_brackets_nor_quotes(scene: Scene, text: str) -> None:
+    links = with_settings(scene, (f"lights.key.only_surfaces={text}",)).light("key").links
+    assert links.only_surfaces == ("side", "front.low")
+
+
+def test_a_list_may_be_one_name_none_of_them_or_absent(scene: Scene) -> None:
+    named = with_settings(scene, ("lights.key.except_parts=side",))
+    assert named.light("key").links.except_parts == ("side",)
+    assert with_settings(named, ("lights.key.except_parts=[]",)).light("key").links.except_parts == ()
+    assert with_settings(named, ("lights.key.except_parts=none",)).light("key").links.except_parts is None
+    comma = scene.replace(surfaces=(*scene.surfaces, Surface("a, b")))
+    assert with_settings(comma, ("lights.key.only_surfaces=a, b",)).light("key").links.only_surfaces == (
+        "a, b",
+    )
+
+
+def test_a_light_follows_a_word_a_name_or_nothing(scene: Scene) -> None:
+    for text, held in (("eye", "eye"), ('"eye"', "eye"), ("key", "key"), ("none", None), ("None", None)):
+        found = with_settings(scene, ("lights.key.2.follows=eye", f"lights.key.2.follows={text}"))
+        assert found.light("key.2").follows == held
+    called_none = scene.with_new_light("none", position=(0, 0, 1), aim=(0, 0, 0))
+    assert with_settings(called_none, ("lights.key.follows=none",)).light("key").follows == "none"
+
+
+@pytest.mark.parametrize(
+    ("setting", "sentence"),
+    [
+        (
+            "lights.key.half_spaces.lft.on=false",
+            "--set lights.key.half_spaces.lft.on: there is no half-space 'lft'; did you mean 'left'?",
+        ),
+        (
+            "lights.key.2.half_spaces.left.on=false",
+            "--set lights.key.2.half_spaces.left.on: there is no half-space 'left'; give a new one whole, as"
+            " a table",
+        ),
+        (
+            "lights.key.half_spaces.lft=none",
+            "--set: light 'key': half_spaces.lft: there is no half-space of this name; did you mean 'left'?",
+        ),
+        (
+            "lights.key.half_spaces.left.edge_width=-1",
+            "--set: light 'key': half_spaces.left.edge_width must be a finite number of at least 0, not -1",
+        ),
+        (
+            "lights.key.half_spaces.left.width=1",
+            "--set: light 'key': half_spaces.left: there is no 'width'; did you mean 'edge_width'?",
+        ),
+        (
+            "lights.key.half_spaces.left.name=right",
+            "--set lights.key.half_spaces.left.name: a name cannot be set; change it in the scene file",
+        ),
+        (
+            "lights.key.half_spaces.left.on=none",
+            "--set lights.key.half_spaces.left.on: it must be true or false, not none; only a field that may"
+            " be absent can be unset",
+        ),
+        (
+            "lights.key.half_spaces=left",
+            "--set: light 'key': half_spaces must be a table of half-spaces by name, not 'left'",
+        ),
+        (
+            "lights.key.half_spaces.barn door.x.y=1",
+            "--set lights.key.half_spaces.barn door.x.y: there is no half-space 'barn door'",
+        ),
+        (
+            "lights.key.only_surfaces=sde",
+            "--set: light 'key': only_surfaces 'sde' is not in the surface table; did you mean 'side'?",
+        ),
+        (
+            "lights.key.only_parts=3",
+            "--set: light 'key': only_parts must be a list of names, not 3",
+        ),
+        (
+            "lights.key.follows=ey",
+            "--set: light 'key': follows 'ey' is not in the light table; did you mean 'eye'?",
+        ),
+    ],
+)
+def test_a_wrong_half_space_or_name_is_told_with_the_nearest(
+    scene: Scene, setting: str, sentence: str
+) -> None:
+    with pytest.raises(UsageError) as refused:
+        with_settings(with_settings(scene, WHOLE[:1]), (setting,))
+    assert str(refused.value).startswith(sentence)
+
+
+def test_a_half_space_and_its_fields_are_not_both_set(scene: Scene) -> None:
+    both = ("lights.key.half_spaces.left=none", "lights.key.half_spaces.left.on=false")
+    for settings in (both, both[::-1]):
+        with pytest.raises(UsageError, match="also set"):
+            with_settings(with_settings(scene, WHOLE), settings)

@@ -90,3 +90,24 @@ def test_tables_written_over_a_scene_file_keep_its_comments(mesh: Path) -> None:
     assert "two_sided = true" in after
     assert "crease_angle = 40.0" in after
     assert autocolor.read_scene(mesh.parent).replace(mesh=scene.mesh).equals(scene)
+
+
+def test_half_spaces_and_links_are_told_as_text_and_as_json_and_fed_back(mesh: Path) -> None:
+    scene = autocolor.read_scene(mesh).with_light(
+        "key",
+        half_spaces={"left": {"point": (0, 0, 0), "direction": (1, 0, 0)}},
+        except_parts=["lid"],
+        follows="eye",
+    )
+    path = mesh.parent / "square.npz"
+    autocolor.write_picture(path, autocolor.render(scene, 24, 32), scene)
+    text = CliRunner().invoke(tables, [str(path)]).stdout
+    assert (
+        "half_spaces.left = { point = [0.0, 0.0, 0.0], direction = [1.0, 0.0, 0.0], edge_width = 0.0," in text
+    )
+    assert 'follows = "eye"\nexcept_parts = ["lid"]\n' in text
+    light = json.loads(CliRunner().invoke(tables, [str(path), "--json"]).stdout)["lights"][0]
+    assert (light["follows"], light["except_parts"]) == ("eye", ["lid"])
+    assert light["half_spaces"]["left"]["direction"] == [1.0, 0.0, 0.0]
+    assert CliRunner().invoke(tables, [str(path), "--write"]).exit_code == 0
+    assert autocolor.read_scene(mesh.parent).lights == scene.lights

@@ -456,3 +456,54 @@ def test_a_surface_that_the_file_gives_counts_before_the_material_of_its_name(fo
     assert [surface.name for surface in scene.surfaces] == ["red"]
     assert scene.surface("red").paint.object_color == (16, 32, 48)
     assert scene.surface("red").reflectance == Reflectance()
+
+
+def test_what_is_wrong_in_half_spaces_and_links_is_told_with_its_line(folder: Path) -> None:
+    text = MESH + (
+        '[[lights]]\nname = "key"\nposition = [0, 0, 1]\n'
+        "half_spaces.left = { point = [0, 0, 0], direction = [1, 0, 0], edge = 1 }\n"
+        "half_spaces.'my door' = { point = [0, 0], direction = [0, 0, 0] }\n"
+        "half_spaces.new.point = [0, 0, 0]\n"
+        "half_spaces.roof = 3\n"
+        'half_spaces.top = { name = "floor", point = [0, 0, 0], direction = [1, 0, 0] }\n'
+        'only_parts = "hood"\n'
+        "[lights.half_spaces.below]\npoint = [0, 0, 0]\ndirection = [0, 0, 1]\nedge_width = -1\n"
+    )
+    key = "lights[1] 'key': half_spaces"
+    first = text.splitlines().index("position = [0, 0, 1]") + 1
+    lines = [
+        "left: there is no 'edge'; did you mean 'edge_width'?",
+        "'my door'.point must be three finite numbers of at most 1e36, not [0, 0]",
+        "'my door'.direction must not be zero, not [0, 0, 0]; give it a length",
+        "new: direction must be three finite numbers of at most 1e36, not missing; add it",
+        "roof must be a table of point, direction, edge_width, carried and on, not 3",
+        "top.name must be that of the table, 'top', not 'floor'; leave it out",
+        "only_parts must be a list of names, not 'hood'",
+        "below.edge_width must be a finite number of at least 0, not -1",
+    ]
+    places = [1, 2, 2, 3, 4, 5, 6, 10]
+    expected = [
+        f"scene.toml, line {first + at}, {key}.{told}" for at, told in zip(places, lines, strict=True)
+    ]
+    expected[6] = expected[6].replace("half_spaces.", "")
+    assert refusal(folder, text) == expected
+
+
+def test_a_list_of_half_spaces_is_refused_with_the_form_that_they_have(folder: Path) -> None:
+    text = MESH + '[[lights]]\nname = "key"\nposition = [0, 0, 1]\n[[lights.half_spaces]]\nname = "left"\n'
+    (told,) = refusal(folder, text)
+    assert (
+        "lights[1] 'key': half_spaces must be a table of half-spaces by name, not [{'name': 'left'}]" in told
+    )
+
+
+def test_names_that_no_table_has_are_refused_in_links(folder: Path) -> None:
+    text = MESH + (
+        '[[lights]]\nname = "key"\nposition = [0, 0, 1]\nonly_parts = ["hod"]\nexcept_surfaces = ["bdy"]\n'
+        'follows = "rim"\n'
+    )
+    assert refusal(folder, text) == [
+        "scene.toml, light 'key': follows 'rim' is not in the light table; known are 'eye', 'key'",
+        "scene.toml, light 'key': except_surfaces 'bdy' is not in the surface table; known are 'surface'",
+        "scene.toml, light 'key': only_parts 'hod' is not in the part table; did you mean 'hood'?",
+    ]

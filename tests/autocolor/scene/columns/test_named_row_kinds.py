@@ -72,7 +72,7 @@ def test_a_change_goes_into_the_rows_that_are_there() -> None:
 
 
 def test_a_change_adds_and_removes_rows() -> None:
-    row = changed(light(LEFT, RIGHT), {"half_spaces": {"back": PLANE, "right": None, "nowhere": None}})
+    row = changed(light(LEFT, RIGHT), {"half_spaces": {"back": PLANE, "right": None}})
     assert row.half_spaces == (HalfSpace("back", (0, 0, 0), (0, 0, 1)), LEFT)
 
 
@@ -151,6 +151,7 @@ def test_an_edit_costs_the_planes_of_its_light() -> None:
         ({"top": LEFT}, ".top.name must be that of the table, 'top', not 'left'; leave it out"),
         ({"top": 3}, ".top must be a table of point, direction, edge_width, carried and on, not 3"),
         ({"left": "off"}, ".left must be a table of point, direction, edge_width, carried and on, not 'off'"),
+        ({"lift": None}, ".lift: there is no half-space of this name; did you mean 'left'?"),
         ({3: PLANE}, " must be a table of half-spaces by name, not by 3; name it by at least one character"),
         ({"": None}, " must be a table of half-spaces by name, not by ''; name it by at least one character"),
         (
