@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from autocolor import Light, Scene
 from autocolor.scene.lights.half_spaces import HalfSpace
 from autocolor.scene.lights.light import EYE, FALLOFFS
+from autocolor.scene.lights.links import Links
 from tests.autocolor.strategies import directions, numbers, scenes, vectors
 
 half_spaces = st.builds(
@@ -28,10 +29,11 @@ def linked(draw: st.DrawFn, scene: Scene) -> Scene:
     """The scene with lights that have any of the columns; only lights before one are followed by it."""
     lights: list[Light] = []
     for light in scene.lights:
-        fields: dict[str, Any] = {"half_spaces": draw(named)}
+        chosen: dict[str, Any] = {}
         for what, rows in (("surfaces", scene.surfaces), ("parts", scene.parts)):
             names = st.lists(st.sampled_from([row.name for row in rows]), max_size=3)
-            fields[f"{draw(st.sampled_from(['only', 'except']))}_{what}"] = draw(st.none() | names)
+            chosen[f"{draw(st.sampled_from(['only', 'except']))}_{what}"] = draw(st.none() | names)
+        fields: dict[str, Any] = {"half_spaces": draw(named), "links": Links(**chosen)}
         has_axis = light.axis is not None
         if draw(st.booleans()):
             fields |= {"falloff": draw(st.sampled_from(FALLOFFS)), "reach": draw(numbers(0.5, 9))}
