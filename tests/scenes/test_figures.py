@@ -9,7 +9,16 @@ from PIL import Image
 
 import autocolor
 from ramtek_emu import Ramtek9300
-from scenes import figure_04, figure_10, figure_15, figure_curvature, figure_part, figures
+from scenes import (
+    figure_04,
+    figure_10,
+    figure_15,
+    figure_curvature,
+    figure_following,
+    figure_highlight,
+    figure_part,
+    figures,
+)
 
 EXPECTED = {
     "04": {"figure-04.png", "figure-04-a.png", "figure-04-b.png", "figure-04-c.png"},
@@ -21,6 +30,8 @@ EXPECTED = {
     "15": {"figure-15.png", "figure-15-a.png", "figure-15-b.png", "figure-15-c.png"},
     "part": {"figure-part.png", *(f"figure-part-{panel}.png" for panel in "abcd")},
     "curvature": {"figure-curvature.png", *(f"figure-curvature-{panel}.png" for panel in "abc")},
+    "following": {"figure-following.png", *(f"figure-following-{panel}.png" for panel in "abcdef")},
+    "highlight": {"figure-highlight.png", *(f"figure-highlight-{panel}.png" for panel in "abcdef")},
 }
 
 
@@ -182,3 +193,26 @@ def test_the_roof_of_the_coupe_bulges_and_only_its_body_is_colored_by_curvature(
     colors = curved.entries[curved.words[~body]].astype(int) - plain.entries[plain.words[~body]]
     # Other surfaces have fewer levels, but the same colors.
     assert np.percentile(np.abs(colors), 95) < 12
+
+
+@pytest.mark.parametrize("caption", figure_highlight.ON_THE_COUPE)
+def test_the_highlights_of_the_coupe_are_where_their_crosses_are(caption: str) -> None:
+    place = figure_highlight.ON_THE_COUPE[caption]
+    studio = autocolor.Studio(autocolor.read_scene(figures.SCENES / "coupe"), Ramtek9300())
+    seen = studio.seen_at(*place)
+    assert seen is not None
+    assert seen.part == "hood"
+    studio.place_highlight("back", *place)
+    assert studio.highlight_of("back", seen.surface) == place
+
+
+def test_the_falling_light_leaves_the_tail_of_the_coupe_darker_than_its_nose() -> None:
+    coupe = autocolor.read_scene(figures.SCENES / "coupe").replace(ambient=0)
+    lamp = autocolor.Light("lamp", figure_following.LAMP)
+    whole, falling = (
+        autocolor.render(coupe.replace(lights=[each]), 120, 160).intensity
+        for each in (lamp, lamp.replace(falloff="quadratic", reach=8))
+    )
+    left = falling[whole > 0] / whole[whole > 0]
+    assert left.min() == 0
+    assert 0.5 < left.max() < 1
