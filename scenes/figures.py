@@ -1,9 +1,9 @@
 """The figures of the paper, each made by a script of its own: `python -m scenes.figures` makes them all.
 
 Paper: D. R. Warn, "Lighting Controls for Synthetic Images", Figures 4, 6, 7, 8, 9, 10 and 15; and two of what
-its introduction tells of: a machined part with its stress, and the curvature of a body. Others show what grows
-from it: lights that follow, and highlights put in their place. Each script renders once, then relights or
-recolors for every panel, and writes labeled pictures into `figures/`, or into the folder that it is given:
+its introduction tells of: a machined part with its stress, and the curvature of a body. Others show what
+grows from it: lights that follow, and highlights put in their place. Each script renders once, then relights
+or recolors for every panel, and writes labeled pictures into `figures/`, or into the folder that it is given:
 `python -m scenes.figure_04 elsewhere`.
 """
 
