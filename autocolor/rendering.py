@@ -4,6 +4,7 @@
 |---|---|
 | mesh, view, the surface of a part, two_sided | everything |
 | a light's position, aim, concentration, flaps, cone | that light's two planes, the sum |
+| the aim of a light that others follow | the two planes of that light and of these, the sum |
 | a surface's reflection model | all lights, for the chunks of points that contain the surface; the sum |
 | a light's intensity or switch, ambient, D, S | the sum |
 | the scalar's name, direction, stripes | its values |
