@@ -3,7 +3,8 @@
 | changed | recomputed |
 |---|---|
 | mesh, view, the surface of a part, two_sided | everything |
-| a light's position, aim, concentration, flaps, cone, links to parts | that light's two planes, the sum |
+| a light's position, aim, controls, links to parts | that light's two planes, the sum |
+| the aim of a light that others follow | the two planes of that light and of these, the sum |
 | a surface's reflection model | all lights, for the chunks of points that contain the surface; the sum |
 | a light's intensity, switch or links to surfaces, ambient, D, S | the sum |
 | the scalar's name, direction, stripes | its values |

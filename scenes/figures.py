@@ -22,7 +22,21 @@ from ramtek_emu import GMR_9300, Ramtek9300, instructions
 from ramtek_emu.png import save_png
 
 SCENES = Path(__file__).parent
-FIGURES = ("04", "06", "07", "08", "09", "10", "15", "part", "curvature", "incidence", "links")
+FIGURES = (
+    "04",
+    "06",
+    "07",
+    "08",
+    "09",
+    "10",
+    "15",
+    "part",
+    "curvature",
+    "incidence",
+    "links",
+    "following",
+    "highlight",
+)
 CAPTION_LINES = 26
 
 Field = npt.NDArray[np.uint8]

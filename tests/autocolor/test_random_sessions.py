@@ -41,8 +41,21 @@ def many_surfaces() -> Scene:
     )
 
 
+def followed() -> Scene:
+    """The car under lights that follow the eye and each other, one at infinity and one that falls off."""
+    rows = [
+        Light("lamp", (0.0, 0.0, 0.0), 0.3, follows="eye", falloff="linear", reach=9.0),
+        Light("sun", (0.5, -1.0, 1.0), 0.5, direction=(0, 1, -1), at_infinity=True, follows="key"),
+        Light("spot", (0.0, -3.0, 2.0), 0.4, aim=(0, 0, 0.5), cone_angle=30, follows="key"),
+        Light("last", (0.0, -1.0, 0.0), 0.2, follows="spot"),
+    ]
+    scene = car()
+    return scene.replace(lights=(*rows, *scene.lights))
+
+
 SCENES = {
     "car": car,
+    "followed": followed,
     "one surface": wall_scene,
     "no light": lambda: wall_scene(lights=[]),
     "nothing in sight": lambda: car().with_view(eye=(90, 90, 90), target=(99, 99, 99)),

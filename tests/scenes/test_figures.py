@@ -14,6 +14,8 @@ from scenes import (
     figure_10,
     figure_15,
     figure_curvature,
+    figure_following,
+    figure_highlight,
     figure_incidence,
     figure_links,
     figure_part,
@@ -32,6 +34,8 @@ EXPECTED = {
     "links": {"figure-links.png", *(f"figure-links-{panel}.png" for panel in "abcdef")},
     "curvature": {"figure-curvature.png", *(f"figure-curvature-{panel}.png" for panel in "abc")},
     "incidence": {"figure-incidence.png", *(f"figure-incidence-{panel}.png" for panel in "abcd")},
+    "following": {"figure-following.png", *(f"figure-following-{panel}.png" for panel in "abcdef")},
+    "highlight": {"figure-highlight.png", *(f"figure-highlight-{panel}.png" for panel in "abcdef")},
 }
 
 
@@ -236,3 +240,26 @@ def test_the_lacquer_of_the_coupe_and_the_wet_floor_shine_under_the_lamp_behind_
     assert all(0.999 < times["eye", name] < 1.02 for name in figure_incidence.SURFACES)
     assert times["behind", "body"] > 3
     assert times["behind", "floor"] > 1.5
+
+
+@pytest.mark.parametrize("caption", figure_highlight.ON_THE_COUPE)
+def test_the_highlights_of_the_coupe_are_where_their_crosses_are(caption: str) -> None:
+    place = figure_highlight.ON_THE_COUPE[caption]
+    studio = autocolor.Studio(autocolor.read_scene(figures.SCENES / "coupe"), Ramtek9300())
+    seen = studio.seen_at(*place)
+    assert seen is not None
+    assert seen.part == "hood"
+    studio.place_highlight("back", *place)
+    assert studio.highlight_of("back", seen.surface) == place
+
+
+def test_the_falling_light_leaves_the_tail_of_the_coupe_darker_than_its_nose() -> None:
+    coupe = autocolor.read_scene(figures.SCENES / "coupe").replace(ambient=0)
+    lamp = autocolor.Light("lamp", figure_following.LAMP)
+    whole, falling = (
+        autocolor.render(coupe.replace(lights=[each]), 120, 160).intensity
+        for each in (lamp, lamp.replace(falloff="quadratic", reach=8))
+    )
+    left = falling[whole > 0] / whole[whole > 0]
+    assert left.min() == 0
+    assert 0.5 < left.max() < 1
