@@ -21,9 +21,10 @@ from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.mapping.normals.cells import spread_of
 from autocolor.mapping.normals.normal_words import (
+    NormalLight,
     WordNormals,
     fill_entries,
-    light_at_words,
+    normal_light,
     words_of_normals,
 )
 from autocolor.mapping.scalar_bands import DARKEST, Bands, band_entries
@@ -53,12 +54,12 @@ class DisplayImage:
     block: int = 1
     bands: Mapping[str, Bands] = field(default_factory=dict)
     normals: WordNormals | None = None
-    lit: Picture | None = None
+    lit: NormalLight | None = None
 
     @property
     def mapped(self) -> Picture:
-        """The picture whose intensities are mapped: of the pixels, or of the words that stand for normals."""
-        return self.picture if self.lit is None else self.lit
+        """The picture whose intensities are mapped: of the pixels, or of the normals that are seen."""
+        return self.picture if self.lit is None else self.lit.at_samples
 
     @cached_property
     def entries(self) -> Bytes:
@@ -217,7 +218,7 @@ def _image_of_normals(
         words, normals = words_of_normals(picture, ranges)
         words = _in_blocks(words, block)
     return DisplayImage(
-        scene, picture, ranges, words, block, normals=normals, lit=light_at_words(scene, normals)
+        scene, picture, ranges, words, block, normals=normals, lit=normal_light(scene, normals)
     )
 
 

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -33,7 +35,7 @@ def load(number: int) -> bytes:
 def paced(data: bytes, cuts: list[int], rate: int, clock: Clock) -> list[bytes]:
     """What a paced reader returns of a stream that comes in pieces, up to its end."""
     places = [0, *sorted(cut % (len(data) + 1) for cut in cuts), len(data)]
-    pieces = [data[start:end] for start, end in zip(places, places[1:], strict=False) if start < end]
+    pieces = [data[start:end] for start, end in pairwise(places) if start < end]
     read = PacedReader(lambda _: pieces.pop(0) if pieces else b"", rate, GMR_9300, clock, clock.sleep)
     found = []
     while piece := read(1 << 16):
