@@ -1,9 +1,9 @@
 """The figures of the paper, each made by a script of its own: `python -m scenes.figures` makes them all.
 
 Paper: D. R. Warn, "Lighting Controls for Synthetic Images", Figures 4, 6, 7, 8, 9, 10 and 15; and two of what
-its introduction tells of: a machined part with its stress, and the curvature of a body. Each script renders
-once, then relights or recolors for every panel, and writes labeled pictures into `figures/`, or into the
-folder that it is given: `python -m scenes.figure_04 elsewhere`.
+its introduction tells of: a machined part with its stress, and the curvature of a body; and one of an aside:
+words that stand for normals. Each script renders once, then relights or recolors for every panel, and writes
+labeled pictures into `figures/`, or into the folder that it is given: `python -m scenes.figure_04 elsewhere`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ramtek_emu import GMR_9300, Ramtek9300, instructions
 from ramtek_emu.png import save_png
 
 SCENES = Path(__file__).parent
-FIGURES = ("04", "06", "07", "08", "09", "10", "15", "part", "curvature")
+FIGURES = ("04", "06", "07", "08", "09", "10", "15", "part", "curvature", "normals")
 CAPTION_LINES = 26
 
 Field = npt.NDArray[np.uint8]

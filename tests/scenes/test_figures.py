@@ -9,7 +9,8 @@ from PIL import Image
 
 import autocolor
 from ramtek_emu import Ramtek9300
-from scenes import figure_04, figure_10, figure_15, figure_curvature, figure_part, figures
+from ramtek_emu.instruction_set.decoder import Decoder
+from scenes import figure_04, figure_10, figure_15, figure_curvature, figure_normals, figure_part, figures
 
 EXPECTED = {
     "04": {"figure-04.png", "figure-04-a.png", "figure-04-b.png", "figure-04-c.png"},
@@ -21,6 +22,7 @@ EXPECTED = {
     "15": {"figure-15.png", "figure-15-a.png", "figure-15-b.png", "figure-15-c.png"},
     "part": {"figure-part.png", *(f"figure-part-{panel}.png" for panel in "abcd")},
     "curvature": {"figure-curvature.png", *(f"figure-curvature-{panel}.png" for panel in "abc")},
+    "normals": {"figure-normals.png", *(f"figure-normals-{panel}.png" for panel in "abcdef")},
 }
 
 
@@ -182,3 +184,30 @@ def test_the_roof_of_the_coupe_bulges_and_only_its_body_is_colored_by_curvature(
     colors = curved.entries[curved.words[~body]].astype(int) - plain.entries[plain.words[~body]]
     # Other surfaces have fewer levels, but the same colors.
     assert np.percentile(np.abs(colors), 95) < 12
+
+
+def test_a_recorded_round_of_the_light_is_a_picture_and_then_loads_of_the_table_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.argv", ["figure", str(tmp_path), "--stream"])
+    figure_normals.main()
+    words = np.fromfile(tmp_path / "figure-normals.ramtek", "<u2").astype(np.uint16)
+    names = [each.format.name for each in Decoder().feed(words)]
+    picture = len(names) - figure_normals.STEPS
+    assert set(names[picture:]) == {"LAM"}
+    assert names[picture - 1] == "WI"
+    display = Ramtek9300()
+    display.send(words)
+    around = Ramtek9300()
+    autocolor.Studio(figure_normals.coupe().replace(words="normals"), around)
+    assert (display.field() == around.field()).all()
+
+
+def test_the_light_that_circles_the_car_passes_over_it() -> None:
+    studio = autocolor.Studio(figure_normals.coupe().replace(words="normals"), Ramtek9300())
+    entries = studio.entries
+    changed = []
+    for angle in list(figure_normals.angles())[::20]:
+        studio.light("circling", position=figure_normals.position(angle))
+        changed.append((studio.entries != entries).any(axis=1).sum())
+    assert min(changed) > 300
