@@ -15,7 +15,7 @@ from autocolor.errors import InputError, UsageError
 from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.band_division import bands_by_surface
-from autocolor.mapping.color_blending import entries_of
+from autocolor.mapping.color_blending import entries_at, entries_of
 from autocolor.mapping.exposure import mapped_ranges
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
@@ -23,8 +23,9 @@ from autocolor.mapping.normals.cells import spread_of
 from autocolor.mapping.normals.normal_words import (
     NormalLight,
     WordNormals,
-    fill_entries,
+    fractions_at_words,
     normal_light,
+    words_at_levels,
     words_of_normals,
 )
 from autocolor.mapping.scalar_bands import DARKEST, Bands, band_entries
@@ -70,7 +71,11 @@ class DisplayImage:
         for name, (first, levels) in self.ranges.items():
             table[first : first + levels] = self.entries_of(self.scene.surface(name))
         if self.lit is not None:
-            fill_entries(table, self.scene, self.lit, self.ranges, self._shown_floors)
+            for name, fractions in self._fractions.items():
+                first, levels = self.ranges[name]
+                floor = self._shown_floors.get(name, 0.0)
+                paint = self.scene.surface(name).paint
+                table[first : first + len(fractions)] = entries_at(paint, fractions, levels, floor)
         table.flags.writeable = False
         return table
 
@@ -79,6 +84,21 @@ class DisplayImage:
         """The color of each pixel, (lines, elements, 3) uint8."""
         colors: Bytes = self.entries[self.words]
         return colors
+
+    def words_at_levels(self, name: str) -> Words:
+        """The word that shows each level of a surface in use, from the lowest level up, (levels,) uint16.
+
+        Where words stand for normals, it is the one that comes nearest.
+        """
+        first, levels = self.ranges[name]
+        if name in self._fractions:
+            return words_at_levels(first, self._fractions[name], levels)
+        return np.arange(first, first + levels, dtype=np.uint16)
+
+    @cached_property
+    def _fractions(self) -> Mapping[str, Singles]:
+        """The fraction of the range at each word that stands for a normal, by surface name."""
+        return {} if self.lit is None else fractions_at_words(self.scene, self.lit)
 
     def entries_of(self, surface: Surface) -> Bytes:
         """The entries of one surface's levels or bands, (levels, 3) uint8, read-only.

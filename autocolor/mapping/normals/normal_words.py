@@ -19,10 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Indices, Singles, Words
+from autocolor.arrays import Indices, Singles, Words
 from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.color_blending import entries_at
 from autocolor.mapping.exposure import mapped_ranges
 from autocolor.mapping.intensity_mapping import fractions_by_surface
 from autocolor.mapping.level_ranges import BACKGROUND, WORDS, LevelRange
@@ -102,24 +101,26 @@ def normal_light(scene: Scene, stand_for: WordNormals) -> NormalLight:
     )
 
 
-def fill_entries(
-    table: Bytes,
-    scene: Scene,
-    lit: NormalLight,
-    ranges: Mapping[str, LevelRange],
-    floors: Mapping[str, float],
-) -> None:
-    """Write the entries of the words in use into a lookup table, (1024, 3) uint8.
-
-    `floors` are the brightness of each surface's lowest fraction, 0 if absent.
-    """
+def fractions_at_words(scene: Scene, lit: NormalLight) -> Mapping[str, Singles]:
+    """The fraction of the range, 0 to 1, at each word in use of each visible surface, by name."""
     extents = mapped_ranges(lit.at_samples, scene.scaling, scene.exposure)
     fractions_of = fractions_by_surface(lit.at_samples, extents, scene.mapping)
+    found = {}
     for each in lit.at_words.slices:
-        surface = scene.surfaces[each.surface_number - 1]
         # A word may be nearer to a highlight than any sample.
         low, high = map(np.float32, extents[each.surface_number])
         intensities = lit.at_words.relative[each.pixels].clip(low, high)
-        fractions = fractions_of[each.surface_number](intensities)
-        levels, floor = ranges[surface.name].levels, floors.get(surface.name, 0.0)
-        table[lit.at_words.pixels[each.pixels]] = entries_at(surface.paint, fractions, levels, floor)
+        name = scene.surfaces[each.surface_number - 1].name
+        found[name] = fractions_of[each.surface_number](intensities)
+    return found
+
+
+def words_at_levels(first: int, fractions: Singles, levels: int) -> Words:
+    """For each level of a range, the word whose fraction is nearest to that of the level, (levels,) uint16.
+
+    `fractions` are those of the words from `first` on.
+    """
+    order = np.argsort(fractions, kind="stable")
+    between = (fractions[order[1:]] + fractions[order[:-1]]) / 2
+    nearest = np.searchsorted(between, np.arange(levels) / (levels - 1))
+    return read_only((first + order[nearest]).astype(np.uint16))

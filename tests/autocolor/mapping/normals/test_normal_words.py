@@ -13,7 +13,7 @@ from autocolor import InputError, Light, Scene, Surface, View, render, scene_of
 from autocolor.arrays import Singles
 from autocolor.checks import Vector
 from autocolor.mapping.display_image import DisplayImage, display_image
-from autocolor.mapping.normals.normal_words import normal_light, words_of_normals
+from autocolor.mapping.normals.normal_words import normal_light, words_at_levels, words_of_normals
 from autocolor.scene.curves import GAMMA, LOGARITHM
 from autocolor.scene.scene import OBJECT
 from tests.autocolor import reference
@@ -182,3 +182,30 @@ def test_the_picture_of_a_ball_differs_little_from_the_true_one(
     found = errors(ball_scene(exponent))
     assert found.mean() < mean
     assert found.max() < most
+
+
+@given(st.lists(st.floats(0, 1, width=32), min_size=1, max_size=30), st.integers(2, 40))
+def test_each_level_is_shown_by_the_word_whose_fraction_is_nearest(
+    fractions: list[float], levels: int
+) -> None:
+    given = np.array(fractions, np.float32)
+    words = words_at_levels(5, given, levels)
+    assert words.shape == (levels,)
+    for level, word in enumerate(words.tolist()):
+        wanted = level / (levels - 1)
+        assert abs(given[word - 5] - wanted) == pytest.approx(np.abs(given - wanted).min(), abs=1e-6)
+
+
+def test_the_levels_of_a_ball_rise_from_its_darkest_to_its_brightest_color() -> None:
+    image = image_of(ball_scene(20), 240, 320)
+    colors = image.entries[image.words_at_levels("shell")].astype(int).sum(axis=1)
+    assert (np.diff(colors) >= 0).all()
+    own = image.entries[image.normals.words] if image.normals is not None else image.entries
+    assert colors[-1] == own.astype(int).sum(axis=1).max()
+
+
+def test_the_words_at_levels_are_the_levels_where_words_stand_for_them() -> None:
+    scene = ball_scene(20)
+    image = display_image(scene, render(scene, LINES, ELEMENTS))
+    first, levels = image.ranges["shell"]
+    assert image.words_at_levels("shell").tolist() == list(range(first, first + levels))
