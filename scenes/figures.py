@@ -23,20 +23,9 @@ from ramtek_emu.png import save_png
 
 SCENES = Path(__file__).parent
 FIGURES = (
-    "04",
-    "06",
-    "07",
-    "08",
-    "09",
-    "10",
-    "15",
-    "part",
-    "curvature",
-    "incidence",
-    "links",
-    "following",
-    "highlight",
-)
+    "04", "06", "07", "08", "09", "10", "15", "part", "curvature",
+    "incidence", "half_spaces", "links", "following", "highlight", "normals",
+)  # fmt: skip
 CAPTION_LINES = 26
 
 Field = npt.NDArray[np.uint8]

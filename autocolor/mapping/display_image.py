@@ -15,15 +15,17 @@ from autocolor.errors import InputError, UsageError
 from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.band_division import bands_by_surface
-from autocolor.mapping.color_blending import entries_of
+from autocolor.mapping.color_blending import entries_at, entries_of
 from autocolor.mapping.exposure import mapped_ranges
 from autocolor.mapping.intensity_mapping import words_of
 from autocolor.mapping.level_ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS, LevelRange, level_ranges
 from autocolor.mapping.normals.cells import spread_of
 from autocolor.mapping.normals.normal_words import (
+    NormalLight,
     WordNormals,
-    fill_entries,
-    light_at_words,
+    fractions_at_words,
+    normal_light,
+    words_at_levels,
     words_of_normals,
 )
 from autocolor.mapping.scalar_bands import DARKEST, Bands, band_entries
@@ -53,12 +55,12 @@ class DisplayImage:
     block: int = 1
     bands: Mapping[str, Bands] = field(default_factory=dict)
     normals: WordNormals | None = None
-    lit: Picture | None = None
+    lit: NormalLight | None = None
 
     @property
     def mapped(self) -> Picture:
-        """The picture whose intensities are mapped: of the pixels, or of the words that stand for normals."""
-        return self.picture if self.lit is None else self.lit
+        """The picture whose intensities are mapped: of the pixels, or of the normals that are seen."""
+        return self.picture if self.lit is None else self.lit.at_samples
 
     @cached_property
     def entries(self) -> Bytes:
@@ -69,7 +71,11 @@ class DisplayImage:
         for name, (first, levels) in self.ranges.items():
             table[first : first + levels] = self.entries_of(self.scene.surface(name))
         if self.lit is not None:
-            fill_entries(table, self.scene, self.lit, self.ranges, self._shown_floors)
+            for name, fractions in self._fractions.items():
+                first, levels = self.ranges[name]
+                floor = self._shown_floors.get(name, 0.0)
+                paint = self.scene.surface(name).paint
+                table[first : first + len(fractions)] = entries_at(paint, fractions, levels, floor)
         table.flags.writeable = False
         return table
 
@@ -78,6 +84,21 @@ class DisplayImage:
         """The color of each pixel, (lines, elements, 3) uint8."""
         colors: Bytes = self.entries[self.words]
         return colors
+
+    def words_at_levels(self, name: str) -> Words:
+        """The word that shows each level of a surface in use, from the lowest level up, (levels,) uint16.
+
+        Where words stand for normals, it is the one that comes nearest.
+        """
+        first, levels = self.ranges[name]
+        if name in self._fractions:
+            return words_at_levels(first, self._fractions[name], levels)
+        return np.arange(first, first + levels, dtype=np.uint16)
+
+    @cached_property
+    def _fractions(self) -> Mapping[str, Singles]:
+        """The fraction of the range at each word that stands for a normal, by surface name."""
+        return {} if self.lit is None else fractions_at_words(self.scene, self.lit)
 
     def entries_of(self, surface: Surface) -> Bytes:
         """The entries of one surface's levels or bands, (levels, 3) uint8, read-only.
@@ -217,7 +238,7 @@ def _image_of_normals(
         words, normals = words_of_normals(picture, ranges)
         words = _in_blocks(words, block)
     return DisplayImage(
-        scene, picture, ranges, words, block, normals=normals, lit=light_at_words(scene, normals)
+        scene, picture, ranges, words, block, normals=normals, lit=normal_light(scene, normals)
     )
 
 

@@ -9,6 +9,7 @@ from PIL import Image
 
 import autocolor
 from ramtek_emu import Ramtek9300
+from ramtek_emu.instruction_set.decoder import Decoder
 from scenes import (
     figure_04,
     figure_10,
@@ -18,6 +19,7 @@ from scenes import (
     figure_highlight,
     figure_incidence,
     figure_links,
+    figure_normals,
     figure_part,
     figures,
 )
@@ -36,6 +38,7 @@ EXPECTED = {
     "incidence": {"figure-incidence.png", *(f"figure-incidence-{panel}.png" for panel in "abcd")},
     "following": {"figure-following.png", *(f"figure-following-{panel}.png" for panel in "abcdef")},
     "highlight": {"figure-highlight.png", *(f"figure-highlight-{panel}.png" for panel in "abcdef")},
+    "normals": {"figure-normals.png", *(f"figure-normals-{panel}.png" for panel in "abcdef")},
 }
 
 
@@ -263,3 +266,30 @@ def test_the_falling_light_leaves_the_tail_of_the_coupe_darker_than_its_nose() -
     left = falling[whole > 0] / whole[whole > 0]
     assert left.min() == 0
     assert 0.5 < left.max() < 1
+
+
+def test_a_recorded_round_of_the_light_is_a_picture_and_then_loads_of_the_table_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.argv", ["figure", str(tmp_path), "--stream"])
+    figure_normals.main()
+    words = np.fromfile(tmp_path / "figure-normals.ramtek", "<u2").astype(np.uint16)
+    names = [each.format.name for each in Decoder().feed(words)]
+    picture = len(names) - figure_normals.STEPS
+    assert set(names[picture:]) == {"LAM"}
+    assert names[picture - 1] == "WI"
+    display = Ramtek9300()
+    display.send(words)
+    around = Ramtek9300()
+    autocolor.Studio(figure_normals.coupe().replace(words="normals"), around)
+    assert (display.field() == around.field()).all()
+
+
+def test_the_light_that_circles_the_car_passes_over_it() -> None:
+    studio = autocolor.Studio(figure_normals.coupe().replace(words="normals"), Ramtek9300())
+    entries = studio.entries
+    changed = []
+    for angle in list(figure_normals.angles())[::20]:
+        studio.light("circling", position=figure_normals.position(angle))
+        changed.append((studio.entries != entries).any(axis=1).sum())
+    assert min(changed) > 300

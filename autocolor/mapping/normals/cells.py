@@ -40,10 +40,14 @@ BINS_AT_ONCE: Final = 1 << 11
 
 
 class Cells(NamedTuple):
-    """Some normals, (3, cells) float32, and for each of the given normals the number of its cell."""
+    """Some normals, (3, cells) float32, and for each of the given normals the number of its cell.
+
+    `samples`, (3, bins) float32, are the normals of the bins, which are finer.
+    """
 
     normals: Singles
     numbers: Indices
+    samples: Singles
 
 
 def cells_of(normals: Singles, most: int) -> Cells:
@@ -59,15 +63,16 @@ def cells_of(normals: Singles, most: int) -> Cells:
     bin_at = np.cumsum(counts > 0) - 1
     # Sum the normals of each bin once: what follows is done with bins, which are far fewer.
     sums = _sums(normals, places, BINS * BINS)[:, used]
+    middles = read_only(_normalized(sums))
     if len(used) <= most:
-        return Cells(read_only(_normalized(sums)), read_only(bin_at[places]))
-    middles, weights = _normalized(sums), np.sqrt(counts[used])
+        return Cells(middles, read_only(bin_at[places]), middles)
+    weights = np.sqrt(counts[used])
     cell_of_bin = _cell_of_bin(middles, _seeds(middles, weights, most), weights)
     # What none of the bins is nearest to is no cell.
     is_cell = np.bincount(cell_of_bin) > 0
     cell_of_bin = (np.cumsum(is_cell) - 1)[cell_of_bin]
     cells = _normalized(_sums(sums, cell_of_bin, int(np.count_nonzero(is_cell))))
-    return Cells(read_only(cells), read_only(cell_of_bin[bin_at[places]]))
+    return Cells(read_only(cells), read_only(cell_of_bin[bin_at[places]]), middles)
 
 
 def spread_of(normals: Singles) -> int:

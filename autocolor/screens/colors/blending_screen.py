@@ -12,8 +12,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Final
 
-import numpy as np
-
 from autocolor.mapping.color_blending import blend_from, blend_level
 from autocolor.screens.picture.over_picture import OverPicture
 from autocolor.screens.picture.surface_row import surface_row
@@ -63,7 +61,7 @@ class BlendingScreen(OverPicture):
         surface = self.session.chosen_surface
         if surface is None:
             return []
-        first, levels = self.session.studio.level_ranges[surface.name]
+        levels = self.session.studio.level_ranges[surface.name].levels
         # Where the menu comes, the bar moves to its left.
         right = (MENU.left if self.is_under_menu else WIDTH) - BESIDE
         between = right - PERCENT_ELEMENTS
@@ -73,7 +71,7 @@ class BlendingScreen(OverPicture):
                 "blend level",
                 "The light color blends in above the handle; pick a level, or drag.",
                 area=Area(between - BAR_ELEMENTS - LANE, TOP, between - 1, BOTTOM),
-                words=np.arange(first, first + levels, dtype=np.uint16),
+                words=self.session.studio.image.words_at_levels(surface.name),
                 level=blend_level(paint.blend, levels),
                 put=lambda level: self._put({"blend": blend_from(level, levels)}),
                 number=f"{paint.blend:.2f}",

@@ -53,10 +53,6 @@ class Palette(NamedTuple):
         """The words of the swatches."""
         return self.borrowed[2 * RAMP_STEPS :]
 
-    def shown_of(self, levels: LevelRange) -> Words:
-        """The words that stand for those of a level range, from the lowest level."""
-        return self.shown[levels.first : levels.last + 1]
-
     def loads(self, light: Color, object_color: Color, swatches: Bytes) -> list[tuple[int, Bytes]]:
         """The entries of the words, as runs of colors from a first entry on; `swatches` has (n, 3)."""
         colors = np.concatenate([ramp_of(light), ramp_of(object_color), swatches])

@@ -90,10 +90,11 @@ class MixingScreen(Screen):
         surface = self.session.chosen_surface
         if surface is None:
             return []
+        at_levels = self.session.studio.image.words_at_levels(surface.name)
         blend_bar = LevelBar(
             "blend bar",
             "Above the handle the object color gives way to the light color.",
-            words=self._palette.shown_of(self._levels),
+            words=self._palette.shown[at_levels],
             level=blend_level(surface.paint.blend, self._levels.levels),
             put=self._put_level,
         )
@@ -139,7 +140,8 @@ class MixingScreen(Screen):
         if down < words.shape[0] and across < words.shape[1]:
             level = int(words[down, across]) - levels.first
             if 0 <= level < levels.levels:
-                return f"{self.session.surface_name}, level {level} of {levels.levels - 1}"
+                what = "level" if self.session.studio.image.normals is None else "normal"
+                return f"{self.session.surface_name}, {what} {level} of {levels.levels - 1}"
         return f"Only {self.session.surface_name} is shown here"
 
     @property

@@ -97,7 +97,8 @@ class OverPicture(Screen):
         part = "" if seen is None else seen.part
         bands, scalar = studio.image.bands.get(name), studio.scene.scalar
         if bands is None or scalar is None:
-            return Pointed(name, part, f"level {word - first} of {levels - 1}")
+            what = "level" if studio.image.normals is None else "normal"
+            return Pointed(name, part, f"{what} {word - first} of {levels - 1}")
         values, block = studio.image.picture.scalar, studio.image.block
         value = float("nan") if values is None else float(values[line // block, element // block])
         shown = "missing" if math.isnan(value) else f"{value:.5g}"

@@ -33,6 +33,7 @@ def test_every_cell_holds_a_normal_and_there_are_at_most_as_many_as_asked_for(
     assert cells.normals.dtype == np.float32
     assert cells.normals.shape[1] <= most
     assert np.unique(cells.numbers).tolist() == list(range(cells.normals.shape[1]))
+    assert cells.normals.shape[1] <= cells.samples.shape[1] <= count
     # The normal of each cell is the mean of those in it.
     for number, normal in enumerate(cells.normals.T):
         mean = normals[:, cells.numbers == number].astype(np.float64).sum(axis=1)

@@ -10,9 +10,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import InputError, Light, Scene, Surface, View, render, scene_of
+from autocolor.arrays import Singles
 from autocolor.checks import Vector
 from autocolor.mapping.display_image import DisplayImage, display_image
-from autocolor.mapping.normals.normal_words import light_at_words, words_of_normals
+from autocolor.mapping.normals.normal_words import normal_light, words_at_levels, words_of_normals
 from autocolor.scene.curves import GAMMA, LOGARITHM
 from autocolor.scene.scene import OBJECT
 from tests.autocolor import reference
@@ -27,9 +28,8 @@ def image_of(scene: Scene, lines: int = LINES, elements: int = ELEMENTS) -> Disp
     return display_image(scene, render(scene, lines, elements))
 
 
-def world_normals(image: DisplayImage) -> list[Vector]:
-    assert image.normals is not None
-    return [tuple(each) for each in (image.normals.normals.T.astype(float) @ image.scene.view.axes).tolist()]
+def in_world(scene: Scene, normals: Singles) -> list[Vector]:
+    return [tuple(each) for each in (normals.T.astype(float) @ scene.view.axes).tolist()]
 
 
 # A slow, obvious twin of the entries: a loop over the words, in float64.
@@ -71,12 +71,12 @@ def entries(image: DisplayImage) -> dict[int, tuple[int, ...]]:
     """The entry of each word in use."""
     assert image.normals is not None
     scene, words = image.scene, image.normals.words.tolist()
-    normals = world_normals(image)
+    normals, samples = (in_world(scene, each) for each in (image.normals.normals, image.normals.samples))
     found = {}
     intensity_of = {}
-    for each in image.normals.slices:
+    for each in image.normals.sample_slices:
         surface = scene.surfaces[each.surface_number - 1]
-        intensity_of[surface.name] = [reflected(scene, normal, surface) for normal in normals[each.pixels]]
+        intensity_of[surface.name] = [reflected(scene, normal, surface) for normal in samples[each.pixels]]
     everything = [each for values in intensity_of.values() for each in values]
     held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
     whole = held.get(OBJECT, (min(everything, default=0), max(everything, default=0)))
@@ -95,8 +95,8 @@ def entries(image: DisplayImage) -> dict[int, tuple[int, ...]]:
             assume(abs(high - low - 2.0**-20 * high) > 1e-5 * high)
         floor = low / high if scene.contrast == "floor" and high > 0 else 0.0
         levels = image.ranges[surface.name].levels
-        for word, value in zip(words[each.pixels], values, strict=True):
-            level = fraction(scene, value, low, high) * (levels - 1)
+        for word, normal in zip(words[each.pixels], normals[each.pixels], strict=True):
+            level = fraction(scene, reflected(scene, normal, surface), low, high) * (levels - 1)
             found[word] = reference.entry_of(surface.paint, levels, level, floor)
     return found
 
@@ -149,7 +149,8 @@ def test_the_words_of_a_picture_without_any_surface_are_the_background() -> None
     assert image.entries.shape == (1024, 3)
     words, stand_for = words_of_normals(image.picture, image.ranges)
     assert not words.any()
-    assert light_at_words(image.scene, stand_for).relative.shape == (0,)
+    lit = normal_light(image.scene, stand_for)
+    assert lit.at_words.relative.shape == lit.at_samples.relative.shape == (0,)
 
 
 def ball_scene(exponent: float, eye_distance: float = 200.0) -> Scene:
@@ -181,3 +182,30 @@ def test_the_picture_of_a_ball_differs_little_from_the_true_one(
     found = errors(ball_scene(exponent))
     assert found.mean() < mean
     assert found.max() < most
+
+
+@given(st.lists(st.floats(0, 1, width=32), min_size=1, max_size=30), st.integers(2, 40))
+def test_each_level_is_shown_by_the_word_whose_fraction_is_nearest(
+    fractions: list[float], levels: int
+) -> None:
+    given = np.array(fractions, np.float32)
+    words = words_at_levels(5, given, levels)
+    assert words.shape == (levels,)
+    for level, word in enumerate(words.tolist()):
+        wanted = level / (levels - 1)
+        assert abs(given[word - 5] - wanted) == pytest.approx(np.abs(given - wanted).min(), abs=1e-6)
+
+
+def test_the_levels_of_a_ball_rise_from_its_darkest_to_its_brightest_color() -> None:
+    image = image_of(ball_scene(20), 240, 320)
+    colors = image.entries[image.words_at_levels("shell")].astype(int).sum(axis=1)
+    assert (np.diff(colors) >= 0).all()
+    own = image.entries[image.normals.words] if image.normals is not None else image.entries
+    assert colors[-1] == own.astype(int).sum(axis=1).max()
+
+
+def test_the_words_at_levels_are_the_levels_where_words_stand_for_them() -> None:
+    scene = ball_scene(20)
+    image = display_image(scene, render(scene, LINES, ELEMENTS))
+    first, levels = image.ranges["shell"]
+    assert image.words_at_levels("shell").tolist() == list(range(first, first + levels))

@@ -36,7 +36,8 @@ def test_all_words_differ_and_none_is_of_the_background_of_the_screens_or_shown(
     assert len(set(words.tolist())) == len(words)
     assert words.min() > BACKGROUND
     assert words.max() < SCREENS.first
-    assert not np.isin(words, palette.shown_of(dict(ranges)["body"])).any()
+    own = dict(ranges)["body"]
+    assert not np.isin(words, palette.shown[own.first : own.last + 1]).any()
 
 
 @pytest.mark.parametrize("ranges", [ALONE, LARGE, SMALL])
@@ -46,7 +47,7 @@ def test_the_surface_is_shown_by_its_own_words_or_their_neighbors_and_the_others
     palette = palette_of(ranges, "body", 200)
     levels = dict(ranges)["body"]
     own = np.arange(levels.first, levels.last + 1)
-    off = np.abs(palette.shown_of(levels).astype(int) - own)
+    off = np.abs(palette.shown[levels.first : levels.last + 1].astype(int) - own)
     assert off.max() == (0 if ranges is SMALL else 1)
     assert (np.delete(palette.shown, own) == NIGHT).all()
 
