@@ -1,9 +1,10 @@
 """The figures of the paper, each made by a script of its own: `python -m scenes.figures` makes them all.
 
-Paper: D. R. Warn, "Lighting Controls for Synthetic Images", Figures 4, 6, 7, 8, 9, 10 and 15; and two of what
-its introduction tells of: a machined part with its stress, and the curvature of a body. Each script renders
-once, then relights or recolors for every panel, and writes labeled pictures into `figures/`, or into the
-folder that it is given: `python -m scenes.figure_04 elsewhere`.
+Paper: D. R. Warn, "Lighting Controls for Synthetic Images", Figures 4, 6, 7, 8, 9, 10 and 15; two of what its
+introduction tells of: a machined part with its stress, and the curvature of a body; and what it names in
+passing: flaps that are not parallel to the axes, with soft edges. Each script renders once, then relights or
+recolors for every panel, and writes labeled pictures into `figures/`, or into the folder that it is given:
+`python -m scenes.figure_04 elsewhere`.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from ramtek_emu import GMR_9300, Ramtek9300, instructions
 from ramtek_emu.png import save_png
 
 SCENES = Path(__file__).parent
-FIGURES = ("04", "06", "07", "08", "09", "10", "15", "part", "curvature")
+FIGURES = ("04", "06", "07", "08", "09", "10", "15", "part", "curvature", "half-spaces")
 CAPTION_LINES = 26
 
 Field = npt.NDArray[np.uint8]
@@ -82,7 +83,7 @@ class Sheet:
 def main() -> None:
     """Make every figure."""
     for number in FIGURES:
-        importlib.import_module(f"scenes.figure_{number}").main()
+        importlib.import_module(f"scenes.figure_{number.replace('-', '_')}").main()
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from PIL import Image
 
 import autocolor
 from ramtek_emu import Ramtek9300
-from scenes import figure_04, figure_10, figure_15, figure_curvature, figure_part, figures
+from scenes import figure_04, figure_10, figure_15, figure_curvature, figure_half_spaces, figure_part, figures
 
 EXPECTED = {
     "04": {"figure-04.png", "figure-04-a.png", "figure-04-b.png", "figure-04-c.png"},
@@ -20,6 +20,7 @@ EXPECTED = {
     "10": {"figure-10.png", *(f"figure-10-{panel}.png" for panel in "abcdef")},
     "15": {"figure-15.png", "figure-15-a.png", "figure-15-b.png", "figure-15-c.png"},
     "part": {"figure-part.png", *(f"figure-part-{panel}.png" for panel in "abcd")},
+    "half-spaces": {"figure-half-spaces.png", *(f"figure-half-spaces-{panel}.png" for panel in "abcdef")},
     "curvature": {"figure-curvature.png", *(f"figure-curvature-{panel}.png" for panel in "abc")},
 }
 
@@ -29,7 +30,7 @@ def test_each_figure_leaves_its_labeled_pictures(
     number: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("sys.argv", ["figure", str(tmp_path / "made")])
-    importlib.import_module(f"scenes.figure_{number}").main()
+    importlib.import_module(f"scenes.figure_{number.replace('-', '_')}").main()
     made = {path.name for path in (tmp_path / "made").iterdir()}
     assert made == EXPECTED[number]
     assert {Path(line).name for line in capsys.readouterr().out.splitlines()} == made
@@ -182,3 +183,17 @@ def test_the_roof_of_the_coupe_bulges_and_only_its_body_is_colored_by_curvature(
     colors = curved.entries[curved.words[~body]].astype(int) - plain.entries[plain.words[~body]]
     # Other surfaces have fewer levels, but the same colors.
     assert np.percentile(np.abs(colors), 95) < 12
+
+
+def test_the_barn_doors_of_the_figure_leave_a_part_of_what_the_lamp_lights() -> None:
+    lamp = autocolor.Light("lamp", (3.0, -5.0, 4.0), aim=(0.3, -0.3, 0.4))
+    pyramid = autocolor.read_scene(figures.SCENES / "pyramid").replace(lights=(lamp,), ambient=0.0)
+    behind = pyramid.with_light("lamp", half_spaces=figure_half_spaces.DOORS)
+    opened = pyramid.with_light(
+        "lamp", half_spaces=[each.replace(on=False) for each in figure_half_spaces.DOORS]
+    )
+    free, doors, off = (autocolor.render(each, 120, 160).intensity for each in (pyramid, behind, opened))
+    assert off.tobytes() == free.tobytes()
+    lit = doors > 0
+    assert doors[lit].tolist() == free[lit].tolist()
+    assert 0.02 < lit.sum() / (free > 0).sum() < 0.2
