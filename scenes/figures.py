@@ -24,7 +24,7 @@ from ramtek_emu.png import save_png
 SCENES = Path(__file__).parent
 FIGURES = (
     "04", "06", "07", "08", "09", "10", "15", "part", "curvature",
-    "incidence", "half_spaces", "links", "following", "highlight", "normals",
+    "incidence", "half-spaces", "links", "following", "highlight", "normals",
 )  # fmt: skip
 CAPTION_LINES = 26
 
@@ -86,7 +86,7 @@ class Sheet:
 def main() -> None:
     """Make every figure."""
     for number in FIGURES:
-        importlib.import_module(f"scenes.figure_{number}").main()
+        importlib.import_module(f"scenes.figure_{number.replace('-', '_')}").main()
 
 
 if __name__ == "__main__":

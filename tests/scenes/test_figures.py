@@ -9,13 +9,13 @@ from PIL import Image
 
 import autocolor
 from ramtek_emu import Ramtek9300
-from ramtek_emu.instruction_set.decoder import Decoder
 from scenes import (
     figure_04,
     figure_10,
     figure_15,
     figure_curvature,
     figure_following,
+    figure_half_spaces,
     figure_highlight,
     figure_incidence,
     figure_links,
@@ -34,6 +34,7 @@ EXPECTED = {
     "15": {"figure-15.png", "figure-15-a.png", "figure-15-b.png", "figure-15-c.png"},
     "part": {"figure-part.png", *(f"figure-part-{panel}.png" for panel in "abcd")},
     "links": {"figure-links.png", *(f"figure-links-{panel}.png" for panel in "abcdef")},
+    "half-spaces": {"figure-half-spaces.png", *(f"figure-half-spaces-{panel}.png" for panel in "abcdef")},
     "curvature": {"figure-curvature.png", *(f"figure-curvature-{panel}.png" for panel in "abc")},
     "incidence": {"figure-incidence.png", *(f"figure-incidence-{panel}.png" for panel in "abcd")},
     "following": {"figure-following.png", *(f"figure-following-{panel}.png" for panel in "abcdef")},
@@ -47,7 +48,7 @@ def test_each_figure_leaves_its_labeled_pictures(
     number: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("sys.argv", ["figure", str(tmp_path / "made")])
-    importlib.import_module(f"scenes.figure_{number}").main()
+    importlib.import_module(f"scenes.figure_{number.replace('-', '_')}").main()
     made = {path.name for path in (tmp_path / "made").iterdir()}
     assert made == EXPECTED[number]
     assert {Path(line).name for line in capsys.readouterr().out.splitlines()} == made
@@ -293,3 +294,17 @@ def test_the_light_that_circles_the_car_passes_over_it() -> None:
         studio.light("circling", position=figure_normals.position(angle))
         changed.append((studio.entries != entries).any(axis=1).sum())
     assert min(changed) > 300
+
+
+def test_the_barn_doors_of_the_figure_leave_a_part_of_what_the_lamp_lights() -> None:
+    lamp = autocolor.Light("lamp", (3.0, -5.0, 4.0), aim=(0.3, -0.3, 0.4))
+    pyramid = autocolor.read_scene(figures.SCENES / "pyramid").replace(lights=(lamp,), ambient=0.0)
+    behind = pyramid.with_light("lamp", half_spaces=figure_half_spaces.DOORS)
+    opened = pyramid.with_light(
+        "lamp", half_spaces=[each.replace(on=False) for each in figure_half_spaces.DOORS]
+    )
+    free, doors, off = (autocolor.render(each, 120, 160).intensity for each in (pyramid, behind, opened))
+    assert off.tobytes() == free.tobytes()
+    lit = doors > 0
+    assert doors[lit].tolist() == free[lit].tolist()
+    assert 0.02 < lit.sum() / (free > 0).sum() < 0.2
