@@ -40,8 +40,8 @@ from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import LevelRange
 from autocolor.mapping.pacing import block_for, blocks_of
+from autocolor.mapping.scan_lines import words_by_line
 from autocolor.rendering import rendering, sees_the_same
-from autocolor.scan_lines import words_by_line
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
 from autocolor.scene.columns.column import Tier, fields_of
 from autocolor.scene.scene import AUTO, LEVELS, NORMALS, Scene, cost_of_edit

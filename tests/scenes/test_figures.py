@@ -9,6 +9,7 @@ from PIL import Image
 
 import autocolor
 from ramtek_emu import Ramtek9300
+from ramtek_emu.instruction_set.decoder import Decoder
 from scenes import (
     figure_04,
     figure_10,

@@ -13,7 +13,7 @@ from autocolor.arrays import Numbers
 from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import BACKGROUND
-from autocolor.scan_lines import words_by_line
+from autocolor.mapping.scan_lines import words_by_line
 from autocolor.visibility.projection import Projection
 from tests.autocolor.sessions import car
 from tests.autocolor.strategies import rasters, scenes, soups
