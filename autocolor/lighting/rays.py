@@ -24,6 +24,10 @@ FARTHEST: Final = 1e15
 """In units; the rays to a farther light are parallel, and float32 can hold the square of this."""
 
 
+GRAZING: Final = np.float32(5e-7)
+"""Above the rounding of a cosine; parallel rays often run along a flat surface, which they do not light."""
+
+
 class CameraLight(NamedTuple):
     """A light in camera space, ready for the visible points of one view.
 
@@ -65,6 +69,7 @@ class Rays(NamedTuple):
     position: Floats
     close: Indices
     close_rows: Singles
+    are_parallel: bool = False
 
     def cosines_with(self, vector: slice) -> Singles:
         """The cosine between each ray and the unit vector v in three of the rows, which P.v follows."""
@@ -75,6 +80,8 @@ class Rays(NamedTuple):
             products[self.close] = -self.close_rows[vector.stop]
         # Measured: a quotient takes as long as a product, and an inverse twice as long.
         products /= self.length
+        if self.are_parallel:
+            products[np.abs(products) <= GRAZING] = 0
         return products
 
 
@@ -89,7 +96,7 @@ def rays_to(light: CameraLight, rows: Singles) -> Rays:
     if light.is_at_infinity:
         length = np.full(rows.shape[1], FARTHEST, np.float32)
         cos_light = None if direction is None else np.ones_like(length)
-        return Rays(length, cos_light, rows, light.position, close, close_rows)
+        return Rays(length, cos_light, rows, light.position, close, close_rows, are_parallel=True)
     squares, ahead = _squares_and_ahead(rows, light.position, direction)
     if squares.min() <= light.close:
         close = np.flatnonzero(squares <= light.close)

@@ -11,7 +11,7 @@ from autocolor import Light, View
 from autocolor.lighting.rays import FARTHEST, camera_light, rays_to
 from autocolor.visibility.visible_points import NORMAL, REFLECTED_VIEW, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import sphere, wall
+from tests.autocolor.meshes import cube, sphere, wall
 from tests.autocolor.reference import dot, minus, times, unit
 from tests.autocolor.strategies import Vector, directions, numbers, outside_views, vectors
 
@@ -91,6 +91,16 @@ def test_the_rays_to_a_light_at_infinity_are_against_its_axis_wherever_it_is(
     reflected = points.rows[REFLECTED_VIEW].T.astype(np.float64) @ view.axes
     assert rays.cosines_with(REFLECTED_VIEW) == pytest.approx(reflected @ toward, abs=1e-6)
     assert rays_to(camera_light(light, points, directed=False), points.rows).cos_light is None
+
+
+@given(outside_views(), st.sampled_from([(0, 0, -1), (0, 0, 1), (1, 0, 0), (0, 1, -1), (1, 0, 1)]))
+def test_parallel_rays_do_not_light_the_faces_that_they_run_along(view: View, direction: Vector) -> None:
+    points = visible_surfaces(cube(), view, (1,), 9, 12)
+    light = Light("light", (3, -3, 3), direction=direction, at_infinity=True)
+    cosines = rays_to(camera_light(light, points, directed=False), points.rows).cosines_with(NORMAL)
+    expected = np.round(points.world_normals) @ -np.array(unit(direction))
+    assert cosines == pytest.approx(expected, abs=1e-6)
+    assert (np.sign(cosines) == np.sign(expected)).all()
 
 
 def test_a_light_has_a_direction_only_where_one_is_asked_for() -> None:
