@@ -300,3 +300,14 @@ def test_what_is_left_out_of_materials_is_told_and_counts_under_strict(folder: P
     ran = run("render", "car.obj", "--strict")
     assert (ran.code, ran.out) == (1, "")
     assert ran.err == "autocolor: car.mtl: left out the textures of 1 material\nwrote car.png\n"
+
+
+def test_words_that_stand_for_normals_are_asked_for_by_an_option_or_a_setting(folder: Path, run: Run) -> None:
+    assert run("render", "scene", "--normals", "-o", "one.png").code == 0
+    assert run("render", "scene", "--set", "words=normals", "-o", "two.png").code == 0
+    assert run("render", "scene", "-o", "levels.png").code == 0
+    assert (folder / "one.png").read_bytes() == (folder / "two.png").read_bytes()
+    assert (pixels(folder / "one.png") != pixels(folder / "levels.png")).any()
+    refused = run("render", "scene", "--set", "scalar.name=z", "--set", "words=normals", "-o", "three.png")
+    assert refused.code == 2
+    assert "words must be 'levels' where a scalar colors surfaces, not 'normals'" in refused.err
