@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import Light, read_rig
-from autocolor.scene.columns.column import fields_of
+from autocolor.scene.columns.column import keys_of
 from autocolor.scene.lights.links import Links
 from autocolor.screens.lights.light_parameters import AIM, DIRECTION, POINT
 from autocolor.widgets.bars import Bar
@@ -64,10 +64,14 @@ def test_a_drag_along_a_number_sets_it_alone_and_is_one_step(hand: Hand, label: 
 
 
 def test_every_parameter_of_a_light_has_a_row(hand: Hand) -> None:
+    session = hand.viewer.session
+    session.change_light("key", half_spaces={"left": {"point": (0, 0, 0), "direction": (0, 0, 1)}})
     labels = [row.label for row in hand.viewer.board.screen.rows()]
-    for name in fields_of(Light):
-        if name != "direction":
-            assert any(label.startswith(name.replace("_", " ")) for label in labels), name
+    # Long words are shortened.
+    names = {key.replace("_", " ").replace("surfaces", "surfac") for key in keys_of(Light)} - {"direction"}
+    for name in names:
+        assert any(label.replace("surfaces", "surfac").startswith(name) for label in labels), name
+    assert {"left", "  edge width"} <= set(labels)
     hand.pick("kind")
     labels = [row.label for row in hand.viewer.board.screen.rows()]
     assert {"direction x", "direction y", "direction z"} <= set(labels)
