@@ -36,9 +36,10 @@ def linked(draw: st.DrawFn, scene: Scene) -> Scene:
         fields: dict[str, Any] = {"half_spaces": draw(named), "links": Links(**chosen)}
         has_axis = light.axis is not None
         if draw(st.booleans()):
-            fields |= {"falloff": draw(st.sampled_from(FALLOFFS)), "reach": draw(numbers(0.5, 9))}
+            falloff, reach = draw(st.sampled_from(FALLOFFS)), draw(numbers(0.5, 9))
+            fields |= {"falloff": falloff, "reach": reach, "at_infinity": False}
         elif has_axis:
-            fields["at_infinity"] = draw(st.booleans())
+            fields |= {"falloff": "none", "at_infinity": draw(st.booleans())}
         if light.cone_angle is not None:
             fields["inner_angle"] = draw(st.none() | numbers(0, light.cone_angle))
         if has_axis and draw(st.booleans()):
