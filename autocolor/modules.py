@@ -1,4 +1,8 @@
-"""Importing all modules of a package, for those that put what they define into a list of their package."""
+"""Importing all modules of a package, for those that put what they define into a list of their package.
+
+They are found in folders and in zip archives. A tool that makes one program of all must be told to take these
+packages whole, as no import names their modules.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Lights that follow the eye, a light at infinity, and one that falls with the distance.
 
-Paper: Figure 7 has one light at the eye; here it stays there in another view. Departs: the other two panels
-of each row show what the paper's lights do not do.
+Paper: Figure 7 has one light at the eye; here it stays there in another view. Departs: the other two rows of
+panels show what the paper's lights do not do.
 """
 
 from __future__ import annotations

@@ -62,7 +62,6 @@ def main() -> None:
     sheet.add(display.field(), "A. Words Stand for Levels", "a")
     studio.normals()
     sheet.add(display.field(), "B. Words Stand for Normals", "b")
-    words_written = display.frame_buffer.written
     show_normals(studio, display)
     sheet.add(display.field(), "C. The Normals", "c")
     studio.send_everything()

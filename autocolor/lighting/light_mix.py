@@ -38,7 +38,7 @@ def light_mix(
     surfaces: Sequence[Surface],
     lights: Sequence[Light],
     ambient: float,
-    parts: Sequence[Part] = (),
+    parts: Sequence[Part],
 ) -> LightMix:
     """The mix of the lights that shine; `models` has the reflection model of each visible surface number.
 

@@ -23,7 +23,6 @@ LEAST_SQUARE: Final = 1e-37
 FARTHEST: Final = 1e15
 """In units; the rays to a farther light are parallel, and float32 can hold the square of this."""
 
-
 GRAZING: Final = np.float32(5e-7)
 """Above the rounding of a cosine; parallel rays often run along a flat surface, which they do not light."""
 

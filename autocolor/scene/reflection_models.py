@@ -90,10 +90,9 @@ def registered(name: str) -> Callable[[Model], Model]:
     return register
 
 
-@registered("phong")
 @dataclass(frozen=True, repr=False)
-class Phong(ReflectionModel):
-    """cos^N(E). Paper: Figure 2."""
+class _PowerOfCosine(ReflectionModel):
+    """What the models have in common that raise a cosine to N: S may grow with the angle of incidence."""
 
     exponent: Annotated[
         float,
@@ -109,6 +108,12 @@ class Phong(ReflectionModel):
     def largest(self) -> float:
         """That of the growth."""
         return self.growth.largest
+
+
+@registered("phong")
+@dataclass(frozen=True, repr=False)
+class Phong(_PowerOfCosine):
+    """cos^N(E). Paper: Figure 2."""
 
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
         """cos^N(E), times the growth of S; a negative cosine counts as 0."""
@@ -122,23 +127,8 @@ class Phong(ReflectionModel):
 
 @registered("blinn")
 @dataclass(frozen=True, repr=False)
-class BlinnPhong(ReflectionModel):
+class BlinnPhong(_PowerOfCosine):
     """cos^N of the angle between normal and half vector. Departs: J. Blinn, SIGGRAPH 1977, not Figure 2."""
-
-    exponent: Annotated[
-        float,
-        Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.", bar=Bar(1, 200, 1)),
-    ] = 20.0
-
-    growth: Annotated[
-        SpecularGrowth,
-        Column(Nested(SpecularGrowth, inline=True), Tier.LIGHT, "How S grows with the angle of incidence."),
-    ] = CONSTANT
-
-    @property
-    def largest(self) -> float:
-        """That of the growth."""
-        return self.growth.largest
 
     def specular(self, cosines: Cosines, out: Singles) -> Singles:
         """(N.H)^N, times the growth of S; a negative cosine counts as 0."""

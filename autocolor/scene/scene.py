@@ -231,8 +231,12 @@ class Scene(Row):
     def with_light_in_world(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
         """The scene with some fields of one light changed; places and directions are in object coordinates.
 
-        They are turned to those of what the light follows, if anything. Raises UsageError or InputError.
+        They are turned to those of what the light follows, if anything; one that is to follow something else
+        stays where it is if nothing else is told. Raises UsageError or InputError.
         """
+        if "follows" in changes:
+            followed = self.with_light_following(name, changes.pop("follows"))
+            return followed.with_light_in_world(name, **changes)
         return self.with_light(name, **changes_in_frame(changes, self._frame_of(name)))
 
     def with_light_following(self, name: str, follows: str | None) -> Scene:
@@ -331,10 +335,10 @@ class Scene(Row):
         """The scene with a mirrored copy of one light after the others; the light itself stays.
 
         It is mirrored in the plane where the coordinate of the axis, "x", "y" or "z", is `about`, by default
-        in the middle of the object: position, aim or direction, and the flap of that axis. One that follows
-        something is mirrored where it is now, and its copy follows, too. Its name is like "key mirrored"
-        unless one is given. Raises UsageError for an unknown light or axis, InputError if the
-        new name is taken.
+        in the middle of the object: position, aim or direction, half-spaces, and the flap of that axis. One
+        that follows something is mirrored where it is now, and its copy follows, too. Its name is like "key
+        mirrored" unless one is given. Raises UsageError for an unknown light or axis, InputError if the new
+        name is taken.
         """
         light, number = self.light_in_world(name), axis_number(axis)
         if about is None:

@@ -81,12 +81,16 @@ class LightControl(ABC):
 Control = TypeVar("Control", bound=type[LightControl])
 
 CONTROLS: Final[list[type[LightControl]]] = []
-"""Every kind of control, in the order of the names of their modules."""
+"""Every kind of control, in the order of the names of their modules.
+
+So factors are multiplied, and rounded, in one order, whichever of the modules is imported first.
+"""
 
 
 def registered(control: Control) -> Control:
     """Add a class to `CONTROLS`."""
     CONTROLS.append(control)
+    CONTROLS.sort(key=lambda each: each.__module__)
     return control
 
 

@@ -10,7 +10,6 @@ surfaces, reflection models, the ambient light.
 
 from __future__ import annotations
 
-import math
 from typing import Final
 
 import numpy as np
@@ -21,6 +20,7 @@ from autocolor.lighting.illumination import illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.scene.columns.rows import with_values
 from autocolor.scene.lights.light import Light
+from autocolor.scene.lights.vectors import unit_vector
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_parts import VisibleParts
 from autocolor.visibility.visible_points import (
@@ -88,14 +88,8 @@ def direction(start: Vector, end: Vector) -> Vector:
     >>> direction((1, 1, 1), (1, 1, 3))
     (0.0, 0.0, 1.0)
     """
-    offset = [b - a for a, b in zip(start, end, strict=True)]
-    largest = max(abs(each) for each in offset)
-    if largest == 0:
-        return ORIGIN
-    # Squares of very large or small components over- or underflow.
-    x, y, z = (each / largest for each in offset)
-    length = math.hypot(x, y, z)
-    return x / length, y / length, z / length
+    x, y, z = (b - a for a, b in zip(start, end, strict=True))
+    return unit_vector((x, y, z)) if x or y or z else ORIGIN
 
 
 def _middle(scene: Scene) -> Vector:

@@ -13,6 +13,7 @@ Flaps stay in object coordinates. Departs: the paper's lights are all fixed to t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Container, Iterator, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
@@ -20,14 +21,20 @@ import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.scene.columns.problems import Problem
+from autocolor.scene.columns.problems import REFUSED, Problem
 from autocolor.scene.columns.rows import with_values
+from autocolor.scene.columns.value_kinds import VectorKind
 from autocolor.scene.lights.light import EYE, Light
 from autocolor.scene.view import View
 
 DOWN_TO_UP: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """From the axes of camera space, right, down and forward, to right, forward and up."""
 
+NEAREST_AIM: Final = 1e-9
+"""Assumed: of the largest coordinate; an aim nearer than that has too few digits to tell a direction."""
+
+LEAST_COORDINATE: Final = 1e-30
+"""Coordinates below this count as large as this, so that a fraction of them is not 0."""
 
 MOST_TOLD: Final = 8
 """Assumed: names of a circle that a message has room for."""
@@ -73,7 +80,8 @@ def light_frame(light: Light) -> Frame:
     axis = light.axis
     if axis is None:
         return Frame(np.array(light.position), np.eye(3))
-    return eye_frame(View(light.position, direction=axis))
+    # A light that follows another may be farther away than an eye may.
+    return Frame(np.array(light.position), eye_frame(View((0.0, 0.0, 0.0), direction=axis)).axes)
 
 
 def frame_of(light: Light, world: Mapping[str, Light], view: View) -> Frame | None:
@@ -94,15 +102,29 @@ def in_world(light: Light, frame: Frame | None) -> Light:
     """The light of a frame in world coordinates, where it follows nothing."""
     if frame is None:
         return light
+    position = frame.point_to_world(light.position)
     return with_values(
         light,
         {
-            "position": frame.point_to_world(light.position),
-            "aim": None if light.aim is None else frame.point_to_world(light.aim),
+            "position": position,
+            "aim": None if light.aim is None else _aim_in_world(light, light.aim, position, frame),
             "direction": None if light.direction is None else frame.direction_to_world(light.direction),
             "follows": None,
         },
     )
+
+
+def _aim_in_world(light: Light, aim: Vector, position: Vector, frame: Frame) -> Vector:
+    """The aim of a light of a frame in world coordinates, in which the light is at a position.
+
+    One that rounding moves onto the position, or close to it, is farther ahead.
+    """
+    there = frame.point_to_world(aim)
+    nearest = NEAREST_AIM * max(*map(abs, position), LEAST_COORDINATE)
+    if math.dist(there, position) >= nearest or light.axis is None:
+        return there
+    x, y, z = (a + nearest * b for a, b in zip(position, frame.direction_to_world(light.axis), strict=True))
+    return x, y, z
 
 
 def in_frame(light: Light, frame: Frame | None, follows: str | None) -> Light:
@@ -130,14 +152,21 @@ def lights_in_world(lights: tuple[Light, ...], view: View) -> tuple[Light, ...]:
 
 
 def changes_in_frame(changes: Mapping[str, Any], frame: Frame | None) -> dict[str, Any]:
-    """Changes of a light whose places and directions are in world coordinates, as changes in a frame."""
+    """Changes of a light whose places and directions are in world coordinates, as changes in a frame.
+
+    What is no vector stays, to be refused by the row.
+    """
     turned = dict(changes)
     if frame is not None:
-        for name in ("position", "aim"):
-            if turned.get(name) is not None:
-                turned[name] = frame.point_from_world(turned[name])
-        if turned.get("direction") is not None:
-            turned["direction"] = frame.direction_from_world(turned["direction"])
+        turns = {
+            "position": frame.point_from_world,
+            "aim": frame.point_from_world,
+            "direction": frame.direction_from_world,
+        }
+        for name in turns.keys() & turned.keys():
+            vector: Any = VectorKind().held(turned[name], (name,), [])
+            if vector is not REFUSED:
+                turned[name] = turns[name](vector)
     return turned
 
 

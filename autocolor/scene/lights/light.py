@@ -79,7 +79,7 @@ class Light(Row):
         Column(
             Number(at_least=0),
             Tier.LIGHT,
-            "C: the exponent of the cosine falloff around the direction.",
+            "C: the exponent of the cosine of the angle from the direction.",
             bar=Bar(0, 100, 1),
         ),
     ] = 0.0

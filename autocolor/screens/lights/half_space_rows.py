@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import partial
 
-from autocolor.scene.columns.bars import bar_within
 from autocolor.scene.columns.column import fields_of
 from autocolor.scene.lights.carried import set_down, taken_up
 from autocolor.scene.lights.half_spaces import HalfSpace
@@ -48,7 +46,7 @@ def half_space_rows(session: Session, light: Light, picking: PlanePicking) -> li
 def _rows_of(session: Session, light: Light, half_space: HalfSpace) -> list[Widget]:
     name = half_space.name
     helps = {key: field.column.help for key, field in fields_of(HalfSpace).items()}
-    usual = bar_within(0, math.dist(session.world.low, session.world.high) or 1.0)
+    usual = session.world.range_of_lengths(is_zero_left_out=False)
 
     def put(**changes: object) -> None:
         session.change_light(light.name, half_spaces={name: changes})  # type: ignore[dict-item]

@@ -129,7 +129,7 @@ def _follows_row(session: Session, light: Light) -> Choice:
 def _put_with_reach(session: Session, light: Light, changes: Mapping[str, Any]) -> None:
     """Change fields of a light; one that is to fall with the distance gets a reach, the object's size."""
     if changes.get("falloff", "none") != "none" and light.reach is None:
-        changes = {**changes, "reach": math.dist(session.world.low, session.world.high) or 1.0}
+        changes = {**changes, "reach": session.world.size}
     put_light(session, light.name, changes)
 
 

@@ -26,7 +26,7 @@ both = st.tuples(surfaces("one"), surfaces("other"))
 def test_the_weights_are_intensity_times_d_and_s_in_proportion_to_the_largest(
     both: tuple[Surface, Surface], lights: tuple[Light, ...], ambient: float
 ) -> None:
-    mix = light_mix(PHONG, both, lights, ambient)
+    mix = light_mix(PHONG, both, lights, ambient, ())
     assert list(mix.lights) == [light.name for light in lights if light.on and light.intensity > 0]
     every = [ambient / mix.scale]
     for light in lights:
@@ -44,13 +44,16 @@ def test_lights_and_ambient_2_to_the_k_times_as_strong_have_the_same_weights(
     both: tuple[Surface, Surface], lights: tuple[Light, ...], ambient: float, k: int
 ) -> None:
     stronger = [light.replace(intensity=light.intensity * 2.0**k) for light in lights]
-    one, other = light_mix(PHONG, both, lights, ambient), light_mix(PHONG, both, stronger, ambient * 2.0**k)
+    one, other = (
+        light_mix(PHONG, both, lights, ambient, ()),
+        light_mix(PHONG, both, stronger, ambient * 2.0**k, ()),
+    )
     assert (one.ambient, one.lights) == (other.ambient, other.lights)
 
 
 def test_only_visible_surfaces_have_weights() -> None:
     both = (Surface("one"), Surface("other"))
-    mix = light_mix({2: Phong()}, both, [Light("key", (0, 0, 0))], 0.0)
+    mix = light_mix({2: Phong()}, both, [Light("key", (0, 0, 0))], 0.0, ())
     assert list(mix.lights["key"]) == [2]
 
 
@@ -84,15 +87,15 @@ def test_a_light_of_any_intensity_is_not_refused_for_surfaces_that_it_does_not_r
 
 
 def test_nothing_at_all_has_a_scale_of_1() -> None:
-    assert light_mix({}, (), (), 0.0) == (1.0, np.float32(0), {})
+    assert light_mix({}, (), (), 0.0, ()) == (1.0, np.float32(0), {})
 
 
 def test_what_a_model_may_add_counts_against_the_range_of_float32() -> None:
     both = (Surface("one", Reflectance(0.0, 1.0, 20.0)), Surface("other"))
     lights = [Light("key", (0, 0, 0), 1e37)]
-    light_mix({1: Phong()}, both, lights, 0.0)
+    light_mix({1: Phong()}, both, lights, 0.0, ())
     with pytest.raises(InputError) as refused:
-        light_mix({1: CookTorrance(0.3, 0.05)}, both, lights, 0.0)
+        light_mix({1: CookTorrance(0.3, 0.05)}, both, lights, 0.0, ())
     assert str(refused.value) == (
         "surface 'one' under light 'key': intensities must stay below 3.4e+38, not reach 9.81012e+38; lower"
         " the light's intensity or the surface's diffuse and specular"

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from autocolor import Mesh, Scene, UsageError, render, scan_lines, scene_of
+from autocolor import Mesh, Scene, UsageError, render, scene_of
 from autocolor.arrays import Numbers
+from autocolor.mapping import scan_lines
 from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.exposure import held_exposure
 from autocolor.mapping.level_ranges import BACKGROUND

@@ -41,6 +41,18 @@ def test_a_light_has_the_controls_that_its_fields_ask_for(light: Light) -> None:
     assert (Concentration in used) == (light.concentration > 0)
 
 
+def test_controls_are_in_the_order_of_their_modules_whichever_is_imported_first(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert controls_of(Light("light", (0, -1, 0)), wall_points()) == ()
+    present = [*CONTROLS]
+    monkeypatch.setattr(light_controls, "CONTROLS", [])
+    for control in reversed(present):
+        light_controls.registered(control)
+    assert present == light_controls.CONTROLS
+    assert [each.__module__ for each in present] == sorted(each.__module__ for each in present)
+
+
 def test_a_control_is_added_by_one_registered_class(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(light_controls, "CONTROLS", [*CONTROLS])
 

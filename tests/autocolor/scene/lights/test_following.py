@@ -167,6 +167,48 @@ def test_a_light_is_put_where_it_is_wanted_in_the_world_whatever_it_follows(
     assert (turned.aim, turned.intensity) == (None, 2.0)
 
 
+def test_a_light_is_put_in_the_world_and_follows_something_else_at_once() -> None:
+    scene = followed_car().with_view(angle=20)
+    placed = scene.with_light_in_world("fill", follows="eye", position=(1, 2, 3))
+    assert placed.light("fill").follows == "eye"
+    assert placed.light_in_world("fill").position == pytest.approx((1, 2, 3))
+    freed = scene.with_light_in_world("fill", follows=None, intensity=2)
+    assert freed.light("fill").position == pytest.approx(scene.light_in_world("fill").position)
+    assert (freed.light("fill").follows, freed.light("fill").intensity) == (None, 2.0)
+
+
+@pytest.mark.parametrize("position", ["abc", (1, 2), ("x", 1, 2), None, (math.nan, 0, 0)])
+def test_what_is_no_place_is_refused_of_a_light_that_follows_as_of_any_other(position: Any) -> None:
+    told = []
+    for follows in (None, "eye"):
+        scene = car().with_light("fill", follows=follows)
+        with pytest.raises(InputError) as refused:
+            scene.with_light_in_world("fill", position=position)
+        told.append(str(refused.value))
+    assert told[0] == told[1]
+
+
+@pytest.mark.parametrize("follows", ["eye", "key"])
+@pytest.mark.parametrize("distance", [1e-30, 1e-12])
+def test_an_aim_that_rounding_would_move_onto_its_light_still_tells_the_direction(
+    follows: str, distance: float
+) -> None:
+    light = Light("near", (0, 0, 0), aim=(0, distance, 0), follows=follows, concentration=5)
+    scene = wall_scene(view=VIEW, lights=[Light("key", (0, -3, 0), aim=(0.7, -2, 0.1)), light])
+    assert scene.light_in_world("near").axis == pytest.approx((0, 1, 0), abs=1e-6)
+    followed = scene.with_new_light("last", position=(0, 0, 0), follows="near").light_in_world("last")
+    assert followed.position == pytest.approx(scene.light_in_world("near").position, abs=1e-8)
+    assert render(scene, 8, 8).intensity.max() > 0
+
+
+def test_a_light_farther_than_any_place_in_a_file_still_carries_its_half_spaces() -> None:
+    far = Light("far", (9e35, 0, 0), follows="key", aim=(0, 0, 0)).replace(
+        half_spaces={"door": {"point": (0, 0, 0), "direction": (0, 1, 0), "carried": True}}
+    )
+    scene = wall_scene(view=VIEW, lights=[Light("key", (0, -3, 0), aim=(9e35, 0, 0)), far])
+    assert render(scene, 8, 8).lines == 8
+
+
 def test_a_light_named_eye_exists_but_to_follow_eye_means_the_eye() -> None:
     scene = wall_scene(
         lights=[Light("eye", (5, 5, 5), aim=(0, 0, 0), follows="eye"), Light("b", (0, 0, 0), follows="eye")]
@@ -210,7 +252,7 @@ CIRCLE = "light 'a': follows must not lead back to it, as 'a' to 'b' to 'a' does
             "light '0': follows must not lead back to it, as '0' to '1' to '2' to '3' to '4' to '5' to ... to"
             " '0' does; change one of them",
         ),
-        ({"a": "bb"}, "light 'a': follows 'bb' is not in the light table; known are 'lamp', 'a'"),
+        ({"a": "bb"}, "light 'a': follows 'bb' is not in the light table; known are 'eye', 'lamp', 'a'"),
     ],
 )
 def test_circles_and_lights_without_an_aim_are_refused(rows: dict[str, str], sentence: str) -> None:
@@ -227,7 +269,7 @@ def test_a_followed_light_keeps_its_aim_its_name_and_its_place_in_the_scene() ->
         "light 'fill': follows must be a light with an aim, not 'key' without one; give it an aim"
     )
     assert refused(lambda: scene.with_light("key", name="main")) == (
-        "light 'fill': follows 'key' is not in the light table; known are 'main', 'fill', 'lamp'"
+        "light 'fill': follows 'key' is not in the light table; did you mean 'eye'?"
     )
     assert refused(lambda: scene.without_light("key")) == (
         "light 'key' must stay while 'fill' follows it; let that follow something else"

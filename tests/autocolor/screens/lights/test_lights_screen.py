@@ -71,7 +71,7 @@ def test_every_parameter_of_a_light_has_a_row(hand: Hand) -> None:
     names = {key.replace("_", " ").replace("surfaces", "surfac") for key in keys_of(Light)} - {"direction"}
     for name in names:
         assert any(label.replace("surfaces", "surfac").startswith(name) for label in labels), name
-    assert {"left", "  edge width"} <= set(labels)
+    assert {"left", "left width"} <= set(labels)
     hand.pick("kind")
     labels = [row.label for row in hand.viewer.board.screen.rows()]
     assert {"direction x", "direction y", "direction z"} <= set(labels)
