@@ -1,7 +1,7 @@
 """S that grows with the angle of incidence; the paper says that it should, and has no figure of it.
 
 Paper: "The Lighting Model". The lamp is at the eye, where nothing changes, and then low behind the coupe,
-from where its light glances off hood, roof and floor; last it is behind the pyramid, seen from near its plane.
+from where its light glances off hood, roof and floor; at last behind the pyramid, seen from near its plane.
 """
 
 from __future__ import annotations
