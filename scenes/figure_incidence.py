@@ -1,7 +1,7 @@
 """S that grows with the angle of incidence; the paper says that it should, and has no figure of it.
 
 Paper: "The Lighting Model". The lamp is at the eye, where nothing changes, and then low behind the coupe,
-from where its light glances off hood, roof and floor.
+from where its light glances off hood, roof and floor; at last behind the pyramid, seen from near its plane.
 """
 
 from __future__ import annotations
@@ -35,8 +35,17 @@ def lit_coupe() -> autocolor.Scene:
     return coupe
 
 
+def lit_pyramid() -> autocolor.Scene:
+    """The pyramid from a low eye, with a lamp behind it and a dim one beside the eye, both panels alike."""
+    pyramid = read_scene("pyramid")
+    lamps = [autocolor.Light("lamp", (0.6, 5.0, 1.3)), autocolor.Light("dim", (9.0, -3.0, 3.0), 0.4)]
+    pyramid = pyramid.replace(lights=lamps, view=pyramid.view.replace(eye=(3.6, -8.5, 2.4)))
+    pyramid = pyramid.replace(scaling="object", exposure={"object": (0.0, 0.8)})
+    return pyramid.with_surface("plane", diffuse=0.4, specular=0.06, blend=0.5)
+
+
 def main() -> None:
-    """Render once for each row of panels; in a row, three surfaces are computed again."""
+    """Render once for each row of panels; in a row, the surfaces that change are computed again."""
     studio, display = open_studio(lit_coupe())
     sheet = Sheet("incidence")
     for where, position, panels in (("at the Eye", studio.scene.view.eye, "ab"), ("Behind", BEHIND, "cd")):
@@ -45,6 +54,10 @@ def main() -> None:
             for name in SURFACES:
                 studio.surface(name, refractive_index=index)
             sheet.add(display.field(), f"{panel.upper()}. Lamp {where}, S {material}", panel)
+    studio, display = open_studio(lit_pyramid())
+    for panel, index, material in (("e", None, "Constant"), ("f", LACQUER, "of Lacquer")):
+        studio.surface("plane", refractive_index=index)
+        sheet.add(display.field(), f"{panel.upper()}. Lamp behind the Pyramid, S {material}", panel)
     sheet.write(across=2)
 
 

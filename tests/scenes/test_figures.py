@@ -37,7 +37,7 @@ EXPECTED = {
     "links": {"figure-links.png", *(f"figure-links-{panel}.png" for panel in "abcdef")},
     "half-spaces": {"figure-half-spaces.png", *(f"figure-half-spaces-{panel}.png" for panel in "abcdef")},
     "curvature": {"figure-curvature.png", *(f"figure-curvature-{panel}.png" for panel in "abc")},
-    "incidence": {"figure-incidence.png", *(f"figure-incidence-{panel}.png" for panel in "abcd")},
+    "incidence": {"figure-incidence.png", *(f"figure-incidence-{panel}.png" for panel in "abcdef")},
     "following": {"figure-following.png", *(f"figure-following-{panel}.png" for panel in "abcdef")},
     "highlight": {"figure-highlight.png", *(f"figure-highlight-{panel}.png" for panel in "abcdef")},
     "normals": {"figure-normals.png", *(f"figure-normals-{panel}.png" for panel in "abcdef")},
@@ -245,6 +245,16 @@ def test_the_lacquer_of_the_coupe_and_the_wet_floor_shine_under_the_lamp_behind_
     assert all(0.999 < times["eye", name] < 1.02 for name in figure_incidence.SURFACES)
     assert times["behind", "body"] > 3
     assert times["behind", "floor"] > 1.5
+
+
+def test_a_lacquered_plane_shines_more_where_the_lamp_behind_the_pyramid_grazes_it() -> None:
+    constant = figure_incidence.lit_pyramid()
+    grown = constant.with_surface("plane", refractive_index=figure_incidence.LACQUER)
+    pictures = [autocolor.render(each, 240, 320) for each in (constant, grown)]
+    is_plane = pictures[0].surface_number == pictures[0].surfaces.index("plane") + 1
+    times = pictures[1].intensity[is_plane] / pictures[0].intensity[is_plane]
+    assert times.max() > 2
+    assert times.min() > 0.999
 
 
 @pytest.mark.parametrize("caption", figure_highlight.ON_THE_COUPE)

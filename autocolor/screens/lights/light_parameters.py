@@ -27,6 +27,14 @@ WORLD: Final = "world"
 OF_AN_AXIS: Final = ("direction", "aim", "concentration", "cone_angle", "inner_angle", "at_infinity")
 """The columns that only a light with an axis has."""
 
+EXCLUDING: Final = (
+    ("only_surfaces", "except_surfaces"),
+    ("except_surfaces", "only_surfaces"),
+    ("only_parts", "except_parts"),
+    ("except_parts", "only_parts"),
+)
+"""The columns of which a light has one or the other."""
+
 DOWN: Final = (0.0, 0.0, -1.0)
 """The direction of a light that had none."""
 
@@ -65,8 +73,12 @@ def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()
 def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
     """Change fields of a light; one that gets another name stays chosen.
 
-    A cone that becomes narrower than its inner angle, or absent, takes that along.
+    A cone that becomes narrower than its inner angle, or absent, takes that along. Names that it shines on
+    only take the place of those that it excepts, and vice versa.
     """
+    for chosen, other in EXCLUDING:
+        if changes.get(chosen) is not None:
+            changes = {other: None, **changes}
     inner = session.scene.light(name).inner_angle
     if "cone_angle" in changes and inner is not None:
         outer = changes["cone_angle"]

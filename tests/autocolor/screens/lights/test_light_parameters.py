@@ -171,3 +171,13 @@ def test_choosing_a_falloff_gives_a_light_a_reach_and_keeps_one_that_it_has() ->
     row_of(session, "falloff").choose("linear")
     assert session.scene.light("key").reach == 7
     assert session.scene.light("key").falloff == "linear"
+
+
+def test_names_that_a_light_shines_on_only_take_the_place_of_those_that_it_excepts() -> None:
+    session = session_of(AIMED)
+    for what in ("surfaces", "parts"):
+        for chosen, other in ((f"only_{what}", f"except_{what}"), (f"except_{what}", f"only_{what}")):
+            put_light(session, "key", {other: ()})
+            put_light(session, "key", {chosen: ()})
+            links = vars(session.scene.light("key").links)
+            assert (links[chosen], links[other]) == ((), None)
