@@ -522,7 +522,9 @@ def test_no_ray_is_computed_where_flaps_leave_everything_dark(monkeypatch: pytes
 def test_a_light_at_infinity_gives_what_it_gives_a_million_times_as_far_away(
     light: Light, view: View
 ) -> None:
-    light = light.replace(falloff="none", concentration=0, cone_angle=None, at_infinity=True)
+    # What narrows a light is without effect at infinity, and what it carries would be moved.
+    light = light.replace(concentration=0, cone_angle=None, inner_angle=None, half_spaces=())
+    light = light.replace(falloff="none", at_infinity=True)
     assert light.axis is not None
     x, y, z = times(-1e7, light.axis)
     far = light.replace(position=(x, y, z), at_infinity=False)
