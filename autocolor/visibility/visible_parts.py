@@ -24,6 +24,10 @@ class VisibleParts(Immutable):
     span_polygons: Indices
     span_lengths: Indices
 
+    def __post_init__(self) -> None:
+        for array in (self.part_of_polygon, self.span_polygons, self.span_lengths):
+            read_only(array)
+
     @classmethod
     def of_points(cls, names: tuple[str, ...], numbers: PartNumbers) -> VisibleParts:
         """The parts of points whose part numbers, (n,), are known, each of them from 1 on."""

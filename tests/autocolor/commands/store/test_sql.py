@@ -127,7 +127,7 @@ def test_half_spaces_and_links_are_changed_as_json(tmp_path: Path, folder: Path)
         ),
         (
             "follows = 'key'",
-            "light 'key': follows must not lead back to itself, from 'key' to 'key'; change one of them",
+            "light 'key': follows must not lead back to it, as 'key' to 'key' does; change one of them",
         ),
         (
             "except_parts = '[\"hod\"]'",
