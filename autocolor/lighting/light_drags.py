@@ -13,11 +13,12 @@ import numpy as np
 
 from autocolor.checks import either, nearest, shown
 from autocolor.errors import UsageError
+from autocolor.lighting.far_away import seen_from_afar
 from autocolor.lighting.light_controls.flap_sides import Axis, FlapEnd, flaps_of
 from autocolor.scene.lights.flaps import Flap
 from autocolor.scene.lights.following import light_frame
 from autocolor.scene.lights.vectors import unit_vector
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import NORMALS, Scene
 from autocolor.visibility.sight import Seen
 
 LEAST_CONE: Final = 0.03
@@ -31,7 +32,9 @@ def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
     times R. If it has an aim, that becomes P; if it has a direction, that leads to P; a point source stays
     one. Assumed: of the places that give this highlight, the one at the same distance changes the light at P
     least. A light at infinity moves and turns in the same way, so that it has this highlight whether it is at
-    infinity or not. One that follows something moves in its coordinates, and follows it from then on.
+    infinity or not. One that follows something moves in its coordinates, and follows it from then on. Where
+    words stand for normals, light and eye are taken as far away: then P is the middle of the object, with the
+    normal that is seen.
 
     There the half vector is the normal, so that the specular factors of Phong and of Blinn are largest at P.
     That of Cook and Torrance still grows from there toward grazing light. Measured on a sphere of 420 lines:
@@ -42,6 +45,8 @@ def highlight_placed(scene: Scene, seen: Seen | None, light: str) -> Scene:
     highlight there, and for a light at P itself.
     """
     seen = _on_surface(seen, "a highlight")
+    if scene.words == NORMALS:
+        seen = seen_from_afar(scene, seen)
     row = scene.light_in_world(light)
     point, reflected = np.array(seen.point), np.array(seen.reflected_view)
     # N.R = N.V is cos(I) of the light in its new place.

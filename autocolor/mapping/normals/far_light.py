@@ -16,11 +16,11 @@ import numpy as np
 
 from autocolor.arrays import Indices, Singles, dot
 from autocolor.checks import Vector
+from autocolor.lighting.far_away import ORIGIN, direction_to_eye, direction_to_light, middle_of
 from autocolor.lighting.illumination import illuminate
 from autocolor.lighting.picture import Picture
 from autocolor.scene.columns.rows import with_values
 from autocolor.scene.lights.light import Light
-from autocolor.scene.lights.vectors import unit_vector
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_parts import VisibleParts
 from autocolor.visibility.visible_points import (
@@ -31,7 +31,6 @@ from autocolor.visibility.visible_points import (
     VisiblePoints,
 )
 
-ORIGIN: Final = (0.0, 0.0, 0.0)
 NOTHING: Final[Indices] = np.empty(0, np.intp)
 
 
@@ -45,9 +44,9 @@ def light_at_normals(
     direction at a distance of 1: so `illuminate` computes what is reflected. A light at the middle itself
     gives nothing. Raises InputError for intensities that float32 can't hold.
     """
-    middle = _middle(scene)
+    middle = middle_of(scene)
     view = scene.view.replace(eye=ORIGIN, direction=tuple(scene.view.axes[2].tolist()))
-    to_eye = (scene.view.axes @ np.array(direction(middle, scene.view.eye))).astype(np.float32)[:, None]
+    to_eye = direction_to_eye(scene).astype(np.float32)[:, None]
     rows = np.zeros((ROW_COUNT, normals.shape[1]), np.float32)
     rows[NORMAL] = normals
     rows[REFLECTED_VIEW] = 2 * dot(normals, to_eye) * normals - to_eye
@@ -73,27 +72,6 @@ def far_light(light: Light, middle: Vector) -> Light:
 
     It has no controls; its strength and its links to surfaces stay.
     """
-    position = direction(middle, light.position)
-    if light.at_infinity and light.axis is not None:
-        x, y, z = light.axis
-        position = -x, -y, -z
     links = with_values(light.links, {"only_parts": None, "except_parts": None})
-    plain = Light(light.name, position)
+    plain = Light(light.name, direction_to_light(light, middle))
     return with_values(plain, {"intensity": light.intensity, "on": light.on, "links": links})
-
-
-def direction(start: Vector, end: Vector) -> Vector:
-    """The unit vector from one point to another; zero where they are the same.
-
-    >>> direction((1, 1, 1), (1, 1, 3))
-    (0.0, 0.0, 1.0)
-    """
-    x, y, z = (b - a for a, b in zip(start, end, strict=True))
-    return unit_vector((x, y, z)) if x or y or z else ORIGIN
-
-
-def _middle(scene: Scene) -> Vector:
-    """The middle of the object's bounds."""
-    low, high = scene.object_bounds
-    x, y, z = ((a + b) / 2 for a, b in zip(low, high, strict=True))
-    return x, y, z

@@ -8,7 +8,7 @@ import pytest
 from autocolor import Flap, Flaps, Light, Scene, Surface, View, render, scene_of
 from autocolor.checks import Vector
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.normals.far_light import direction, far_light, light_at_normals
+from autocolor.mapping.normals.far_light import far_light, light_at_normals
 from autocolor.visibility.visible_points import SurfaceSlice
 from tests.autocolor.meshes import sphere
 
@@ -93,12 +93,6 @@ def test_without_lights_there_is_the_ambient_light_alone() -> None:
 def test_the_distance_of_lights_and_eye_does_not_matter() -> None:
     near, far = ball(Light("a", (0, 0, 2)), eye=(0, -3, 0)), ball(Light("a", (0, 0, 2e20)), eye=(0, -3e20, 0))
     assert intensities(near, LEFT, (0, 0, 1)) == pytest.approx(intensities(far, LEFT, (0, 0, 1)))
-
-
-def test_the_direction_between_two_points_is_a_unit_vector_or_zero() -> None:
-    assert direction((0, 0, 0), (3e200, 0, 4e200)) == pytest.approx((0.6, 0.0, 0.8))
-    assert direction((0, 0, 0), (3e-200, 0, 4e-200)) == pytest.approx((0.6, 0.0, 0.8))
-    assert direction((1, 2, 3), (1, 2, 3)) == (0.0, 0.0, 0.0)
 
 
 def test_the_picture_of_normals_has_one_line_with_an_element_for_each_number() -> None:
