@@ -59,8 +59,8 @@ class LightChanges(TypedDict, total=False):
     aim: Sequence[float] | None
     concentration: float
     cone_angle: float | None
-    flaps: Row | FlapsChanges
     inner_angle: float | None
+    flaps: Row | FlapsChanges
     half_spaces: Mapping[str, Row | HalfSpaceChanges | None] | Sequence[Row]
     falloff: Literal["none", "linear", "quadratic"]
     reach: float | None

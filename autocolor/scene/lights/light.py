@@ -94,9 +94,6 @@ class Light(Row):
             start=30.0,
         ),
     ] = None
-    flaps: Annotated[
-        Flaps, Column(Nested(Flaps), Tier.LIGHT, "The ranges of object coordinates that are lit.")
-    ] = field(default_factory=Flaps)
     inner_angle: Annotated[
         float | None,
         Column(
@@ -107,7 +104,10 @@ class Light(Row):
             bar=Bar(0, 90, 1),
             start=0.0,
         ),
-    ] = None
+    ] = field(default=None, kw_only=True)
+    flaps: Annotated[
+        Flaps, Column(Nested(Flaps), Tier.LIGHT, "The ranges of object coordinates that are lit.")
+    ] = field(default_factory=Flaps)
     half_spaces: Annotated[
         tuple[HalfSpace, ...],
         Column(NamedRows(HalfSpace), Tier.LIGHT, "Flaps along any planes, by name."),
