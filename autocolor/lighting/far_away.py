@@ -13,7 +13,7 @@ import numpy as np
 from autocolor.arrays import Floats, Singles
 from autocolor.checks import Vector
 from autocolor.scene.lights.light import Light
-from autocolor.scene.lights.vectors import unit_vector
+from autocolor.scene.lights.vectors import middle_between, unit_vector
 from autocolor.scene.scene import Scene
 from autocolor.visibility.sight import Seen
 from autocolor.visibility.visible_points import NORMAL, VisiblePoints
@@ -23,9 +23,7 @@ ORIGIN: Final = (0.0, 0.0, 0.0)
 
 def middle_of(scene: Scene) -> Vector:
     """The middle of the object's bounds."""
-    low, high = scene.object_bounds
-    x, y, z = ((a + b) / 2 for a, b in zip(low, high, strict=True))
-    return x, y, z
+    return middle_between(*scene.object_bounds)
 
 
 def direction(start: Vector, end: Vector) -> Vector:
@@ -54,10 +52,11 @@ def direction_to_light(light: Light, middle: Vector) -> Vector:
 
 def seen_from_afar(scene: Scene, seen: Seen) -> Seen:
     """What is seen at a pixel, as if it were in the middle of the object, with the same normal."""
-    to_eye = np.array(direction(middle_of(scene), scene.view.eye))
+    middle = middle_of(scene)
+    to_eye = np.array(direction(middle, scene.view.eye))
     normal = np.array(seen.normal)
     x, y, z = (2 * (normal @ to_eye) * normal - to_eye).tolist()
-    return seen._replace(point=middle_of(scene), reflected_view=(x, y, z))
+    return seen._replace(point=middle, reflected_view=(x, y, z))
 
 
 def cosines_from_afar(scene: Scene, light: Light, points: VisiblePoints, pixels: slice) -> Singles:

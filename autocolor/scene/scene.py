@@ -411,7 +411,7 @@ class Scene(Row):
         """The names of the scalars that can color it: those of its mesh, then the computed ones."""
         return tuple(dict.fromkeys([*(scalar.name for scalar in self.mesh.scalars), *COMPUTED]))
 
-    @property
+    @cached_property
     def object_bounds(self) -> tuple[Vector, Vector]:
         """The least and the largest coordinates of the object; zeros if it has no nodes."""
         low, high = (tuple(corner.tolist()) for corner in object_bounds(self.mesh, self.parts))

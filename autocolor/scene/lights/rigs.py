@@ -22,6 +22,7 @@ from autocolor.scene.lights.flaps import Flaps
 from autocolor.scene.lights.half_spaces import HalfSpace
 from autocolor.scene.lights.light import Light
 from autocolor.scene.lights.light_copies import AXES
+from autocolor.scene.lights.vectors import middle_between
 
 
 @dataclass(frozen=True, repr=False)
@@ -59,7 +60,8 @@ class Rig(Row):
             return self.lights
         before, after = math.dist(self.minimum, self.maximum), math.dist(minimum, maximum)
         scale = after / before if before > 0 and after > 0 else 1.0
-        old, new = _middle(self.minimum, self.maximum), _middle(minimum, maximum)
+        old = middle_between(self.minimum, self.maximum)
+        new = middle_between(minimum, maximum)
         return tuple(_moved(light, scale, old, new) for light in self.lights)
 
 
@@ -99,8 +101,3 @@ def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
         half_spaces=[half_space(row) for row in light.half_spaces],
         reach=None if light.reach is None else scale * light.reach,
     )
-
-
-def _middle(minimum: Vector, maximum: Vector) -> Vector:
-    x, y, z = (low / 2 + high / 2 for low, high in zip(minimum, maximum, strict=True))
-    return x, y, z

@@ -1,4 +1,4 @@
-"""Unit vectors of directions of any length."""
+"""Unit vectors of directions of any length, and points between others."""
 
 from __future__ import annotations
 
@@ -18,3 +18,9 @@ def unit_vector(direction: Vector) -> Vector:
     scaled = tuple(component / largest for component in direction)
     length = math.hypot(*scaled)
     return (scaled[0] / length, scaled[1] / length, scaled[2] / length)
+
+
+def middle_between(one: Vector, other: Vector) -> Vector:
+    """The point halfway between two points, however large their coordinates are."""
+    x, y, z = (a / 2 + b / 2 for a, b in zip(one, other, strict=True))
+    return x, y, z
