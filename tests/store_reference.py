@@ -68,9 +68,14 @@ statement reads or computes 128 KiB, a file at most 2 GiB.
 
 A new store is written beside its place and renamed. A store that is there is changed in place by one
 transaction, so that programs that have it open notice; other tables, views, indices and triggers are
-kept, and triggers are not run. What another program has written to a `-wal` file is read with the store.
-A change that was interrupted (`-journal`) is taken back. A studio that shows a store, or a scene file,
-shows what other programs change in it as one step to undo; with unsaved edits it asks.
+kept, and triggers are not run. A studio that shows a store, or a scene file, shows what other programs
+change in it as one step to undo; with unsaved edits it asks.
+
+Reading leaves no file beside a store. What another program has written to a `-wal` file is read with the
+store while its `-shm` is there too; without it the store is refused. A `-journal` of a change that has not
+ended is never rolled back: it can name any file, and SQLite deletes that file afterwards. The store is
+refused then, for reading and for writing. If you trust both files, open the store once with
+`sqlite3 FILE .tables`, which rolls the journal back; otherwise move the journal away.
 
 A million nodes and a million quads are read in 2.1 seconds and written in 3.2; see
 `files/store/mesh_rows.py` for what was measured.

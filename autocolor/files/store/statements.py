@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Final, NamedTuple
 
 from autocolor.checks import nearest, shown
-from autocolor.errors import UsageError, WriteError
+from autocolor.errors import InputError, UsageError, WriteError
 from autocolor.files.repair.names import different
 from autocolor.files.store.connections import LONGEST_COMPUTED, LONGEST_TEXT, OF_THE_DISK, Clock, reason
 from autocolor.files.store.permissions import CHANGES, FUNCTIONS, authorizer
@@ -132,7 +132,7 @@ def allowed(connection: sqlite3.Connection, may_change: bool) -> Iterator[None]:
 def told(connection: sqlite3.Connection, clock: Clock) -> Iterator[None]:
     """Raise what SQLite says of a statement as UsageError, in a sentence that tells what to do.
 
-    Raises WriteError instead for a disk that is full or fails.
+    Raises WriteError instead for a disk that is full or fails, InputError for a journal that appeared.
     """
     try:
         yield
@@ -142,6 +142,8 @@ def told(connection: sqlite3.Connection, clock: Clock) -> Iterator[None]:
             raise KeyboardInterrupt from None
         if getattr(error, "sqlite_errorcode", 0) & 0xFF in OF_THE_DISK:
             raise WriteError(reason(error)) from None
+        if getattr(error, "sqlite_errorcode", 0) == sqlite3.SQLITE_READONLY_ROLLBACK:
+            raise InputError(reason(error)) from None
         raise UsageError(_sentence(connection, error, clock)) from None
 
 

@@ -20,9 +20,12 @@ from autocolor.files.store.connections import (
     Clock,
     closed,
     connected,
+    connected_to_change,
     in_memory,
     refusals,
     refusals_of_writing,
+    refuse_journal,
+    store_head,
 )
 from autocolor.files.store.foreign_keys import broken_references
 from autocolor.files.store.found_tables import FoundTables, found_tables
@@ -129,6 +132,11 @@ def write_store(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool =
     with timed(LOG, f"wrote {path.name}"):
         if path.exists() and _is_rewritten(path, scene):
             return
+        try:
+            # Other programs would roll a journal without a store back into the new one.
+            refuse_journal(path)
+        except InputError as error:
+            raise WriteError(str(error)) from None
         write_atomically(path, store_bytes(scene), overwrite=overwrite)
 
 
@@ -137,12 +145,11 @@ def _is_rewritten(path: Path, scene: Scene) -> bool:
     if not os.access(path, os.W_OK):
         raise OutputError(f"an output must be a file that can be written, not {path}; change its permissions")
     try:
-        connection = connected(path, may_change=True)
-    except InputError:
-        if any(os.path.exists(f"{path}{end}") for end in ("-wal", "-journal")):
-            raise WriteError(
-                f"{path}: another program is writing to the store, or was ended while it did; let it end"
-            ) from None
+        store_head(path)
+        connection = connected_to_change(path)
+    except InputError as error:
+        if any(os.path.lexists(f"{os.path.realpath(path)}{end}") for end in ("-wal", "-journal")):
+            raise WriteError(str(error)) from None
         LOG.warning("%s: written anew, as it is no store that can be read", path)
         return False
     try:
@@ -200,13 +207,14 @@ def _fill(connection: sqlite3.Connection, scene: Scene) -> None:
 
 @contextmanager
 def transaction(connection: sqlite3.Connection, name: str) -> Iterator[None]:
-    """A transaction that is taken back whole if anything in it fails.
+    """A transaction, begun unless the connection is in it, that is rolled back whole if anything in it fails.
 
     Raises WriteError if another program is writing to the store, or if writing fails.
     """
     with refusals_of_writing(name):
         try:
-            connection.execute("BEGIN IMMEDIATE")
+            if not connection.in_transaction:
+                connection.execute("BEGIN IMMEDIATE")
             yield
             connection.execute("COMMIT")
         except BaseException:

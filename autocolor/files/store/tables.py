@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
@@ -11,7 +12,7 @@ from autocolor.errors import UsageError
 from autocolor.files.registry import recognized
 from autocolor.files.scene_sources import PathLike, read_scene_with_report
 from autocolor.files.scenes.formats import scene_formats
-from autocolor.files.store.connections import closed, connected
+from autocolor.files.store.connections import closed, connected, connected_to_change, journal_mode
 from autocolor.files.store.schema import MESH_TABLES, NODES, POLYGONS, VALUES
 from autocolor.files.store.sql_columns import quoted
 from autocolor.files.store.statements import (
@@ -137,20 +138,32 @@ class Tables:
         their node or polygon. Raises UsageError for a wrong statement, InputError with every problem of the
         scene that would be, and WriteError; nothing is changed then.
         """
-        connection = self._connection
-        if self._store is not None:
-            connection = connected(self._store, may_change=True)
-        try:
-            return self._changed(connection, statement, parameters)
-        finally:
-            if connection is not self._connection:
-                closed(connection)
-
-    def _changed(self, connection: sqlite3.Connection, statement: str, parameters: Parameters) -> int:
-        tables = changes_of(connection, statement, parameters)
+        tables = changes_of(self._connection, statement, parameters)
         # To look for references to each node that goes would take the square of their number.
-        follows = not tables.keys() & {*MESH_TABLES}
-        connection.execute(f"PRAGMA foreign_keys = {'ON' if follows else 'OFF'}")
+        checks_references = not tables.keys() & {*MESH_TABLES}
+        if self._store is None:
+            self._connection.execute(f"PRAGMA foreign_keys = {'ON' if checks_references else 'OFF'}")
+            return self._changed(self._connection, tables, statement, parameters)
+        connection = connected_to_change(self._store, checks_references=checks_references)
+        try:
+            count = self._changed(connection, tables, statement, parameters)
+            is_outdated = journal_mode(connection) != journal_mode(self._connection)
+        finally:
+            closed(connection)
+        if is_outdated:
+            # The store is in WAL mode, and was opened as a file that does not change.
+            closed(self._connection)
+            self._connection = connected(self._store)
+        return count
+
+    def _changed(
+        self,
+        connection: sqlite3.Connection,
+        tables: Mapping[str, set[int]],
+        statement: str,
+        parameters: Parameters,
+    ) -> int:
+        """Run a statement that changes these tables, and check the scene; returns the number of rows."""
         with transaction(connection, self._name), without_triggers(connection):
             connection.execute("PRAGMA defer_foreign_keys = ON")
             count = change(connection, statement, parameters, self.seconds)

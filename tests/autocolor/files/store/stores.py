@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
+import struct
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -71,3 +73,27 @@ def tables_of(path: Path) -> dict[str, list[tuple[Any, ...]]]:
     """All rows of all tables of a store."""
     names = [name for (name,) in run(path, "SELECT name FROM sqlite_master WHERE type = 'table'")]
     return {name: run(path, f'SELECT * FROM "{name}"') for name in names}
+
+
+def hostile_journal(path: Path, named: Path, *, has_header: bool = True) -> Path:
+    """A journal beside a store that changes no page and has a file as its super-journal.
+
+    A program that opens the store for writing rolls the journal back, and SQLite then deletes the named file.
+    Without a header, the file is deleted when a change of that program is rolled back.
+    """
+    magic = bytes.fromhex("d9d505f920a163d7")
+    (size_of_page,) = struct.unpack(">H", path.read_bytes()[16:18])
+    pages = path.stat().st_size // size_of_page
+    header = magic + struct.pack(">5I", 0, 1, pages, 512, size_of_page) if has_header else bytes(200_000)
+    name = os.fsencode(named.resolve())
+    lock_page = (1 << 30) // size_of_page + 1
+    end = struct.pack(">I", lock_page) + name + struct.pack(">Ii", len(name), sum(name)) + magic
+    journal = Path(f"{path}-journal")
+    journal.write_bytes(header.ljust(512, b"\0") + end)
+    return journal
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """The bytes of the files of a folder and its folders, by their paths in it."""
+    files = (each for each in folder.rglob("*") if each.is_file())
+    return {str(each.relative_to(folder)): each.read_bytes() for each in files}

@@ -1,15 +1,27 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sqlite3
+from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from autocolor import InputError, MissingInputError, UnavailableError
+from autocolor import InputError, MissingInputError, UnavailableError, WriteError, open_tables
 from autocolor.files.store import connections
-from autocolor.files.store.connections import Clock, connected, in_memory, refusals
-from tests.autocolor.files.store.stores import small_store
+from autocolor.files.store.connections import (
+    Clock,
+    connected,
+    connected_to_change,
+    in_memory,
+    refusals,
+)
+from tests.autocolor.files.store.stores import contents, hostile_journal, run, small_store
+
+Open = Callable[[Path], Any]
 
 
 def test_a_connection_to_read_cannot_write(tmp_path: Path) -> None:
@@ -77,11 +89,144 @@ def test_an_old_sqlite_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         in_memory()
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes")
+@pytest.mark.parametrize("opened", [connected, connected_to_change])
 @pytest.mark.parametrize("ending", ["-journal", "-wal", "-shm"])
-def test_a_pipe_beside_a_store_is_not_waited_for(tmp_path: Path, ending: str) -> None:
+@pytest.mark.parametrize("kind", ["a pipe", "a folder", "a link"])
+def test_a_file_beside_a_store_must_be_regular(tmp_path: Path, opened: Open, ending: str, kind: str) -> None:
     path = small_store(tmp_path)
-    os.mkfifo(f"{path}{ending}")
-    for may_change in (False, True):
-        with pytest.raises(InputError, match=f"{ending}: it must be a regular file, not a pipe; name a file"):
-            connected(path, may_change=may_change)
+    beside = Path(f"{path}{ending}")
+    if kind == "a pipe":
+        os.mkfifo(beside)
+    elif kind == "a folder":
+        beside.mkdir()
+    else:
+        beside.symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(InputError, match=f"{ending}: it must be a regular file, not {kind}"):
+        opened(path)
+
+
+def test_sqlite_itself_deletes_the_file_that_a_hostile_journal_names(tmp_path: Path) -> None:
+    path, named = small_store(tmp_path), tmp_path / "named.txt"
+    named.write_text("precious")
+    hostile_journal(path, named)
+    run(path, "SELECT * FROM lights")
+    assert not named.exists()
+    named.write_text("precious")
+    hostile_journal(path, named, has_header=False)
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN")
+        other.execute("DELETE FROM lights")
+        assert named.exists()
+        other.execute("ROLLBACK")
+    assert not named.exists()
+
+
+@pytest.mark.parametrize("opened", [connected, connected_to_change])
+@pytest.mark.parametrize("mode", ["DELETE", "WAL"])
+@pytest.mark.parametrize("place", ["beside the store", "beside the file of a link", "beside a link"])
+def test_a_hostile_journal_is_never_rolled_back(tmp_path: Path, opened: Open, mode: str, place: str) -> None:
+    path, named = small_store(tmp_path), tmp_path / "named.txt"
+    run(path, f"PRAGMA journal_mode = {mode}")
+    named.write_text("precious")
+    journal = hostile_journal(path, named)
+    if place != "beside the store":
+        link = tmp_path / "link.sqlite"
+        link.symlink_to(path.name)
+        if place == "beside a link":
+            journal = journal.rename(f"{link}-journal")
+        path = link
+    before = contents(tmp_path)
+    with pytest.raises(
+        (InputError, WriteError), match=r"the -journal beside the store is from a change that"
+    ):
+        opened(path)
+    assert contents(tmp_path) == before
+
+
+def test_a_journal_without_a_header_is_refused_only_for_a_change(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connections, "SECONDS_OF_WAITING", 0.05)
+    path, named = small_store(tmp_path), tmp_path / "named.txt"
+    named.write_text("precious")
+    hostile_journal(path, named, has_header=False)
+    before = contents(tmp_path)
+    connected(path).close()
+    with pytest.raises(InputError, match="the -journal beside the store is from a change that has not ended"):
+        connected_to_change(path)
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("content", [b"", bytes(600), bytes(512) + b"old pages"])
+def test_a_journal_that_a_program_keeps_for_its_next_change_is_no_hindrance(
+    tmp_path: Path, content: bytes
+) -> None:
+    path = small_store(tmp_path)
+    Path(f"{path}-journal").write_bytes(content)
+    for opened in (connected, connected_to_change):
+        opened(path).close()
+
+
+def test_a_journal_that_appears_before_the_change_begins_is_not_rolled_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connections, "SECONDS_OF_WAITING", 0.05)
+    path, named = small_store(tmp_path), tmp_path / "named.txt"
+    named.write_text("precious")
+    has_journal = connections._has_journal
+
+    def checked(place: Path) -> bool:
+        answer = has_journal(place)
+        hostile_journal(path, named)
+        return answer
+
+    monkeypatch.setattr(connections, "_has_journal", checked)
+    with pytest.raises((InputError, WriteError)):
+        connected_to_change(path)
+    assert named.exists()
+
+
+def test_a_store_in_wal_mode_is_read_without_a_trace(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "PRAGMA journal_mode = WAL")
+    before = contents(tmp_path)
+    with closing(connected(path)) as connection:
+        assert connection.execute("SELECT count(*) FROM lights").fetchone() == (2,)
+        assert contents(tmp_path) == before
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("DELETE FROM lights WHERE name = 'rim'")
+        with closing(connected(path)) as connection:
+            assert connection.execute("SELECT count(*) FROM lights").fetchone() == (1,)
+        copy = tmp_path / "copy.sqlite"
+        for ending in ("", "-wal"):
+            shutil.copy(f"{path}{ending}", f"{copy}{ending}")
+    assert contents(tmp_path).keys() == {"small.sqlite", "copy.sqlite", "copy.sqlite-wal"}
+    before = contents(tmp_path)
+    for opened in (connected, connected_to_change):
+        with pytest.raises(
+            InputError, match=r"changes are in copy\.sqlite-wal, which cannot be read without"
+        ):
+            opened(copy)
+    assert contents(tmp_path) == before
+
+
+def test_a_store_in_wal_mode_is_changed_and_nothing_stays_beside_it(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "PRAGMA journal_mode = WAL")
+    with open_tables(path) as tables:
+        tables.update("lights", "key", intensity=3)
+        assert tables.select("SELECT max(intensity) AS most FROM lights") == [{"most": 3}]
+    assert os.listdir(tmp_path) == [path.name]
+
+
+def test_a_journal_that_appears_beside_open_tables_is_told(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    with open_tables(path) as tables:
+        hostile_journal(path, tmp_path / "named.txt").with_name("named.txt").write_text("precious")
+        before = contents(tmp_path)
+        for action in (lambda: tables.select("SELECT * FROM lights"), tables.scene):
+            with pytest.raises(
+                InputError, match="the -journal beside the store is from a change that has not"
+            ):
+                action()
+    assert contents(tmp_path) == before

@@ -6,7 +6,7 @@ from contextlib import closing
 from pathlib import Path
 
 from autocolor.files.store.file_changes import FileChanges
-from tests.autocolor.files.store.stores import run, small_store
+from tests.autocolor.files.store.stores import hostile_journal, run, small_store
 
 BRIGHTER = "UPDATE lights SET intensity = intensity + 1"
 
@@ -34,7 +34,6 @@ def test_a_change_that_is_only_beside_the_store_is_noticed(tmp_path: Path) -> No
         other.execute(BRIGHTER)
         assert os.stat(path).st_mtime_ns == before.st_mtime_ns
         assert changes.have_come()
-    changes.close()
 
 
 def test_a_store_that_is_replaced_is_noticed_and_changes_of_the_new_one(tmp_path: Path) -> None:
@@ -75,5 +74,16 @@ def test_to_look_leaves_nothing_beside_the_store(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     changes = FileChanges(path, is_store=True)
     changes.have_come()
+    run(path, "PRAGMA journal_mode = WAL")
+    assert changes.have_come()
     assert os.listdir(tmp_path) == ["small.sqlite"]
-    changes.close()
+
+
+def test_a_store_with_a_journal_left_beside_it_is_being_written(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    changes = FileChanges(path, is_store=True)
+    run(path, BRIGHTER)
+    journal = hostile_journal(path, tmp_path / "other.txt")
+    assert not changes.have_come()
+    journal.unlink()
+    assert changes.have_come()

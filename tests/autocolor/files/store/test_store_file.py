@@ -17,7 +17,15 @@ from autocolor.files.scene_sources import read_scene
 from autocolor.files.scene_writing import write_scene
 from autocolor.files.store.store_file import read_store, store_bytes, write_store
 from autocolor.scene.creation import scene_of
-from tests.autocolor.files.store.stores import is_equal, run, small_scene, small_store, tables_of
+from tests.autocolor.files.store.stores import (
+    contents,
+    hostile_journal,
+    is_equal,
+    run,
+    small_scene,
+    small_store,
+    tables_of,
+)
 from tests.autocolor.linked_scenes import linked_scenes
 
 ONE_FILE = settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -203,6 +211,14 @@ def test_a_damaged_store_is_written_anew(tmp_path: Path) -> None:
     assert is_equal(read_store(path).scene, small_scene())
 
 
+@pytest.mark.parametrize("data", [b"", b"text", b"SQLite format 3"])
+def test_a_file_that_is_no_store_is_written_anew(tmp_path: Path, data: bytes) -> None:
+    path = tmp_path / "small.sqlite"
+    path.write_bytes(data)
+    write_store(path, small_scene(), overwrite=True)
+    assert path.read_bytes() == store_bytes(small_scene())
+
+
 def test_a_store_that_exists_is_not_overwritten_unless_asked(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     before = path.read_bytes()
@@ -238,7 +254,7 @@ def test_what_another_program_wrote_beside_the_store_is_read_with_it(tmp_path: P
         assert read_store(path).scene.ambient == 0.75
 
 
-def test_a_change_that_was_interrupted_is_taken_back(tmp_path: Path) -> None:
+def test_a_change_that_was_interrupted_is_left_to_the_program_that_made_it(tmp_path: Path) -> None:
     path = small_store(tmp_path)
     code = (
         "import os, sqlite3, sys; c = sqlite3.connect(sys.argv[1], isolation_level=None);"
@@ -247,8 +263,34 @@ def test_a_change_that_was_interrupted_is_taken_back(tmp_path: Path) -> None:
         "[c.execute('INSERT INTO nodes VALUES (?, 1, 1, 1)', (n,)) for n in range(100, 20000)]; os._exit(0)"
     )
     subprocess.run([sys.executable, "-c", code, str(path)], check=True, timeout=60)
-    assert os.path.exists(f"{path}-journal")
+    before = contents(tmp_path)
+    assert before.keys() == {path.name, f"{path.name}-journal"}
+    with pytest.raises(
+        InputError, match=r"small\.sqlite: the -journal beside the store is from a change that"
+    ):
+        read_store(path)
+    with pytest.raises(
+        WriteError, match=r"small\.sqlite: the -journal beside the store is from a change that"
+    ):
+        write_store(path, small_scene(), overwrite=True)
+    assert contents(tmp_path) == before
+    run(path, "SELECT 1 FROM lights")
     assert is_equal(read_store(path).scene, small_scene())
+
+
+@pytest.mark.parametrize("kept", [None, b"text"])
+def test_no_store_is_written_beside_a_journal_that_would_be_rolled_back(
+    tmp_path: Path, kept: bytes | None
+) -> None:
+    path = small_store(tmp_path)
+    hostile_journal(path, tmp_path / "named.txt")
+    path.unlink()
+    if kept is not None:
+        path.write_bytes(kept)
+    before = contents(tmp_path)
+    with pytest.raises(WriteError):
+        write_store(path, small_scene(), overwrite=True)
+    assert contents(tmp_path) == before
 
 
 def test_a_file_that_is_no_store_or_is_not_there_is_refused(tmp_path: Path) -> None:
