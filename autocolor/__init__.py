@@ -34,20 +34,20 @@ if TYPE_CHECKING:
     from autocolor.images import save_image as save_image
     from autocolor.journal.reading import read_journal as read_journal
     from autocolor.lighting.picture import Picture as Picture
-    from autocolor.mapping.level_ranges import LevelRange as LevelRange
+    from autocolor.mapping.ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
     from autocolor.scene.creation import scene_of as scene_of
-    from autocolor.scene.lights.flaps import Flap as Flap
-    from autocolor.scene.lights.flaps import Flaps as Flaps
-    from autocolor.scene.lights.half_spaces import HalfSpace as HalfSpace
-    from autocolor.scene.lights.light import Light as Light
-    from autocolor.scene.lights.rigs import Rig as Rig
+    from autocolor.scene.lights import Flap as Flap
+    from autocolor.scene.lights import Flaps as Flaps
+    from autocolor.scene.lights import HalfSpace as HalfSpace
+    from autocolor.scene.lights import Light as Light
     from autocolor.scene.mesh import Mesh as Mesh
     from autocolor.scene.reflection_models import BlinnPhong as BlinnPhong
     from autocolor.scene.reflection_models import CookTorrance as CookTorrance
     from autocolor.scene.reflection_models import Phong as Phong
-    from autocolor.scene.scalars.mesh_scalars import MeshScalar as MeshScalar
-    from autocolor.scene.scalars.scalar import Scalar as Scalar
+    from autocolor.scene.rigs import Rig as Rig
+    from autocolor.scene.scalar import MeshScalar as MeshScalar
+    from autocolor.scene.scalar import Scalar as Scalar
     from autocolor.scene.scene import Scene as Scene
     from autocolor.scene.surfaces import Paint as Paint
     from autocolor.scene.surfaces import Part as Part
@@ -63,14 +63,14 @@ _HOME: Final = {
     "AutocolorError": "errors",
     "BlinnPhong": "scene.reflection_models",
     "CookTorrance": "scene.reflection_models",
-    "Flap": "scene.lights.flaps",
-    "Flaps": "scene.lights.flaps",
-    "HalfSpace": "scene.lights.half_spaces",
+    "Flap": "scene.lights",
+    "Flaps": "scene.lights",
+    "HalfSpace": "scene.lights",
     "InputError": "errors",
-    "LevelRange": "mapping.level_ranges",
-    "Light": "scene.lights.light",
+    "LevelRange": "mapping.ranges",
+    "Light": "scene.lights",
     "Mesh": "scene.mesh",
-    "MeshScalar": "scene.scalars.mesh_scalars",
+    "MeshScalar": "scene.scalar",
     "MissingInputError": "errors",
     "OutputError": "errors",
     "Paint": "scene.surfaces",
@@ -78,8 +78,8 @@ _HOME: Final = {
     "Phong": "scene.reflection_models",
     "Picture": "lighting.picture",
     "Reflectance": "scene.surfaces",
-    "Rig": "scene.lights.rigs",
-    "Scalar": "scene.scalars.scalar",
+    "Rig": "scene.rigs",
+    "Scalar": "scene.scalar",
     "Scene": "scene.scene",
     "Studio": "studio",
     "Surface": "scene.surfaces",

@@ -6,6 +6,7 @@ Vectors stand in three rows, one for each axis, so that numpy works on long rows
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final, TypeVar
 
@@ -206,3 +207,25 @@ def _multiplied(out: Singles, exponent: int) -> Singles:
             np.multiply(out, out, out=out)
             exponent >>= 1
     return out if powers is None else np.multiply(out, powers, out=out)
+
+
+# -------------------- rounding
+# Rounding half up, the only rounding rule of the package; `color_blending` applies it as it blends.
+
+HALF: Final = 0.5
+"""Added before taking the floor."""
+
+
+def half_up(value: float) -> int:
+    """The nearest integer; halves are rounded up.
+
+    >>> half_up(2.5), half_up(-2.5)
+    (3, -2)
+    """
+    return math.floor(value + HALF)
+
+
+def halves_up(values: Singles, out: Singles | None = None) -> Singles:
+    """The nearest integers of an array, as float32; halves are rounded up. `out` may be `values`."""
+    rounded = np.add(values, np.float32(HALF), out=out)
+    return np.floor(rounded, out=rounded)

@@ -13,7 +13,7 @@ from autocolor.errors import UsageError
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
 from autocolor.mapping.legend import GROUND, INK, Legend, legend
-from autocolor.mapping.level_ranges import WORDS
+from autocolor.mapping.ranges import WORDS
 from autocolor.scene.scene import Scene
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, Ramtek9300, instructions
 

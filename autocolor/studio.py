@@ -33,21 +33,18 @@ from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.journal.history import History
 from autocolor.journal.studio_session import StudioSession
-from autocolor.lighting.highlights import highlight_of
-from autocolor.lighting.light_drags import highlight_placed
+from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, display_image
-from autocolor.mapping.exposure import held_exposure
-from autocolor.mapping.level_ranges import LevelRange
-from autocolor.mapping.pacing import block_for, blocks_of
-from autocolor.mapping.scan_lines import words_by_line
-from autocolor.rendering import rendering, sees_the_same
+from autocolor.mapping.display_image import DisplayImage, display_image, words_by_line
+from autocolor.mapping.intensity import held_exposure
+from autocolor.mapping.ranges import LevelRange
+from autocolor.rendering import block_for, blocks_of, rendering, sees_the_same
 from autocolor.scene.changes import LightChanges, PaintChanges, ScalarChanges, SurfaceChanges, ViewChanges
-from autocolor.scene.columns.column import Tier, fields_of
+from autocolor.scene.columns import Tier, fields_of
 from autocolor.scene.scene import AUTO, LEVELS, NORMALS, Scene, cost_of_edit
 from autocolor.scene.surfaces import Paint
 from autocolor.sending import configuration_of, send_image, shown_colors
-from autocolor.visibility.sight import Seen, Sight, seen_at
+from autocolor.visibility.visible_points import Seen, Sight, seen_at
 from ramtek_emu import HostPort
 
 

@@ -23,8 +23,7 @@ from typing import Any
 import numpy as np
 
 import autocolor
-from autocolor.files.meshes.npy.npy_tables import NODES, POLYGONS, read_npy_tables
-from autocolor.files.meshes.npy.npy_writing import write_npy_tables
+from autocolor.files.meshes.npy_tables import NODES, POLYGONS, read_npy_tables, write_npy_tables
 from autocolor.scene.creation import scene_of
 from benchmarks.cases import Spread, spread
 from benchmarks.hills import side_of

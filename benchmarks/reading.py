@@ -23,7 +23,7 @@ import numpy as np
 
 from autocolor import Mesh
 from autocolor.files.meshes.formats import read_mesh
-from autocolor.files.meshes.obj.obj_text import obj_text
+from autocolor.files.meshes.obj import obj_text
 from benchmarks.cases import Case, spread, timed
 from benchmarks.hills import hills, side_of
 from benchmarks.memory import forget_peak, peak

@@ -59,13 +59,13 @@ if TYPE_CHECKING:
     from ramtek_emu.errors import SnapshotError as SnapshotError
     from ramtek_emu.errors import WordsError as WordsError
     from ramtek_emu.errors import WriteError as WriteError
-    from ramtek_emu.host.host_port import HostPort as HostPort
-    from ramtek_emu.host.host_port import Recorder as Recorder
-    from ramtek_emu.host.tcp_port import TcpPort as TcpPort
-    from ramtek_emu.host.unix_port import UnixPort as UnixPort
+    from ramtek_emu.host.port import HostPort as HostPort
+    from ramtek_emu.host.port import Recorder as Recorder
+    from ramtek_emu.host.port import TcpPort as TcpPort
+    from ramtek_emu.host.port import UnixPort as UnixPort
     from ramtek_emu.memory.cursors import Joystick as Joystick
-    from ramtek_emu.snapshot.snapshot import read_snapshot as read_snapshot
-    from ramtek_emu.snapshot.snapshot import write_snapshot as write_snapshot
+    from ramtek_emu.snapshot import read_snapshot as read_snapshot
+    from ramtek_emu.snapshot import write_snapshot as write_snapshot
     from ramtek_emu.timing import Timing as Timing
 
 _HOME: Final = {
@@ -74,7 +74,7 @@ _HOME: Final = {
     "ConfigurationError": "errors",
     "EntryFormat": "configuration",
     "GMR_9300": "configuration",
-    "HostPort": "host.host_port",
+    "HostPort": "host.port",
     "InstructionError": "errors",
     "JPL_9460": "configuration",
     "Joystick": "memory.cursors",
@@ -88,16 +88,16 @@ _HOME: Final = {
     "PortError": "errors",
     "Ramtek9300": "display",
     "RamtekError": "errors",
-    "Recorder": "host.host_port",
+    "Recorder": "host.port",
     "ReplyError": "errors",
     "SnapshotError": "errors",
-    "TcpPort": "host.tcp_port",
+    "TcpPort": "host.port",
     "Timing": "timing",
-    "UnixPort": "host.unix_port",
+    "UnixPort": "host.port",
     "WordsError": "errors",
     "WriteError": "errors",
-    "read_snapshot": "snapshot.snapshot",
-    "write_snapshot": "snapshot.snapshot",
+    "read_snapshot": "snapshot",
+    "write_snapshot": "snapshot",
 }
 
 _MODULES: Final = ("instructions",)

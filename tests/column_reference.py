@@ -11,14 +11,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from autocolor.files.scenes.scene_meshes import MeshEntry
-from autocolor.scene.columns.column import WORLD_UNITS, Column, Kind, Row, Tier, bar_of, fields_of, keys_of
-from autocolor.scene.columns.row_kinds import Nested, Variant
-from autocolor.scene.columns.rows import plain
-from autocolor.scene.columns.value_kinds import Number
-from autocolor.scene.lights.flaps import Flap
-from autocolor.scene.lights.half_spaces import HalfSpace
-from autocolor.scene.lights.light import Light
-from autocolor.scene.scalars.scalar import Scalar
+from autocolor.scene.columns import WORLD_UNITS, Column, Kind, Row, Tier, bar_of, fields_of, keys_of, plain
+from autocolor.scene.kinds import Number
+from autocolor.scene.lights import Flap, HalfSpace, Light
+from autocolor.scene.row_kinds import Nested, Variant
+from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View

@@ -21,11 +21,10 @@ import numpy as np
 
 from autocolor import Mesh, scene_of
 from autocolor.errors import InputError
-from autocolor.files.conversion.output import Output
-from autocolor.files.conversion.outputs import outputs
+from autocolor.files.conversion import Output, outputs
 from autocolor.files.meshes.formats import mesh_formats
 from autocolor.files.scene_sources import read_scene_with_report
-from autocolor.scene.scalars.mesh_scalars import MeshScalar
+from autocolor.scene.scalar import MeshScalar
 
 NUMBERS = (
     b"4294967296", b"4294967295", b"2147483648", b"2147483647", b"-1", b"0", b"nan", b"inf", b"1e999",

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from autocolor.scene.columns.column import Row, keys_of
+from autocolor.scene.columns import Row, keys_of
 from autocolor.scene.surfaces import Surface
 from tests.column_reference import LEFT_OUT, ROOT, TABLES, document, lines_of
 

@@ -14,9 +14,9 @@ TEXT = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 SOURCES = [
     (ROOT / path).read_text("utf-8")
     for path in (
-        "autocolor/lighting/light_controls/falloff.py",
-        "autocolor/scene/lights/light.py",
-        "tests/autocolor/lighting/light_controls/test_falloff.py",
+        "autocolor/lighting/controls.py",
+        "autocolor/scene/lights.py",
+        "tests/autocolor/lighting/test_controls.py",
     )
 ]
 

@@ -8,13 +8,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from autocolor.scene.columns.column import Row, fields_of, keys_of
-from autocolor.scene.columns.row_kinds import Nested, Variant
-from autocolor.scene.lights.flaps import Flap, Flaps
-from autocolor.scene.lights.half_spaces import HalfSpace
-from autocolor.scene.lights.light import Light
-from autocolor.scene.lights.links import Links
-from autocolor.scene.scalars.scalar import Scalar
+from autocolor.scene.columns import Row, fields_of, keys_of
+from autocolor.scene.lights import Flap, Flaps, HalfSpace, Light, Links
+from autocolor.scene.row_kinds import Nested, Variant
+from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
 from autocolor.scene.view import View
@@ -46,7 +43,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Literal, TypedDict
 
-from autocolor.scene.columns.column import Row
+from autocolor.scene.columns import Row
 '''
 
 MADE_FROM_THE_MESH = ("mesh", "parts", "surfaces")

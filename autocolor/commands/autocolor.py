@@ -6,7 +6,7 @@ from typing import ClassVar, Final
 
 import click
 
-from autocolor.commands.verbosity import verbose_option
+from autocolor.commands.options import verbose_option
 from ramtek_emu.command_line import CommandGroup, version_option
 
 EXAMPLES: Final = """\b
@@ -34,7 +34,6 @@ class AutocolorGroup(CommandGroup):
         "tables": "print or write the tables of a scene, including created ones",
         "sql": "ask and change the tables of a scene as a relational data base",
     }
-    folders: ClassVar[dict[str, str]] = {"tables": "store.", "sql": "store."}
 
 
 @click.group(

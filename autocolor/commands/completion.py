@@ -80,7 +80,7 @@ def complete_surfaces(context: click.Context, parameter: click.Parameter, incomp
 @_silent
 def complete_settings(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """The keys of `--set` for the scene on the line, and the values of a whole key."""
-    from autocolor.commands.options.setting_keys import keys_after
+    from autocolor.commands.setting_keys import keys_after
 
     scene = _scene(context)
 
@@ -93,7 +93,7 @@ def complete_settings(context: click.Context, parameter: click.Parameter, incomp
 @_silent
 def complete_colors(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """The names of colors."""
-    from autocolor.scene.columns.color_kinds import color_names
+    from autocolor.scene.kinds import color_names
 
     return [name for name in color_names() if name.startswith(incomplete.lower())]
 

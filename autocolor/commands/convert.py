@@ -56,8 +56,7 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
     """
     if out in ("", "-"):
         raise UsageError(f"OUT must be a file or a folder, not {out!r}; give it a name")
-    from autocolor.files.conversion.left_out import left_out
-    from autocolor.files.conversion.outputs import output_named, output_of
+    from autocolor.files.conversion import left_out, output_named, output_of
     from autocolor.files.meshes.formats import MeshFormat
     from autocolor.files.scene_sources import source_format
     from autocolor.files.writing import refuse_output
@@ -79,7 +78,7 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
 
 def format_lines() -> list[str]:
     """A line for each format: its name, the endings of its files, and whether it is read and written."""
-    from autocolor.files.conversion.outputs import outputs
+    from autocolor.files.conversion import outputs
     from autocolor.files.meshes.formats import mesh_formats
     from autocolor.files.scenes.formats import scene_formats
 

@@ -26,7 +26,7 @@ def refuse_address(address: str) -> None:
     Raises UsageError for any other.
     """
     from ramtek_emu import PortError
-    from ramtek_emu.host.tcp_port import host_and_port
+    from ramtek_emu.host.port import host_and_port
 
     if _is_path(address):
         return
@@ -60,7 +60,7 @@ def session_elsewhere(
     its folder there if the session was left before. `prepare` is called with the viewer at the beginning.
     Raises UnavailableError if the display goes away or does not answer, PortError if it is not reached.
     """
-    from autocolor.commands.sessions.kept_session import kept_session
+    from autocolor.commands.sessions import kept_session
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import PortError, ReplyError
 
@@ -87,7 +87,7 @@ def session_elsewhere(
 
 def attend(viewer: Viewer, update: Callable[[], object]) -> None:
     """Poll the unit, and call `update` after each poll, until the user leaves; sleep between the polls."""
-    from autocolor.screens.input.unit import POLL_SECONDS
+    from autocolor.screens.input import POLL_SECONDS
 
     due = time.monotonic()
     while not viewer.session.leaves:

@@ -14,7 +14,7 @@ from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport
-    from autocolor.scene.scalars.mesh_scalars import MeshScalar
+    from autocolor.scene.scalar import MeshScalar
 
 EXAMPLES: Final = """\b
 Examples:
@@ -42,7 +42,7 @@ def facts_of(report: SceneReport) -> dict[str, Any]:
     """The facts about a scene, as values that JSON can hold; the scene is rendered for them."""
     from autocolor.mapping.display_image import display_image
     from autocolor.rendering import render
-    from autocolor.scene.geometry.faults.quad_shapes import quad_shapes
+    from autocolor.scene.mesh_faults import quad_shapes
 
     scene = report.scene
     mesh = scene.mesh

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
-from autocolor.commands.options.settings import set_option, with_settings
-from autocolor.commands.options.usage import as_usage
+from autocolor.commands.options import as_usage, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
-from autocolor.commands.verbosity import verbose_option
+from autocolor.commands.settings import set_option, with_settings
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -95,7 +94,7 @@ def recolor(
     given = {name: value for name, value in changes.items() if value is not None}
     check_what_is_recolored(surface, given, settings)
     if output is None and save is None:
-        from autocolor.files.file_stem import file_stem
+        from autocolor.files.writing import file_stem
 
         output = f"{Path(picture).stem}-{file_stem(surface or 'recolored')}.png"
     refuse_outputs(output, save, force)
@@ -134,7 +133,7 @@ def recolored(
     scene: Scene, surface: str | None, colors: Mapping[str, Any], settings: tuple[str, ...]
 ) -> Scene:
     """The scene with settings and other colors of a surface; UsageError for what would render it again."""
-    from autocolor.scene.columns.column import Tier
+    from autocolor.scene.columns import Tier
     from autocolor.scene.scene import costs_at_least
 
     edited = with_settings(scene, settings)

@@ -11,11 +11,10 @@ from typing import Final
 import click
 
 from autocolor.commands.completion import complete_lights
-from autocolor.commands.options.normals import normals_option, with_normals
-from autocolor.commands.options.raster_size import size_option
-from autocolor.commands.options.settings import created_again, reframed, set_option, with_settings
+from autocolor.commands.options import normals_option, size_option, with_normals
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
+from autocolor.commands.settings import created_again, reframed, set_option, with_settings
 
 EXAMPLES: Final = """\b
 Examples:
@@ -79,7 +78,7 @@ def render(
     original = with_normals(report.scene, normals)
     if hold_exposure:
         from autocolor.mapping.display_image import display_image
-        from autocolor.mapping.exposure import held_exposure
+        from autocolor.mapping.intensity import held_exposure
         from autocolor.rendering import render as rendered
 
         mapped = display_image(original, rendered(original, lines, elements)).mapped
@@ -88,7 +87,7 @@ def render(
     if lights:
         edited = edited.only_lights(*lights)
     if output is None and save is None:
-        from autocolor.files.file_stem import file_stem
+        from autocolor.files.writing import file_stem
 
         output = f"{file_stem(edited.name)}.png"
     refuse_outputs(output, save, force)

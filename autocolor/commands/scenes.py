@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import click
 
 from autocolor.commands.completion import complete_scenes
-from autocolor.commands.verbosity import verbose_option
+from autocolor.commands.options import verbose_option
 
 if TYPE_CHECKING:
     from autocolor.files.scenes.scene_report import SceneReport

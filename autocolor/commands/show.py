@@ -10,8 +10,8 @@ import click
 
 from autocolor.commands.demo import PLACES
 from autocolor.commands.displays_elsewhere import port_to, refuse_address, session_elsewhere
-from autocolor.commands.options.settings import created_again, set_option, with_settings
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
+from autocolor.commands.settings import created_again, set_option, with_settings
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def show(
     if recover is not None and (settings or once):
         raise UsageError("--set and --once are for SCENE, not for sessions; leave them out")
     if recover is not None:
-        from autocolor.commands.sessions.left_sessions import chosen_session
+        from autocolor.commands.sessions import chosen_session
 
         left, session = chosen_session(recover)
         session_elsewhere(session.history, address, folder_of(session.source), left)

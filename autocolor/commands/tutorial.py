@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.commands.displays_elsewhere import refuse_address, session_elsewhere
-from autocolor.commands.verbosity import verbose_option
+from autocolor.commands.options import verbose_option
 
 if TYPE_CHECKING:
     from autocolor.screens.viewer import Viewer
@@ -48,7 +48,7 @@ def tutorial(address: str | None, full_screen: bool, fit: bool) -> None:
 
 def teach(viewer: Viewer) -> None:
     """Put the panel of the tutorial over the screens of a viewer."""
-    from autocolor.screens.tutorial.tutorial import Tutorial
+    from autocolor.screens.tutorial import Tutorial
 
     viewer.board.over = Tutorial(viewer.session).widgets
     viewer.tell("")

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
 
 import click
 
+from autocolor.checks import Color
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
 from autocolor.commands.scenes import REPAIRED, SceneSource, ended, read, scene_options
 from autocolor.errors import InputError, UsageError
-
-if TYPE_CHECKING:
-    from autocolor.scene.scene import Scene
+from autocolor.scene.mesh_faults import EDGE, FAULT, KINDS, Fault, Hole, fault_scalar
+from autocolor.scene.scalar import Scalar
+from autocolor.scene.scene import AUTO, Scene
+from autocolor.scene.surfaces import Reflectance, Surface
 
 EXAMPLES: Final = """\b
 Examples:
@@ -52,8 +55,7 @@ def validate(
         if as_json:
             click.echo(json.dumps({"problems": error.problems, "repairs": [], "faults": []}, indent=2))
         raise
-    from autocolor.commands.faults.fault_report import fault_lines, fault_values
-    from autocolor.scene.geometry.faults.mesh_faults import mesh_faults
+    from autocolor.scene.mesh_faults import mesh_faults
 
     faults = mesh_faults(report.scene.mesh)
     if as_json:
@@ -64,8 +66,6 @@ def validate(
         found = f"it can be rendered, with {kinds}" if faults else "no problem"
         click.echo("\n".join([f"{source.path}: {found}", *fault_lines(faults)]))
     if shows:
-        from autocolor.commands.faults.fault_picture import fault_scene
-
         show_scene(fault_scene(report.scene, faults), output, force)
     context.exit(REPAIRED if source.strict and faults else ended(report, source))
 
@@ -85,3 +85,112 @@ def show_scene(scene: Scene, output: str | None, force: bool) -> None:
     Studio(scene, display)
     write_png(output, display, force)
     tell_written(output)
+
+
+# -------------------- fault_report
+# The faults of a mesh in sentences and as values that JSON can hold.
+#
+# Rows count from 1 here, as in a table store, an OBJ file or CSV tables without numbers of their own.
+
+FIRST_ROWS: Final = 5
+"""The rows, and the loops of edges, that a sentence names."""
+
+MOST_ROWS: Final = 10_000
+"""Assumed: the rows of one kind in JSON; a file of more can be read, but hardly be gone through."""
+
+
+def fault_lines(faults: Sequence[Fault]) -> Iterator[str]:
+    """A line for each kind of faults, with its number and first rows, and one for each of the first loops."""
+    for fault in faults:
+        rows = fault.rows[:FIRST_ROWS] + 1
+        named = ", ".join("-".join(map(str, row)) for row in rows) if fault.of == EDGE else _listed(rows)
+        what = "nodes " if fault.of == EDGE else ""
+        more = ", ..." if len(fault.rows) > FIRST_ROWS else ""
+        yield f"{fault.number:2} {fault.kind} {len(fault.rows):,}: {KINDS[fault.kind]} ({what}{named}{more})"
+        for hole in fault.holes[:FIRST_ROWS]:
+            yield f"     {_hole_told(hole)}"
+        more_holes = len(fault.holes) - FIRST_ROWS
+        if more_holes > 0:
+            yield f"     and {more_holes:,} shorter {'one' if more_holes == 1 else 'ones'}"
+
+
+def _listed(rows: Any) -> str:
+    return ", ".join(map(str, rows.tolist()))
+
+
+def _hole_told(hole: Hole) -> str:
+    kind = "a closed loop" if hole.is_closed else "a branching run"
+    place = ", ".join(f"{component:.4g}" for component in hole.center)
+    return (
+        f"{kind} of {hole.edges:,} edges, {hole.length:.4g} long, around ({place}), at node {hole.node + 1}"
+    )
+
+
+def fault_values(faults: Sequence[Fault]) -> list[dict[str, Any]]:
+    """The faults as values that JSON can hold; of each kind at most MOST_ROWS rows."""
+    return [
+        {
+            "kind": fault.kind,
+            "number": fault.number,
+            "of": fault.of,
+            "count": len(fault.rows),
+            "rows": (fault.rows[:MOST_ROWS] + 1).tolist(),
+            "polygons": (fault.polygons[:MOST_ROWS] + 1).tolist(),
+            **({"loops": [_hole_values(hole) for hole in fault.holes[:MOST_ROWS]]} if fault.holes else {}),
+        }
+        for fault in faults
+    ]
+
+
+def _hole_values(hole: Hole) -> dict[str, Any]:
+    return {
+        "edges": hole.edges,
+        "length": hole.length,
+        "center": list(hole.center),
+        "node": hole.node + 1,
+        "closed": hole.is_closed,
+    }
+
+
+# -------------------- fault_picture
+# A scene whose mesh is colored by its faults: one color for each kind, light gray where there is none.
+
+COLORS: Final[tuple[Color, ...]] = (
+    (86, 180, 233),
+    (120, 120, 220),
+    (90, 90, 90),
+    (250, 220, 90),
+    (240, 170, 60),
+    (230, 110, 30),
+    (0, 170, 110),
+    (200, 110, 190),
+    (150, 40, 160),
+    (220, 20, 40),
+)
+"""The color of each kind of faults, in the order of their numbers; graver ones are redder and darker."""
+
+WITHOUT_FAULT: Final[Color] = (200, 200, 200)
+
+SURFACE: Final = "mesh"
+"""The one surface that all parts have in such a picture, so that there are levels for all kinds."""
+
+MATTE: Final = Reflectance(0.8, 0.0)
+
+
+def fault_scene(scene: Scene, faults: Sequence[Fault]) -> Scene:
+    """The scene with the faults of its mesh as a scalar that colors it; its lights and view stay."""
+    mesh = scene.mesh
+    others = [scalar for scalar in mesh.scalars if scalar.name != FAULT]
+    count = len(KINDS)
+    return scene.replace(
+        mesh=mesh.with_scalars(*others, fault_scalar(mesh, faults)),
+        parts=tuple(part.replace(surface=SURFACE, stage=False) for part in scene.parts),
+        surfaces=(Surface(SURFACE, MATTE),),
+        exposure=AUTO,
+        scalar=Scalar(
+            name=FAULT,
+            limits=(-0.5, count + 0.5),
+            scale=(WITHOUT_FAULT, *COLORS),
+            bands=count + 1,
+        ),
+    )

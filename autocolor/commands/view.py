@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.options.normals import normals_option, with_normals
-from autocolor.commands.options.settings import created_again, set_option, with_settings
+from autocolor.commands.options import normals_option, with_normals
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
+from autocolor.commands.settings import created_again, set_option, with_settings
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -68,16 +68,16 @@ def view(
         if is_given and source is None:
             raise UsageError(f"{option} is for SCENE, not for sessions; leave it out")
     if sessions or forget is not None:
-        from autocolor.commands.sessions.left_sessions import forget_session, list_sessions
+        from autocolor.commands.sessions import forget_session, list_sessions
 
         list_sessions() if forget is None else forget_session(forget)
     elif recover is not None:
-        from autocolor.commands.sessions.left_sessions import chosen_session
+        from autocolor.commands.sessions import chosen_session
 
         folder, session = chosen_session(recover)
         show(session.history, full_screen, fit, folder)
     elif source is not None:
-        from autocolor.files.state.recent import note_file
+        from autocolor.files.state import note_file
         from autocolor.journal.history import History
         from autocolor.journal.places import Source, place_of
 
@@ -115,7 +115,7 @@ def show(
     left before. `prepare` is called with the viewer at the beginning. Raises UnavailableError if there is no
     screen.
     """
-    from autocolor.commands.sessions.kept_session import kept_session
+    from autocolor.commands.sessions import kept_session
     from autocolor.errors import UnavailableError
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import NoScreenError, Ramtek9300

@@ -9,17 +9,15 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from autocolor.errors import InputError, OutputError
-from autocolor.files.mesh_sources import source_of
 from autocolor.files.meshes.formats import read_mesh
-from autocolor.files.meshes.obj.obj_text import obj_text
+from autocolor.files.meshes.obj import obj_text
+from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
-from autocolor.files.repair.polygons import MeshReport
-from autocolor.files.scenes.problems import SceneProblems
-from autocolor.files.scenes.scene_meshes import MESH_FILE_KEYS, meshes_of
+from autocolor.files.scenes.scene_meshes import MESH_FILE_KEYS, meshes_of, source_of
+from autocolor.files.scenes.scene_report import SceneProblems
 from autocolor.files.scenes.toml_text import parsed_toml
 from autocolor.files.writing import write_atomically
-from autocolor.scene.mesh import Mesh
-from autocolor.scene.same_meshes import has_same_tables
+from autocolor.scene.mesh import Mesh, has_same_tables
 
 MESH_STEM: Final = "mesh"
 """The name, without its ending, of the mesh file that is written beside a scene file."""

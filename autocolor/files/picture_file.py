@@ -24,10 +24,13 @@ import numpy as np
 
 from autocolor.arrays import LARGEST_SINGLE, AnyArray
 from autocolor.errors import InputError, UsageError
-from autocolor.files.array_file import ArrayFileKind, Series, array_file_bytes, read_array_file
-from autocolor.files.meshes.scalar_members import (
+from autocolor.files.array_file import (
     KEY,
     MESH_SCALARS,
+    ArrayFileKind,
+    Series,
+    array_file_bytes,
+    read_array_file,
     scalar_members,
     scalar_rows,
     scalars_of,
@@ -35,8 +38,8 @@ from autocolor.files.meshes.scalar_members import (
 from autocolor.files.plain_scene import plain_scene, scene_of_plain
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
-from autocolor.scene.columns.problems import Problem, RowError
-from autocolor.scene.scalars.scalar_kinds import Limits
+from autocolor.scene.columns import Problem, RowError
+from autocolor.scene.scalar import Limits
 from autocolor.scene.scene import Scene
 
 PLAIN_FORMATS: Final = ("autocolor picture 2", "autocolor picture 1")

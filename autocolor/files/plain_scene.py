@@ -9,9 +9,9 @@ from typing import Any
 from autocolor.arrays import AnyArray
 from autocolor.checks import shown
 from autocolor.errors import InputError
-from autocolor.scene.columns.rows import made, plain
+from autocolor.scene.columns import made, plain
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalars.mesh_scalars import MeshScalar
+from autocolor.scene.scalar import MeshScalar
 from autocolor.scene.scene import Scene
 
 

@@ -20,13 +20,11 @@ from autocolor.checks import shown
 from autocolor.errors import AutocolorError, OutputError, UsageError
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_writing import refuse_names
-from autocolor.files.scenes.problems import SceneProblems
-from autocolor.files.scenes.scene_text import sparse_row, table_text
-from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
+from autocolor.files.scenes.scene_report import SceneProblems
+from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml, sparse_row, table_text
 from autocolor.files.writing import check_suffix, write_atomically
-from autocolor.scene.columns.problems import RowError
-from autocolor.scene.columns.rows import made
-from autocolor.scene.lights.rigs import Rig
+from autocolor.scene.columns import RowError, made
+from autocolor.scene.rigs import Rig
 from autocolor.scene.scene import Scene
 
 RIG_SUFFIX: Final = ".toml"

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
-from autocolor.files.mesh_sources import MeshSource, keep_source
 from autocolor.files.meshes.formats import (
     MeshFormat,
     file_formats,
@@ -17,10 +16,11 @@ from autocolor.files.meshes.formats import (
     mesh_formats,
     read_mesh,
 )
+from autocolor.files.meshes.repair import SCALES, UPS, Placement
 from autocolor.files.reading import status_of
 from autocolor.files.registry import recognized, suffix_rule, suffixes_of
-from autocolor.files.repair.placement import SCALES, UPS, Placement
 from autocolor.files.scenes.formats import SceneFormat, scene_formats
+from autocolor.files.scenes.scene_meshes import MeshSource, keep_source
 from autocolor.files.scenes.scene_report import SceneReport, scene_report
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.scene import Scene

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError, OutputError, UsageError, reason_of
-from autocolor.files.mesh_sources import source_of
 from autocolor.files.mesh_writing import Meshes, entries_of, meshes_there, reports_of, written_mesh
 from autocolor.files.meshes.formats import mesh_suffixes
 from autocolor.files.paths import SCENE_FILE
@@ -28,14 +27,13 @@ from autocolor.files.scenes.scene_edit import (
     without_parts,
 )
 from autocolor.files.scenes.scene_file import report_of_text
-from autocolor.files.scenes.scene_text import scene_text
-from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
+from autocolor.files.scenes.scene_meshes import source_of
+from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml, scene_text
 from autocolor.files.store.store_file import STORE_SUFFIXES, write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of
-from autocolor.scene.columns.column import Row, row_label
-from autocolor.scene.columns.rows import plain
-from autocolor.scene.geometry.node_normals import CREASE_ANGLE
+from autocolor.scene.columns import Row, plain, row_label
+from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.scene import Scene, check_scene
 
 LOG: Final = logger_of(__name__)

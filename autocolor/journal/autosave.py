@@ -18,13 +18,11 @@ from typing import Final
 
 from autocolor.errors import AutocolorError, WriteError, reason_of
 from autocolor.files.scene_writing import write_scene
-from autocolor.files.state.file_lock import lock_file
-from autocolor.files.state.state_folder import state_folder
+from autocolor.files.state import lock_file, state_folder
 from autocolor.files.writing import write_atomically
 from autocolor.journal.history import History, Step
-from autocolor.journal.meshes_beside import MeshesBeside
 from autocolor.journal.places import Source
-from autocolor.journal.script import first_lines, step_line
+from autocolor.journal.script import MeshesBeside, first_lines, step_line
 
 SESSIONS: Final = "sessions"
 JOURNAL: Final = "session.py"

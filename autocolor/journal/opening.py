@@ -12,10 +12,9 @@ import numpy as np
 from autocolor.errors import InputError
 from autocolor.files.plain_scene import plain_scene
 from autocolor.files.scene_sources import read_scene
+from autocolor.journal.history import Opened
 from autocolor.journal.places import Place, Source, place_of
-from autocolor.journal.variants import Opened
-from autocolor.scene.mesh import Mesh
-from autocolor.scene.same_meshes import has_same_tables
+from autocolor.scene.mesh import Mesh, has_same_tables
 from autocolor.scene.scene import Scene
 
 

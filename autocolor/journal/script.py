@@ -19,16 +19,71 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from itertools import count
+from pathlib import Path
 from typing import Any, Final, NamedTuple
 
+from autocolor.errors import InputError
+from autocolor.files.paths import SCENE_FILE
+from autocolor.files.scene_writing import write_scene
+from autocolor.files.scenes.scene_meshes import source_of
 from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
-from autocolor.journal.meshes_beside import MeshesBeside
 from autocolor.journal.opening import checksum_of
 from autocolor.journal.places import Source
-from autocolor.scene.columns.column import fields_of
-from autocolor.scene.columns.rows import difference, plain
+from autocolor.scene.columns import difference, fields_of, plain
+from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import AUTO, Scene
 from autocolor.scene.surfaces import Paint
+
+# -------------------- meshes_beside
+# The meshes that a session changed, saved beside its journal, each in a scene of its own.
+
+SCENE_STEM: Final = "scene"
+
+
+class MeshesBeside:
+    """The folders of the scenes that hold changed meshes, each written when it is first asked for.
+
+    `folder` is that of the journal, None if nothing may be written.
+    """
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self._folder = folder
+        self._paths: dict[Mesh, Path] = {}
+
+    def path_of(self, scene: Scene) -> Path:
+        """The folder of a scene with the mesh of this one.
+
+        Raises InputError if there is no folder to write to; OutputError or WriteError if writing fails.
+        """
+        if self._folder is None:
+            raise InputError(
+                "a mesh that a session changed must be saved beside its journal, and no folder is named for"
+                " it; name one with beside="
+            )
+        if scene.mesh not in self._paths:
+            self._paths[scene.mesh] = _there(self._folder, scene.mesh) or _written(self._folder, scene)
+        return self._paths[scene.mesh]
+
+
+def _there(folder: Path, mesh: Mesh) -> Path | None:
+    """The folder from which a mesh was read, if it is beside the journal already."""
+    source = source_of(mesh)
+    if source is None or source.scene_file is None or source.folder.parent != folder.resolve():
+        return None
+    return folder / source.folder.name
+
+
+def _written(folder: Path, scene: Scene) -> Path:
+    """Write a scene to a folder of a free name."""
+    os.makedirs(folder, exist_ok=True)
+    for number in count(2):
+        path = folder / f"{SCENE_STEM}-{number}"
+        if not os.path.lexists(path):
+            break
+    write_scene(path / SCENE_FILE, scene)
+    return path
+
 
 HEADER: Final = (
     '"""A session of autocolor: run it with Python, or recover it with `autocolor view --recover`."""',

@@ -17,8 +17,8 @@ from autocolor.scene.scene import Scene
 if TYPE_CHECKING:
     from os import PathLike
 
+    from autocolor.journal.history import Variants
     from autocolor.journal.saving import SavedFiles
-    from autocolor.journal.variants import Variants
     from autocolor.scene.creation import SurfaceSource
 
 
@@ -182,9 +182,8 @@ class StudioSession(ABC):
         session that was recovered knows it. A mesh that was changed by an edit is saved to a folder of its
         own in the folder `beside`; without that, InputError is raised for one.
         """
-        from autocolor.journal.meshes_beside import MeshesBeside
         from autocolor.journal.places import Source
-        from autocolor.journal.script import journal_text
+        from autocolor.journal.script import MeshesBeside, journal_text
 
         source = (
             self._history.first_place.source if path is None else Source(fspath(path), up, surfaces, scale)

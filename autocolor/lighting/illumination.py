@@ -12,13 +12,18 @@ from typing import NamedTuple
 import numpy as np
 
 from autocolor.arrays import Singles
-from autocolor.lighting.light_mix import SurfaceWeights, light_mix
-from autocolor.lighting.light_planes import LightPlanes, mix
 from autocolor.lighting.picture import Picture
-from autocolor.lighting.shading import ControlledLight, controlled_light, shade
-from autocolor.scene.columns.column import Tier
-from autocolor.scene.columns.rows import cost
-from autocolor.scene.lights.light import Light
+from autocolor.lighting.shading import (
+    ControlledLight,
+    LightPlanes,
+    SurfaceWeights,
+    controlled_light,
+    light_mix,
+    mix,
+    shade,
+)
+from autocolor.scene.columns import Tier, cost
+from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import ReflectionModel
 from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import VisiblePoints

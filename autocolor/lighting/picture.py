@@ -16,9 +16,8 @@ import numpy as np
 
 from autocolor.arrays import AnyArray, Bytes, Indices, PartNumbers, Singles
 from autocolor.immutable import Immutable, read_only
-from autocolor.lighting.light_planes import DIFFUSE, SPECULAR, LightPlanes
-from autocolor.visibility.visible_parts import VisibleParts
-from autocolor.visibility.visible_points import SurfaceSlice, surface_slices
+from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes
+from autocolor.visibility.visible_points import SurfaceSlice, VisibleParts, surface_slices
 
 
 class IntensityRange(NamedTuple):

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Indices, Singles
-from autocolor.scene.lights.light import Light
+from autocolor.scene.lights import Light
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints, fill_point_products
 
 CLOSE: Final = 0.02

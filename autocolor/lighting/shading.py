@@ -13,19 +13,140 @@ rounds as the product of one light does, and an edit must give the same bits as 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Indices, Singles, dot
-from autocolor.lighting.light_controls.control import LightControl, LitPoints, controls_of
-from autocolor.lighting.light_planes import DIFFUSE, SPECULAR
+from autocolor.arrays import LARGEST_SINGLE, Booleans, Indices, Singles, dot
+from autocolor.errors import InputError
+from autocolor.immutable import Immutable
+from autocolor.lighting.controls import LightControl, LitPoints, controls_of
 from autocolor.lighting.rays import CameraLight, camera_light, rays_to
-from autocolor.scene.lights.light import Light
+from autocolor.scene.lights import Light
 from autocolor.scene.reflection_models import Cosines, ReflectionModel
+from autocolor.scene.surfaces import Part, Surface
 from autocolor.visibility.visible_points import NORMAL, POINT, REFLECTED_VIEW, PointChunk, VisiblePoints
+
+# -------------------- light_mix
+# The weights of lights and ambient in the sum that is a picture's intensity.
+#
+# Paper: "The Lighting Model": a light contributes its intensity times (D cos(I) + S cos^N(E)), and the
+# ambient term is added. The weights are relative to the largest of them, the scale, and only the sum is
+# multiplied by it: so lights k times as strong give the same relative sum, and levels that do not change by
+# rounding. Departs: a light that is linked to other surfaces has the weight 0. Its planes are those of all
+# surfaces, so that another link costs no more than the sum.
+
+SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
+"""The weights of a light's diffuse and specular planes, by surface number."""
+
+
+class LightMix(NamedTuple):
+    """The weights of the ambient term and of the planes of each light that shines, relative to `scale`."""
+
+    scale: float
+    ambient: np.float32
+    lights: Mapping[str, SurfaceWeights]
+
+
+def light_mix(
+    models: Mapping[int, ReflectionModel],
+    surfaces: Sequence[Surface],
+    lights: Sequence[Light],
+    ambient: float,
+    parts: Sequence[Part],
+) -> LightMix:
+    """The mix of the lights that shine; `models` has the reflection model of each visible surface number.
+
+    `parts` are those of the scene: a light that is linked to parts shines on their surfaces only. Raises
+    InputError where the sum would leave the range of float32: such an intensity is refused by name, never
+    clipped into a level.
+    """
+    if not ambient < LARGEST_SINGLE:
+        raise InputError(f"ambient must stay below {LARGEST_SINGLE:.3g}, not {ambient:g}; lower it")
+    shining = [light for light in lights if light.shines]
+    visible = {number: surfaces[number - 1] for number in models}
+    strengths = {light.name: _strengths(light, visible, parts) for light in shining}
+    for number, surface in visible.items():
+        peaks = {
+            name: rows[number][0] + rows[number][1] * models[number].largest
+            for name, rows in strengths.items()
+        }
+        _refuse_overflow(surface.name, peaks, ambient)
+    all_strengths = [each for rows in strengths.values() for pair in rows.values() for each in pair]
+    scale = max([ambient, *all_strengths]) or 1.0
+    weights = {
+        name: {
+            number: (np.float32(diffuse / scale), np.float32(specular / scale))
+            for number, (diffuse, specular) in rows.items()
+        }
+        for name, rows in strengths.items()
+    }
+    return LightMix(scale, np.float32(ambient / scale), weights)
+
+
+def _strengths(
+    light: Light, visible: Mapping[int, Surface], parts: Sequence[Part]
+) -> dict[int, tuple[float, float]]:
+    """The light's intensity times D and S by number of the visible surfaces; 0 where it does not shine."""
+    links, lit = light.links, {surface.name for surface in visible.values()}
+    if links.depend_on_parts:
+        lit_parts = links.lit_parts(part.name for part in parts)
+        lit &= {part.surface for part in parts if part.name in lit_parts}
+    return {
+        number: (
+            light.intensity * surface.reflectance.diffuse,
+            light.intensity * surface.reflectance.specular,
+        )
+        if surface.name in lit and links.shines_on_surface(surface.name)
+        else (0.0, 0.0)
+        for number, surface in visible.items()
+    }
+
+
+def _refuse_overflow(surface: str, peaks: Mapping[str, float], ambient: float) -> None:
+    """Refuse lights whose peaks have a sum float32 can't hold, naming the light that contributes most."""
+    total = ambient + sum(peaks.values())
+    if math.isfinite(total) and total < LARGEST_SINGLE:
+        return
+    light = max(peaks, key=lambda name: peaks[name])
+    raise InputError(
+        f"surface {surface!r} under light {light!r}: intensities must stay below {LARGEST_SINGLE:.3g}, not"
+        f" reach {total:g}; lower the light's intensity or the surface's diffuse and specular"
+    )
+
+
+# -------------------- light_planes
+# The contribution of one light to the visible points: two planes, and how they are mixed.
+
+DIFFUSE: Final = 0
+SPECULAR: Final = 1
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LightPlanes(Immutable):
+    """The contribution of one light to the visible points, in their order; read-only in a picture.
+
+    `values` is (2, n) float32: the diffuse and the specular plane, without D, S and the light's intensity.
+    `weights` are their weights in the picture. `mixed`, (n,) float32, is their weighted sum where it is kept:
+    that of a light that stays while others are moved need then only be added.
+    """
+
+    values: Singles
+    weights: SurfaceWeights
+    mixed: Singles | None = None
+
+
+def mix(planes: LightPlanes, chunk: PointChunk, out: Singles) -> None:
+    """Write the weighted sum of a light's two planes at a chunk of points to `out`."""
+    values = planes.values[:, chunk.pixels]
+    for surface in chunk.slices:
+        pair = np.array(planes.weights[surface.surface_number])
+        np.matmul(pair, values[:, surface.pixels], out=out[surface.pixels])
+
 
 FEW: Final = 0.3
 """Below this fraction of lit points it takes less time to pick them than to compute them all."""

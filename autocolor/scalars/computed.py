@@ -5,23 +5,297 @@ One more is one function, a line here, and its name in `scene.scalars.computed_n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Hashable, Mapping
 from functools import partial
-from typing import Final
+from typing import Final, NamedTuple
+from weakref import WeakKeyDictionary
 
-from autocolor.scalars.angles import draft_angle, slope
-from autocolor.scalars.bending import (
-    gaussian_curvature,
-    largest_curvature,
-    mean_curvature,
-    smallest_curvature,
-)
-from autocolor.scalars.places import coordinate, distance
-from autocolor.scalars.ranges import ScalarValues
-from autocolor.scalars.stripes import zebra
+import numpy as np
+
+from autocolor.arrays import Floats, Indices, Singles, chunks, lengths
+from autocolor.scalars.interpolation import interpolated, weighted_points
+from autocolor.scene.geometry.curvature import Curvatures
+from autocolor.scene.geometry.normals import used_rows
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalars.scalar import Scalar
-from autocolor.visibility.visible_points import VisiblePoints
+from autocolor.scene.scalar import LARGEST_SCALAR, Scalar
+from autocolor.visibility.visible_points import PIXELS_AT_ONCE, POINT, REFLECTED_VIEW, VisiblePoints
+
+# -------------------- ranges
+# The own range of a scalar, which is shown where `[scalar]` gives no limits.
+
+Limits = tuple[float, float]
+
+UNIT: Final = (0.0, 1.0)
+"""Assumed: the range of a scalar without any value."""
+
+LEAST_EXTENT: Final = 1e-6
+"""Assumed: a range that is shorter than this share of its numbers is noise of float32, and has no extent."""
+
+SMALLEST: Final = 1e-36
+"""Below this, float32 has no room for the half of a number."""
+
+MOST_KEPT: Final = 64
+"""Assumed: ranges that are kept of one mesh; while a direction is dragged, each has one of its own."""
+
+
+def size_of(mesh: Mesh) -> float:
+    """The diagonal of the box around a mesh."""
+    low, high = mesh.bounds
+    return float(np.linalg.norm(high - low))
+
+
+class ScalarValues(NamedTuple):
+    """A scalar at the visible points, (n,) float32 in their order, NaN where missing, and its own range."""
+
+    values: Singles
+    limits: Limits
+
+
+def within(values: Singles, limits: Limits) -> ScalarValues:
+    """The values, in their own array, with those that rounding put beyond the limits put on them."""
+    return ScalarValues(np.clip(values, *limits, out=values), limits)
+
+
+def widened(low: float, high: float, least: float = 0.0) -> Limits:
+    """The range from `low` to `high` as numbers of float32, since those at the pixels are.
+
+    Assumed: one without extent, as of a constant, is widened on both sides by half of its number, or by
+    `least` if that is more, and by a half where both are 0; so the value is in the middle of the colors. An
+    extent of at most `least` is none.
+
+    >>> widened(1.0, 3.0), widened(8.0, 8.0), widened(0.0, 0.0)
+    ((1.0, 3.0), (4.0, 12.0), (-0.5, 0.5))
+    """
+    low, high = float(np.float32(low)), float(np.float32(high))
+    most = max(abs(low), abs(high))
+    if high - low > max(LEAST_EXTENT * most, least):
+        return low, high
+    half = max(most / 2, least)
+    half = half if half > SMALLEST else 0.5
+    return float(np.float32(low - half)), float(np.float32(high + half))
+
+
+def range_of(values: Floats, cut: float = 0, least: float = 0.0) -> Limits:
+    """The least and the largest of the values that are not missing, `widened`; UNIT if all are.
+
+    `cut` percent of the values are beyond either end.
+    """
+    found = values[np.isfinite(values)]
+    if not len(found):
+        return UNIT
+    if cut:
+        low, high = np.percentile(found, [cut, 100 - cut]).tolist()
+        return widened(low, high, least)
+    return widened(float(found.min()), float(found.max()), least)
+
+
+_KEPT: Final[WeakKeyDictionary[Mesh, dict[Hashable, Limits]]] = WeakKeyDictionary()
+
+
+def kept(mesh: Mesh, key: Hashable, compute: Callable[[], Limits]) -> Limits:
+    """A range that depends on nothing but the mesh and the key; computed once, and not for each picture."""
+    ranges = _KEPT.setdefault(mesh, {})
+    if key not in ranges:
+        if len(ranges) >= MOST_KEPT:
+            ranges.clear()
+        ranges[key] = compute()
+    return ranges[key]
+
+
+# -------------------- places
+# Scalars of where a point is: its coordinates, and its distance along a direction.
+
+LEAST: Final = 1e-6
+"""Assumed: the share of an object's size that is rounding, as in the height of a level plate."""
+
+
+def coordinate(axis: int, mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
+    """A world coordinate; the range is that of the nodes that polygons use."""
+    low, high = mesh.bounds
+    limits = widened(float(low[axis]), float(high[axis]), LEAST * size_of(mesh))
+    return within(_along(np.eye(3)[axis], points), limits)
+
+
+def distance(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
+    """The distance from the origin along the scalar's direction; the range is that of the nodes in use."""
+    direction = unit_vector(scalar)
+    key = ("distance", *direction.tolist())
+    return within(_along(direction, points), kept(mesh, key, partial(_range_along, direction, mesh)))
+
+
+def limits_of_object(scalar: Scalar, coordinates: Floats) -> Limits | None:
+    """The range of a scalar that tells where a point is, over the nodes of an object, (nodes, 3).
+
+    None for any other scalar.
+    """
+    if scalar.name not in ("x", "y", "z", "distance") or not len(coordinates):
+        return None
+    direction = unit_vector(scalar) if scalar.name == "distance" else np.eye(3)["xyz".index(scalar.name)]
+    values = coordinates @ direction
+    size = float(np.linalg.norm(np.ptp(coordinates, axis=0)))
+    return widened(float(values.min()), float(values.max()), LEAST * size)
+
+
+def unit_vector(scalar: Scalar) -> Floats:
+    """The direction of a scalar in unit length."""
+    direction = np.array(scalar.direction)
+    # Measure in the largest component, so that no square is too large or too small.
+    direction /= np.abs(direction).max()
+    unit: Floats = direction / np.linalg.norm(direction)
+    return unit
+
+
+def _along(direction: Floats, points: VisiblePoints) -> Singles:
+    """The component of each point along a unit vector."""
+    toward = points.camera_direction((direction[0], direction[1], direction[2])) * points.unit
+    start = toward @ points.middle + direction @ np.array(points.view.eye)
+    values = np.empty(len(points.pixels), np.float32)
+    for chunk in chunks(len(values), PIXELS_AT_ONCE):
+        right, down, ahead = points.rows[POINT, chunk].astype(np.float64)
+        values[chunk] = toward[0] * right + toward[1] * down + toward[2] * ahead + start
+    return values
+
+
+def _range_along(direction: Floats, mesh: Mesh) -> Limits:
+    """The range of the nodes that polygons use, in chunks: the table may be a mapped file."""
+    used = used_rows(mesh.node_numbers.T, len(mesh.coordinates))
+    ends = [UNIT] if not used.any() else []
+    for chunk in chunks(len(used), PIXELS_AT_ONCE):
+        values = (direction @ mesh.coordinates.T[:, chunk])[used[chunk]]
+        if len(values):
+            ends.append((float(values.min()), float(values.max())))
+    return widened(min(low for low, _ in ends), max(high for _, high in ends), LEAST * size_of(mesh))
+
+
+# -------------------- angles
+# Scalars of how the surface lies: its slope, and its draft angle.
+#
+# Assumed: the normal is that of the mesh, interpolated between the corners as scalars are. It is not turned
+# to the eye, so both are the same from every view: the front of a polygon, where its corners run
+# counterclockwise, is the outside.
+
+SLOPES: Final = (0.0, 90.0)
+DRAFT_ANGLES: Final = (-90.0, 90.0)
+
+
+def slope(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
+    """The angle in degrees between the surface and what is level: 0 lies flat, 90 stands.
+
+    Level is across the scalar's direction. Assumed: an overhang has the slope of its upper side.
+    """
+    return ScalarValues(np.abs(_elevations(mesh, scalar, points, of_surface=True)), SLOPES)
+
+
+def draft_angle(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
+    """The draft angle in degrees for a mold that is pulled off along the scalar's direction.
+
+    It is the angle of the normal above the plane across the pull: 90 faces the pull, 0 is a wall along it,
+    and what is negative holds the mold.
+    """
+    return ScalarValues(_elevations(mesh, scalar, points, of_surface=False), DRAFT_ANGLES)
+
+
+def _elevations(mesh: Mesh, scalar: Scalar, points: VisiblePoints, *, of_surface: bool) -> Singles:
+    """The angle in degrees of the normal above the plane across the direction; 90 less it `of_surface`."""
+    pull = unit_vector(scalar)
+    vectors, numbers = mesh.normals.vectors.T, mesh.normals.numbers.T
+    values = np.empty(len(points.pixels), np.float32)
+    for chunk in weighted_points(mesh, points):
+        at_corners = np.take(vectors, np.take(numbers, chunk.polygons, axis=1), axis=1)
+        rows = [chunk.interpolated(row) for row in at_corners.astype(np.float64)]
+        normals = np.stack(rows).astype(np.float64)
+        along = pull @ normals
+        across = lengths(normals - pull[:, None] * along)
+        # An arc tangent of both is exact where an arc sine or cosine is not.
+        angles = np.arctan2(across, np.abs(along)) if of_surface else np.arctan2(along, across)
+        values[chunk.pixels] = np.degrees(angles)
+    return values
+
+
+# -------------------- bending
+# Scalars of how much the surface bends: its curvatures.
+#
+# The sign is that of `Mesh.curvatures`: positive where the surface bends away from its normal, as a ball
+# does. The largest and the smallest curvature are the principal ones.
+
+CUT: Final = 2.0
+"""Assumed: percent of the normals whose curvature is beyond either end of the range; a few sharp bends would
+take all of the colors."""
+
+LEAST_2: Final = 1e-2
+"""Assumed: the range of what is as good as flat, such as rounding on a plate: curvatures in proportion to the
+inverse of the object's size."""
+
+
+def mean_curvature(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
+    """The mean of the principal curvatures, in the inverse of the world unit."""
+    return _bending(lambda found: found.mean, "mean", mesh, points)
+
+
+def gaussian_curvature(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
+    """The product of the principal curvatures: positive on a ball, negative on a saddle, 0 on a cylinder."""
+    return _bending(lambda found: found.gaussian, "gaussian", mesh, points, power=2)
+
+
+def largest_curvature(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
+    """The larger of the principal curvatures."""
+    return _bending(partial(_principal, 1.0), "largest", mesh, points)
+
+
+def smallest_curvature(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
+    """The smaller of the principal curvatures."""
+    return _bending(partial(_principal, -1.0), "smallest", mesh, points)
+
+
+def _principal(sign: float, found: Curvatures) -> Floats:
+    values: Floats = found.mean + sign * np.sqrt(np.maximum(found.mean**2 - found.gaussian, 0))
+    return values
+
+
+def _bending(
+    choose: Callable[[Curvatures], Floats], name: str, mesh: Mesh, points: VisiblePoints, power: int = 1
+) -> ScalarValues:
+    """Values between those at the normals of the corners; their unit is the inverse world unit to a power."""
+    numbers = mesh.normals.numbers.T
+    at_normals = np.clip(choose(mesh.curvatures), -LARGEST_SCALAR, LARGEST_SCALAR)
+
+    def corner_values(polygons: Indices) -> Floats:
+        return at_normals.take(np.take(numbers, polygons, axis=1))
+
+    least = (LEAST_2 / (size_of(mesh) or 1.0)) ** power
+    limits = kept(mesh, ("bending", name), lambda: range_of(at_normals, CUT, least))
+    return ScalarValues(interpolated(mesh, points, corner_values), limits)
+
+
+# -------------------- stripes
+# Zebra stripes: how a row of long lamps would be reflected, which shows where a surface is not smooth.
+#
+# Assumed: the lamps are infinitely far, run along the scalar's direction and stand around it, as many in a
+# half turn as the scalar has stripes. A value is the phase from 0 to below 1 within the lamp and the gap
+# after it that the reflected ray meets. It is continuous around a full turn where the stripes of one are
+# whole.
+
+BELOW_ONE: Final = float(np.nextafter(np.float32(1), np.float32(0)))
+
+
+def zebra(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
+    """The phase of the lamp that the reflected ray meets, in [0, 1), by the normals of the picture."""
+    run = unit_vector(scalar)
+    # The angle about the run is counted from the world axis that is most across it.
+    across = np.eye(3)[np.abs(run).argmin()]
+    across -= run * (run @ across)
+    across /= np.linalg.norm(across)
+    both = np.stack([across, np.cross(run, across)])
+    in_camera = (both @ points.view.axes.T).astype(np.float32)
+    values = np.empty(len(points.pixels), np.float32)
+    for chunk in chunks(len(values), PIXELS_AT_ONCE):
+        along, upward = (in_camera @ points.rows[REFLECTED_VIEW, chunk]).astype(np.float64)
+        lamps = np.arctan2(upward, along) * (scalar.stripes / math.pi)
+        lamps -= np.floor(lamps)
+        values[chunk] = np.minimum(lamps, BELOW_ONE)
+    return ScalarValues(values, UNIT)
+
 
 Computing = Callable[[Mesh, Scalar, VisiblePoints], ScalarValues]
 

@@ -7,10 +7,163 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Singles, chunks_of_runs
-from autocolor.scalars.corner_weights import corner_weights
+from autocolor.arrays import Floats, Indices, Real, RealArray, Singles, chunks_of_runs, cross, lengths
 from autocolor.scene.mesh import Mesh
 from autocolor.visibility.visible_points import POINT, VisiblePoints
+
+# -------------------- corner_weights
+# The weights of a polygon's corners at points in it, by which numbers at the corners are interpolated.
+#
+# Assumed: in a triangle they are the barycentric coordinates, and in a convex quad the generalized ones of
+# Wachspress, which are linear where the numbers at the four corners are. Nothing is divided but by the sum,
+# and no weight is negative, so a value is never beyond those of the corners. A quad with a notch is split
+# at it into two triangles. A warped quad counts as its projection along the normal of its diagonals, and a
+# quad that crosses itself, or a polygon without area, has weights that are merely not negative.
+#
+# Measured: what is the same for all points of a polygon is computed for the polygon, in float64, and
+# repeated row by row. A repetition of several rows at once takes three times as long.
+
+ROUNDING: Final = 1e-9
+"""How much a corner may turn inward, of the largest turn, and still be straight."""
+
+
+def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) -> RealArray[Real]:
+    """The weights of the four corners at each point, (4, points); each column adds up to 1.
+
+    `corners` is (3, 4, polygons), and a triangle repeats a corner; `points`, (3, points), has those in each
+    polygon one after the other, as many as `counts`, (polygons,), says. The weights are of their type.
+    """
+    weights = np.zeros((4, points.shape[1]), points.dtype)
+    # A side without length makes a triangle; it should be the one between the last two corners.
+    no_side = (corners == np.roll(corners, -1, axis=1)).all(axis=0)
+    if no_side[2].all():
+        _weigh_in_triangles(corners[:, :3], counts, points, weights)
+        return _normalized(weights)
+    # Measured: where some are triangles, to weigh these once more takes less than to keep them apart.
+    _weigh_in_quads(corners, counts, points, weights)
+    triangles = np.flatnonzero(no_side.any(axis=0))
+    if len(triangles):
+        three = (no_side[:, triangles].argmax(axis=0) + np.arange(2, 5)[:, None]) % 4
+        columns = np.flatnonzero(np.repeat(no_side.any(axis=0), counts))
+        within = np.zeros((3, len(columns)), points.dtype)
+        counts = counts[triangles]
+        _weigh_in_triangles(corners[:, three, triangles], counts, np.take(points, columns, axis=1), within)
+        weights[:, columns] = 0
+        weights[np.repeat(three, counts, axis=1), columns] = within
+    return _normalized(weights)
+
+
+def _normalized(weights: RealArray[Real]) -> RealArray[Real]:
+    """The weights, in their own array, divided by their sums; equal ones where the sum is 0."""
+    sums: RealArray[Real] = weights[0] + weights[1]
+    for weight in weights[2:]:
+        sums += weight
+    if not sums.all():
+        nothing = np.flatnonzero(sums == 0)
+        weights[:, nothing], sums[nothing] = 0.25, 1.0
+    weights /= sums
+    return weights
+
+
+def _weigh_in_triangles(
+    corners: Floats, counts: Indices, points: RealArray[Real], weights: RealArray[Real]
+) -> None:
+    """Fill in the weights of the corners, (3, 3, triangles), at each point, up to a factor."""
+    outline = _outline(corners, points.dtype)
+    normals = _unit(cross(outline.sides[:, 0], outline.sides[:, 1]))
+    # The weight of a corner is the area on the opposite side.
+    weights[2], weights[0], weights[1] = _areas(outline, normals, counts, points)
+
+
+def _weigh_in_quads(
+    corners: Floats, counts: Indices, points: RealArray[Real], weights: RealArray[Real]
+) -> None:
+    """Fill in the weights of the corners, (3, 4, quads), at each point, up to a factor."""
+    outline = _outline(corners, points.dtype)
+    sides = outline.sides
+    normals = _unit(cross(sides[:, 0] + sides[:, 1], sides[:, 1] + sides[:, 2]))
+    areas = _areas(outline, normals, counts, points)
+    # How much the outline turns at each corner: the area of the triangle with its two neighbors.
+    turns = np.einsum("kp,kcp->cp", normals, cross(np.roll(sides, 1, axis=1), sides))
+    for corner, turn in enumerate(turns):
+        np.multiply(areas[(corner + 1) % 4], areas[(corner + 2) % 4], out=weights[corner])
+        weights[corner] *= np.repeat(np.maximum(turn, 0).astype(points.dtype), counts)
+    notched = turns.min(axis=0, initial=0) < -ROUNDING * turns.max(axis=0, initial=0)
+    if notched.any():
+        columns = np.flatnonzero(np.repeat(notched, counts))
+        quads = np.repeat(np.arange(len(counts)), counts)[columns]
+        weights[:, columns] = _weights_at_notches(
+            np.take(corners, quads, axis=2), turns.argmin(axis=0)[quads], np.take(points, columns, axis=1)
+        )
+
+
+def _weights_at_notches(corners: Floats, notch: Indices, points: RealArray[Real]) -> RealArray[Real]:
+    """The weights of four corners at a point in each of some quads that are split at their corner `notch`."""
+    column = np.arange(len(notch))
+    turned = (notch + np.arange(4)[:, None]) % 4
+    from_notch = corners[:, turned, column]
+    diagonal = from_notch[:, 2] - from_notch[:, 0]
+    normals = cross(diagonal, from_notch[:, 3] - from_notch[:, 1])
+    beyond = np.einsum("ij,ij->j", cross(normals, diagonal), points - from_notch[:, 0]) > 0
+    # The triangle on the point's side of the diagonal.
+    three = np.where(beyond, [[0], [2], [3]], [[0], [1], [2]])
+    weights = np.zeros((4, len(notch)), points.dtype)
+    in_triangles = np.zeros((3, len(notch)), points.dtype)
+    _weigh_in_triangles(from_notch[:, three, column], np.ones(len(notch), np.intp), points, in_triangles)
+    weights[turned[three, column], column] = in_triangles
+    return weights
+
+
+def _unit(normals: Floats) -> Floats:
+    """The normals in unit length, so that areas in a sliver are not too small for float32; 0 stays 0."""
+    sizes = lengths(normals)
+    sizes[sizes == 0] = 1.0
+    normals /= sizes
+    return normals
+
+
+class _Outline(NamedTuple):
+    """The outlines of polygons: an origin near each, and its size; corners and sides in that measure.
+
+    The origin is of the type of the points, so that it is subtracted from them without rounding.
+    """
+
+    origin: Floats
+    size: Floats
+    starts: Floats
+    sides: Floats
+
+
+def _outline(corners: Floats, dtype: np.dtype[Real]) -> _Outline:
+    origin = corners[:, 0].astype(dtype).astype(np.float64)
+    size = np.ptp(corners, axis=1).max(axis=0)
+    size[size == 0] = 1.0
+    starts = (corners - origin[:, None]) / size
+    return _Outline(origin, size, starts, (np.roll(corners, -1, axis=1) - corners) / size)
+
+
+def _areas(
+    outline: _Outline, normals: Floats, counts: Indices, points: RealArray[Real]
+) -> list[RealArray[Real]]:
+    """The area between each side and each point, in some unit of the polygon; at least 0."""
+    dtype = points.dtype
+    relative = [
+        row - np.repeat(origin.astype(dtype), counts)
+        for row, origin in zip(points, outline.origin, strict=True)
+    ]
+    areas = []
+    for side in range(outline.sides.shape[1]):
+        inward = cross(normals, outline.sides[:, side])
+        start = np.einsum("kp,kp->p", inward, outline.starts[:, side])
+        area = np.repeat(-start.astype(dtype), counts)
+        for row, along in zip(relative, inward / outline.size, strict=True):
+            factor = np.repeat(along.astype(dtype), counts)
+            factor *= row
+            area += factor
+        np.maximum(area, 0, out=area)
+        areas.append(area)
+    return areas
+
 
 POINTS_AT_ONCE: Final = 1 << 14
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Literal, TypedDict
 
-from autocolor.scene.columns.column import Row
+from autocolor.scene.columns import Row
 
 
 class FlapChanges(TypedDict, total=False):

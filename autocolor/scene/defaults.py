@@ -14,7 +14,7 @@ import numpy as np
 
 from autocolor.arrays import Floats, Indices, bounds_of, chunks
 from autocolor.checks import Color
-from autocolor.scene.lights.light import Light
+from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
 from autocolor.scene.view import View

@@ -20,14 +20,13 @@ from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
 from autocolor.logs import logger_of, timed
-from autocolor.scene.columns.problems import Problem
-from autocolor.scene.columns.value_kinds import Number
-from autocolor.scene.foreign_meshes import foreign_tables
+from autocolor.scene.columns import Problem
 from autocolor.scene.geometry.curvature import Curvatures, curvatures
-from autocolor.scene.geometry.node_normals import CREASE_ANGLE, NodeNormals, node_normals
-from autocolor.scene.geometry.planes.shared_planes import SharedPlanes, shared_planes
-from autocolor.scene.geometry.used_rows import used_bounds, used_rows
-from autocolor.scene.scalars.mesh_scalars import MeshScalar, joined_scalars, scalar_problems
+from autocolor.scene.geometry.foreign_meshes import foreign_tables
+from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, node_normals, used_bounds, used_rows
+from autocolor.scene.geometry.planes import SharedPlanes, shared_planes
+from autocolor.scene.kinds import Number
+from autocolor.scene.scalar import MeshScalar, joined_scalars, scalar_problems
 
 LOG: Final = logger_of(__name__)
 
@@ -306,3 +305,25 @@ def _check_rows(problems: list[str], what: str, numbers: Indices, count: int, ta
     row = int(np.flatnonzero(missing.any(axis=0) if missing.ndim > 1 else missing)[0])
     rule = f"{what} must be a row of the {table} (0 to {count - 1})"
     problems.append(f"{rule}, not {numbers[..., row].tolist()} (row {row})")
+
+
+# -------------------- same_meshes
+# Whether two meshes are the same, such as one in memory and the one that its file holds.
+
+TABLES: Final = ("coordinates", "node_numbers", "part_numbers")
+
+
+def has_same_tables(one: Mesh, other: Mesh) -> bool:
+    """Whether all tables and scalars of two meshes are equal; the crease angle is not one of them."""
+    if one is other:
+        return True
+    return (
+        one.part_names == other.part_names
+        and [(scalar.name, scalar.of) for scalar in one.scalars]
+        == [(scalar.name, scalar.of) for scalar in other.scalars]
+        and all(np.array_equal(vars(one)[name], vars(other)[name]) for name in TABLES)
+        and all(
+            np.array_equal(scalar.values, same.values, equal_nan=True)
+            for scalar, same in zip(one.scalars, other.scalars, strict=True)
+        )
+    )

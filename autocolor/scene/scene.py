@@ -25,31 +25,40 @@ from autocolor.scene.changes import (
     SurfaceChanges,
     ViewChanges,
 )
-from autocolor.scene.columns.bars import Bar
-from autocolor.scene.columns.color_kinds import ColorKind
-from autocolor.scene.columns.column import Column, Row, Tier, fields_of, row_label
-from autocolor.scene.columns.problems import REFUSED, Problem, RowError
-from autocolor.scene.columns.reference_kinds import RangesByName, ReferenceAt, references_of
-from autocolor.scene.columns.row_kinds import Nested, Rows
-from autocolor.scene.columns.rows import changed, cost, with_values
-from autocolor.scene.columns.value_kinds import Choice, CurveKind, Instance, Number, Text
+from autocolor.scene.columns import (
+    REFUSED,
+    Bar,
+    Column,
+    Problem,
+    Row,
+    RowError,
+    Tier,
+    changed,
+    cost,
+    fields_of,
+    row_label,
+    with_values,
+)
 from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import object_bounds, object_coordinates
-from autocolor.scene.lights.following import (
+from autocolor.scene.following import (
     Frame,
+    axis_number,
     changes_in_frame,
     followers_of,
     following_problems,
     frame_of,
+    free_name,
     in_frame,
     lights_in_world,
+    mirrored,
 )
-from autocolor.scene.lights.light import Light
-from autocolor.scene.lights.light_copies import axis_number, free_name, mirrored
-from autocolor.scene.lights.rigs import Rig
+from autocolor.scene.kinds import Choice, ColorKind, CurveKind, Instance, Number, Text
+from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalars.computed_names import COMPUTED, name_problems
-from autocolor.scene.scalars.scalar import Scalar
+from autocolor.scene.rigs import Rig
+from autocolor.scene.row_kinds import Nested, RangesByName, ReferenceAt, Rows, references_of
+from autocolor.scene.scalar import COMPUTED, Scalar, name_problems
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
 

@@ -12,15 +12,10 @@ from typing import Annotated, ClassVar, Final, Unpack
 
 from autocolor.checks import Color
 from autocolor.scene.changes import PaintChanges, PartChanges, ReflectanceChanges, SurfaceChanges
-from autocolor.scene.columns.bars import Bar
-from autocolor.scene.columns.color_kinds import ColorKind
-from autocolor.scene.columns.column import Column, Row, Tier
-from autocolor.scene.columns.problems import Problem, RowError
-from autocolor.scene.columns.reference_kinds import Reference
-from autocolor.scene.columns.row_kinds import Nested, Variant
-from autocolor.scene.columns.rows import changed
-from autocolor.scene.columns.value_kinds import Number, Switch, Text, Whole
+from autocolor.scene.columns import Bar, Column, Problem, Row, RowError, Tier, changed
+from autocolor.scene.kinds import ColorKind, Number, Switch, Text, Whole
 from autocolor.scene.reflection_models import MODELS, Phong, ReflectionModel
+from autocolor.scene.row_kinds import Nested, Reference, Variant
 
 MOST_SURFACES: Final = 255
 """Surface numbers have 8 bits, and 0 means that nothing is visible."""

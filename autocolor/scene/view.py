@@ -17,11 +17,8 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.immutable import read_only
 from autocolor.scene.changes import ViewChanges
-from autocolor.scene.columns.bars import Bar
-from autocolor.scene.columns.column import WORLD_UNITS, Column, Row, Tier
-from autocolor.scene.columns.problems import Problem
-from autocolor.scene.columns.rows import changed
-from autocolor.scene.columns.value_kinds import Number, VectorKind
+from autocolor.scene.columns import WORLD_UNITS, Bar, Column, Problem, Row, Tier, changed
+from autocolor.scene.kinds import Number, VectorKind
 
 
 @dataclass(frozen=True, repr=False)

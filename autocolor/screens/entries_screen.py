@@ -9,10 +9,9 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Words
-from autocolor.mapping.level_ranges import BACKGROUND, SCREENS, WORDS, LevelRange
+from autocolor.mapping.ranges import BACKGROUND, SCREENS, WORDS, LevelRange
 from autocolor.screens.screen import Screen
-from autocolor.widgets.colors import BLACK, HEIGHT, WHITE, WIDTH, YELLOW
-from autocolor.widgets.items import CHARACTER, Item, fitted, text
+from autocolor.widgets.items import BLACK, CHARACTER, HEIGHT, WHITE, WIDTH, YELLOW, Item, fitted, text
 
 SIDE: Final = 32
 CELL_WIDTH: Final = WIDTH // SIDE

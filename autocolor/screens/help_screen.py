@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from autocolor.screens.bindings import rows_of_help
+from autocolor.screens.pointing import rows_of_help
 from autocolor.screens.screen import Screen
-from autocolor.widgets.colors import LIGHT_GRAY, ORANGE, WHITE, YELLOW
-from autocolor.widgets.items import Item, text
+from autocolor.widgets.items import LIGHT_GRAY, ORANGE, WHITE, YELLOW, Item, text
 
 TITLE: Final = "AUTOCOLOR"
 LEFT: Final = 24

@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from autocolor.screens.picture.over_picture import OverPicture
-from autocolor.screens.picture.surface_row import surface_row
-from autocolor.widgets.column_rows import rows_of
+from autocolor.screens.picture.over_picture import OverPicture, surface_row
+from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Gap, Widget
 
 

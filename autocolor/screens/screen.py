@@ -10,10 +10,9 @@ from collections.abc import Sequence
 from typing import ClassVar, NamedTuple
 
 from autocolor.arrays import Bytes, Words
-from autocolor.screens.input.gestures import Gesture
+from autocolor.screens.input import Gesture
 from autocolor.screens.session import Session
-from autocolor.widgets.colors import NIGHT
-from autocolor.widgets.items import Item
+from autocolor.widgets.items import NIGHT, Item
 from autocolor.widgets.widget import Widget
 
 

@@ -11,25 +11,165 @@ from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
 from autocolor.checks import printable
-from autocolor.errors import InputError
-from autocolor.files.file_stem import file_stem, free_path
+from autocolor.errors import InputError, UsageError
 from autocolor.files.openable import MESH, kind_of
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig, read_rig, write_rig
-from autocolor.files.state.recent import note_file
+from autocolor.files.state import note_file
+from autocolor.files.store.file_changes import FileChanges
+from autocolor.files.store.store_file import STORE_SUFFIXES
+from autocolor.files.writing import file_stem, free_path
+from autocolor.mapping.display_image import DisplayImage
 from autocolor.scene.changes import LightChanges, PaintChanges, SurfaceChanges
-from autocolor.scene.lights.light import Light
+from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
-from autocolor.screens.comparing import NOW, Comparing
-from autocolor.screens.files.file_on_disk import FileOnDisk
 from autocolor.studio import Studio
-from autocolor.widgets.column_rows import World
-from autocolor.widgets.labels import short_name
-from autocolor.widgets.name_rows import KnownNames
+from autocolor.widgets.rows import KnownNames, World
+from autocolor.widgets.widget import short_name
 from ramtek_emu import HostPort, instructions
+
+# -------------------- comparing
+# Comparing: another state of the scene is shown in place of the present one, to see what was gained.
+#
+# That is the state before the last step, or a scene that was chosen, such as a kept variant. Nothing is
+# edited meanwhile; who edits ends it first. The words and entries of both are at hand, so that switching
+# sends no more than what differs: where only colors do, no word.
+
+BEFORE: Final = "the state before the last step"
+NOW: Final = "the present state"
+"""What the message line calls what is shown."""
+
+
+class Other(NamedTuple):
+    """A scene to compare with, and what the message line calls it."""
+
+    name: str
+    scene: Scene
+
+
+class Comparing:
+    """What the scene of a studio is compared with, and whether that is shown."""
+
+    def __init__(self, studio: Studio) -> None:
+        self._studio = studio
+        self._chosen: Other | None = None
+        self._kept: tuple[Scene, Scene, DisplayImage] | None = None
+        """A scene that was compared with another, that one, and what that looks like."""
+        self._shown: DisplayImage | None = None
+
+    @property
+    def other(self) -> Other | None:
+        """What is compared with: what was chosen, else the state before the last step, if there is one."""
+        steps = self._studio.history.to_undo
+        return self._chosen or (Other(BEFORE, steps[-1]) if steps else None)
+
+    def choose(self, other: Other | None) -> None:
+        """Choose what to compare with from now on; None for the state before the last step."""
+        self.end()
+        self._chosen = other
+
+    def forget(self, scene: Scene) -> None:
+        """Do not compare with a scene any longer that was chosen."""
+        if self._chosen is not None and self._chosen.scene is scene:
+            self.choose(None)
+
+    @property
+    def image(self) -> DisplayImage | None:
+        """What is shown in place of the present state, if anything."""
+        return self._shown
+
+    @property
+    def is_on(self) -> bool:
+        """Whether another state is shown."""
+        return self._shown is not None
+
+    def begin(self) -> str:
+        """Show the other state; returns what it is called. Raises UsageError if there is none."""
+        other = self.other
+        if other is None:
+            raise UsageError(
+                "to compare, there must be a step to undo or a kept variant; edit something first"
+            )
+        if self._shown is None:
+            self._shown = self._image_of(other.scene)
+        return other.name
+
+    def end(self) -> bool:
+        """Show the present state again; returns False if it was shown."""
+        was_on, self._shown = self.is_on, None
+        return was_on
+
+    def _image_of(self, other: Scene) -> DisplayImage:
+        """What another scene looks like, computed once for each two that are compared."""
+        studio = self._studio
+        studio.refine()
+        if self._kept is None or self._kept[0] is not studio.scene or self._kept[1] is not other:
+            self._kept = studio.scene, other, studio.image_of(other)
+        return self._kept[2]
+
+
+# -------------------- file_on_disk
+# The file that the scene is in: what another program changes there is shown as one step to undo.
+#
+# With edits that are not saved, the user is asked first. A file that is wrong for a while, as half edited
+# ones are, is told, and the scene stays as it was.
+
+SECONDS_BETWEEN: Final = 0.5
+"""Assumed: often enough to see an edit at once, and seldom enough to cost nothing."""
+
+
+class FileOnDisk:
+    """Looks at the file of a studio's scene."""
+
+    def __init__(self, studio: Studio) -> None:
+        self._studio = studio
+        self._changes: FileChanges | None = None
+        self._looked_at = time.monotonic()
+        self._bind()
+
+    def was_changed(self) -> bool:
+        """Whether another program changed the file since it was `seen`; it is looked at twice a second."""
+        now = time.monotonic()
+        if now - self._looked_at < SECONDS_BETWEEN:
+            return False
+        self._looked_at = now
+        self._bind()
+        return self._changes is not None and self._changes.have_come()
+
+    def seen(self) -> None:
+        """Take the file as it is now for seen, as after it was saved or opened."""
+        self._bind()
+        if self._changes is not None:
+            self._changes.seen()
+
+    def take(self) -> str:
+        """Show what the file holds now, or ask whether to; returns what to tell, empty for nothing.
+
+        Raises InputError if it cannot be shown; the scene stays as it was.
+        """
+        assert self._changes is not None
+        name = self._changes.path.name
+        # What is written from now on is another change.
+        self._changes.seen()
+        if self._studio.is_changed:
+            return f"{name} was changed elsewhere: Ctrl+R shows that, Ctrl+S saves yours beside"
+        try:
+            is_other = self._studio.reopen()
+        except InputError as error:
+            raise InputError(f"not shown: {problem}" for problem in error.problems) from None
+        return f"{name} was changed elsewhere; undo goes back" if is_other else ""
+
+    def _bind(self) -> None:
+        """Look at the file that the scene is in now."""
+        path = self._studio.file
+        if path is None:
+            self._changes = None
+        elif self._changes is None or self._changes.path != path:
+            self._changes = FileChanges(path, path.suffix.lower() in STORE_SUFFIXES)
+
 
 PICTURE: Final = "picture"
 """The name of the screen that a session begins with, and comes back to."""

@@ -8,25 +8,53 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Final
 
 from autocolor.arrays import Words
 from autocolor.errors import AutocolorError
 from autocolor.journal.history import History
-from autocolor.scene.columns.column import Tier
+from autocolor.scene.columns import Tier
 from autocolor.scene.scene import Scene
-from autocolor.screens.all_screens import SCREENS
-from autocolor.screens.board.board import Board
-from autocolor.screens.board.doing import Doing
-from autocolor.screens.board.keyboard import Keyboard
-from autocolor.screens.board.pointing import WHEEL, Pointing
-from autocolor.screens.input.gestures import Gesture, Mouse
-from autocolor.screens.input.unit import Unit
+from autocolor.screens.blending_screen import BlendingScreen
+from autocolor.screens.board import Board
+from autocolor.screens.entries_screen import EntriesScreen
+from autocolor.screens.file_screen import FileScreen
+from autocolor.screens.help_screen import HelpScreen
+from autocolor.screens.input import Gesture, Mouse, Unit
+from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
+from autocolor.screens.lights_screen import LightsScreen
+from autocolor.screens.mapping_screen import MappingScreen
+from autocolor.screens.mixing_screen import MixingScreen
 from autocolor.screens.picture.picture_edits import PictureEdits
+from autocolor.screens.picture.picture_screen import PictureScreen
 from autocolor.screens.picture.watching import ENDING, MESSAGE, Watching
+from autocolor.screens.pointing import WHEEL, Doing, Keyboard, Pointing
+from autocolor.screens.reflectance_screen import ReflectanceScreen
+from autocolor.screens.scalar_screen import ScalarScreen
+from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
+from autocolor.screens.variants_screen import KeptScreen
 from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import HostPort, RamtekError
+
+# -------------------- all_screens
+# Every screen, in the order of the main menu. A new screen is its module, and its line here.
+
+SCREENS: Final[tuple[type[Screen], ...]] = (
+    PictureScreen,
+    LightAndViewScreen,
+    LightsScreen,
+    ReflectanceScreen,
+    MixingScreen,
+    BlendingScreen,
+    MappingScreen,
+    ScalarScreen,
+    KeptScreen,
+    FileScreen,
+    EntriesScreen,
+    HelpScreen,
+)
 
 
 class Viewer:

@@ -17,9 +17,9 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Numbers, chunks_of_runs, most_of_four
-from autocolor.visibility.extents import extents_of_polygons
+from autocolor.arrays import Floats, Indices, Numbers, chunks_of_runs, least_of_four, most_of_four
 from autocolor.visibility.projection import Projection
+from autocolor.visibility.scan_lines import extents_of_polygons
 
 KEY_BITS: Final = 62
 """One less than the 63 bits of a positive number, because rounding may add to the nearest depth."""
@@ -138,3 +138,101 @@ def polygons_of_numbers(projected: Projection, numbers: Numbers) -> Indices:
     polygons = numbers - 1
     polygons[polygons >= projected.corners.shape[1]] -= projected.corners.shape[1]
     return polygons
+
+
+# -------------------- culling
+# Occlusion culling: polygons that are hidden as a whole, found before the depth test.
+#
+# The raster is divided into tiles, each with the depth key of its farthest pixel. A polygon that fits into
+# two by two tiles, and is farther than all four everywhere, can't be seen.
+#
+# Measured: it finds half of the coupe's polygons that are seen from behind, and the visible surfaces of
+# five meshes take a twenty-fifth to a twelfth less time. Tiles of several sizes find no more.
+
+FITTING: Final = 0.9
+"""The fraction of the polygons that are to be no larger than a tile."""
+
+
+def not_occluded(
+    depth_buffer: Numbers, projected: Projection, scale: DepthScale, polygons: Indices
+) -> Indices:
+    """Those of some polygons of the projection that may be nearer than what the depth buffer holds."""
+    if not len(polygons):
+        return polygons
+    # Find the bounding box of each polygon in pixels.
+    corners = np.take(projected.corners, polygons, axis=1)
+    lines, x = projected.first_line[corners], projected.x[corners]
+    top, bottom = least_of_four(lines), most_of_four(lines) - 1
+    left = np.clip(least_of_four(x) - 1, 0, projected.elements - 1).astype(np.intp)
+    right = np.clip(most_of_four(x) + 1, 0, projected.elements - 1).astype(np.intp)
+
+    # Choose the size of the tiles, and look up the farthest of the four that each box is in.
+    extent = np.maximum(bottom - top, right - left) + 1
+    rank = int(FITTING * (len(extent) - 1))
+    size = int(np.partition(extent, rank)[rank])
+    raster = depth_buffer.reshape(projected.lines, projected.elements)
+    farthest = _least_of_rows(np.ascontiguousarray(_least_of_rows(raster, size).T), size)
+    above, below, first, last = top // size, bottom // size, left // size, right // size
+    behind = least_of_four(
+        [farthest[first, above], farthest[last, above], farthest[first, below], farthest[last, below]]
+    )
+
+    # Compare with the nearest corner. Because the step of a segment is rounded, each pixel may come half
+    # a unit nearer.
+    nearest = scale.keys(most_of_four(projected.inverse_depth[corners]))
+    nearest += (extent // 2 + 2) * scale.number_limit
+    if scale.planes is not None:
+        plane = scale.planes.take(polygons)
+        row = np.flatnonzero(plane >= 0)
+        at_corners = corners[:, row]
+        depths = projected.planes.inverse_depth(plane[row], projected.x[at_corners], projected.y[at_corners])
+        nearest[row] = scale.keys(most_of_four(depths)) + plane_rounding(projected) * scale.number_limit
+    kept: Indices = polygons[(extent > size) | (nearest >= behind)]
+    return kept
+
+
+def _least_of_rows(keys: Numbers, size: int) -> Numbers:
+    """The least keys of each `size` rows, and of the rows that are left over."""
+    whole = len(keys) // size * size
+    least: Numbers = keys[:whole].reshape(-1, size, keys.shape[1]).min(axis=1)
+    return least if whole == len(keys) else np.concatenate([least, keys[whole:].min(axis=0, keepdims=True)])
+
+
+# -------------------- segments
+# Segments: the extents of polygons on scan lines, with their depth keys.
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Segments that cover the center of a pixel; every array is (segments,).
+
+    `number` is that of the polygon, as keys have it. A segment covers `count` pixels from `first_pixel` on, a
+    flat place in the raster. Its depth key is `start` + k `step` at its pixel k, int64.
+    """
+
+    number: Numbers
+    first_pixel: Indices
+    count: Indices
+    start: Numbers
+    step: Numbers
+
+
+def segments_of_polygons(projected: Projection, scale: DepthScale, polygons: Indices) -> Segments:
+    """The segments of some polygons of the projection, in the order of polygons and lines."""
+    extents = extents_of_polygons(projected, polygons)
+    start, step = scale.keys(extents.start), scale.keys(extents.step)
+    planes = None if scale.planes is None else scale.planes.take(polygons)
+    if planes is not None and planes.max(initial=-1) >= 0:
+        # Let the polygons of a shared plane have its depth.
+        plane = planes.take(extents.row)
+        shared = np.flatnonzero(plane >= 0)
+        start[shared], step[shared] = plane_keys(
+            projected, scale, plane[shared], extents.line[shared], extents.first[shared]
+        )
+    return Segments(
+        numbers_of_polygons(projected, polygons).take(extents.row),
+        extents.line * projected.elements + extents.first,
+        extents.count,
+        start,
+        step,
+    )

@@ -15,19 +15,278 @@ as walking around the polygons in the order of the rows).
 
 from __future__ import annotations
 
-from typing import Final
+from dataclasses import dataclass
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Indices, Numbers, chunks_of_runs, runs
+from autocolor.arrays import Bytes, Floats, Indices, Numbers, Singles, chunks, chunks_of_runs, dot, runs
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
-from autocolor.visibility.culling import not_occluded
-from autocolor.visibility.depth import DepthScale, depth_scale
-from autocolor.visibility.interpolation import interpolated_points
+from autocolor.visibility.depth import (
+    DepthScale,
+    depth_scale,
+    not_occluded,
+    polygons_of_numbers,
+    segments_of_polygons,
+)
 from autocolor.visibility.projection import Projection, projection
-from autocolor.visibility.segments import segments_of_polygons
-from autocolor.visibility.visible_points import VisiblePoints
+from autocolor.visibility.scan_lines import DOWN_SIDE, UP_SIDE, edges, edges_on_lines
+from autocolor.visibility.visible_points import (
+    NORMAL,
+    POINT,
+    REFLECTED_VIEW,
+    ROW_COUNT,
+    VisibleParts,
+    VisiblePoints,
+    fill_point_products,
+    surface_slices,
+)
+
+# -------------------- visible_spans
+# Visible spans: what remains of the segments, and what is interpolated along it.
+#
+# Paper: "The Lighting Model": the direction of the normal is computed from the node normals by bilinear
+# interpolation, along the edges and then along the span. Departs: on the screens of 1983 that was linear in
+# the picture; here it is perspective-correct: the normal is halfway between those of two nodes where the
+# point is halfway between them on the surface, not in the picture.
+
+# Rows of what is stepped along a visible span: the point, the normal, the inverse depth, the ray.
+POINTS: Final = slice(0, 3)
+NORMALS: Final = slice(3, 6)
+DEPTH: Final = 6
+RAY: Final = slice(7, 10)
+
+SPANS_AT_ONCE: Final = 1 << 14
+
+
+@dataclass(frozen=True, eq=False)
+class VisibleSpans:
+    """Neighboring pixels of a line at which the same polygon is visible, sorted by surface.
+
+    Within a surface they are in the order of the polygons' numbers, so that neighbors look up neighboring
+    data, and those of one polygon in the order of the pixels.
+
+    A span has `count` pixels from `first_pixel` on, a flat place in the raster. `polygon` is the polygon's
+    column in the projection, `polygon_number` its row in the mesh's polygon table, `surface` its surface
+    number.
+    """
+
+    first_pixel: Indices
+    count: Indices
+    polygon: Indices
+    polygon_number: Indices
+    surface: Bytes
+
+
+class Crossing(NamedTuple):
+    """Where edges cross lines: screen x in pixels, inverse depth, and normal, (3, edges) float32."""
+
+    x: Floats
+    inverse_depth: Floats
+    normal: Singles
+
+
+def visible_spans(
+    projected: Projection, number_at_pixel: Numbers, surface_numbers: tuple[int, ...]
+) -> VisibleSpans:
+    """The visible spans of a projection.
+
+    `number_at_pixel`, (lines * elements,), has the number, as keys have it, of the polygon that is visible at
+    each pixel, 0 for none.
+    """
+    # A span begins where the polygon changes, and with each line.
+    head = np.ones(len(number_at_pixel), np.bool_)
+    np.not_equal(number_at_pixel[1:], number_at_pixel[:-1], out=head[1:])
+    head[:: projected.elements] = True
+    first_pixel = np.flatnonzero(head)
+    count = np.diff(first_pixel, append=len(number_at_pixel))
+    number = number_at_pixel.take(first_pixel)
+    by_number = _by_number(number)
+    first_pixel, count = first_pixel.take(by_number), count.take(by_number)
+
+    # Sort by surface, so that reflectance is constant over a slice of the pixels.
+    polygon = polygons_of_numbers(projected, number.take(by_number))
+    polygon_number = projected.polygon_numbers[polygon]
+    surface = np.array(surface_numbers, np.uint8)[projected.mesh.part_numbers[polygon_number]]
+    order = np.argsort(surface, kind="stable")
+    return VisibleSpans(
+        first_pixel.take(order),
+        count.take(order),
+        polygon.take(order),
+        polygon_number.take(order),
+        surface.take(order),
+    )
+
+
+def _by_number(number: Numbers) -> Indices:
+    """The spans that see a polygon, in the order of the polygons' numbers and then of the pixels.
+
+    Measured: with a million polygons the order saves half of the time of `along_spans`. Numbers of 16 bits
+    are sorted digit by digit, in a third of the time of a stable sort of longer ones.
+    """
+    order = np.flatnonzero(number)
+    for shift in range(0, int(number.max(initial=0)).bit_length(), 16):
+        digit = (number.take(order) >> shift).astype(np.uint16)
+        order = order.take(np.argsort(digit, kind="stable"))
+    return order
+
+
+def along_spans(projected: Projection, spans: VisibleSpans) -> tuple[Singles, Singles]:
+    """What is stepped along each span: the values at its first pixel, and the steps from pixel to pixel.
+
+    The values are (10, spans) float32: the point around the middle and the normal, whose steps are multiplied
+    by the depth; the inverse depth; and the ray, whose step is the same for all. The steps are (7, spans).
+    The differences are taken in float64, so that a point is as exact from afar as from near.
+    """
+    count = len(spans.count)
+    start, step = np.empty((10, count), np.float32), np.empty((7, count), np.float32)
+    for chunk in chunks(count, SPANS_AT_ONCE):
+        _fill_along(start[:, chunk], step[:, chunk], projected, spans, chunk)
+    return start, step
+
+
+def _fill_along(
+    start: Singles, step: Singles, projected: Projection, spans: VisibleSpans, chunk: slice
+) -> None:
+    """Fill in the values and the steps of a chunk of spans."""
+    focal, middle = projected.focal_length, projected.middle
+    line, element = np.divmod(spans.first_pixel[chunk], projected.elements)
+    down, up = (
+        _crossing(projected, *edges_on_lines(projected, spans.polygon[chunk], line, side), line)
+        for side in (DOWN_SIDE, UP_SIDE)
+    )
+    # The inverse depth is linear from crossing to crossing.
+    width, offset = up.x - down.x, element + 0.5 - down.x
+    depth_step = (up.inverse_depth - down.inverse_depth) / width
+    inverse_depth = down.inverse_depth + depth_step * offset
+    start[DEPTH], step[DEPTH] = inverse_depth, depth_step
+    # The normal is not: it is interpolated as the points of the surface are.
+    weight = offset / width * up.inverse_depth / inverse_depth
+    rate = ((1 - weight) * up.inverse_depth + weight * down.inverse_depth) / width
+    difference = up.normal - down.normal
+    np.multiply(difference, rate.astype(np.float32), out=step[NORMALS])
+    difference *= weight.astype(np.float32)
+    np.add(down.normal, difference, out=start[NORMALS])
+
+    # The point is the ray over the inverse depth; from pixel to pixel the ray changes by `ray_step`.
+    ray = ((element + 0.5 - projected.elements / 2) / focal, (line + 0.5 - projected.lines / 2) / focal, 1.0)
+    depth = 1 / inverse_depth
+    for axis, ray_step in enumerate((1 / focal, 0.0, 0.0)):
+        position = ray[axis] * depth
+        start[axis] = position - middle[axis]
+        step[axis] = ray_step - position * depth_step
+        start[RAY.start + axis] = ray[axis]
+
+
+def _crossing(projected: Projection, top: Indices, bottom: Indices, line: Indices) -> Crossing:
+    """Where each edge crosses its line."""
+    edge = edges(projected, top, bottom)
+    # Same arithmetic as the segments, so that edge-on polygons stay segments.
+    lines_below = line - edge.first_line
+    x = edge.x + lines_below * edge.x_step
+    inverse_depth = edge.inverse_depth + lines_below * edge.inverse_depth_step
+    # Interpolate the normal perspective-correctly: weight both ends by their inverse depths.
+    a, b, normals = edge.top_node, edge.bottom_node, projected.corner_normals.ravel()
+    top_y = projected.y.take(a)
+    fraction = (line + 0.5 - top_y) / (projected.y.take(b) - top_y)
+    top_weight, bottom_weight = (
+        (1 - fraction) * projected.inverse_depth.take(a),
+        fraction * projected.inverse_depth.take(b),
+    )
+    weight = (bottom_weight / (top_weight + bottom_weight)).astype(np.float32)
+    # Measured: `take` along the second axis takes a quarter of the time of an index there.
+    normal = np.take(projected.normals, normals[top], axis=1)
+    normal += weight * (np.take(projected.normals, normals[bottom], axis=1) - normal)
+    return Crossing(x, inverse_depth, normal)
+
+
+# -------------------- interpolation
+# Point, normal and reflected view at each visible pixel, stepped along the visible spans.
+
+PIXELS_AT_ONCE: Final = 1 << 14
+
+
+def interpolated_points(
+    projected: Projection,
+    number_at_pixel: Numbers,
+    surface_numbers: tuple[int, ...],
+    one_sided: frozenset[int],
+) -> VisiblePoints:
+    """What is visible at each pixel, given the number of the polygon there as in `visible_spans`.
+
+    `surface_numbers` and `one_sided` are those of `visible_surfaces`.
+    """
+    spans = visible_spans(projected, number_at_pixel, surface_numbers)
+    start, step = along_spans(projected, spans)
+    # Turn the normals of polygons seen from behind to the eye.
+    behind = projected.from_behind[spans.polygon]
+    turned = np.flatnonzero(behind & ~np.isin(spans.surface, list(one_sided)))
+    start[NORMALS, turned] *= -1
+    step[NORMALS, turned] *= -1
+
+    # Step along the spans.
+    count = spans.count
+    pixels = runs(spans.first_pixel, count)
+    rows = np.empty((ROW_COUNT, len(pixels)), np.float32)
+    ray_step = np.float32(1 / projected.focal_length)
+    for part, chunk in chunks_of_runs(count, PIXELS_AT_ONCE):
+        start_here, step_here = (np.repeat(table[:, part], count[part], axis=1) for table in (start, step))
+        along = pixels[chunk] - np.repeat(spans.first_pixel[part], count[part])
+        _fill(rows[:, chunk], start_here, step_here, along.astype(np.float32), ray_step)
+
+    for table in (rows, pixels):
+        table.flags.writeable = False
+    return VisiblePoints(
+        projected.view,
+        projected.lines,
+        projected.elements,
+        projected.unit,
+        projected.middle,
+        pixels,
+        surface_slices(_pixels_of_surfaces(spans)),
+        spans.polygon_number,
+        count,
+        rows,
+        VisibleParts(projected.mesh.part_names, projected.mesh.part_numbers, spans.polygon_number, count),
+    )
+
+
+def _pixels_of_surfaces(spans: VisibleSpans) -> Numbers:
+    """The number of visible pixels of each surface, by surface number; the spans are sorted by surface."""
+    # One number more than there are surfaces: the last one ends where the next would begin.
+    numbers = np.arange(int(spans.surface.max(initial=0)) + 2)
+    ends = np.append(0, np.cumsum(spans.count))
+    return np.diff(ends[np.searchsorted(spans.surface, numbers)])
+
+
+def _fill(rows: Singles, start: Singles, step: Singles, along: Singles, ray_step: np.float32) -> None:
+    """Fill in the rows of some pixels, each `along` pixels from the start of its span."""
+    # Interpolate point and normal, which change in proportion to `along` over the inverse depth.
+    inverse_depth = step[DEPTH] * along
+    inverse_depth += start[DEPTH]
+    distance = np.divide(along, inverse_depth, out=inverse_depth)
+    normal = rows[NORMAL]
+    for out, linear in ((rows[POINT], POINTS), (normal, NORMALS)):
+        step[linear] *= distance
+        np.add(start[linear], step[linear], out=out)
+    # Normalize the normal.
+    length = np.sqrt(dot(normal, normal))
+    # A polygon without area has a normal of 0, and keeps it.
+    length += np.float32(1e-30)
+    normal /= length
+    # Normalize the ray.
+    ray = start[RAY]
+    ray[0] += along * ray_step
+    np.sqrt(dot(ray, ray), out=length)
+    ray /= length
+    # Reflect the view direction at the normal: R = 2 (N.V) N - V, where V is the reversed ray.
+    facing = dot(normal, ray)
+    facing *= np.float32(-2)
+    np.multiply(normal, facing, out=rows[REFLECTED_VIEW])
+    rows[REFLECTED_VIEW] += ray
+    fill_point_products(rows)
+
 
 SEGMENTS_AT_ONCE: Final = 1 << 16
 FRAGMENTS_AT_ONCE: Final = 1 << 16

@@ -23,10 +23,10 @@ from autocolor.visibility.depth import (
     plane_keys,
     polygons_of_numbers,
 )
-from autocolor.visibility.edges import edges
-from autocolor.visibility.interpolation import interpolated_points
 from autocolor.visibility.projection import Projection, projection
+from autocolor.visibility.scan_lines import edges
 from autocolor.visibility.visible_points import VisiblePoints
+from autocolor.visibility.visible_surfaces import interpolated_points
 
 
 @dataclass

@@ -14,10 +14,219 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Numbers, Words
-from autocolor.widgets.areas import SCREEN, Area
-from autocolor.widgets.colors import NIGHT, WHITE
-from autocolor.widgets.strokes import clipped, joined
+from autocolor.mapping.ranges import SCREENS
 from ramtek_emu import instructions
+
+# -------------------- colors
+# The words that screens draw with, by the names of their colors, and the size that screens are laid out
+# for.
+#
+# | words | their entries | |---|---| | 0, the background, and those of the surfaces | the scene's | |
+# `SCREENS`, the sixteen highest | constant: the colors below |
+#
+# | screen | words | borrowed entries | |---|---|---| | picture, lights, reflectance, mapping, scalar | all,
+# `SCREENS` over the picture | none | | light and view | `SCREENS`; all in its small picture | none | |
+# color mixing | `SCREENS`; the chosen surface's, in a small picture and a bar | ramps and swatches | |
+# light blending | all, and the chosen surface's again in a bar, and `SCREENS` | none | | kept | `SCREENS` |
+# small pictures, in the words of all surfaces | | entries | all, each in its cell | none | | file, help |
+# `SCREENS` | none |
+#
+# A screen borrows words by `Screen.loads` alone. Color mixing borrows those of surfaces that it does not
+# show; where these are too few, it borrows some of the chosen surface's, too, spread over its levels, each
+# of which is then shown by its neighbor. `mixing_palette` tells which ones.
+#
+# A page tells its base and all 1024 entries, and a sheet loads the entries that differ from those of the
+# page before, and writes the words of another base whole: so whatever a screen borrows or covers is
+# restored by the page that follows, and none has to clean up.
+
+WIDTH: Final = 640
+HEIGHT: Final = 480
+"""The size that the screens are laid out for, in elements and lines."""
+
+BLACK: Final = SCREENS.first
+WHITE: Final = SCREENS.first + 1
+LIGHT_GRAY: Final = SCREENS.first + 2
+GRAY: Final = SCREENS.first + 3
+SLATE: Final = SCREENS.first + 4
+NIGHT: Final = SCREENS.first + 5
+YELLOW: Final = SCREENS.first + 6
+ORANGE: Final = SCREENS.first + 7
+RED: Final = SCREENS.first + 8
+GREEN: Final = SCREENS.first + 9
+BLUE: Final = SCREENS.first + 10
+"""White is for text, light gray for what is dim, yellow for what is chosen, orange for warnings; red, green
+and blue for axes and for components of colors."""
+
+
+# -------------------- areas
+# Areas of the screen: rectangles of pixels.
+#
+# Positions are an element and a line. Whole numbers are the centers of pixels, line 0 on top.
+
+
+class Area(NamedTuple):
+    """A rectangle of pixels, its edges included."""
+
+    left: int
+    top: int
+    right: int
+    bottom: int
+
+    @property
+    def width(self) -> int:
+        """The number of elements."""
+        return self.right - self.left + 1
+
+    @property
+    def height(self) -> int:
+        """The number of lines."""
+        return self.bottom - self.top + 1
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it has no pixels."""
+        return self.right < self.left or self.bottom < self.top
+
+    def has(self, element: float, line: float) -> bool:
+        """Whether a position is inside."""
+        return self.left <= element <= self.right and self.top <= line <= self.bottom
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """The element and the line of the middle, which may lie between pixels."""
+        return (self.left + self.right) / 2, (self.top + self.bottom) / 2
+
+    def overlaps(self, other: Area) -> bool:
+        """Whether the two have a pixel in common."""
+        return (
+            self.left <= other.right
+            and other.left <= self.right
+            and self.top <= other.bottom
+            and other.top <= self.bottom
+        )
+
+    def covers(self, other: Area) -> bool:
+        """Whether all pixels of another area are inside."""
+        return (
+            self.left <= other.left
+            and other.right <= self.right
+            and self.top <= other.top
+            and other.bottom <= self.bottom
+        )
+
+    def within(self, other: Area) -> Area:
+        """The pixels that both have."""
+        return Area(
+            max(self.left, other.left),
+            max(self.top, other.top),
+            min(self.right, other.right),
+            min(self.bottom, other.bottom),
+        )
+
+    def inset(self, margin: int) -> Area:
+        """The area without a margin on all sides."""
+        return Area(self.left + margin, self.top + margin, self.right - margin, self.bottom - margin)
+
+
+SCREEN: Final = Area(0, 0, WIDTH - 1, HEIGHT - 1)
+
+
+# -------------------- strokes
+# Strokes: straight lines on the screen, each from an element and line to another.
+#
+# Strokes are (n, 4) float64: element and line of the start, element and line of the end.
+
+MOST_STROKES: Final = 1 << 14
+"""Assumed: of a huge mesh, only so many strokes are drawn in a view, the longest.
+
+An area of 248 x 224 has three times as many pixels; more strokes would fill it.
+"""
+
+
+def clipped(strokes: Floats, area: Area) -> Floats:
+    """What of the strokes is in the area, between the centers of its outer pixels, (kept, 4).
+
+    A stroke that is not in the area is left out; one that touches its border leaves a point.
+    """
+    # Most strokes of most screens are inside.
+    if (strokes >= (*area[:2], *area[:2])).all() and (strokes <= (*area[2:], *area[2:])).all():
+        return strokes
+    start, end = strokes.T[:2], strokes.T[2:]
+    step = end - start
+    low = np.array([[area.left], [area.top]], np.float64)
+    high = np.array([[area.right], [area.bottom]], np.float64)
+
+    # Find the fractions at which each stroke enters and leaves between two borders. One that runs along a
+    # pair of borders is between them all the way, or never.
+    along = step == 0
+    divisor = np.where(along, 1.0, step)
+    with np.errstate(over="ignore"):
+        at_low, at_high = (low - start) / divisor, (high - start) / divisor
+    outside = (along & ((start < low) | (start > high))).any(axis=0)
+    enters = np.where(along, 0.0, np.minimum(at_low, at_high)).max(axis=0, initial=0.0)
+    leaves = np.where(along, 1.0, np.maximum(at_low, at_high)).min(axis=0, initial=1.0)
+    kept = np.flatnonzero(~outside & (enters <= leaves))
+
+    # Keep the ends that lie in the area as they are, and let no rounding lead outside of it.
+    start, step, end = start[:, kept], step[:, kept], end[:, kept]
+    enters, leaves = enters[kept], leaves[kept]
+    starts = np.where(enters > 0, start + enters * step, start)
+    ends = np.where(leaves < 1, start + leaves * step, end)
+    return np.concatenate([np.clip(starts, low, high), np.clip(ends, low, high)]).T
+
+
+def joined(positions: Floats | Sequence[tuple[float, float]]) -> Floats:
+    """The strokes from each position of (n, 2) to the next, (n - 1, 4).
+
+    >>> joined([(0, 0), (4, 0), (4, 3)]).tolist()
+    [[0.0, 0.0, 4.0, 0.0], [4.0, 0.0, 4.0, 3.0]]
+    """
+    places = np.asarray(positions, np.float64).reshape(-1, 2)
+    return np.concatenate([places[:-1], places[1:]], axis=1)
+
+
+def between(starts: Floats, ends: Floats) -> Floats:
+    """The strokes from positions to other positions, both (n, 2)."""
+    return np.concatenate([starts, ends], axis=1)
+
+
+def together(strokes: Sequence[Floats]) -> Floats:
+    """All strokes of several arrays, (n, 4)."""
+    return np.concatenate([np.empty((0, 4)), *strokes])
+
+
+def drawn(strokes: Floats, most: int = MOST_STROKES) -> Numbers:
+    """The strokes from pixel to pixel, (n, 4) int64, none twice; the `most` longest if there are more.
+
+    The nearest pixel is taken, half up. What is shorter than a pixel is left out: without it the details of
+    a mesh are less of a blot, and the ends of longer strokes cover most of it. If all are as short as that,
+    a point of them is left.
+    """
+    pixels = np.floor(strokes + 0.5).astype(np.int64)
+    # Write each stroke from its upper or left end.
+    backward = (pixels[:, 3] < pixels[:, 1]) | (
+        (pixels[:, 3] == pixels[:, 1]) & (pixels[:, 2] < pixels[:, 0])
+    )
+    pixels[backward] = pixels[backward][:, [2, 3, 0, 1]]
+    steps = np.abs(pixels[:, 2:] - pixels[:, :2]).max(axis=1, initial=0)
+    longer = pixels[steps > 0] if (steps > 0).any() else pixels[:1]
+    if not len(longer):
+        return longer
+    distinct = _distinct(longer)
+    if len(distinct) <= most:
+        return distinct
+    lengths = np.abs(distinct[:, 2:] - distinct[:, :2]).max(axis=1)
+    return np.take(distinct, np.sort(np.argsort(-lengths, kind="stable")[:most]), axis=0)
+
+
+def _distinct(pixels: Numbers) -> Numbers:
+    """The rows without repetitions, in the order of their columns."""
+    order = np.lexsort(pixels.T[::-1])
+    rows = pixels[order]
+    differs = np.ones(len(rows), np.bool_)
+    differs[1:] = (rows[1:] != rows[:-1]).any(axis=1)
+    return np.compress(differs, rows, axis=0)
+
 
 CHARACTER: Final = 7
 """Elements from one character of a text to the next."""

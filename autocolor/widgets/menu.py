@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import HEIGHT, NIGHT, SLATE, WIDTH
-from autocolor.widgets.items import Item, filled
+from autocolor.widgets.items import HEIGHT, NIGHT, SLATE, WIDTH, Area, Item, filled
 from autocolor.widgets.widget import ROW_LINES, Gap, Heading, Widget
 
 MESSAGE_LINES: Final = 16

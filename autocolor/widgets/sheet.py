@@ -15,10 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from autocolor.arrays import Bytes, Words
-from autocolor.mapping.level_ranges import BACKGROUND
+from autocolor.mapping.ranges import BACKGROUND
 from autocolor.sending import configuration_of, encoder_of_entries
-from autocolor.widgets.areas import Area
-from autocolor.widgets.items import Item, filled
+from autocolor.widgets.items import Area, Item, filled
 from ramtek_emu import HostPort, instructions
 
 

@@ -10,10 +10,64 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple, TypeVar
 
-from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import BLACK, GRAY, LIGHT_GRAY, NIGHT, SLATE, WHITE, YELLOW
-from autocolor.widgets.items import CHARACTER, Item, filled, fitted, text
-from autocolor.widgets.labels import short_label, short_name
+from autocolor.widgets.items import (
+    BLACK,
+    CHARACTER,
+    GRAY,
+    LIGHT_GRAY,
+    NIGHT,
+    SLATE,
+    WHITE,
+    YELLOW,
+    Area,
+    Item,
+    filled,
+    fitted,
+    text,
+)
+
+# -------------------- labels
+# Labels: the names of numbers and of things, made short enough for a narrow row.
+
+FEWEST: Final = 3
+"""Letters that are left of a shortened word, before its period."""
+
+VOWELS: Final = "aeiou"
+
+
+def short_label(label: str, most: int) -> str:
+    """A label with its longest words shortened, as far as needed for `most` characters, if that is possible.
+
+    A shortened word ends in a consonant and a period.
+
+    >>> short_label("normal reflectance", 12), short_label("x minimum", 7), short_label("cone angle", 10)
+    ('normal refl.', 'x min.', 'cone angle')
+    """
+    words = label.split(" ")
+    for number in sorted(range(len(words)), key=lambda each: -len(words[each])):
+        excess = len(" ".join(words)) - most
+        if excess <= 0:
+            break
+        word = words[number]
+        stem = word[: max(FEWEST, len(word) - excess - 1)]
+        while len(stem) > FEWEST and stem[-1] in VOWELS:
+            stem = stem[:-1]
+        if len(stem) + 1 < len(word):
+            words[number] = f"{stem}."
+    return " ".join(words)
+
+
+def short_name(name: str, most: int) -> str:
+    """A name of at most so many characters; of a longer one the middle is left out, as ends differ.
+
+    >>> short_name("fender of the left door 12.obj", 16)
+    'fender .. 12.obj'
+    """
+    if len(name) <= most:
+        return name
+    end = max(0, (most - 2) // 2)
+    return f"{name[: max(0, most - 2 - end)]}..{name[len(name) - end :]}"[: max(0, most)]
+
 
 ROW_LINES: Final = 16
 """The height of a row of a menu."""
@@ -27,7 +81,7 @@ TEXT_DOWN: Final = 3
 BOX: Final = 8
 """Elements and lines of the box of a switch."""
 
-FEWEST: Final = 4
+FEWEST_2: Final = 4
 """The fewest characters of a label that is cut."""
 
 NOWHERE: Final = Area(0, 0, -1, -1)
@@ -110,7 +164,7 @@ class Widget:
             found.append(text(shown, start, top + TEXT_DOWN, ink, background))
         beside = room - len(shown) - bool(shown)
         # A value that needs the row is shown without its label, of which a letter or two would tell nothing.
-        label = short_name(label, beside) if beside >= min(len(label), FEWEST) else ""
+        label = short_name(label, beside) if beside >= min(len(label), FEWEST_2) else ""
         if label:
             quiet = LIGHT_GRAY if value and ink == WHITE else ink
             found.append(text(label, left + MARGIN, top + TEXT_DOWN, quiet, background))
@@ -261,3 +315,35 @@ class Entry(Widget):
 
     def items(self, lit: bool) -> list[Item]:
         return self.labeled_row(lit, self.value)
+
+
+# -------------------- pairs
+# Pairs: two buttons in one row of a menu.
+
+
+@dataclass(frozen=True)
+class Pair(Widget):
+    """Two buttons side by side: the label is that of the left one; steps up and down pick them by keys."""
+
+    run: Callable[[], object] = lambda: None
+    other: str = ""
+    run_other: Callable[[], object] = lambda: None
+
+    def items(self, lit: bool) -> list[Item]:
+        background = SLATE if lit else NIGHT
+        middle = self._middle
+        most = (middle - self.area.left - MARGIN) // 7
+        found = self.row(lit, fitted(self.label, most))
+        other = fitted(self.other, most)
+        return [*found, text(other, middle, self.area.top + TEXT_DOWN, self.ink, background)]
+
+    @property
+    def _middle(self) -> int:
+        """Where the right button begins."""
+        return self.area.left + MARGIN + (self.area.width - MARGIN) // 2
+
+    def pick(self, place: Place) -> object:
+        return self.run_other() if place.element >= self._middle - MARGIN // 2 else self.run()
+
+    def nudge(self, steps: float) -> object:
+        return self.run_other() if steps > 0 else self.run()

@@ -9,8 +9,7 @@ import numpy as np
 
 from autocolor import Mesh
 from autocolor.arrays import Booleans, Floats, Indices, dot
-from autocolor.scene.geometry.fans import places_of_corners
-from autocolor.scene.geometry.node_normals import polygon_normals
+from autocolor.scene.geometry.normals import places_of_corners, polygon_normals
 from autocolor.visibility.visible_points import VisiblePoints
 
 CREASED: Final = 20.0

@@ -32,8 +32,8 @@ def assemble(listing: str, output: str, force: bool) -> None:
         refuse_outputs(force, output)
     file = io.TextIOWrapper(open_stream(listing), encoding="latin-1")
 
+    from ramtek_emu.instruction_set.assembler import MOST_LINE
     from ramtek_emu.instruction_set.assembler import assemble as assembled
-    from ramtek_emu.instruction_set.listing_tokens import MOST_LINE
 
     def lines() -> Iterator[str]:
         while line := file.readline(MOST_LINE + 1):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -11,13 +12,59 @@ from typing import TYPE_CHECKING, BinaryIO, Final, TypeVar
 
 import click
 
-from ramtek_emu.commands.end_signals import end_signals
 from ramtek_emu.configuration import CONFIGURATIONS, GMR_9300, Configuration, configuration_named
 from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.writing import Output, refuse_output, write_atomically
 
 if TYPE_CHECKING:
     from ramtek_emu.display import Ramtek9300
+    from ramtek_emu.host.pipe import Read
+
+
+# -------------------- end_signals
+# Ctrl+C and termination signals, which end a server without an error.
+
+
+class EndSignals:
+    """Remembers Ctrl+C or a termination signal."""
+
+    def __init__(self) -> None:
+        self.received = False
+        self._waiting = False
+
+    def receive(self, *_: object) -> None:
+        """Remember the signal, and interrupt a read that is waiting."""
+        self.received = True
+        if self._waiting:
+            raise InterruptedError
+
+    def until_received(self, read: Read) -> Read:
+        """A function like `read` that returns nothing after the signal, or if reading fails."""
+
+        def read_until_received(most: int) -> bytes:
+            try:
+                self._waiting = True
+                return b"" if self.received else read(most)
+            except OSError:
+                # Also raised by a terminal or a socket whose other end was closed.
+                return b""
+            finally:
+                self._waiting = False
+
+        return read_until_received
+
+
+@contextmanager
+def end_signals() -> Iterator[EndSignals]:
+    """Handle Ctrl+C and termination signals within a `with` block."""
+    signals = EndSignals()
+    before = {number: signal.signal(number, signals.receive) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield signals
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -63,7 +110,7 @@ def display_asked_for(configuration: str | None, start: str | None) -> Ramtek930
     if start is not None:
         if configuration is not None:
             raise click.UsageError("a display must be given by --configuration or --start; leave one out")
-        from ramtek_emu.snapshot.snapshot import read_snapshot
+        from ramtek_emu.snapshot import read_snapshot
 
         return read_snapshot(start)
     from ramtek_emu.display import Ramtek9300
@@ -100,7 +147,7 @@ def write_outputs(display: Ramtek9300, output: str | None, snapshot: str | None,
         write_atomically(output, png_bytes(display.field()), overwrite=force)
         tell(f"wrote {output}")
     if snapshot is not None:
-        from ramtek_emu.snapshot.snapshot import write_snapshot
+        from ramtek_emu.snapshot import write_snapshot
 
         write_snapshot(display, snapshot, overwrite=force)
         tell(f"wrote {snapshot}")

@@ -59,15 +59,15 @@ def play(
     file = open_stream(stream)
     display = display_asked_for(configuration, start)
 
-    from ramtek_emu.host.host_session import HostSession
     from ramtek_emu.host.pipe import PolledPipe, serve_pipe
+    from ramtek_emu.host.server import HostSession
 
     read = reader_of(file)
     with recording(record, force) as kept:
         session = HostSession(display, kept)
         if in_window:
             if loads_per_second is not None:
-                from ramtek_emu.host.paced_reader import PacedReader
+                from ramtek_emu.host.pipe import PacedReader
 
                 read = PacedReader(read, loads_per_second, display.configuration)
             show(display, PolledPipe(session, read).serve_for)

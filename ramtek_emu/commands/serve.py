@@ -14,6 +14,7 @@ import click
 from ramtek_emu.commands.displays import (
     display_asked_for,
     display_options,
+    end_signals,
     recording,
     refuse_outputs,
     show,
@@ -21,15 +22,11 @@ from ramtek_emu.commands.displays import (
     tell_the_end,
     write_outputs,
 )
-from ramtek_emu.commands.end_signals import end_signals
 
 if TYPE_CHECKING:
-    from ramtek_emu.host.host_session import HostSession
-    from ramtek_emu.host.joystick_lines import JoystickLines
+    from ramtek_emu.host.joystick import JoystickLines
     from ramtek_emu.host.pipe import Read, Write
-    from ramtek_emu.host.server import Server
-    from ramtek_emu.host.tcp_server import TcpServer
-    from ramtek_emu.host.unix_server import UnixServer
+    from ramtek_emu.host.server import HostSession, Server, TcpServer, UnixServer
 
 EXAMPLES: Final = """\b
 Examples:
@@ -106,10 +103,8 @@ def serve(
     refuse_outputs(force, output, snapshot, record)
     display = display_asked_for(configuration, start)
 
-    from ramtek_emu.host.host_session import HostSession
-    from ramtek_emu.host.joystick_lines import JoystickLines
-    from ramtek_emu.host.tcp_server import TcpServer
-    from ramtek_emu.host.unix_server import UnixServer
+    from ramtek_emu.host.joystick import JoystickLines
+    from ramtek_emu.host.server import HostSession, TcpServer, UnixServer
 
     def lines_for(resettable: HostSession | Server) -> JoystickLines | None:
         if joystick is None:

@@ -17,7 +17,7 @@ from ramtek_emu.commands.displays import tell
 from ramtek_emu.errors import MissingInputError, OutputError, OutputExistsError, PortError, reason_of
 
 if TYPE_CHECKING:
-    from ramtek_emu.host.write_notices import WriteNotices
+    from ramtek_emu.host.device import WriteNotices
 
 EXAMPLES: Final = """\b
 Examples:
@@ -63,8 +63,8 @@ def tty(
     if shutil.which(program) is None:
         raise MissingInputError(f"a program must be one that can be run, not {program!r}; check its name")
 
-    from ramtek_emu.host.device_relay import DeviceRelay
-    from ramtek_emu.host.unix_port import UnixPort
+    from ramtek_emu.host.device import DeviceRelay
+    from ramtek_emu.host.port import UnixPort
 
     with ExitStack() as opened, UnixPort(path, WAIT_SECONDS) as port:
         ours, device = opened.enter_context(terminal())
@@ -145,7 +145,7 @@ class Running(NamedTuple):
 @contextmanager
 def started(command: list[str], environment: dict[str, str], with_notices: bool) -> Iterator[Running]:
     """Run a program; Ctrl+C is left to it, other signals to end are passed on. It is hung up on an error."""
-    from ramtek_emu.host.write_notices import WriteNotices
+    from ramtek_emu.host.device import WriteNotices
 
     process, reason, number, failure = forked(command, environment, with_notices)
     if not reason:
@@ -202,7 +202,7 @@ def become(
     command: list[str], environment: dict[str, str], parent: socket.socket, with_notices: bool
 ) -> NoReturn:
     """Become the program, after telling the parent the file of the notices, or why there is none."""
-    from ramtek_emu.host.write_notices import ask_for_notices
+    from ramtek_emu.host.device import ask_for_notices
 
     try:
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from ramtek_emu.arrays import Booleans, Numbers
-from ramtek_emu.drawing.steps import steps
+from ramtek_emu.drawing.vectors import steps
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, Window
 

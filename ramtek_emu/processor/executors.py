@@ -7,13 +7,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from ramtek_emu.processor import (
-    cursor_executors,
-    drawing_executors,
-    environment_executors,
-    image_executors,
-    table_executors,
-)
+from ramtek_emu.processor import cursor_executors, drawing_executors, environment_executors, image_executors
+from ramtek_emu.processor import image_executors as table_executors
 from ramtek_emu.processor.processor import EXECUTORS as EXECUTORS
 
 SUBJECTS: Final = (

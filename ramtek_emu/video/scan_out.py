@@ -11,22 +11,118 @@ introdoc (a black-and-white monitor sees the low eight bits of an entry).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import lru_cache
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from ramtek_emu.arrays import Colors, PackedColors
+from ramtek_emu.arrays import Colors, Dots, PackedColors, Words
 from ramtek_emu.configuration import Configuration, EntryFormat
-from ramtek_emu.memory.cursors import Cursors
+from ramtek_emu.memory.cursors import SHAPE_CENTER, SHAPE_SIZE, VISIBLE, Cursors
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
 from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.video.beam import Beam
-from ramtek_emu.video.cursor_marks import Mark, draw, marks
-from ramtek_emu.video.dirty_lines import Run, lines_with, united
 from ramtek_emu.video.view import PLAIN_VIEW, View, copy_shown, pixel_at, view_of
+
+# -------------------- dirty_lines
+# Dirty lines: the parts of a field that change when entries of the lookup table are loaded.
+
+Run = tuple[int, int]
+"""Consecutive lines of a field, or entries of the table: the first, and the one after the last."""
+STRIP: Final = 32
+"""How many lines are searched at once."""
+
+
+def lines_with(words: Words, first: int, end: int) -> Run:
+    """The first line that contains a word from `first` to `end` - 1, and the line after the last such line.
+
+    (0, 0) if no line contains one.
+    """
+    # Search from the top and from the bottom, and skip what lies between. Measured: searching every line
+    # takes twice as long. Returning whole strips would save a tenth of a scan-out once, and cost a twentieth
+    # of one for each field while a color is dragged.
+    top, bottom = 0, len(words)
+    while top < bottom and least_above(words[top : top + STRIP], first) >= end - first:
+        top += STRIP
+    if top >= bottom:
+        return (0, 0)
+    while least_above(words[max(0, bottom - STRIP) : bottom], first) >= end - first:
+        bottom -= STRIP
+    begin = max(0, bottom - STRIP)
+    in_first = least_above(words[top : top + STRIP], first, axis=1) < end - first
+    in_last = least_above(words[begin:bottom], first, axis=1) < end - first
+    return top + int(np.argmax(in_first)), bottom - int(np.argmax(in_last[::-1]))
+
+
+def least_above(words: Words, first: int, axis: int | None = None) -> Any:
+    """The smallest difference between a word and `first`, of all words or of each line, in 16 bits."""
+    # A word below `first` wraps to a difference that is larger than that of any word in the range.
+    return (words - np.uint16(first)).min(axis=axis)
+
+
+def united(runs: Iterable[Run], lines: int) -> tuple[Run, ...]:
+    """The lines of all runs that a field of so many has, as runs from the top that do not touch.
+
+    >>> united([(40, 72), (9, 9), (-5, 32), (20, 40), (90, 105)], 100)
+    ((0, 72), (90, 100))
+    """
+    found: list[Run] = []
+    clipped = sorted((max(0, first), min(lines, end)) for first, end in runs)
+    for first, end in clipped:
+        if first >= end:
+            continue
+        if found and first <= found[-1][1]:
+            found[-1] = found[-1][0], max(end, found[-1][1])
+        else:
+            found.append((first, end))
+    return tuple(found)
+
+
+# -------------------- cursor_marks
+# Cursor marks: the cursors as they are drawn on a field.
+#
+# Assumed: a cursor is white where the picture is dark and black where it is light, so that it is always
+# visible; how the 9300 mixed it into the video is in no source.
+
+WHITE: Final = np.uint32(0xFFFFFF)
+
+
+class Mark(NamedTuple):
+    """A cursor as it is drawn on a field. Equal marks look the same."""
+
+    number: int
+    element: int
+    line: int
+    changed: int
+    """How often the shape of any cursor had been changed."""
+
+    @property
+    def lines(self) -> Run:
+        """The lines that it is drawn on, also beyond the edges of the field."""
+        return self.line - SHAPE_CENTER, self.line - SHAPE_CENTER + SHAPE_SIZE
+
+
+def marks(cursors: Cursors, blink_is_on: bool) -> tuple[Mark, ...]:
+    """The marks of the cursors that are drawn while blinking ones are shown, or while they are not."""
+    return tuple([
+        Mark(number, each.element, each.line, cursors.changed)
+        for number, each in enumerate(cursors.all)
+        if each.state & VISIBLE and (blink_is_on or not each.blinks)
+    ])  # fmt: skip
+
+
+def draw(pixels: PackedColors, mark: Mark, shape: Dots, first_line: int = 0) -> None:
+    """Draw a cursor, clipped at the edges, on lines of a field of which the first is `first_line`."""
+    top, left = mark.lines[0] - first_line, mark.element - SHAPE_CENTER
+    up, across = max(0, -top), max(0, -left)
+    part = pixels[max(0, top) : max(0, top + SHAPE_SIZE), max(0, left) : max(0, left + SHAPE_SIZE)]
+    dots = shape[up : up + part.shape[0], across : across + part.shape[1]]
+    if part.size:
+        # The highest bit of green tells light from dark well enough, and is quick to test.
+        light = (part >> 15 & 1).astype(np.bool_)
+        part[dots] = np.where(light[dots], np.uint32(0), WHITE)
 
 
 class Stamp(NamedTuple):

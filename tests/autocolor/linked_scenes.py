@@ -7,9 +7,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from autocolor import Light, Scene
-from autocolor.scene.lights.half_spaces import HalfSpace
-from autocolor.scene.lights.light import EYE, FALLOFFS
-from autocolor.scene.lights.links import Links
+from autocolor.scene.lights import EYE, FALLOFFS, HalfSpace, Links
 from tests.autocolor.strategies import directions, numbers, scenes, vectors
 
 half_spaces = st.builds(

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import random
 
-from autocolor.screens.all_screens import SCREENS
-from autocolor.screens.viewer import Viewer
+from autocolor.screens.viewer import SCREENS, Viewer
 from autocolor.widgets.widget import Gap, Heading
 from ramtek_emu import Ramtek9300
 

@@ -14,8 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from autocolor import Light, Mesh, Paint, Reflectance, View
-from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
-from autocolor.scene.specular_growth import SpecularGrowth
+from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel, SpecularGrowth
 
 Vector = Sequence[float]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Studio, Surface, View, scene_of
-from autocolor.scene.scalars.mesh_scalars import MeshScalar
+from autocolor.scene.scalar import MeshScalar
 from ramtek_emu import Configuration, Ramtek9300
 from tests.autocolor.meshes import STRETCHED, cube, grid, sphere
 

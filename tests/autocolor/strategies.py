@@ -14,11 +14,9 @@ from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, HalfSpace, Light, Mesh, Paint, Part, Reflectance, Scene, Surface, View
 from autocolor.scene.curves import CURVES
-from autocolor.scene.lights.links import Links
-from autocolor.scene.reflection_models import MODELS, BlinnPhong, CookTorrance, Phong
-from autocolor.scene.scalars.mesh_scalars import MeshScalar
-from autocolor.scene.scalars.scalar import Scalar
-from autocolor.scene.specular_growth import SpecularGrowth
+from autocolor.scene.lights import Links
+from autocolor.scene.reflection_models import MODELS, BlinnPhong, CookTorrance, Phong, SpecularGrowth
+from autocolor.scene.scalar import MeshScalar, Scalar
 
 Vector = tuple[float, float, float]
 

@@ -16,7 +16,7 @@ from autocolor.screens.session import PICTURE
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import HostPort, Ramtek9300, TcpPort, instructions
-from ramtek_emu.host.tcp_server import TcpServer
+from ramtek_emu.host.server import TcpServer
 from tests.autocolor.meshes import grid, wall_scene
 from tests.autocolor.random_hand import RandomHand
 from tests.autocolor.sessions import car, held

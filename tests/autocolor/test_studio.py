@@ -25,8 +25,8 @@ from autocolor import (
     read_scene,
     scene_of,
 )
-from autocolor.lighting.light_drags import highlight_placed
-from autocolor.mapping.level_ranges import SCREENS
+from autocolor.lighting.picking import highlight_placed
+from autocolor.mapping.ranges import SCREENS
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import cube
 from tests.autocolor.sessions import SMALL, car, fresh, held, opened

@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ramtek_emu import (
-    Configuration,
-    Ramtek9300,
-    instructions,
-)
+from ramtek_emu import Configuration, Ramtek9300, instructions
 from tests.ramtek_emu.strategies import sent_words
 
 

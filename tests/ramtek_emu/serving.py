@@ -12,9 +12,7 @@ from typing import TypeVar
 import numpy as np
 
 from ramtek_emu import Ramtek9300, instructions
-from ramtek_emu.host.server import Server
-from ramtek_emu.host.tcp_server import TcpServer
-from ramtek_emu.host.unix_server import UnixServer
+from ramtek_emu.host.server import Server, TcpServer, UnixServer
 
 READ_EVERYTHING = np.concatenate([stream for stream, _ in instructions.read_image(0, 0, 640, 480)])
 

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from ramtek_emu import (
-    Ramtek9300,
-)
-from ramtek_emu.snapshot.png_chunks import picture_bytes, picture_of
-from ramtek_emu.snapshot.snapshot import snapshot_bytes
+from ramtek_emu import Ramtek9300
+from ramtek_emu.snapshot import picture_bytes, picture_of, snapshot_bytes
 from tests.ramtek_emu.recorded_streams import OUTLINE, words
 from tests.ramtek_emu.strategies import SMALL
 

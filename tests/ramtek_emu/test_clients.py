@@ -9,15 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ramtek_emu import (
-    GMR_9300,
-    JPL_9460,
-    NCAR_9460,
-    PRINCETON_9300,
-    Configuration,
-    Ramtek9300,
-    instructions,
-)
+from ramtek_emu import GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
 from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.clients import (

@@ -9,7 +9,7 @@ import pytest
 import ramtek_emu
 from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, ConfigurationError, EntryFormat, Ramtek9300
 from ramtek_emu.configuration import CONFIGURATIONS, configuration_named
-from ramtek_emu.snapshot.snapshot import display_of, snapshot_bytes
+from ramtek_emu.snapshot import display_of, snapshot_bytes
 
 
 def test_the_default_is_the_display_of_the_paper() -> None:

@@ -26,7 +26,7 @@ from ramtek_emu import (
     Timing,
     instructions,
 )
-from ramtek_emu.snapshot.snapshot import snapshot_bytes
+from ramtek_emu.snapshot import snapshot_bytes
 from tests.ramtek_emu.displays import sent
 from tests.ramtek_emu.recorded_streams import RECORDED
 from tests.ramtek_emu.strategies import SMALL, cuts, sent_words, streams, thorough

@@ -23,10 +23,8 @@ from autocolor.arrays import Indices, Numbers
 from autocolor.errors import InputError
 from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.number_text import NumberText
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
-from autocolor.files.repair.mesh_repair import repaired
-from autocolor.files.repair.placement import PLAIN, Placement
-from autocolor.files.repair.polygons import MeshReport, Polygons
 
 TOUCHING: Final = re.compile(rb"(?<=[0-9.])(?=[+-])")
 """Where a number with a sign begins right after another; the sign of an exponent follows a letter."""

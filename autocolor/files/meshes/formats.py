@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement
 from autocolor.files.registry import Registry, format_named, recognized, suffix_rule, suffixes_of
-from autocolor.files.repair.placement import PLAIN, Placement
-from autocolor.files.repair.polygons import MeshReport
 from autocolor.logs import logger_of, timed
 from autocolor.scene.mesh import Mesh
 

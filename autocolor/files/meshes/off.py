@@ -23,10 +23,8 @@ from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.number_text import NumberText
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
-from autocolor.files.repair.mesh_repair import repaired
-from autocolor.files.repair.placement import PLAIN, Placement
-from autocolor.files.repair.polygons import MeshReport, Polygons
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 
 KEYWORD: Final = re.compile(rb"\s*([A-Za-z0-9]*OFF)\b")

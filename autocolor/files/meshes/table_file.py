@@ -12,19 +12,20 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError
-from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
-from autocolor.files.meshes.formats import MeshFormat, register
-from autocolor.files.meshes.scalar_members import (
+from autocolor.files.array_file import (
     KEY,
     MESH_SCALARS,
+    ArrayFileKind,
+    array_file_bytes,
+    read_array_file,
     scalar_members,
     scalar_rows,
     scalars_of,
 )
+from autocolor.files.meshes.formats import MeshFormat, register
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
 from autocolor.files.reading import LARGEST_MESH_FILE
-from autocolor.files.repair.placement import PLAIN, Placement, placed
-from autocolor.files.repair.polygons import MeshReport
-from autocolor.scene.geometry.node_normals import CREASE_ANGLE
+from autocolor.scene.geometry.normals import CREASE_ANGLE
 from autocolor.scene.mesh import Mesh
 
 SUFFIX: Final = ".tables"

@@ -11,13 +11,10 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from autocolor.errors import InputError
-from autocolor.files.scenes.scene_text import FILE_TABLES, sparse_entry, sparse_tables
 from autocolor.files.scenes.toml_edit import TomlText
-from autocolor.files.scenes.toml_text import KeyPath, parsed_toml
-from autocolor.scene.columns.column import fields_of
-from autocolor.scene.columns.named_row_kinds import without_name
-from autocolor.scene.columns.reference_kinds import RangesByName
-from autocolor.scene.columns.rows import plain, with_values
+from autocolor.files.scenes.toml_text import FILE_TABLES, KeyPath, parsed_toml, sparse_entry, sparse_tables
+from autocolor.scene.columns import fields_of, plain, with_values
+from autocolor.scene.row_kinds import RangesByName, without_name
 from autocolor.scene.scene import Scene
 
 MOST_ROUNDS: Final = 6

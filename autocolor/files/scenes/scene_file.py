@@ -15,17 +15,24 @@ from typing import Any, Final
 
 from autocolor.checks import shown
 from autocolor.errors import InputError
+from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.reading import read_bytes
-from autocolor.files.repair.polygons import MeshReport
 from autocolor.files.scenes.formats import SceneFormat, register
-from autocolor.files.scenes.problems import SceneProblems
 from autocolor.files.scenes.scene_meshes import mesh_file, meshes_of
-from autocolor.files.scenes.scene_report import SceneReport, scene_report
+from autocolor.files.scenes.scene_report import SceneProblems, SceneReport, scene_report
 from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.scene.changes import PartChanges
-from autocolor.scene.columns.column import SomeRow, fields_of, keys_of
-from autocolor.scene.columns.problems import REFUSED, Problem, RowError, unknown
-from autocolor.scene.columns.rows import changed, made
+from autocolor.scene.columns import (
+    REFUSED,
+    Problem,
+    RowError,
+    SomeRow,
+    changed,
+    fields_of,
+    keys_of,
+    made,
+    unknown,
+)
 from autocolor.scene.creation import MATERIALS, SurfaceSource
 from autocolor.scene.defaults import MAPPING_FIELDS, default_surface
 from autocolor.scene.scene import Scene

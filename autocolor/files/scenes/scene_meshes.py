@@ -7,21 +7,18 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final
+from weakref import WeakKeyDictionary
 
 from autocolor.errors import InputError
 from autocolor.files.meshes.formats import format_of_files, read_mesh
+from autocolor.files.meshes.repair import SCALES, UPS, MeshReport, Placement
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
-from autocolor.files.repair.placement import SCALES, UPS, Placement
-from autocolor.files.repair.polygons import MeshReport
-from autocolor.files.scenes.problems import SceneProblems
+from autocolor.files.scenes.scene_report import SceneProblems
 from autocolor.files.scenes.toml_text import KeyPath
-from autocolor.scene.columns.bars import Bar
-from autocolor.scene.columns.column import Column, Row, Tier
-from autocolor.scene.columns.problems import Problem, RowError
-from autocolor.scene.columns.rows import made
-from autocolor.scene.columns.value_kinds import Choice, Text
-from autocolor.scene.mesh import CREASE_ANGLES
+from autocolor.scene.columns import Bar, Column, Problem, Row, RowError, Tier, made
+from autocolor.scene.kinds import Choice, Text
+from autocolor.scene.mesh import CREASE_ANGLES, Mesh
 
 MOST_MESHES: Final = 1000
 
@@ -171,3 +168,35 @@ def _size(path: Path) -> int:
 def mesh_file(table: Mapping[str, Any]) -> dict[str, str]:
     """The keys of a `[[mesh]]` table that are needed to read the mesh again."""
     return {key: table[key] for key in ("file", "nodes", "polygons", "up", "scale") if key in table}
+
+
+# -------------------- mesh_sources
+# Where meshes were read from, so that a scene that is written can name the same files.
+#
+# What was read from where is kept beside the meshes, which know nothing of files, and forgotten with them.
+# Whoever names a file again must compare what it holds: it may have been changed since.
+
+
+@dataclass(frozen=True)
+class MeshSource:
+    """The `[[mesh]]` tables that a mesh was read with, and the absolute folder that their files are in.
+
+    `scene_file` is the scene file that has these tables, None if the mesh was read without one.
+    """
+
+    folder: Path
+    entries: tuple[Mapping[str, Any], ...]
+    scene_file: Path | None = None
+
+
+_SOURCES: Final[WeakKeyDictionary[Mesh, MeshSource]] = WeakKeyDictionary()
+
+
+def keep_source(mesh: Mesh, source: MeshSource) -> None:
+    """Keep where a mesh was read from."""
+    _SOURCES[mesh] = source
+
+
+def source_of(mesh: Mesh) -> MeshSource | None:
+    """Where a mesh was read from; None if it was made in memory or is that of a picture file."""
+    return _SOURCES.get(mesh)

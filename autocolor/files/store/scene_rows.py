@@ -7,16 +7,13 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from autocolor.errors import InputError
-from autocolor.files.repair.polygons import MeshReport
+from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scenes.scene_file import OMITTED
 from autocolor.files.scenes.scene_report import SceneReport, scene_report
-from autocolor.files.store.found_tables import FoundTables, small_table
 from autocolor.files.store.mesh_rows import mesh_of
-from autocolor.files.store.schema import ROW_TABLES, SCENE, RowTable
+from autocolor.files.store.schema import ROW_TABLES, SCENE, FoundTables, RowTable, small_table
 from autocolor.files.store.sql_columns import NUMBER, SqlValue, quoted, row_table, row_values
-from autocolor.scene.columns.column import Row
-from autocolor.scene.columns.problems import RowError
-from autocolor.scene.columns.rows import changed, made
+from autocolor.scene.columns import Row, RowError, changed, made
 from autocolor.scene.creation import PARTS, UNASSIGNED, SurfaceSource
 from autocolor.scene.defaults import default_surface
 from autocolor.scene.mesh import Mesh

@@ -14,15 +14,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from autocolor.scene.columns.color_kinds import ColorKind
-from autocolor.scene.columns.column import Field, Kind, Row, fields_of
-from autocolor.scene.columns.named_row_kinds import NamedRows
-from autocolor.scene.columns.reference_kinds import Reference, WordOrName
-from autocolor.scene.columns.row_kinds import Nested, Rows, Variant
-from autocolor.scene.columns.rows import plain
-from autocolor.scene.columns.value_kinds import (
+from autocolor.scene.columns import Field, Kind, Row, fields_of, plain
+from autocolor.scene.kinds import (
     LARGEST_PLACE,
     Choice,
+    ColorKind,
     Instance,
     Number,
     Switch,
@@ -30,6 +26,7 @@ from autocolor.scene.columns.value_kinds import (
     VectorKind,
     Whole,
 )
+from autocolor.scene.row_kinds import NamedRows, Nested, Reference, Rows, Variant, WordOrName
 
 NUMBER: Final = "number"
 """The column of every small table that counts its rows from 1; it keeps their order."""

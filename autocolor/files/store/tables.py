@@ -28,7 +28,7 @@ from autocolor.files.store.statements import (
     require_name,
 )
 from autocolor.files.store.store_file import report_in, store_of, transaction, without_triggers
-from autocolor.scene.scalars.mesh_scalars import NODE, POLYGON
+from autocolor.scene.scalar import NODE, POLYGON
 from autocolor.scene.scene import Scene
 
 DEPENDENT: Final = {POLYGONS: (VALUES[POLYGON], POLYGON), NODES: (VALUES[NODE], NODE)}

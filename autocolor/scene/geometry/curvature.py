@@ -25,7 +25,7 @@ import numpy as np
 
 from autocolor.arrays import Booleans, Floats, Indices, Singles, chunks_of_runs, cross, dot
 from autocolor.immutable import Immutable, read_only
-from autocolor.scene.geometry.node_normals import NodeNormals
+from autocolor.scene.geometry.normals import NodeNormals
 
 CORNERS_AT_ONCE: Final = 1 << 14
 

@@ -8,24 +8,330 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
 
 from autocolor.arrays import Floats
 from autocolor.checks import Vector
-from autocolor.scene.lights.light import Light
+from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
-from autocolor.screens.light_and_view.arrows import SHORTEST
-from autocolor.screens.light_and_view.eye_marks import LIDS, EyeMarks, eye_marks
-from autocolor.screens.light_and_view.kept import Kept
-from autocolor.screens.light_and_view.light_marks import arrow_end, flap_marks, light_marks
-from autocolor.screens.light_and_view.numerals import Cross, Numeral, numerals
-from autocolor.screens.light_and_view.object_lines import ObjectStrokes
-from autocolor.screens.light_and_view.orthographic_views import AXES, OrthographicViews, Side
-from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import BLUE, GRAY, LIGHT_GRAY, SLATE, WHITE, YELLOW
-from autocolor.widgets.items import Item, rounded, segments, text
-from autocolor.widgets.strokes import joined, together
+from autocolor.screens.light_and_view.object_lines import Kept, ObjectStrokes
+from autocolor.screens.light_and_view.orthographic_views import AXES, PICTURE_ASPECT, OrthographicViews, Side
+from autocolor.widgets.items import (
+    BLUE,
+    CHARACTER,
+    CHARACTER_LINES,
+    GRAY,
+    LIGHT_GRAY,
+    SLATE,
+    WHITE,
+    YELLOW,
+    Area,
+    Item,
+    between,
+    clipped,
+    joined,
+    rounded,
+    segments,
+    text,
+    together,
+)
 from ramtek_emu import instructions
+
+# -------------------- arrows
+# Arrows on the screen: a shaft and a head that is the same size however long the shaft is.
+
+HEAD: Final = 7.0
+"""Assumed: the length of the head in elements; at most half of the arrow."""
+
+HALF_WIDTH: Final = 0.45
+"""Assumed: how far the head opens to each side, as a fraction of its length."""
+
+SHORTEST: Final = 3.0
+"""Assumed: an arrow that is shorter, in elements, has no head: it points at the viewer or away."""
+
+
+def arrow(start: tuple[float, float], end: tuple[float, float]) -> Floats:
+    """The strokes of an arrow from a position to another, (1 or 3, 4).
+
+    >>> arrow((0, 0), (20, 0))[1:].round(2).tolist()
+    [[13.0, 3.15, 20.0, 0.0], [20.0, 0.0, 13.0, -3.15]]
+    """
+    shaft = joined([start, end])
+    length = math.hypot(end[0] - start[0], end[1] - start[1])
+    if length < SHORTEST:
+        return shaft
+    x, y = (end[0] - start[0]) / length, (end[1] - start[1]) / length
+    back = min(HEAD, length / 2)
+    wide = HALF_WIDTH * back
+    foot = end[0] - back * x, end[1] - back * y
+    head = [(foot[0] - wide * y, foot[1] + wide * x), end, (foot[0] + wide * y, foot[1] - wide * x)]
+    return together([shaft, joined(head)])
+
+
+# -------------------- eye_marks
+# The marks of the eye in the three views: an eye, its view direction, and the edges of the picture.
+#
+# Paper: Figure 5, "Each view shows the eye position and view direction". Assumed: the edges of the picture
+# are shown too.
+
+LIDS: Final = np.array([(-7, 0), (-3, -3), (3, -3), (7, 0), (3, 3), (-3, 3), (-7, 0)], np.float64)
+PUPIL: Final = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)], np.float64)
+"""The eye: positions relative to its own, joined by strokes."""
+
+
+class EyeMarks(NamedTuple):
+    """The strokes of the eye, of the arrow to its target, and of the edges of the picture, each (n, 4)."""
+
+    eye: Floats
+    direction: Floats
+    picture: Floats
+
+
+def eye_marks(
+    views: OrthographicViews, side: Side, view: View, target: Vector, aspect: float = PICTURE_ASPECT
+) -> EyeMarks:
+    """The marks of a view in one of the three, clipped by its area.
+
+    `target` is the point at which the arrow ends: that of the view, or one in its direction. `aspect` is the
+    width of the picture over its height. The picture is drawn as deep as the target: a pyramid with the eye
+    as its top.
+    """
+    at = views.position(side, view.eye)
+    corners = views.positions(side, picture_corners(view, target, aspect))
+    picture = together([between(np.broadcast_to(at, (4, 2)), corners), joined([*corners, corners[0]])])
+    eye = together([joined(LIDS + at), joined(PUPIL + at)])
+    direction = arrow(at, views.position(side, target))
+    return EyeMarks(*(clipped(strokes, side.area) for strokes in (eye, direction, picture)))
+
+
+def picture_corners(view: View, target: Vector, aspect: float = PICTURE_ASPECT) -> Floats:
+    """The points that are seen at the corners of the picture, (4, 3), as deep as a point before the eye.
+
+    They run around the picture from the upper left corner.
+    """
+    right, down, forward = view.axes
+    depth = float(forward @ (np.array(target) - np.array(view.eye)))
+    half = math.tan(math.radians(view.field_of_view) / 2)
+    rays = [forward + half * (aspect * x * right + y * down) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    return np.array(view.eye) + depth * np.array(rays)
+
+
+# -------------------- cone_outline
+# The outline of a light's cone as it is seen in one of the three views.
+#
+# The cone is drawn as far as the end of the arrow: its rim is a circle of points at that distance from the
+# light. Seen from the side its outline is two lines, from the light to where they touch the rim; seen along
+# the axis, from within the cone, it is the rim alone, an ellipse.
+
+RIM_SIDES: Final = 36
+"""Assumed: strokes of an ellipse."""
+
+
+def cone_outline(views: OrthographicViews, side: Side, light: Light, end: Vector) -> tuple[Floats, ...]:
+    """The outline of the cone of a light that has one, as polylines, each (positions, 2).
+
+    `end` is the end of its arrow. A cone of more than 90 degrees opens behind the light, and one of 180 holds
+    everything and has no outline.
+
+    In the view, the rim is an ellipse whose half axes are r |cos F| along the axis of the cone and r across
+    it, at the distance l sin F from the light: F is the angle between the axis and the direction of looking,
+    l and r are the height of the cone and the radius of its rim. The tangents from the light to it exist
+    where F is larger than the cone angle.
+    """
+    assert light.cone_angle is not None
+    assert light.axis is not None
+    if light.cone_angle == 180:
+        return ()
+    angle = math.radians(light.cone_angle)
+    slant = math.dist(end, light.position)
+    height, radius = slant * math.cos(angle), slant * math.sin(angle)
+    axis, position = np.array(light.axis), np.array(light.position)
+
+    across = np.array([axis[side.right], axis[side.up]])
+    sine, cosine = float(np.hypot(*across)), float(abs(axis @ np.array(side.toward)))
+    distance, half = height * sine, radius * cosine
+    if abs(distance) <= half:
+        turns = np.linspace(0, 2 * math.pi, RIM_SIDES + 1)
+        one, other = _perpendicular(axis)
+        rim = np.cos(turns)[:, None] * one + np.sin(turns)[:, None] * other
+        return (views.positions(side, position + height * axis + radius * rim),)
+
+    # The tangents touch the ellipse on the polar line of the light.
+    touching = distance - half * half / distance
+    beside = radius * math.sqrt(1 - (half / distance) ** 2)
+    forward = across / sine
+    left = np.array([-forward[1], forward[0]])
+    lines = []
+    for sign in (1, -1):
+        flat = touching * forward + sign * beside * left
+        point = position.copy()
+        point[[side.right, side.up]] += flat
+        lines.append(views.positions(side, np.stack([position, point])))
+    return tuple(lines)
+
+
+def _perpendicular(axis: Floats) -> tuple[Floats, Floats]:
+    """Two unit vectors that are perpendicular to a unit vector and to each other."""
+    one = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    one /= np.linalg.norm(one)
+    return one, np.cross(axis, one)
+
+
+# -------------------- light_marks
+# The marks of a light in the three views: its cross, the arrow to its aim, its cone and its flaps.
+#
+# Paper: Figure 5, "the position and direction of each light. Point source lights would be shown with only a
+# cross at the light position".
+
+CROSS: Final = np.array([(-4, 0, 4, 0), (0, -4, 0, 4)], np.float64)
+"""The cross: strokes relative to its position."""
+
+DIRECTION_LENGTH: Final = 40.0
+"""Assumed: how long the arrow of a light with a direction and no aim is, in elements."""
+
+
+class LightMarks(NamedTuple):
+    """The strokes of the cross, the arrow and the cone of a light, each (n, 4); n = 0 for what it lacks."""
+
+    cross: Floats
+    arrow: Floats
+    cone: Floats
+
+
+class FlapMark(NamedTuple):
+    """The line of one end of a flap: its axis, 0 to 2, its end, whether it is on, and its stroke, (1, 4)."""
+
+    axis: int
+    end: str
+    on: bool
+    stroke: Floats
+
+
+def arrow_end(views: OrthographicViews, light: Light) -> Vector | None:
+    """The point at which the arrow of a light ends: its aim, or one in its direction; None without either."""
+    if light.aim is not None or light.axis is None:
+        return light.aim
+    x, y, z = light.position
+    length = DIRECTION_LENGTH / views.scale
+    return x + length * light.axis[0], y + length * light.axis[1], z + length * light.axis[2]
+
+
+def light_marks(views: OrthographicViews, side: Side, light: Light) -> LightMarks:
+    """The marks of a light in one of the views, clipped by its area; the flaps are marked on their own."""
+    at = views.position(side, light.position)
+    end = arrow_end(views, light)
+    shaft = cone = np.empty((0, 4))
+    if end is not None:
+        shaft = arrow(at, views.position(side, end))
+        if light.cone_angle is not None:
+            cone = together([joined(each) for each in cone_outline(views, side, light, end)])
+    cross = CROSS + np.tile(at, 2)
+    return LightMarks(*(clipped(strokes, side.area) for strokes in (cross, shaft, cone)))
+
+
+def flap_marks(views: OrthographicViews, side: Side, light: Light) -> tuple[FlapMark, ...]:
+    """The ends of a light's flaps that one of the views shows, as lines across its area.
+
+    A view shows the flaps of the two coordinates that it shows. An end at infinity has no line, nor has one
+    outside of the area. Paper: Figure 9.
+    """
+    area, marks = side.area, []
+    for axis in (side.right, side.up):
+        flap = (light.flaps.x, light.flaps.y, light.flaps.z)[axis]
+        if flap is None:
+            continue
+        for end, value in (("minimum", flap.minimum), ("maximum", flap.maximum)):
+            if not math.isfinite(value):
+                continue
+            element, line = views.position(side, (value, value, value))
+            if axis == side.right:
+                ends: list[tuple[float, float]] = [(element, area.top), (element, area.bottom)]
+            else:
+                ends = [(area.left, line), (area.right, line)]
+            stroke = clipped(joined(ends), area)
+            if len(stroke):
+                marks.append(FlapMark(axis, end, flap.on, stroke))
+    return tuple(marks)
+
+
+# -------------------- numerals
+# The numerals beside the lights in the three views, each where it hides as little as can be.
+
+REACH: Final = 4
+"""The elements or lines from the middle of a cross to its ends."""
+
+AWAY: Final = 2
+"""Assumed: the elements or lines between a cross and its numeral."""
+
+NEAR_ARROW: Final = math.cos(math.radians(50))
+"""Assumed: a place within 50 degrees of the arrow of its light is taken only if the others are worse."""
+
+PLACES: Final = ((1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1))
+"""The places around a cross, to the right and down, from the one that is preferred."""
+
+
+class Cross(NamedTuple):
+    """A light in one of the views: its number, its element and line, and the direction of its arrow.
+
+    `arrow` is a unit vector to the right and down, and zero without an arrow.
+    """
+
+    number: int
+    element: int
+    line: int
+    arrow: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def area(self) -> Area:
+        """The area of the cross."""
+        element, line = self.element, self.line
+        return Area(element - REACH, line - REACH, element + REACH, line + REACH)
+
+    def numeral(self, right: int, down: int) -> Area:
+        """The area of its numeral at one of the places."""
+        width = CHARACTER * len(str(self.number))
+        gap = REACH + AWAY if right and down else REACH + 2 * AWAY
+        left = self.element + (gap if right > 0 else -gap - width + 1 if right < 0 else -(width // 2))
+        line = self.line - CHARACTER_LINES // 2
+        top = line + down * (CHARACTER_LINES // 2 + gap)
+        return Area(left, top, left + width - 1, top + CHARACTER_LINES - 1)
+
+
+class Numeral(NamedTuple):
+    """A cross in an area, and where its numeral stands."""
+
+    cross: Cross
+    area: Area
+
+
+def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> list[Numeral]:
+    """The numerals of the crosses that are within an area, in their order.
+
+    `taken` are areas that should stay free, as far as can be.
+    """
+    seen = [cross for cross in crosses if area.has(cross.element, cross.line)]
+    filled = [*taken, *(cross.area for cross in seen)]
+    found = []
+    for cross in seen:
+        best, least = None, math.inf
+        for right, down in PLACES:
+            place = cross.numeral(right, down)
+            if not area.covers(place):
+                continue
+            toward = (right * cross.arrow[0] + down * cross.arrow[1]) / math.hypot(right, down)
+            burden = sum(place.overlaps(other) for other in filled) + (toward > NEAR_ARROW) / 2
+            if burden < least:
+                best, least = place, burden
+            if least == 0:
+                break
+        if best is not None:
+            found.append(Numeral(cross, best))
+            filled.append(best)
+    return found
+
 
 Numbered = tuple[int, Light]
 """A light, after its number in the table, from 1 on."""

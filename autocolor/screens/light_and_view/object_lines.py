@@ -6,22 +6,357 @@ than a page should. Of a stage, such as a floor, the features alone are drawn.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices
+from autocolor.arrays import Booleans, Floats, Indices, Singles, dot
+from autocolor.immutable import Immutable, read_only
+from autocolor.scene.defaults import framed
+from autocolor.scene.geometry.normals import places_of_corners
+from autocolor.scene.geometry.planes import as_they_are, facet_normals
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
-from autocolor.screens.light_and_view.hidden_edges import VisibleDepths, depths_toward, without_hidden
-from autocolor.screens.light_and_view.kept import Kept
-from autocolor.screens.light_and_view.mesh_edges import MeshEdges, mesh_edges
+from autocolor.scene.view import View
 from autocolor.screens.light_and_view.orthographic_views import SIDES, OrthographicViews, Side
-from autocolor.screens.light_and_view.perspective_strokes import perspective_strokes
-from autocolor.screens.light_and_view.silhouettes import silhouette_from, silhouette_toward
-from autocolor.widgets.areas import Area
-from autocolor.widgets.strokes import drawn
+from autocolor.visibility.camera import NEAR, rotated
+from autocolor.visibility.projection import focal_length
+from autocolor.visibility.visible_points import POINT, VisiblePoints
+from autocolor.visibility.visible_surfaces import visible_surfaces
+from autocolor.widgets.items import Area, between, clipped, drawn
+
+# -------------------- hidden_edges
+# Leaving out the edges that are hidden, by the depths of what is visible in a picture.
+#
+# An edge of the object belongs to what is visible, or lies behind it: three points of it are compared with
+# the farthest that is visible at the pixels around them. Assumed: an edge is drawn as a whole or not at
+# all.
+
+FAR_FIELD: Final = 0.5
+"""Assumed: degrees of view of an eye so far away that it sees the object as an orthographic view shows it."""
+
+FINER: Final = 2
+"""Assumed: pixels to an element of a view in the raster that tells what is visible there."""
+
+DEPTH: Final = POINT.start + 2
+"""The row of visible points that has their depth."""
+
+TESTED: Final = (0.2, 0.5, 0.8)
+"""Assumed: the points of an edge that are looked at, as fractions of it; two of them must be visible."""
+
+BEHIND: Final = 4e-3
+"""Assumed: how far behind what is visible a point still belongs to it, as a fraction of the object's radius.
+
+Looked at on two cars: a fourth of it and four times as much draw nearly the same edges.
+"""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class VisibleDepths(Immutable):
+    """The depths of what is visible in a picture: for each pixel, the farthest of the nine around it.
+
+    `farthest` is (lines, elements) float32, relative to `middle` in camera space and in `unit`; it is
+    infinite at and beside the background. A point that is `behind` by less counts as visible.
+    """
+
+    view: View
+    unit: float
+    middle: float
+    behind: float
+    farthest: Singles
+
+
+def visible_depths(visible: VisiblePoints) -> VisibleDepths:
+    """The depths of the visible points of a picture."""
+    depths = np.full((visible.lines + 2, visible.elements + 2), np.inf, np.float32)
+    inner = np.full(visible.lines * visible.elements, np.inf, np.float32)
+    inner[visible.pixels] = visible.rows[DEPTH]
+    depths[1:-1, 1:-1] = inner.reshape(visible.lines, visible.elements)
+    across = np.maximum(np.maximum(depths[:, :-2], depths[:, 1:-1]), depths[:, 2:])
+    farthest = np.maximum(np.maximum(across[:-2], across[1:-1]), across[2:])
+    return VisibleDepths(
+        visible.view,
+        visible.unit,
+        float(visible.middle[2]),
+        BEHIND * visible.radius,
+        read_only(farthest),
+    )
+
+
+def depths_toward(mesh: Mesh, side: Side, part_numbers: Sequence[int] | None = None) -> VisibleDepths | None:
+    """The depths of what one of the three views shows; None if there is nothing.
+
+    The object fills the picture of an eye far away. With `part_numbers`, only these parts are there, so that
+    a stage hides nothing.
+    """
+    alone = mesh
+    if part_numbers is not None:
+        chosen = np.isin(mesh.part_numbers, list(part_numbers))
+        if not chosen.all():
+            alone = Mesh(
+                mesh.coordinates, mesh.node_numbers[chosen], mesh.part_numbers[chosen], mesh.part_names
+            )
+    if not len(alone.node_numbers):
+        return None
+    width, height = FINER * side.area.width, FINER * side.area.height
+    x, y, z = side.toward
+    far = View(side.toward, direction=(-x, -y, -z), field_of_view=FAR_FIELD)
+    view = framed(far, alone.used_coordinates, width / height)
+    return visible_depths(visible_surfaces(alone, view, (1,) * len(mesh.part_names), height, width))
+
+
+def without_hidden(edges: Indices, coordinates: Floats, depths: VisibleDepths) -> Indices:
+    """Those of some edges, (n, 2) nodes, that are not hidden; `coordinates` is (nodes, 3)."""
+    starts, ends = (np.take(coordinates.T, nodes, axis=1) for nodes in edges.T)
+    visible = [_are_visible(starts + at * (ends - starts), depths) for at in TESTED]
+    kept: Indices = edges[np.sum(visible, axis=0) >= 2]
+    return kept
+
+
+def _are_visible(points: Floats, depths: VisibleDepths) -> Booleans:
+    """Whether points, (3, n), are visible; of one outside of the picture nothing is known, and it counts."""
+    lines, elements = depths.farthest.shape
+    x, y, depth = rotated(depths.view.axes / depths.unit, points, depths.view.eye)
+    before = depth > 0
+    scale = focal_length(lines, depths.view.field_of_view) / np.where(before, depth, 1.0)
+    element, line = np.floor(x * scale + elements / 2), np.floor(y * scale + lines / 2)
+    known = before & (element >= 0) & (element < elements) & (line >= 0) & (line < lines)
+    visible = np.ones(len(depth), np.bool_)
+    rows = np.flatnonzero(known)
+    farthest = depths.farthest[line[rows].astype(np.intp), element[rows].astype(np.intp)]
+    visible[rows] = depth[rows] - depths.middle <= farthest + depths.behind
+    return visible
+
+
+# -------------------- mesh_edges
+# The edges of a mesh that are drawn for it: those that every view shows, and those that may be a
+# silhouette.
+#
+# Found once for a mesh. Nodes at the same place count as one, so that parts which repeat their nodes still
+# meet. An edge is known by two nodes, as one of its polygons numbers them.
+
+DRAWN_CREASE: Final = 30.0
+"""Assumed: degrees; a larger angle between polygons is drawn as a crease.
+
+Looked at on two cars in an area of 248 x 224: with 40 degrees, the crease angle of normals, the windows of a
+car of one part are in pieces, and with 60 gone. A cylinder of 12 sides has no lines along it.
+"""
+
+MOST_FEATURES: Final = 1 << 15
+"""Assumed: of a mesh that is all creases, such as a noisy scan, only the longest edges are drawn."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MeshEdges(Immutable):
+    """The edges of some polygons of a mesh, and the planes of these polygons.
+
+    `coordinates`, (nodes, 3), are those of the mesh, and polygons are rows of its polygon table. `features`,
+    (features, 2) intp, are the nodes of open edges, of creases and of edges between parts, and `smooth`,
+    (edges, 2), those of all other edges. `polygons`, (2, edges), are those at both sides of a smooth edge,
+    and `same_direction`, (edges,), tells where both run along it in the same direction, and so have opposite
+    winding. A point lies in the plane of a polygon where its dot product with the normal, (3, polygons), is
+    the offset, (polygons,).
+    """
+
+    coordinates: Floats
+    features: Indices
+    smooth: Indices
+    polygons: Indices
+    same_direction: Booleans
+    normals: Floats
+    offsets: Floats
+
+
+class _Sides(NamedTuple):
+    """The sides of polygons, sorted so that those of an edge are neighbors.
+
+    Corner c of polygon p is c * polygons + p. `corners` and `forward` are (sides,): the corner that a side
+    begins at, and whether it runs to a higher place. `starts` and `counts` are (edges,): the first side of
+    each edge, and how many it has.
+    """
+
+    corners: Indices
+    forward: Booleans
+    starts: Indices
+    counts: Indices
+
+
+def mesh_edges(
+    mesh: Mesh, part_numbers: Sequence[int] | None = None, crease_angle: float = DRAWN_CREASE
+) -> MeshEdges:
+    """The edges of the polygons of some parts of the mesh, or of all.
+
+    An edge where polygons meet at more than `crease_angle`, 0 to 90 degrees, is a crease. Which way the
+    polygons run does not matter. Where more than two meet, they are smooth if they lie in two planes that
+    continue each other, as those of a sheet whose polygons are there twice, once for each face. Polygons
+    without area have no edges. The lines of a stage are drawn apart: the features alone of its parts.
+    """
+    parts, coordinate_rows, node_rows = mesh.part_numbers, mesh.coordinates.T, mesh.node_numbers.T
+    normals = facet_normals(as_they_are(coordinate_rows), node_rows)
+    has_edges = (normals != 0).any(axis=0)
+    if part_numbers is not None:
+        has_edges &= np.isin(parts, list(part_numbers))
+    sides = _sides(places_of_corners(coordinate_rows, node_rows), has_edges)
+    polygons = sides.corners % max(len(parts), 1)
+    first = np.repeat(sides.starts, sides.counts)
+
+    # Compare each polygon of an edge with the first one: the cosine is 1 where it folds back onto the first,
+    # and -1 where it continues it, whatever their winding.
+    cosines = dot(np.take(normals, polygons.take(first), axis=1), np.take(normals, polygons, axis=1))
+    np.negative(cosines, out=cosines, where=sides.forward != sides.forward.take(first))
+    least_cosine = np.cos(np.radians(crease_angle)) - 1e-9
+    continues, folds = cosines <= -least_cosine, cosines >= least_cosine
+    same_part = parts.take(polygons) == parts.take(polygons.take(first))
+    if len(first):
+        smooth = np.logical_and.reduceat((continues | folds) & same_part, sides.starts)
+        smooth &= np.logical_or.reduceat(continues, sides.starts)
+    else:
+        smooth = np.zeros(0, np.bool_)
+
+    # Of each smooth edge, take the first polygon and one that continues it.
+    edge = np.repeat(np.arange(len(sides.starts)), sides.counts)
+    other = sides.starts.copy()
+    other[edge[continues]] = np.flatnonzero(continues)
+    pairs = np.stack([sides.starts[smooth], other[smooth]])
+    corners = sides.corners.take(sides.starts)
+    nodes = np.stack([node_rows.ravel()[corners], np.roll(node_rows, -1, axis=0).ravel()[corners]], axis=1)
+    tables = (
+        _longest(nodes[~smooth], mesh.coordinates),
+        nodes[smooth],
+        polygons[pairs],
+        np.equal(*sides.forward[pairs]),
+        normals,
+        dot(normals, np.take(coordinate_rows, node_rows[0], axis=1)),
+    )
+    return MeshEdges(mesh.coordinates, *map(read_only, tables))
+
+
+def _sides(places: Indices, has_edges: Booleans) -> _Sides:
+    """The sides of some polygons; `places` is (4, polygons)."""
+    ends = np.roll(places, -1, axis=0)
+    corners = np.flatnonzero((places != ends) & has_edges)
+    start, end = places.ravel()[corners], ends.ravel()[corners]
+    keys = np.minimum(start, end) * (int(places.max(initial=0)) + 1) + np.maximum(start, end)
+    order = np.argsort(keys, kind="stable")
+    starts = np.flatnonzero(np.diff(keys[order], prepend=-1))
+    return _Sides(corners[order], (start < end)[order], starts, np.diff(starts, append=len(corners)))
+
+
+def _longest(edges: Indices, coordinates: Floats) -> Indices:
+    """The MOST_FEATURES longest of edges, (n, 2), in their order."""
+    if len(edges) <= MOST_FEATURES:
+        return edges
+    steps = np.abs(coordinates[edges[:, 0]] - coordinates[edges[:, 1]]).max(axis=1)
+    return edges[np.sort(np.argsort(-steps, kind="stable")[:MOST_FEATURES])]
+
+
+# -------------------- perspective_strokes
+# The strokes of DISPLAY VIEW: the edges of the mesh as the eye sees them, small, in an area.
+#
+# Paper: Figure 5, "A small mesh image of the current view can be generated by selecting DISPLAY VIEW".
+
+
+def perspective_strokes(coordinates: Floats, edges: Indices, view: View, area: Area) -> Floats:
+    """The strokes of edges in the picture of a view that fills an area, (strokes, 4).
+
+    `coordinates` is (nodes, 3), `edges` (n, 2) the nodes that each edge joins. The height of the area is the
+    vertical field of view. Edges are clipped at a near plane first, NEAR as a fraction of the depth of the
+    farthest node, and their strokes by the area.
+    """
+    camera = rotated(view.axes, coordinates.T, view.eye)
+    starts, ends = np.take(camera, edges[:, 0], axis=1), np.take(camera, edges[:, 1], axis=1)
+    farthest = float(max(starts[2].max(initial=0.0), ends[2].max(initial=0.0)))
+    near = NEAR * farthest or 1.0
+    starts, ends = _beyond(near, starts, ends)
+    focal = focal_length(area.height, view.field_of_view)
+    middle = np.array(area.middle)
+    return clipped(between(*(middle + (focal * points[:2] / points[2]).T for points in (starts, ends))), area)
+
+
+def _beyond(near: float, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
+    """What of each line from start to end, (3, n) in camera space, lies beyond the near plane."""
+    kept = np.flatnonzero((starts[2] >= near) | (ends[2] >= near))
+    starts, ends = starts[:, kept], ends[:, kept]
+    step = ends - starts
+    divisor = np.where(step[2] == 0, 1.0, step[2])
+    crossings = starts + (near - starts[2]) / divisor * step
+    crossings[2] = near
+    return np.where(starts[2] < near, crossings, starts), np.where(ends[2] < near, crossings, ends)
+
+
+# -------------------- silhouettes
+# Silhouettes: the smooth edges of a mesh between a polygon that faces the viewer and one that does not.
+#
+# The viewer is far away in a direction, as in the three views, or an eye.
+
+EDGE_ON: Final = 1e-9
+"""Assumed: a polygon seen under a smaller sine than this is edge-on, and does not face the viewer.
+
+Rounding would decide about the sides of a cylinder that is looked at along its axis.
+"""
+
+
+def silhouette_toward(edges: MeshEdges, toward: Sequence[float]) -> Indices:
+    """The nodes of the silhouette for a viewer far away, (n, 2); `toward` is the unit vector to that."""
+    return _between(edges, _heights(edges.normals, toward) > EDGE_ON)
+
+
+def silhouette_from(edges: MeshEdges, eye: Sequence[float]) -> Indices:
+    """The nodes of the silhouette that an eye at a point sees, (n, 2)."""
+    return _between(edges, _heights(edges.normals, eye) > edges.offsets)
+
+
+def _heights(normals: Floats, vector: Sequence[float]) -> Floats:
+    """The dot product of each normal, (3, n), with a vector."""
+    x, y, z = vector
+    heights: Floats = normals[0] * x
+    heights += normals[1] * y
+    heights += normals[2] * z
+    return heights
+
+
+def _between(edges: MeshEdges, facing: Booleans) -> Indices:
+    """The smooth edges between a polygon that faces the viewer and one that does not.
+
+    The front of one of two polygons of opposite winding continues the back of the other: a silhouette passes
+    between them where both face the viewer, or neither does.
+    """
+    one, other = edges.polygons
+    found = facing.take(one) ^ facing.take(other)
+    found ^= edges.same_direction
+    return np.take(edges.smooth, np.flatnonzero(found), axis=0)
+
+
+# -------------------- kept
+# Values that are kept while what they are made of is the same, so that a movement makes only what moved.
+
+Value = TypeVar("Value")
+
+
+class Kept(Generic[Value]):
+    """The last value that was made, for as long as its sources are the same objects.
+
+    Scenes share with the one before all that an edit did not change, so that it need not be compared.
+    """
+
+    def __init__(self) -> None:
+        self._sources: tuple[object, ...] | None = None
+        self._value: Value
+
+    def of(self, make: Callable[[], Value], *sources: object) -> Value:
+        """The value of some sources, made by a function if one of them is another object than before."""
+        known = self._sources
+        if known is None or len(known) != len(sources) or any(map(_differ, known, sources)):
+            self._value = make()
+            self._sources = sources
+        return self._value
+
+
+def _differ(one: object, other: object) -> bool:
+    return one is not other
 
 
 class ObjectStrokes(NamedTuple):

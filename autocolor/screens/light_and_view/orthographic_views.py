@@ -16,9 +16,40 @@ import numpy as np
 
 from autocolor.arrays import Floats, Indices, bounds_of
 from autocolor.checks import LARGEST_COORDINATE, Vector
-from autocolor.screens.light_and_view.areas import FRONT_AREA, SIDE_AREA, TOP_AREA
-from autocolor.widgets.areas import Area
-from autocolor.widgets.strokes import between, clipped
+from autocolor.scene.defaults import object_bounds
+from autocolor.scene.scene import Scene
+from autocolor.screens.picture.picture_edits import target_of
+from autocolor.widgets.items import Area, between, clipped
+
+# -------------------- areas
+# Where the views of the light and view screen stand.
+
+PICTURE_ASPECT: Final = 640 / 480
+"""The width of a picture over its height. Paper: Figure 11, 640 x 480."""
+
+
+TOP_AREA: Final = Area(0, 0, 247, 223)
+PICTURE_AREA: Final = Area(256, 0, 503, 223)
+FRONT_AREA: Final = Area(0, 232, 247, 455)
+SIDE_AREA: Final = Area(256, 232, 503, 455)
+"""The quarters of a work area of 504 x 464, on a grid of 8.
+
+Assumed: the top view is above the front view, and the side view beside it, as on an engineering drawing; the
+fourth quarter is that of DISPLAY VIEW. Eight lines are left free at the bottom.
+"""
+
+
+def area_of_picture(area: Area = PICTURE_AREA, aspect: float = PICTURE_ASPECT) -> Area:
+    """The largest area of the shape of a picture in the middle of an area.
+
+    >>> area_of_picture(Area(256, 0, 503, 223))
+    Area(left=256, top=19, right=503, bottom=204)
+    """
+    width = min(area.width, round(area.height * aspect))
+    height = min(area.height, round(area.width / aspect))
+    left, top = area.left + (area.width - width) // 2, area.top + (area.height - height) // 2
+    return Area(left, top, left + width - 1, top + height - 1)
+
 
 FILLED: Final = 0.84
 """Assumed: the fraction of an area that the coordinates fill, with 16 elements or more left on all sides."""
@@ -158,3 +189,21 @@ def _scale_within(scale: float, center: Vector) -> float:
     """The scale, but no pixel so small that coordinates can't tell it from the next, and none too large."""
     finest = max(SMALLEST, FINEST * max(map(abs, center)))
     return min(max(scale, 1 / COARSEST), 1 / finest)
+
+
+# -------------------- shown_points
+# The points of a scene that the three views show when they are scaled to all of it.
+
+
+def shown_points(scene: Scene) -> Floats:
+    """The ends of the object's bounding box, the eye and its target, and the lights and aims, (n, 3).
+
+    Lights that are switched off are among them. A stage, such as a floor, is not: it would make the object
+    small, and is drawn as far as it is in the views.
+    """
+    points = [*object_bounds(scene.mesh, scene.parts), np.array(scene.view.eye), target_of(scene)]
+    for light in scene.lights_in_world:
+        points.append(np.array(light.position))
+        if light.aim is not None:
+            points.append(np.array(light.aim))
+    return np.array(points)

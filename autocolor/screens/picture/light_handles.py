@@ -14,16 +14,22 @@ import numpy as np
 
 from autocolor.arrays import Indices
 from autocolor.checks import Vector
-from autocolor.lighting.light_controls.flap_sides import flaps_of
-from autocolor.lighting.light_drags import cone_placed, flap_placed, half_space_placed, highlight_placed
-from autocolor.lighting.rims import CONE, Plane, Rim, rims
-from autocolor.scene.lights.light import Light
+from autocolor.lighting.controls import flaps_of
+from autocolor.lighting.picking import (
+    CONE,
+    Plane,
+    Rim,
+    cone_placed,
+    flap_placed,
+    half_space_placed,
+    highlight_placed,
+    rims,
+)
+from autocolor.scene.lights import Light
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import Session
 from autocolor.visibility.visible_points import VisiblePoints
-from autocolor.widgets.areas import SCREEN, Area
-from autocolor.widgets.colors import BLACK, YELLOW
-from autocolor.widgets.items import Item, area_of, segments
+from autocolor.widgets.items import BLACK, SCREEN, YELLOW, Area, Item, area_of, segments
 
 HIGHLIGHT: Final = "highlight"
 

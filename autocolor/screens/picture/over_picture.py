@@ -7,19 +7,30 @@ is seen there tells the part.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import ClassVar, NamedTuple
 
 from autocolor.arrays import Bytes, Words
 from autocolor.mapping.display_image import DisplayImage
-from autocolor.mapping.legend import Legend, legend
-from autocolor.screens.input.gestures import MIDDLE, Gesture, turn_between, wheel_ratio
-from autocolor.screens.picture.legend_items import legend_items
+from autocolor.mapping.legend import GROUND, INK, Legend, legend
+from autocolor.screens.input import MIDDLE, Gesture, turn_between, wheel_ratio
 from autocolor.screens.picture.picture_edits import PictureEdits
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import Session
-from autocolor.widgets.items import Item
+from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
+from autocolor.widgets.widget import Choice
+
+# -------------------- legend_items
+# The legend of a scalar as items of a page.
+
+
+def legend_items(legend: Legend | None) -> Sequence[Item]:
+    """The items that draw a legend; none without one."""
+    if legend is None:
+        return ()
+    areas = [filled(Area(*swatch[:4]), swatch.word) for swatch in legend.swatches]
+    return [*areas, *(text(each.text, each.left, each.top, INK, GROUND) for each in legend.labels)]
 
 
 class OverPicture(Screen):
@@ -117,3 +128,18 @@ class Pointed(NamedTuple):
         """The same, as the message line says it."""
         names = " - ".join(dict.fromkeys(name for name in (self.part, self.surface) if name))
         return f"{names}, {self.read}"
+
+
+# -------------------- surface_row
+# The row that chooses a surface, in the menus of all screens that are about one.
+
+
+def surface_row(session: Session, told: str, choose: Callable[[str], object] | None = None) -> Choice:
+    """A row with the surfaces in use; `choose` is the session's own unless another is given."""
+    return Choice(
+        "surface",
+        told,
+        names=tuple(session.studio.level_ranges),
+        present=session.surface_name,
+        choose=session.choose_surface if choose is None else choose,
+    )

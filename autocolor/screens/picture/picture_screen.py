@@ -7,16 +7,14 @@ from functools import partial
 from typing import Final
 
 from autocolor.errors import UsageError
-from autocolor.mapping.level_ranges import SCREENS
+from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.picture.light_handles import LightHandles
-from autocolor.screens.picture.orbit import SIDES
-from autocolor.screens.picture.over_picture import OverPicture
-from autocolor.screens.picture.surface_row import surface_row
+from autocolor.screens.picture.over_picture import OverPicture, surface_row
+from autocolor.screens.picture.picture_edits import SIDES
 from autocolor.screens.screen import Handle
 from autocolor.screens.session import PICTURE, Session
-from autocolor.widgets.areas import SCREEN
-from autocolor.widgets.pairs import Pair
-from autocolor.widgets.widget import Button, Choice, Gap, Steps, Switch, Widget
+from autocolor.widgets.items import SCREEN
+from autocolor.widgets.widget import Button, Choice, Gap, Pair, Steps, Switch, Widget
 
 TURN: Final = 5.0
 """Degrees for each step of a menu row that turns."""

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from autocolor.arrays import Words
-from autocolor.mapping.level_ranges import BACKGROUND
+from autocolor.mapping.ranges import BACKGROUND
 from autocolor.studio import Studio
 from ramtek_emu import HostPort, instructions
 

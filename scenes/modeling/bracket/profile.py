@@ -7,16 +7,7 @@ from typing import Final
 import numpy as np
 
 from autocolor.arrays import Floats
-from scenes.modeling.bracket.measures import (
-    AXIS,
-    BASE,
-    BOSS,
-    FILLET,
-    NOSE,
-    NOSE_HEIGHT,
-    RIB_AT_BOSS,
-    UPRIGHT,
-)
+from scenes.modeling.bracket.measures import AXIS, BASE, BOSS, FILLET, NOSE, NOSE_HEIGHT, RIB_AT_BOSS, UPRIGHT
 
 BEND: Final = FILLET * np.pi / 2
 """The length of the inner fillet."""

@@ -10,14 +10,7 @@ from scenes.modeling.bracket.levels import RIB_LAYERS
 from scenes.modeling.bracket.measures import CREST, RIB
 from scenes.modeling.bracket.plan import BOSS_RING, NOSE_LINE, RIB_COLUMNS
 from scenes.modeling.bracket.profile import RIB_BEGINS, edge_of_rib, height_of_rib, inner, inward
-from scenes.modeling.bracket.roots import (
-    EDGE_ANGLES,
-    FOOT,
-    WALL_ANGLES,
-    distances,
-    heights,
-    scale_of_roots,
-)
+from scenes.modeling.bracket.roots import EDGE_ANGLES, FOOT, WALL_ANGLES, distances, heights, scale_of_roots
 
 
 def rib_places(plan: Plan) -> Floats:

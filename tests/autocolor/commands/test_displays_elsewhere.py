@@ -13,9 +13,7 @@ from autocolor.journal.autosave import JOURNAL, left_sessions
 from autocolor.journal.history import History
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import PortError, Ramtek9300
-from ramtek_emu.host.server import Server
-from ramtek_emu.host.tcp_server import TcpServer
-from ramtek_emu.host.unix_server import UnixServer
+from ramtek_emu.host.server import Server, TcpServer, UnixServer
 from tests.autocolor.sessions import car
 
 Act = Callable[[Ramtek9300], object]

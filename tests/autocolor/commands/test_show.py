@@ -17,7 +17,7 @@ from autocolor.commands.show import folder_of
 from autocolor.journal.autosave import JOURNAL, left_sessions
 from autocolor.journal.places import Source
 from ramtek_emu import Ramtek9300
-from ramtek_emu.host.tcp_server import TcpServer
+from ramtek_emu.host.server import TcpServer
 from tests.autocolor.commands.conftest import Run
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng lid\nf 1 2 3 4\n"

@@ -3,11 +3,17 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from autocolor import scene_of, write_scene
+from autocolor import Mesh, image, render, scene_of, write_scene
 from autocolor.commands import view
+from autocolor.commands.validate import COLORS, fault_lines, fault_scene, fault_values
 from autocolor.journal.history import History
+from autocolor.mapping.display_image import display_image
+from autocolor.mapping.legend import legend
+from autocolor.scene.mesh_faults import KINDS, mesh_faults
+from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.meshes import cube
 
@@ -84,3 +90,63 @@ def test_a_mesh_that_is_not_there_is_missing_too(folder: Path, run: Run) -> None
     ran = run("validate", "scene")
     assert ran.code == 66
     assert ran.err.count("\n") == 1
+
+
+SHEET = Mesh(np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 1], [9, 9, 9.0]]), np.array([[0, 1, 2, 3]]))
+
+
+def test_a_line_has_the_number_of_the_kind_how_many_and_rows_from_one() -> None:
+    border, loop, unused, warped = fault_lines(mesh_faults(SHEET))
+    assert border.startswith(" 1 border 4: edges of one polygon alone, ")
+    assert border.endswith(" (nodes 1-2, 4-1, 2-3, 3-4)")
+    assert loop == "     a closed loop of 4 edges, 8.472 long, around (1, 1, 0.5), at node 1"
+    assert unused == " 3 unused 1: nodes that no polygon uses (5)"
+    assert warped == " 4 warped 1: quads that are not flat (1)"
+
+
+def test_many_rows_are_cut_in_a_line_and_whole_in_json() -> None:
+    mesh = Mesh(np.vstack([SHEET.coordinates, np.full((20, 3), 5.0)]), SHEET.node_numbers)
+    faults = mesh_faults(mesh)
+    assert list(fault_lines(faults))[2] == " 3 unused 21: nodes that no polygon uses (5, 6, 7, 8, 9, ...)"
+    values = json.loads(json.dumps(fault_values(faults)))
+    assert values[1] == {
+        "kind": "unused", "number": 3, "of": "node", "count": 21, "rows": list(range(5, 26)), "polygons": []
+    }  # fmt: skip
+    assert values[0]["loops"][0]["closed"] is True
+    assert values[0]["polygons"] == [1]
+
+
+@pytest.mark.parametrize(("sheets", "told"), [(6, "and 1 shorter one"), (7, "and 2 shorter ones")])
+def test_loops_that_are_not_told_are_counted(sheets: int, told: str) -> None:
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
+    apart = np.arange(sheets)[:, None, None] * np.array([3.0, 0, 0])
+    corners = np.arange(4 * sheets).reshape(sheets, 4)
+    lines = list(fault_lines(mesh_faults(Mesh((square + apart).reshape(-1, 3), corners))))
+    assert lines[6].strip() == told
+
+
+def test_there_is_a_color_for_each_kind() -> None:
+    assert len(COLORS) == len(set(COLORS)) == len(KINDS)
+
+
+def test_the_faults_color_the_scene_whatever_surfaces_it_has() -> None:
+    mesh = cube()
+    turned = mesh.node_numbers.copy()
+    turned[0] = turned[0, ::-1]
+    mesh = type(mesh)(mesh.coordinates, turned).with_scalars(
+        MeshScalar("stress", np.zeros(8)), MeshScalar("fault", np.zeros(8))
+    )
+    scene = fault_scene(scene_of(mesh, surfaces="parts"), mesh_faults(mesh))
+    assert [scalar.name for scalar in scene.mesh.scalars] == ["stress", "fault"]
+    assert [scalar.of for scalar in scene.mesh.scalars] == ["node", "polygon"]
+    colors = {tuple(color) for color in image(scene, render(scene, 60, 80)).reshape(-1, 3).tolist()}
+    red, green, blue = COLORS[list(KINDS).index("turned")]
+    # A shade of the kind's color: its components keep their order.
+    assert any(g > b > r for r, g, b in colors), (red, green, blue)
+
+
+def test_the_legend_has_the_numbers_of_the_kinds_and_0_for_none() -> None:
+    scene = fault_scene(scene_of(cube()), ())
+    found = legend(display_image(scene, render(scene)))
+    assert found is not None
+    assert [each.text for each in found.labels] == ["fault", *map(str, range(len(KINDS) + 1))]

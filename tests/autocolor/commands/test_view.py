@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from autocolor.files.state.recent import recent_files
+from autocolor.files.state import recent_files
 from tests.autocolor.commands.conftest import Run
 
 pygame = pytest.importorskip("pygame")

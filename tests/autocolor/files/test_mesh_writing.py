@@ -9,7 +9,7 @@ import pytest
 from autocolor import Mesh, OutputError, read_scene
 from autocolor.files import mesh_writing
 from autocolor.files.mesh_writing import entries_of, meshes_there, reports_of, written_mesh
-from autocolor.scene.scalars.mesh_scalars import MeshScalar
+from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.meshes import cube
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nf 1 2 3 4\n"

@@ -15,7 +15,7 @@ from autocolor import Flap, Flaps, InputError, Light, Scene, read_picture, rende
 from autocolor.files.array_file import array_file_bytes, read_array_file
 from autocolor.files.picture_file import PICTURE_FILE
 from autocolor.files.plain_scene import plain_scene, scene_of_plain
-from autocolor.scene.columns.column import keys_of
+from autocolor.scene.columns import keys_of
 from autocolor.scene.surfaces import Paint, Reflectance, Surface
 from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.meshes import wall_scene

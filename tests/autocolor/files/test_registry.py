@@ -8,13 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.files.registry import (
-    Registry,
-    format_named,
-    recognized,
-    suffix_rule,
-    suffixes_of,
-)
+from autocolor.files.registry import Registry, format_named, recognized, suffix_rule, suffixes_of
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,7 @@ from autocolor import (
 )
 from autocolor.files.rig_file import is_rig
 from autocolor.files.scenes.toml_text import LARGEST_TEXT
-from autocolor.scene.lights.half_spaces import HalfSpace
-from autocolor.scene.lights.links import Links
+from autocolor.scene.lights import HalfSpace, Links
 from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.meshes import cube
 

@@ -11,7 +11,7 @@ import pytest
 from autocolor import Scene
 from autocolor.errors import InputError, MissingInputError, UsageError
 from autocolor.files.scene_sources import read_scene, read_scene_with_report
-from autocolor.scene.columns.column import fields_of
+from autocolor.scene.columns import fields_of
 from autocolor.scene.defaults import MAPPING_FIELDS
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 3\nv 0 1 0\ng hood\nf 1 2 3 4\n"

@@ -32,7 +32,7 @@ from autocolor import (
 )
 from autocolor.files import scene_writing
 from autocolor.files.scene_writing import write_scene_with_tables
-from autocolor.scene.columns.rows import with_values
+from autocolor.scene.columns import with_values
 from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import of_mesh, scenes
 

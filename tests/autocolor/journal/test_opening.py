@@ -10,8 +10,8 @@ import autocolor
 from autocolor import InputError, Mesh, read_scene
 from autocolor.journal.opening import checksum_of, is_same_mesh, opened, opened_again
 from autocolor.journal.places import Source, stamp_of
-from autocolor.scene.columns.rows import plain
-from autocolor.scene.scalars.mesh_scalars import MeshScalar
+from autocolor.scene.columns import plain
+from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.sessions import car
 
 

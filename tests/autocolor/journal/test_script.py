@@ -9,6 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -27,13 +28,12 @@ from autocolor import (
     scene_of,
 )
 from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
-from autocolor.journal.meshes_beside import MeshesBeside
 from autocolor.journal.opening import checksum_of, opened
 from autocolor.journal.places import Source
 from autocolor.journal.reading import session_of
-from autocolor.journal.script import call_between, journal_text, literal, step_line
+from autocolor.journal.script import MeshesBeside, call_between, journal_text, literal, step_line
 from autocolor.scene.changes import HalfSpaceChanges, LightChanges
-from autocolor.scene.lights.new_lights import new_light_of
+from autocolor.scene.creation import new_light_of
 from autocolor.scene.scene import AUTO
 from ramtek_emu import Ramtek9300
 from tests.autocolor.linked_scenes import linked
@@ -394,3 +394,44 @@ def test_literals_are_read_as_they_were() -> None:
     values: list[Any] = ["it's \"\n\ud800", -0.0, 1e-320, -math.inf, True, None, [1, [2.5]], {"a": {}}]
     assert eval(literal(values)) == values
     assert literal([-math.inf, -0.0]) == "[-1e999, -0.0]"
+
+
+# -------------------- test_meshes_beside
+# Changed meshes beside a journal: each once, and exactly.
+
+
+def larger(scene: Scene, crease_angle: float = 40.0) -> Scene:
+    mesh = scene.mesh
+    return scene.replace(
+        mesh=Mesh(mesh.coordinates * 1.1, mesh.node_numbers, mesh.part_numbers, mesh.part_names, crease_angle)
+    )
+
+
+def test_a_mesh_is_saved_once_and_read_back_as_it_was(tmp_path: Path) -> None:
+    beside = MeshesBeside(tmp_path / "session")
+    one, other = larger(car(), 17.0), larger(car())
+    path = beside.path_of(one)
+    assert path == tmp_path / "session" / "scene-2"
+    assert beside.path_of(one.replace(ambient=0.9)) == path
+    assert beside.path_of(other) == tmp_path / "session" / "scene-3"
+    again = read_scene(path).mesh
+    assert np.array_equal(again.coordinates, one.mesh.coordinates)
+    assert np.array_equal(again.node_numbers, one.mesh.node_numbers)
+    assert again.part_names == one.mesh.part_names
+    assert again.crease_angle == 17.0
+
+
+def test_a_mesh_that_was_read_from_there_is_not_saved_again(tmp_path: Path) -> None:
+    path = MeshesBeside(tmp_path).path_of(larger(car()))
+    before = sorted(tmp_path.iterdir())
+    assert MeshesBeside(tmp_path).path_of(read_scene(path)) == path
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_without_a_folder_a_changed_mesh_is_refused() -> None:
+    with pytest.raises(InputError) as refusal:
+        MeshesBeside().path_of(car())
+    assert str(refusal.value) == (
+        "a mesh that a session changed must be saved beside its journal, and no folder is named for it; name"
+        " one with beside="
+    )

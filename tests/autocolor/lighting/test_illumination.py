@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from autocolor import Light, Mesh, Scene, Surface, View, scene_of
 from autocolor.lighting.illumination import Previous, illuminate
 from autocolor.lighting.picture import Picture
-from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
-from autocolor.scene.specular_growth import SpecularGrowth
+from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel, SpecularGrowth
 from autocolor.visibility.visible_points import VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, sphere

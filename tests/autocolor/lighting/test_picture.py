@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, Picture, Scene, render
-from autocolor.mapping.intensity_mapping import words_of
-from autocolor.mapping.level_ranges import level_ranges
+from autocolor.mapping.intensity import words_of
+from autocolor.mapping.ranges import level_ranges
 from tests.autocolor.meshes import sphere, wall_scene
 from tests.autocolor.strategies import lights, scenes
 

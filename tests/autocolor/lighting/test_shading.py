@@ -10,13 +10,26 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, HalfSpace, Light, Mesh, Reflectance, Scene, View, render
+from autocolor import (
+    Flap,
+    Flaps,
+    HalfSpace,
+    InputError,
+    Light,
+    Mesh,
+    Part,
+    Reflectance,
+    Scene,
+    Surface,
+    View,
+    render,
+)
 from autocolor.arrays import Floats, Singles
-from autocolor.lighting.shading import controlled_light, shade
-from autocolor.scene.columns.angle_kinds import AngleCurve
-from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
-from autocolor.scene.specular_growth import SpecularGrowth
-from autocolor.visibility.visible_points import VisiblePoints
+from autocolor.lighting.shading import DIFFUSE, SPECULAR, LightPlanes, controlled_light, light_mix, mix, shade
+from autocolor.scene.kinds import AngleCurve
+from autocolor.scene.lights import Links
+from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel, SpecularGrowth
+from autocolor.visibility.visible_points import VisiblePoints, point_chunks, surface_slices
 from autocolor.visibility.visible_surfaces import visible_surfaces
 from tests.autocolor.meshes import cube, sphere, wall, wall_scene
 from tests.autocolor.reference import (
@@ -30,7 +43,7 @@ from tests.autocolor.reference import (
     times,
     unit,
 )
-from tests.autocolor.strategies import flaps, lights, numbers, reflectances
+from tests.autocolor.strategies import flaps, lights, numbers, reflectances, surfaces
 
 LINES, ELEMENTS = 12, 16
 WALLS = [wall(), wall(7, 5)]
@@ -556,3 +569,136 @@ def test_no_ray_is_computed_beyond_the_reach_of_a_light(monkeypatch: pytest.Monk
     light = Light("light", (0, -3, 0), falloff="linear", reach=2.5)
     monkeypatch.setattr("autocolor.lighting.shading.rays_to", None)
     assert not render(wall_scene(lights=[light]), 12, 16).intensity.any()
+
+
+@given(st.lists(st.integers(0, 30), min_size=1, max_size=5), st.integers(1, 40), st.integers(0, 1 << 32))
+def test_the_mix_is_the_weighted_sum_of_both_planes_by_surface(
+    counts: list[int], at_once: int, seed: int
+) -> None:
+    random = np.random.default_rng(seed)
+    slices = surface_slices(np.array([0, *counts]))
+    values = random.uniform(0, 1, (2, sum(counts))).astype(np.float32)
+    weights = {
+        each.surface_number: (np.float32(random.uniform()), np.float32(random.uniform())) for each in slices
+    }
+    out = np.full(sum(counts), np.float32(np.nan))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("autocolor.visibility.visible_points.PIXELS_AT_ONCE", at_once)
+        for chunk in point_chunks(slices):
+            mix(LightPlanes(values, weights), chunk, out=out[chunk.pixels])
+    for each in slices:
+        diffuse, specular = map(float, weights[each.surface_number])
+        for pixel in range(each.start, each.stop):
+            expected = diffuse * float(values[DIFFUSE, pixel]) + specular * float(values[SPECULAR, pixel])
+            assert out[pixel] == pytest.approx(expected, rel=1e-6)
+
+
+PHONG: dict[int, ReflectionModel] = {1: Phong(), 2: Phong()}
+
+
+def named(names: list[str]) -> st.SearchStrategy[tuple[Light, ...]]:
+    return st.tuples(*(lights(name) for name in names))
+
+
+both = st.tuples(surfaces("one"), surfaces("other"))
+
+
+@given(both, named(["key", "fill", "rim"]), numbers(0, 2))
+def test_the_weights_are_intensity_times_d_and_s_in_proportion_to_the_largest(
+    both: tuple[Surface, Surface], lights: tuple[Light, ...], ambient: float
+) -> None:
+    mix = light_mix(PHONG, both, lights, ambient, ())
+    assert list(mix.lights) == [light.name for light in lights if light.on and light.intensity > 0]
+    every = [ambient / mix.scale]
+    for light in lights:
+        for number, weights in mix.lights.get(light.name, {}).items():
+            reflectance = both[number - 1].reflectance
+            for weight, property_ in zip(weights, (reflectance.diffuse, reflectance.specular), strict=True):
+                assert weight * mix.scale == pytest.approx(light.intensity * property_, rel=1e-6)
+                every.append(float(weight))
+    assert mix.ambient * mix.scale == pytest.approx(ambient, rel=1e-6)
+    assert max(every) in (0.0, 1.0)
+
+
+@given(both, named(["key", "fill"]), numbers(0, 2), st.integers(-40, 40))
+def test_lights_and_ambient_2_to_the_k_times_as_strong_have_the_same_weights(
+    both: tuple[Surface, Surface], lights: tuple[Light, ...], ambient: float, k: int
+) -> None:
+    stronger = [light.replace(intensity=light.intensity * 2.0**k) for light in lights]
+    one, other = (
+        light_mix(PHONG, both, lights, ambient, ()),
+        light_mix(PHONG, both, stronger, ambient * 2.0**k, ()),
+    )
+    assert (one.ambient, one.lights) == (other.ambient, other.lights)
+
+
+def test_only_visible_surfaces_have_weights() -> None:
+    both = (Surface("one"), Surface("other"))
+    mix = light_mix({2: Phong()}, both, [Light("key", (0, 0, 0))], 0.0, ())
+    assert list(mix.lights["key"]) == [2]
+
+
+def test_a_light_has_no_weight_on_a_surface_that_it_is_not_linked_to() -> None:
+    both = (Surface("one"), Surface("other"))
+    parts = (Part("left", "one"), Part("middle", "other"), Part("right", "other"))
+    for links, lit in (
+        ({"only_surfaces": ["one"]}, {1}),
+        ({"except_surfaces": ["one"]}, {2}),
+        ({"only_surfaces": []}, set()),
+        ({"except_surfaces": []}, {1, 2}),
+        ({"only_parts": ["left"]}, {1}),
+        ({"except_parts": ["middle"]}, {1, 2}),
+        ({"except_parts": ["middle", "right"]}, {1}),
+        ({"only_parts": ["right"], "except_surfaces": ["other"]}, set()),
+    ):
+        light = Light("key", (0, 0, 0), 2.0, links=Links(**links))
+        mix = light_mix(PHONG, both, [light], 0.0, parts)
+        assert list(mix.lights["key"]) == [1, 2]
+        assert {number for number, weights in mix.lights["key"].items() if any(weights)} == lit
+
+
+def test_a_light_of_any_intensity_is_not_refused_for_surfaces_that_it_does_not_reach() -> None:
+    strong = Light("key", (2, -3, 3), 1e39)
+    for links in ({"except_surfaces": ["sphere"]}, {"except_parts": ["sphere"]}):
+        scene = wall_scene(sphere(), lights=[strong.replace(**links)], ambient=0.5)  # type: ignore[arg-type]
+        picture = render(scene, 12, 16)
+        assert set(picture.intensity[picture.surface_number > 0].tolist()) == {0.5}
+    with pytest.raises(InputError, match="surface 'sphere' under light 'key': intensities must stay below"):
+        render(wall_scene(sphere(), lights=[strong.replace(only_parts=["sphere"])]), 12, 16)
+
+
+def test_nothing_at_all_has_a_scale_of_1() -> None:
+    assert light_mix({}, (), (), 0.0, ()) == (1.0, np.float32(0), {})
+
+
+def test_what_a_model_may_add_counts_against_the_range_of_float32() -> None:
+    both = (Surface("one", Reflectance(0.0, 1.0, 20.0)), Surface("other"))
+    lights = [Light("key", (0, 0, 0), 1e37)]
+    light_mix({1: Phong()}, both, lights, 0.0, ())
+    with pytest.raises(InputError) as refused:
+        light_mix({1: CookTorrance(0.3, 0.05)}, both, lights, 0.0, ())
+    assert str(refused.value) == (
+        "surface 'one' under light 'key': intensities must stay below 3.4e+38, not reach 9.81012e+38; lower"
+        " the light's intensity or the surface's diffuse and specular"
+    )
+
+
+def test_intensities_that_float32_cannot_hold_are_refused_with_surface_and_light() -> None:
+    lights = [Light("key", (2, -3, 3), 1e39), Light("fill", (2, -3, 3), 1.0)]
+    with pytest.raises(
+        InputError, match=r"surface 'sphere' under light 'key': intensities must stay below 3.4e\+38"
+    ):
+        render(wall_scene(sphere(), lights=lights))
+    with pytest.raises(InputError, match=r"ambient must stay below 3.4e\+38, not 1e\+39; lower it"):
+        render(wall_scene(sphere(), lights=[], ambient=1e39))
+    huge = wall_scene(sphere(), lights=[Light("key", (2, -3, 3), 1e300)])
+    with pytest.raises(InputError, match="lower the light's intensity"):
+        render(huge.with_surface("sphere", reflectance=Reflectance(1e300, 0, 1)))
+
+
+def test_an_ambient_that_float32_cannot_hold_is_refused_even_where_nothing_is_visible() -> None:
+    scene = wall_scene().replace(ambient=1e39)
+    for each in (scene, scene.with_view(eye=(0, 40, 0), direction=(0, 1, 0))):
+        with pytest.raises(InputError) as refused:
+            render(each, 9, 12)
+        assert str(refused.value) == "ambient must stay below 3.4e+38, not 1e+39; lower it"

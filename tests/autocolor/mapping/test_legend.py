@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, Scene, View, render, scene_of
+from autocolor.mapping.bands import Bands
 from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.legend import (
     BAR_ELEMENTS,
@@ -18,13 +19,15 @@ from autocolor.mapping.legend import (
     LETTER_LINES,
     MOST_TITLE,
     Legend,
+    bands_apart,
     laid_out,
     legend,
+    numbers_beside,
+    numbers_between,
     title_lines,
 )
-from autocolor.mapping.level_ranges import SCREENS
-from autocolor.mapping.scalar_bands import Bands
-from autocolor.scene.scalars.color_scales import scale_colors
+from autocolor.mapping.ranges import SCREENS
+from autocolor.scene.color_scales import scale_colors
 from tests.autocolor.meshes import sphere
 
 
@@ -191,3 +194,59 @@ def test_it_goes_to_the_left_where_it_hides_far_less_of_the_object() -> None:
         eye = tuple(scene.view.axes[0] * -shift + (x, y, z))
         moved = scene.with_view(eye=eye, direction=scene.view.axes[2].tolist(), target=None)
         assert (legend_of(shown(moved)).swatches[0].left == 8) is is_left
+
+
+@given(st.integers(2, 256), st.integers(1, 24))
+def test_numbers_are_at_limits_of_bands_and_far_enough_apart_or_at_the_ends_alone(
+    bands: int, lines: int
+) -> None:
+    apart = bands_apart(bands, lines, 22)
+    assert bands % apart == 0
+    assert apart == bands or apart * lines >= 22
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "count", "told", "exponent"),
+    [
+        (0, 250, 4, ["0", "62.5", "125", "187.5", "250"], 0),
+        (-1, 1, 4, ["-1", "-0.5", "0", "0.5", "1"], 0),
+        (0, 1, 3, ["0", "0.333", "0.667", "1.000"], 0),
+        (0, 2e-6, 2, ["0", "1", "2"], -6),
+        (320.1, 8019584, 2, ["0.00", "4.01", "8.02"], 6),
+        (0, 45_000, 3, ["0", "15000", "30000", "45000"], 0),
+        (-0.3, 0.3, 2, ["-0.3", "0", "0.3"], 0),
+        (1e30, 3e30, 2, ["1", "2", "3"], 30),
+    ],
+)
+def test_numbers_are_told_in_few_digits(
+    low: float, high: float, count: int, told: list[str], exponent: int
+) -> None:
+    assert numbers_between(low, high, count) == (told, exponent)
+
+
+numbers = st.floats(-1e9, 1e9).filter(lambda value: value == 0 or abs(value) > 1e-9)
+
+
+@given(numbers, st.floats(1e-6, 1e9), st.integers(1, 16))
+def test_each_number_is_that_of_its_limit_to_a_twentieth_of_the_distance(
+    low: float, extent: float, count: int
+) -> None:
+    high = low + extent
+    assume(low < high)
+    distance = (high - low) / count
+    told, exponent = numbers_between(low, high, count)
+    assert len(told) == count + 1
+    for number, text in enumerate(told):
+        wanted = low + (high - low) * number / count
+        assert abs(float(text) * 10.0**exponent - wanted) <= distance / 20 + 1e-9 * abs(wanted)
+
+
+@given(st.integers(-40, 40), st.integers(2, 256), st.integers(1, 24))
+def test_whole_numbers_are_beside_the_middles_of_their_bands_and_far_enough_apart(
+    first: int, bands: int, lines: int
+) -> None:
+    texts, exponent, places = numbers_beside(first - 0.5, first - 0.5 + bands, bands, lines, 22)
+    assert exponent == 0
+    assert [int(text) - first for text in texts] == [place // lines for place in places]
+    assert all(after - before >= 11 for before, after in pairwise(places))
+    assert texts[0] == str(first)

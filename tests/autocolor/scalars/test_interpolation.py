@@ -1,12 +1,19 @@
 from __future__ import annotations
 
+import math
+
 import numpy as np
+import numpy.typing as npt
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from autocolor.rendering import rendering
 from autocolor.scalars import interpolation
-from autocolor.scalars.interpolation import interpolated, polygon_runs, weighted_points
+from autocolor.scalars.interpolation import corner_weights, interpolated, polygon_runs, weighted_points
 from tests.autocolor.meshes import sphere, wall, wall_scene
+from tests.autocolor.reference import weights_in
+from tests.autocolor.strategies import numbers, vectors
 
 
 def test_runs_are_the_polygons_of_the_points() -> None:
@@ -40,3 +47,133 @@ def test_values_do_not_depend_on_the_chunks(monkeypatch: pytest.MonkeyPatch) -> 
     assert len(chunks) > 10
     # A sphere of polygons is hardly within the true one.
     assert in_one == pytest.approx(points.world_points[:, 2], abs=0.03)
+
+
+Array = npt.NDArray[np.float64]
+
+
+def weights_at(corners: object, points: object) -> Array:
+    """The weights of one polygon's corners, (points, 4)."""
+    table = np.array(corners, np.float64)
+    table = table[[0, 1, 2, 2]] if len(table) == 3 else table
+    within = np.array(points, np.float64).T
+    weights: Array = corner_weights(table.T[:, :, None], np.array([within.shape[1]]), within).T
+    return weights
+
+
+def on_a_circle(turns: list[float]) -> Array:
+    """A convex quad in an oblique plane, far from the origin."""
+    places = np.array([(math.cos(turn), 3 * math.sin(turn)) for turn in turns])
+    corners: Array = places @ np.array([(1.0, 0.25, -0.5), (-0.25, 1.0, 2.0)]) + (5.0, -7.0, 11.0)
+    return corners
+
+
+shares = st.lists(numbers(0.02, 1), min_size=4, max_size=4)
+turns = shares.map(lambda gaps: [2 * math.pi * sum(gaps[:count]) / sum(gaps) for count in range(4)])
+
+
+@given(turns, shares)
+def test_weights_in_a_convex_quad_are_those_of_wachspress(around: list[float], share: list[float]) -> None:
+    corners = on_a_circle(around)
+    point = np.array(share) @ corners / sum(share)
+    assert weights_at(corners, [point])[0] == pytest.approx(
+        weights_in(corners.tolist(), point.tolist()), abs=1e-9
+    )
+
+
+@given(turns, shares)
+def test_what_is_linear_stays_so_in_a_convex_quad(around: list[float], share: list[float]) -> None:
+    corners = on_a_circle(around)
+    point = np.array(share) @ corners / sum(share)
+    assert weights_at(corners, [point])[0] @ corners == pytest.approx(point, abs=1e-9)
+
+
+@given(st.tuples(vectors(), vectors(), vectors()), shares)
+def test_weights_in_a_triangle_are_barycentric(corners: list[tuple[float, ...]], share: list[float]) -> None:
+    table = np.array(corners)
+    assume(np.linalg.norm(np.cross(table[1] - table[0], table[2] - table[0])) > 1e-3)
+    wanted = np.array(share[:3]) / sum(share[:3])
+    assert weights_at(table, [wanted @ table])[0] == pytest.approx([*wanted, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("place", range(4))
+def test_a_triangle_may_repeat_any_corner(place: int) -> None:
+    triangle = np.array([(0.0, 0.0, 1.0), (4.0, 0.0, 1.0), (0.0, 4.0, 3.0)])
+    order = np.roll([0, 1, 2, 2], place)
+    wanted = np.array([0.2, 0.3, 0.5])
+    found = weights_at(triangle[order], [wanted @ triangle])[0]
+    assert np.bincount(order, found) == pytest.approx(wanted)
+
+
+def test_each_corner_has_all_the_weight_at_itself_and_none_on_the_sides_across() -> None:
+    quad = on_a_circle([0.1, 1.5, 2.8, 5.0])
+    assert weights_at(quad, quad) == pytest.approx(np.eye(4), abs=1e-12)
+    halfway = (quad[0] + quad[1]) / 2
+    assert weights_at(quad, [halfway])[0] == pytest.approx([0.5, 0.5, 0, 0], abs=1e-12)
+
+
+@pytest.mark.parametrize("first", range(4))
+def test_a_quad_with_a_notch_is_split_at_it(first: int) -> None:
+    dart = [(0.0, 1.0, 0.0), (-2.0, -1.0, 0.0), (0.0, 4.0, 0.0), (2.0, -1.0, 0.0)]
+    turned = [dart[(first + corner) % 4] for corner in range(4)]
+    # In the left half: corners 0, 1 and 2 of the dart.
+    wanted = np.array([0.2, 0.3, 0.5, 0.0])
+    found = weights_at(turned, [wanted @ np.array(dart)])[0]
+    assert found == pytest.approx([wanted[(first + corner) % 4] for corner in range(4)], abs=1e-12)
+    # In the right half: corners 2, 3 and 0.
+    wanted = np.array([0.2, 0.0, 0.3, 0.5])
+    found = weights_at(turned, [wanted @ np.array(dart)])[0]
+    assert found == pytest.approx([wanted[(first + corner) % 4] for corner in range(4)], abs=1e-12)
+
+
+quads = st.lists(vectors(), min_size=4, max_size=4)
+
+
+@given(quads, st.lists(vectors(), min_size=1, max_size=5))
+def test_weights_of_any_polygon_at_any_point_are_shares(
+    corners: list[tuple[float, ...]], points: list[tuple[float, ...]]
+) -> None:
+    weights = weights_at(corners, points)
+    assert (weights >= 0).all()
+    assert weights.sum(axis=1) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("thickness", [1e-3, 1e-6, 1e-9])
+def test_a_sliver_has_weights_in_single_precision(thickness: float) -> None:
+    corners = np.array([(0.0, 0.0), (2.0, 0.0), (1.5, 1.0), (0.5, 1.0)]) * (1, thickness)
+    corners = np.concatenate([corners, np.zeros((4, 1))], axis=1)
+    wanted = np.array([0.4, 0.3, 0.2, 0.1])
+    place = (wanted @ corners)[:, None].astype(np.float32)
+    weights = corner_weights(corners.T[:, :, None], np.array([1]), place)[:, 0]
+    assert weights.dtype == np.float32
+    assert weights @ corners[:, 0] == pytest.approx(place[0, 0], rel=1e-5)
+    assert weights @ corners[:, 1] == pytest.approx(place[1, 0], rel=1e-5)
+
+
+def test_a_warped_quad_is_seen_along_its_normal() -> None:
+    warped = [(0.0, 0.0, 0.1), (1.0, 0.0, -0.1), (1.0, 1.0, 0.1), (0.0, 1.0, -0.1)]
+    flat = [(x, y, 0.0) for x, y, _ in warped]
+    assert weights_at(warped, [(0.2, 0.7, 0.05)]) == pytest.approx(weights_at(flat, [(0.2, 0.7, 0)]))
+
+
+@given(quads, st.integers(-20, 20))
+def test_weights_are_the_same_at_any_size(corners: list[tuple[float, ...]], exponent: int) -> None:
+    points = [np.mean(corners, axis=0)]
+    scale = 2.0**exponent
+    scaled = weights_at(np.array(corners) * scale, np.array(points) * scale)
+    assert scaled == pytest.approx(weights_at(corners, points), abs=1e-9)
+
+
+def test_polygons_of_all_kinds_can_be_mixed() -> None:
+    square = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)]
+    triangle = [*square[:3], square[2]]
+    dart = [(0.0, 1.0, 0.0), (-2.0, -1.0, 0.0), (0.0, 4.0, 0.0), (2.0, -1.0, 0.0)]
+    points = [(0.25, 0.5, 0.0), (0.75, 0.5, 0.0), (0.75, 0.25, 0.0), (0.5, 1.0, 0.0)]
+    corners = np.array([square, triangle, dart]).transpose(2, 1, 0)
+    together = corner_weights(corners, np.array([2, 1, 1]), np.array(points).T).T
+    alone = [
+        *weights_at(square, points[:2]),
+        *weights_at(triangle, points[2:3]),
+        *weights_at(dart, points[3:]),
+    ]
+    assert together == pytest.approx(np.array(alone))

@@ -4,7 +4,7 @@ import ast
 from typing import get_type_hints
 
 from autocolor.scene.changes import SceneChanges, SceneFields
-from autocolor.scene.columns.column import fields_of, keys_of
+from autocolor.scene.columns import fields_of, keys_of
 from autocolor.scene.scene import Scene
 from tests.typed_changes import CLASSES, WRITTEN, source, types_of
 

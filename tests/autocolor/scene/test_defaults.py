@@ -9,13 +9,7 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh, Part, View, render, scene_of
 from autocolor.scene import defaults
-from autocolor.scene.defaults import (
-    default_lights,
-    default_view,
-    framed,
-    object_bounds,
-    object_coordinates,
-)
+from autocolor.scene.defaults import default_lights, default_view, framed, object_bounds, object_coordinates
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import Vector, directions, meshes, numbers, vectors
 

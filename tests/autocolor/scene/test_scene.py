@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Flap, Flaps, InputError, Light, Mesh, Part, Scene, UsageError, scene_of
-from autocolor.scene.columns.column import Tier
+from autocolor.scene.columns import Tier
 from autocolor.scene.curves import CURVES
 from autocolor.scene.defaults import object_coordinates
 from autocolor.scene.scene import cost_of_edit

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from autocolor.screens.board.board import Board
-from autocolor.screens.input.gestures import Gesture
+from autocolor.screens.board import Board
+from autocolor.screens.input import Gesture
 from autocolor.screens.screen import Handle, Screen
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar

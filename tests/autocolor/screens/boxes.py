@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from autocolor import Flap, Flaps, Light, Mesh, Scene, Surface, View, scene_of
-from autocolor.mapping.level_ranges import SCREENS
+from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import STRETCHED, cube

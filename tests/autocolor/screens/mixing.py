@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from autocolor import Scene
-from autocolor.screens.colors.mixing_screen import BLEND
+from autocolor.screens.mixing_screen import BLEND
 from autocolor.screens.viewer import Viewer
-from autocolor.widgets.areas import Area
-from autocolor.widgets.level_bars import LANE
+from autocolor.widgets.bars import LANE
+from autocolor.widgets.items import Area
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.painting_hand import PaintingHand
 

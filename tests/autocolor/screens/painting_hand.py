@@ -8,7 +8,7 @@ from autocolor import Mesh, Scene, Surface, View, scene_of
 from autocolor.arrays import Bytes, Words
 from autocolor.scene.surfaces import Paint
 from autocolor.studio import Studio
-from autocolor.widgets.areas import Area
+from autocolor.widgets.items import Area
 from autocolor.widgets.widget import Widget
 from ramtek_emu import Ramtek9300, instructions
 from tests.autocolor.meshes import cube

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.mapping.level_ranges import BACKGROUND, SCREENS, LevelRange
+from autocolor.mapping.ranges import BACKGROUND, SCREENS, LevelRange
 from autocolor.screens.entries_screen import (
     CELL_HEIGHT,
     CELL_WIDTH,
@@ -15,8 +15,7 @@ from autocolor.screens.entries_screen import (
     entries_items,
     named_cells,
 )
-from autocolor.widgets.colors import BLACK, WHITE, YELLOW
-from autocolor.widgets.items import CHARACTER, Item, text
+from autocolor.widgets.items import BLACK, CHARACTER, WHITE, YELLOW, Item, text
 from ramtek_emu import Ramtek9300, instructions
 
 RANGES = {"body": LevelRange(1, 500), "glass": LevelRange(501, 40)}

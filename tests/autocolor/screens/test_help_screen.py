@@ -1,11 +1,9 @@
 from __future__ import annotations
 
-from autocolor.screens.bindings import rows_of_help
-from autocolor.screens.board.message_line import MESSAGE
+from autocolor.screens.board import MESSAGE
 from autocolor.screens.help_screen import LIMITS, MIDDLE, STEP, TITLE, TOP, help_items
-from autocolor.widgets.areas import SCREEN
-from autocolor.widgets.colors import ORANGE, WHITE
-from autocolor.widgets.items import text
+from autocolor.screens.pointing import rows_of_help
+from autocolor.widgets.items import ORANGE, SCREEN, WHITE, text
 
 ROWS = rows_of_help()
 

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from autocolor import CookTorrance, Surface
-from autocolor.scene.columns.column import fields_of
-from autocolor.scene.reflection_models import MODELS
-from autocolor.scene.specular_growth import START_CURVE, SpecularGrowth
+from autocolor.scene.columns import fields_of
+from autocolor.scene.reflection_models import MODELS, START_CURVE, SpecularGrowth
 from autocolor.widgets.bars import Bar
 from tests.autocolor.screens.boxes import boxes, hand_at, told, undo, words_are_those_of_the_scene
 from tests.autocolor.screens.hand import Hand

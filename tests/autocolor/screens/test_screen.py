@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from autocolor.screens.input.gestures import Gesture
+from autocolor.screens.input import Gesture
 from autocolor.screens.screen import Handle, Screen
 from tests.autocolor.screens.boards import desk_viewer
 

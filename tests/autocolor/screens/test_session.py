@@ -1,18 +1,39 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 
-from autocolor import InputError, Light, OutputError, Studio, read_rig, write_rig, write_scene
-from autocolor.files.state.recent import recent_files
-from autocolor.scene.lights.links import Links
-from autocolor.screens.session import MESSAGE_SECONDS, PICTURE, Session
+from autocolor import (
+    InputError,
+    Light,
+    OutputError,
+    Scene,
+    Studio,
+    read_rig,
+    read_scene,
+    write_rig,
+    write_scene,
+)
+from autocolor.files.state import recent_files
+from autocolor.files.store.store_file import write_store
+from autocolor.journal.history import History
+from autocolor.journal.places import Source, place_of
+from autocolor.mapping.display_image import DisplayImage
+from autocolor.scene.lights import Links
+from autocolor.screens.session import BEFORE, MESSAGE_SECONDS, NOW, PICTURE, SECONDS_BETWEEN, Session
+from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
+from tests.autocolor.files.store.stores import run, small_scene
 from tests.autocolor.meshes import wall_scene
+from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before, seen_on
 from tests.autocolor.screens.boxes import KEY, boxes
+from tests.autocolor.screens.hand import Hand
+from tests.autocolor.screens.test_viewer import control, is_true_to
 
 
 @pytest.fixture
@@ -229,3 +250,400 @@ def test_leaving_tells_first_what_it_would_lose(session: Session, tmp_path: Path
     assert asked().endswith(" is not saved: undo goes back to it")
     session.leave()
     assert session.leaves
+
+
+PLACE = 335, 205
+"""An element and line of the ball to which the highlight is put."""
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Hand:
+    """A hand that has dragged the highlight."""
+    hand = hand_before(ball_scene(), tmp_path)
+    hand.drag(hand.handle("highlight of key"), PLACE)
+    return hand
+
+
+def alone(scene: Scene) -> tuple[bytes, bytes]:
+    """The words and the entries of a scene by itself."""
+    display = Ramtek9300()
+    Studio(scene, display)
+    return display.words.tobytes(), display.entries.tobytes()
+
+
+def shown(hand: Hand) -> tuple[bytes, bytes]:
+    """The words and the entries of the picture, without a menu and a message over it."""
+    hand.move(*MIDDLE)
+    hand.viewer.tell("")
+    return seen_on(hand)
+
+
+def press(hand: Hand) -> None:
+    hand.viewer.on_key("b", typed="b")
+
+
+def release(hand: Hand) -> None:
+    hand.viewer.on_release("b")
+
+
+def switch(hand: Hand) -> None:
+    hand.open_menu()
+    hand.pick("compare")
+
+
+def test_the_state_before_is_shown_while_the_key_is_held(hand: Hand) -> None:
+    now = shown(hand)
+    for _ in range(2):
+        press(hand)
+        hand.viewer.on_key("b", typed="b", repeated=True)
+        assert hand.viewer.message == f"shown: {BEFORE}"
+        assert shown(hand) == alone(ball_scene())
+        assert hand.viewer.studio.scene is not hand.viewer.studio.history.to_undo[-1]
+        release(hand)
+        assert hand.viewer.message == f"shown: {NOW}"
+        assert shown(hand) == now
+    assert now == alone(hand.viewer.studio.scene)
+
+
+def test_each_pick_of_the_row_shows_the_other_state(hand: Hand) -> None:
+    now = shown(hand)
+    switch(hand)
+    assert hand.viewer.message == f"shown: {BEFORE}"
+    assert shown(hand) == alone(ball_scene())
+    switch(hand)
+    assert hand.viewer.message == f"shown: {NOW}"
+    assert shown(hand) == now
+
+
+def test_a_pick_in_the_picture_shows_the_present_state_and_does_nothing_else(hand: Hand) -> None:
+    now, surface = shown(hand), hand.viewer.session.surface_name
+    switch(hand)
+    hand.click(320, 430)
+    assert hand.viewer.message == f"shown: {NOW}"
+    assert shown(hand) == now
+    assert hand.viewer.session.surface_name == surface
+    hand.click(320, 430)
+    assert hand.viewer.session.surface_name != surface
+
+
+def undo(hand: Hand) -> None:
+    hand.open_menu()
+    hand.pick(" ", 0.1)
+
+
+def undo_and_redo(hand: Hand) -> None:
+    undo(hand)
+    hand.pick(" ", 0.9)
+
+
+def switch_a_light(hand: Hand) -> None:
+    hand.open_menu()
+    hand.pick("fill", 0.95)
+
+
+def go_to_the_mapping_and_back(hand: Hand) -> None:
+    hand.open_menu()
+    hand.pick("mapping")
+    hand.pick("< picture")
+
+
+def recolor(hand: Hand) -> None:
+    hand.viewer.on_key("c", typed="c")
+
+
+def watch(hand: Hand) -> None:
+    hand.viewer.on_key("w", typed="w")
+    hand.viewer.on_key("escape")
+
+
+ENDINGS: dict[str, Callable[[Hand], None]] = {
+    "a drag over the picture": lambda hand: hand.drag((60, 60), (90, 60)),
+    "a drag where the highlight is": lambda hand: hand.drag(PLACE, (300, 200)),
+    "a switch": switch_a_light,
+    "an undo": undo,
+    "an undo with a redo": undo_and_redo,
+    "a key": recolor,
+    "another screen": go_to_the_mapping_and_back,
+    "watching": watch,
+}
+
+
+@pytest.mark.parametrize("name", ENDINGS)
+def test_whatever_is_done_meanwhile_is_done_with_the_present_state(hand: Hand, name: str) -> None:
+    switch(hand)
+    ENDINGS[name](hand)
+    assert not hand.viewer.session.comparing.is_on
+    assert shown(hand) == alone(hand.viewer.studio.scene)
+
+
+def test_handles_and_marks_of_the_present_light_are_not_there_meanwhile(hand: Hand) -> None:
+    hand.open_menu()
+    hand.pick("lights")
+    assert hand.viewer.board.screen.handles()
+    press(hand)
+    assert not hand.viewer.board.screen.handles()
+    assert not hand.viewer.board.screen.items()
+
+
+def test_where_colors_alone_differ_no_word_does(hand: Hand) -> None:
+    hand.viewer.on_key("c", typed="c")
+    press(hand)
+    image = hand.viewer.session.comparing.image
+    assert image is not None
+    assert image.words is hand.viewer.studio.words
+    assert (image.entries != hand.viewer.studio.entries).any()
+
+
+def test_each_other_state_is_computed_once(hand: Hand, monkeypatch: pytest.MonkeyPatch) -> None:
+    computed: list[Scene] = []
+    image_of = Studio.image_of
+
+    def counted(studio: Studio, scene: Scene) -> DisplayImage:
+        computed.append(scene)
+        return image_of(studio, scene)
+
+    monkeypatch.setattr(Studio, "image_of", counted)
+    for _ in range(3):
+        press(hand)
+        release(hand)
+    assert len(computed) == 1
+    hand.viewer.on_key("c", typed="c")
+    press(hand)
+    assert computed == list(hand.viewer.studio.history.to_undo)
+
+
+def test_without_a_step_there_is_nothing_to_compare_with(tmp_path: Path) -> None:
+    hand = hand_before(ball_scene(), tmp_path)
+    switch(hand)
+    assert hand.viewer.message == "compare: there is no step to undo"
+    press(hand)
+    assert hand.viewer.message == (
+        "to compare, there must be a step to undo or a kept variant; edit something first"
+    )
+    assert not hand.viewer.session.comparing.is_on
+
+
+def test_over_a_screen_without_the_picture_the_picture_comes(hand: Hand) -> None:
+    hand.viewer.on_key("f1")
+    press(hand)
+    assert hand.viewer.page == "picture"
+    assert shown(hand) == alone(ball_scene())
+
+
+def test_the_message_stands_as_long_as_the_other_state_does(hand: Hand) -> None:
+    press(hand)
+    session = hand.viewer.session
+    session.news = session.news._replace(told_at=session.news.told_at - 60)
+    assert session.has_news
+    session.comparing.end()
+    assert not session.has_news
+
+
+# Kept variants.
+
+
+def go_to_kept(hand: Hand) -> None:
+    hand.open_menu()
+    hand.pick("kept")
+
+
+@pytest.fixture
+def kept(hand: Hand) -> Hand:
+    """A hand that has kept a variant, and then made two steps."""
+    go_to_kept(hand)
+    hand.pick("keep")
+    hand.pick("< picture")
+    hand.drag((60, 60), (90, 60))
+    switch_a_light(hand)
+    return hand
+
+
+def test_a_kept_variant_is_compared_until_it_is_not_any_more(kept: Hand) -> None:
+    hand, now = kept, shown(kept)
+    variant = hand.viewer.studio.variants["A"].scene
+    go_to_kept(hand)
+    hand.pick("compare")
+    assert hand.viewer.page == "picture"
+    assert hand.viewer.message == "shown: variant A"
+    assert shown(hand) == alone(variant)
+    switch(hand)
+    assert shown(hand) == now
+    press(hand)
+    assert shown(hand) == alone(variant)
+    release(hand)
+    go_to_kept(hand)
+    hand.pick("compare", 0.9)
+    assert hand.viewer.message == f"compared from now on: {BEFORE}"
+    hand.pick("< picture")
+    press(hand)
+    assert shown(hand) == alone(hand.viewer.studio.history.to_undo[-1])
+
+
+def test_a_variant_that_was_dropped_is_compared_no_longer(kept: Hand) -> None:
+    hand = kept
+    go_to_kept(hand)
+    hand.pick("compare")
+    go_to_kept(hand)
+    hand.pick("drop")
+    hand.pick("< picture")
+    press(hand)
+    assert hand.viewer.message == f"shown: {BEFORE}"
+
+
+BRIGHTER = "UPDATE lights SET intensity = 3 WHERE name = 'key'"
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Path:
+    path = tmp_path / "small.sqlite"
+    write_store(path, small_scene())
+    return path
+
+
+def shown_2(path: Path) -> Viewer:
+    """A viewer of the scene of a file, as `autocolor view` shows it."""
+    place = place_of(Source(str(path)))
+    return Viewer(History(read_scene(path), place), Ramtek9300(), folder=path.parent)
+
+
+def tick(viewer: Viewer) -> None:
+    """Let the window come to its next look at the file."""
+    viewer.session.disk._looked_at -= SECONDS_BETWEEN
+    viewer.on_tick()
+
+
+def test_a_change_of_another_program_is_shown_as_one_step_to_undo(store: Path) -> None:
+    viewer = shown_2(store)
+    before = viewer.studio.scene
+    tick(viewer)
+    assert viewer.message.startswith("F1")
+    run(store, BRIGHTER, "UPDATE scene SET background = '#102030'")
+    viewer.on_tick()
+    assert viewer.studio.scene is before
+    tick(viewer)
+    assert viewer.studio.scene.light("key").intensity == 3
+    assert viewer.message == "small.sqlite was changed elsewhere; undo goes back"
+    assert is_true_to(viewer, read_scene(store))
+    assert not viewer.studio.is_changed
+    control(viewer, "z")
+    assert viewer.studio.scene is before
+    tick(viewer)
+    assert viewer.studio.scene is before
+
+
+def test_a_change_of_lights_keeps_what_was_computed_of_the_mesh(store: Path) -> None:
+    viewer = shown_2(store)
+    mesh = viewer.studio.scene.mesh
+    run(store, BRIGHTER)
+    tick(viewer)
+    assert viewer.studio.scene.mesh is mesh
+    run(store, "UPDATE nodes SET z = 0.5 WHERE node = 5")
+    tick(viewer)
+    assert viewer.studio.scene.mesh.coordinates[4, 2] == 0.5
+
+
+def test_with_unsaved_edits_the_user_is_asked(store: Path) -> None:
+    viewer = shown_2(store)
+    viewer.studio.light("rim", intensity=0.25)
+    mine = viewer.studio.scene
+    run(store, BRIGHTER)
+    tick(viewer)
+    assert viewer.studio.scene is mine
+    assert (
+        viewer.message == "small.sqlite was changed elsewhere: Ctrl+R shows that, Ctrl+S saves yours beside"
+    )
+    control(viewer, "r")
+    assert viewer.studio.scene.light("key").intensity == 3
+    assert viewer.message == "read again; undo goes back"
+    control(viewer, "z")
+    assert viewer.studio.scene is mine
+
+
+def test_edits_that_are_saved_instead_leave_the_change_of_the_other_program(store: Path) -> None:
+    viewer = shown_2(store)
+    viewer.studio.light("rim", intensity=0.25)
+    run(store, BRIGHTER)
+    tick(viewer)
+    control(viewer, "s")
+    assert "small.sqlite was changed since, and is left alone" in viewer.message
+    assert read_scene(store).light("key").intensity == 3
+    assert read_scene(store.parent / "small").light("rim").intensity == 0.25
+
+
+def test_ctrl_s_saves_to_the_store_and_that_is_no_change_of_another(store: Path) -> None:
+    viewer = shown_2(store)
+    run(store, "CREATE TABLE notes (text)")
+    tick(viewer)
+    viewer = shown_2(store)
+    viewer.studio.light("rim", intensity=0.25)
+    control(viewer, "s")
+    assert viewer.message.startswith("saved small.sqlite and small.npz")
+    assert read_scene(store).light("rim").intensity == 0.25
+    assert run(store, "SELECT count(*) FROM notes") == [(0,)]
+    scene = viewer.studio.scene
+    tick(viewer)
+    assert viewer.studio.scene is scene
+    assert viewer.message.startswith("saved")
+    run(store, BRIGHTER)
+    tick(viewer)
+    assert viewer.studio.scene.light("key").intensity == 3
+
+
+def test_a_store_that_is_wrong_for_a_while_is_told_and_the_scene_stays(store: Path) -> None:
+    viewer = shown_2(store)
+    before = viewer.studio.scene
+    run(store, "UPDATE polygons SET node3 = 40 WHERE polygon = 2")
+    tick(viewer)
+    assert viewer.studio.scene is before
+    assert viewer.message.startswith(
+        "not shown: small.sqlite: polygons, row 2: node 40 is not in the node table"
+    )
+    message = viewer.session.news
+    tick(viewer)
+    assert viewer.session.news is message
+    run(store, "UPDATE polygons SET node3 = 3 WHERE polygon = 2")
+    tick(viewer)
+    assert viewer.studio.scene.mesh.node_numbers[1].tolist() == [0, 1, 2, 2]
+
+
+def test_a_scene_file_is_looked_at_as_well(tmp_path: Path) -> None:
+    folder = tmp_path / "small"
+    write_scene(folder, small_scene().replace(mesh=small_scene().mesh.with_scalars()))
+    viewer = shown_2(folder)
+    file = folder / "scene.toml"
+    file.write_text(file.read_text() + '\n[[lights]]\nname = "third"\nposition = [1, 2, 3]\n')
+    tick(viewer)
+    assert [light.name for light in viewer.studio.scene.lights] == ["key", "rim", "third"]
+    file.write_text("[[mesh]\n")
+    tick(viewer)
+    assert viewer.message.startswith("not shown: scene.toml")
+    assert len(viewer.studio.scene.lights) == 3
+
+
+def test_a_file_that_only_looks_changed_is_no_step(store: Path) -> None:
+    viewer = shown_2(store)
+    run(store, "CREATE TABLE notes (text)")
+    before, news = viewer.studio.scene, viewer.session.news
+    tick(viewer)
+    assert viewer.studio.scene is before
+    assert viewer.session.news is news
+    assert viewer.studio.undo() is False
+
+
+def test_a_scene_in_no_file_has_nothing_to_read_again(tmp_path: Path) -> None:
+    viewer = Viewer(small_scene(), Ramtek9300(), folder=tmp_path)
+    tick(viewer)
+    control(viewer, "r")
+    assert viewer.message == "the scene must be in a file to be read again, and it is in none; save it"
+
+
+def test_a_look_takes_no_time(store: Path) -> None:
+    viewer = shown_2(store)
+    disk = viewer.session.disk
+    seconds = []
+    for _ in range(20):
+        disk._looked_at -= SECONDS_BETWEEN
+        begun = time.perf_counter()
+        disk.was_changed()
+        seconds.append(time.perf_counter() - begun)
+    assert np.median(seconds) < 0.002

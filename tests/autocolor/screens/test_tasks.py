@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from autocolor import Scene, read_scene
-from autocolor.scene.paints.swatches import swatches
-from autocolor.scene.scalars.scalar import Scalar
+from autocolor.scene.scalar import Scalar
+from autocolor.scene.swatches import swatches
 from autocolor.screens.viewer import Viewer
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand

@@ -1,6 +1,9 @@
 from __future__ import annotations
 
+import math
+
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -9,16 +12,21 @@ from autocolor.visibility.depth import (
     KEY_BITS,
     LEAST_NUMBER_BITS,
     DepthScale,
+    Segments,
     depth_scale,
+    not_occluded,
     numbers_of_polygons,
     plane_keys,
     plane_rounding,
     polygons_of_numbers,
+    segments_of_polygons,
 )
-from autocolor.visibility.projection import projection
-from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import decal_on_ground, grid
+from autocolor.visibility.projection import Projection, projection
+from autocolor.visibility.scan_lines import extents_of_polygons
+from autocolor.visibility.visible_surfaces import depth_test, visible_surfaces
+from tests.autocolor.meshes import decal_on_ground, grid, sphere
 from tests.autocolor.strategies import meshes, outside_views, rasters, views
+from tests.autocolor.visibility.test_scan_lines import extent_on
 
 depths = st.floats(1e-9, 1.0)
 
@@ -113,3 +121,114 @@ def test_a_corner_beside_the_eye_leaves_the_depths_in_the_picture_as_fine_as_bef
     behind = grid(1, 1, (-1, 1 + 1e-5, -1), (2, 0, 0.3), (0, 0, 2), "behind")
     points = visible_surfaces(Mesh.joined([far, beside, behind]), view, (1, 2, 3), 48, 64)
     assert not (points.polygon_numbers == 2)[points.world_points[:, 2] < 0.69].any()
+
+
+RASTER = (126, 171)
+
+
+def kept_and_visible(mesh: Mesh, view: View) -> tuple[set[int], set[int]]:
+    """The polygons seen from behind that are kept, and those that are visible when none is culled."""
+    projected = projection(mesh, view, *RASTER)
+    scale = depth_scale(projected)
+    depth_buffer = np.zeros(RASTER[0] * RASTER[1], np.int64)
+    behind = np.flatnonzero(projected.from_behind)
+    depth_test(depth_buffer, projected, scale, np.flatnonzero(~projected.from_behind))
+    kept = not_occluded(depth_buffer, projected, scale, behind)
+    depth_test(depth_buffer, projected, scale, behind)
+    number = np.unique(depth_buffer & (scale.number_limit - 1))
+    visible = polygons_of_numbers(projected, number[number > 0])
+    return set(kept.tolist()), set(visible.tolist()) & set(behind.tolist())
+
+
+@given(meshes(), views() | outside_views())
+def test_no_visible_polygon_is_culled(mesh: Mesh, view: View) -> None:
+    kept, visible = kept_and_visible(mesh, view)
+    assert visible <= kept
+
+
+@given(st.integers(0, 1 << 32), st.booleans())
+def test_no_visible_polygon_of_a_shared_plane_is_culled(seed: int, cover: bool) -> None:
+    mesh, view = decal_on_ground(seed)
+    # Let half of the polygons run the other way round.
+    numbers = mesh.node_numbers.copy()
+    numbers[::2] = numbers[::2, ::-1]
+    if cover:
+        # A copy that faces the eye lies on all of them.
+        numbers = np.concatenate([numbers, numbers[:, ::-1]])
+    parts = np.zeros(len(numbers), np.intp)
+    kept, visible = kept_and_visible(Mesh(mesh.coordinates, numbers, parts, ("all",)), view)
+    assert visible <= kept
+
+
+@pytest.mark.parametrize("distance", [2.5, 4.0, 9.0])
+def test_the_far_side_of_a_ball_is_culled_except_near_its_rim(distance: float) -> None:
+    view = View((0, -distance, 0), target=(0, 0, 0), field_of_view=60)
+    kept, visible = kept_and_visible(sphere(), view)
+    behind = int(projection(sphere(), view, *RASTER).from_behind.sum())
+    assert visible <= kept
+    assert len(kept) < 0.9 * behind
+
+
+def all_segments(mesh: Mesh, view: View, raster: tuple[int, int]) -> tuple[Projection, DepthScale, Segments]:
+    projected = projection(mesh, view, *raster)
+    scale = depth_scale(projected)
+    return projected, scale, segments_of_polygons(projected, scale, np.arange(projected.corners.shape[1]))
+
+
+def places(projected: Projection, segments: Segments) -> list[tuple[int, int]]:
+    """The polygon and the line of each segment."""
+    polygons = polygons_of_numbers(projected, segments.number)
+    return list(zip(polygons.tolist(), (segments.first_pixel // projected.elements).tolist(), strict=True))
+
+
+@given(meshes(), views() | outside_views(), rasters)
+def test_the_segments_are_the_extents_of_the_polygons(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    projected, _, segments = all_segments(mesh, view, raster)
+    polygons = np.arange(projected.corners.shape[1])
+    extents = extents_of_polygons(projected, polygons)
+    rows = zip(extents.row.tolist(), extents.line.tolist(), strict=True)
+    assert places(projected, segments) == list(rows)
+    assert (segments.first_pixel % raster[1]).tolist() == extents.first.tolist()
+    assert segments.count.tolist() == extents.count.tolist()
+
+
+@given(meshes(), outside_views(), rasters)
+def test_the_keys_step_along_the_inverse_depth(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
+    projected, scale, segments = all_segments(mesh, view, raster)
+    for row, (polygon, line) in enumerate(places(projected, segments)):
+        element = int(segments.first_pixel[row]) % raster[1]
+        (left, left_depth), (right, right_depth) = extent_on(projected, polygon, line)
+        if right - left < 1e-3:
+            continue
+        for k in (0, int(segments.count[row]) - 1):
+            fraction = (element + k + 0.5 - left) / (right - left)
+            depth = left_depth + fraction * (right_depth - left_depth)
+            key = int(segments.start[row]) + k * int(segments.step[row])
+            assert key % scale.number_limit == 0
+            assert key / scale.number_limit / scale.factor == pytest.approx(depth, rel=1e-6)
+
+
+@given(meshes(), views(), rasters)
+def test_the_segments_of_some_polygons_are_among_those_of_all(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    projected, scale, segments = all_segments(mesh, view, raster)
+    some = np.arange(0, projected.corners.shape[1], 2)
+    found = segments_of_polygons(projected, scale, some)
+    chosen = polygons_of_numbers(projected, segments.number) % 2 == 0
+    for one, other in zip(vars(found).values(), vars(segments).values(), strict=True):
+        assert one.tolist() == other[chosen].tolist()
+
+
+def test_a_rectangle_has_one_segment_on_each_of_its_lines() -> None:
+    # The eye is as far as the lens is long: one unit of the plane is one pixel.
+    view = View((4.0, -4 / math.tan(math.radians(15)), 4.0), direction=(0.0, 1.0, 0.0), field_of_view=30.0)
+    corners = np.array([(1.4, 0, 2.4), (4.6, 0, 2.4), (4.6, 0, 5.6), (1.4, 0, 5.6)])
+    panel = Mesh(corners, np.array([[0, 1, 2, 3]]), np.array([0]), ("panel",))
+    _, _, segments = all_segments(panel, view, (8, 8))
+    # Lines run downward from the top at 8.
+    assert segments.first_pixel.tolist() == [8 * line + 1 for line in (2, 3, 4, 5)]
+    assert segments.count.tolist() == [4, 4, 4, 4]
+    assert segments.number.tolist() == [2] * 4

@@ -1,14 +1,29 @@
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from autocolor import Mesh, View, render, scene_of
-from autocolor.visibility.projection import focal_length, projection
-from tests.autocolor.meshes import cube, grid
+from autocolor.visibility import projection as projection_room
+from autocolor.visibility import projection as room
+from autocolor.visibility.camera import Raster
+from autocolor.visibility.projection import (
+    MOST_OFF,
+    Projection,
+    focal_length,
+    preselected,
+    projection,
+    split_quads,
+)
+from autocolor.visibility.visible_surfaces import visible_surfaces
+from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
 from tests.autocolor.reference import ray
-from tests.autocolor.strategies import Vector, directions, meshes, rasters, vectors, views
+from tests.autocolor.strategies import Vector, directions, meshes, outside_views, rasters, vectors, views
 
 
 @given(vectors(), directions, rasters)
@@ -94,3 +109,206 @@ def test_a_dart_is_split_at_its_notch() -> None:
             inside_by = min((z - (2 * x - 1)) / 2.3, ((0.2 + 0.8 * x) - z) / 1.3)
             if abs(inside_by) > 1e-6:
                 assert covered[line, element] == (inside_by > 0)
+
+
+GROUND = grid(1, 1, (-1, -1, 0), (2, 0, 0), (0, 2, 0), "ground")
+DECAL = grid(2, 2, (-0.5, -0.5, 0), (1, 0, 0), (0, 1, 0), "decal")
+
+
+@given(st.integers(0, 1 << 32), st.sampled_from(ROUNDINGS))
+def test_the_depth_of_a_plane_is_that_of_the_corners_of_its_polygons(seed: int, rounding: str) -> None:
+    mesh, view = decal_on_ground(seed, rounding)
+    projected = projection(mesh, view, 48, 64)
+    corners = projected.corners[:, projected.planes.columns >= 0]
+    x, y = projected.x[corners], projected.y[corners]
+    depths = projected.planes.inverse_depth(np.zeros_like(corners), x, y)
+    assert depths == pytest.approx(projected.inverse_depth[corners], rel=1.1 * MOST_OFF)
+
+
+@given(st.integers(0, 1 << 32))
+def test_all_polygons_of_a_plane_and_winding_are_seen_from_the_same_side(seed: int) -> None:
+    mesh, view = decal_on_ground(seed)
+    projected = projection(mesh, view, 48, 64)
+    assert len(set(projected.from_behind.tolist())) <= 1
+    turned = Mesh(mesh.coordinates, mesh.node_numbers[:, ::-1], mesh.part_numbers, mesh.part_names)
+    other = projection(turned, view, 48, 64)
+    assert other.from_behind.tolist() == (~projected.from_behind).tolist()
+
+
+@pytest.mark.parametrize(("height", "used"), [(0.5, True), (0.01, True), (1e-4, True), (1e-5, False)])
+def test_a_plane_is_not_used_where_the_eye_is_almost_in_it(height: float, used: bool) -> None:
+    # The decal is as uneven as numbers of six decimals.
+    uneven = DECAL.coordinates + np.random.default_rng(1).choice([0.0, 1e-6], (len(DECAL.coordinates), 3))
+    decal = Mesh(uneven, DECAL.node_numbers, DECAL.part_numbers, DECAL.part_names)
+    mesh = Mesh.joined([GROUND, decal])
+    projected = projection(mesh, View((0.0, 0.0, height), direction=(0, 1, -1)), 48, 64)
+    assert len(projected.planes.columns) > 1
+    assert (projected.planes.columns >= 0).all() == used
+    assert (projected.planes.columns < 0).all() == (not used)
+
+
+@pytest.mark.parametrize("rounding", ["float32", "decimals"])
+@given(seed=st.integers(0, 1 << 32))
+def test_a_decal_hides_its_ground_even_if_it_is_seen_almost_edge_on(rounding: str, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    mesh = Mesh.joined([GROUND, DECAL])
+    corners = mesh.coordinates @ turn
+    corners = corners.round(6) if rounding == "decimals" else corners.astype(np.float32).astype(np.float64)
+    angle = random.uniform(0, 6.28)
+    eye = np.array([0.3 * np.cos(angle), 0.3 * np.sin(angle), 1.5e-4])
+    view = View(tuple((eye @ turn).tolist()), target=(0, 0, 0), field_of_view=100.0)
+
+    def parts(*numbers: int) -> dict[int, int]:
+        chosen = np.isin(mesh.part_numbers, numbers)
+        some = Mesh(corners, mesh.node_numbers[chosen], mesh.part_numbers[chosen], mesh.part_names)
+        points = visible_surfaces(some, view, (1, 2), 48, 64)
+        seen = some.part_numbers[points.polygon_numbers]
+        return dict(zip(points.pixels.tolist(), seen.tolist(), strict=True))
+
+    both, decal = parts(0, 1), parts(1)
+    assert decal.keys() == {pixel for pixel, part in both.items() if part == 1}
+
+
+def test_a_mesh_without_shared_planes_has_none_on_the_raster() -> None:
+    projected = projection(sphere(), View((0.0, -4.0, 0.0), target=(0, 0, 0)), 48, 64)
+    assert projected.planes.columns.size == projected.planes.linear.size == 0
+
+
+def in_two_steps(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
+    """The projection as that of a large mesh, in chunks of a few polygons and nodes."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(projection_room, "LARGE", 0)
+        patch.setattr(room, "POLYGONS_AT_ONCE", 3)
+        patch.setattr(room, "NODES_AT_ONCE", 5)
+        return projection(mesh, view, lines, elements)
+
+
+def same(one: Projection, other: Projection) -> bool:
+    """Whether two projections hold the same polygons, to the bit, whatever the numbers of their nodes."""
+    at_corners = (
+        [each.x[each.corners], each.y[each.corners], each.inverse_depth[each.corners]]
+        for each in (one, other)
+    )
+    rest = (
+        [
+            each.first_line[each.corners],
+            each.normals[:, each.corner_normals],
+            each.polygon_numbers,
+            each.from_behind,
+            each.line_counts,
+            each.planes.columns,
+            each.planes.linear,
+            np.array([each.nearest, each.unit, each.focal_length]),
+        ]
+        for each in (one, other)
+    )
+    return all(
+        a.shape == b.shape and a.tobytes() == b.tobytes()
+        for pair in (at_corners, rest)
+        for a, b in zip(*pair, strict=True)
+    )
+
+
+@given(meshes(), views() | outside_views(), rasters)
+def test_a_large_mesh_is_projected_in_two_steps_to_the_same_bits(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    assert same(in_two_steps(mesh, view, *raster), projection(mesh, view, *raster))
+
+
+@given(st.integers(0, 1 << 32))
+def test_planes_that_polygons_share_are_the_same_in_two_steps(seed: int) -> None:
+    mesh, view = decal_on_ground(seed)
+    assert same(in_two_steps(mesh, view, 48, 64), projection(mesh, view, 48, 64))
+
+
+@pytest.mark.parametrize("height", [0.7, 0.05])
+@pytest.mark.parametrize("stray", [None, (0.1, 0.0, 0.7), (0.1, -7.0, 0.7), (1e20, 0.0, 0.0)])
+def test_a_mesh_around_the_eye_is_clipped_in_two_steps_to_the_same_bits(
+    height: float, stray: tuple[float, float, float] | None
+) -> None:
+    floor = grid(9, 9, (-2, -2, 0), (4, 0, 0), (0, 4, 0))
+    # A node that no polygon uses may lie at the eye, behind it or far away.
+    nodes = floor.coordinates if stray is None else np.concatenate([floor.coordinates, [stray]])
+    mesh = Mesh(nodes, floor.node_numbers, floor.part_numbers, floor.part_names)
+    view = View((0.1, 0.05, height), direction=(0.05, 1.0, -0.2), field_of_view=80)
+    assert same(in_two_steps(mesh, view, 48, 64), projection(mesh, view, 48, 64))
+
+
+def test_only_polygons_that_may_be_visible_are_put_into_camera_space() -> None:
+    fine = grid(60, 60, (-1, 0, -1), (2, 0, 0), (0, 0, 2))
+    view = View((0, -3, 0), direction=(0, 1, 0), field_of_view=60)
+    raster = Raster(12, 16, focal_length(12, 60))
+    camera = preselected(fine, view, raster)
+    # Seven lines of seven pixel centers lie on the square; each is in one polygon, or at the edge of a few.
+    seen = np.unique(visible_surfaces(fine, view, (1,), 12, 16).polygon_numbers)
+    assert set(seen.tolist()) <= set(camera.polygon_numbers.tolist())
+    assert len(seen) <= camera.corners.shape[1] < 4 * len(seen)
+    assert camera.positions.shape[1] == len(np.unique(fine.node_numbers[camera.polygon_numbers]))
+    assert (
+        np.unique(fine.node_numbers[camera.polygon_numbers])[camera.corners]
+        == fine.node_numbers[camera.polygon_numbers].T
+    ).all()
+
+
+def test_a_mesh_outside_the_picture_leaves_nothing_to_project() -> None:
+    view = View((0, -3, 0), direction=(0, 1, 0), field_of_view=20)
+    aside = Mesh(cube().coordinates + np.array([50.0, 0.0, 0.0]), cube().node_numbers)
+    assert preselected(aside, view, Raster(12, 16, 30.0)).corners.shape == (4, 0)
+
+
+DART = [(0, 0), (2, 5), (4, 0), (2, 1)]
+BOW_TIE = [(0, 0), (4, 3), (4, 0), (0, 5)]
+
+
+def triangles(
+    corners: Sequence[tuple[float, float]], order: npt.NDArray[np.intp], depths: Sequence[float] | None = None
+) -> list[frozenset[int]]:
+    """The nodes of the two triangles of a quad, first the one that comes first."""
+    x, y = np.array(corners, np.float64).T
+    positions = np.stack([x, y, np.array(depths or [1.0] * 4)])
+    columns = np.array(order, np.intp)[:, None]
+    split, normals, parents = split_quads(np.array([0]), x, y, positions, columns, columns)
+    assert split.tolist() == normals.tolist()
+    assert parents.tolist() == [0, 0]
+    return [frozenset(column.tolist()) for column in split.T]
+
+
+@pytest.mark.parametrize("turn", range(4))
+def test_a_dart_is_split_from_its_notch(turn: int) -> None:
+    halves = triangles(DART, np.roll(np.arange(4), turn))
+    assert all({1, 3} <= half for half in halves)
+
+
+@pytest.mark.parametrize("turn", range(4))
+def test_a_quad_that_crosses_itself_is_split_along_its_shorter_diagonal_in_space(turn: int) -> None:
+    order = np.roll(np.arange(4), turn)
+    assert all({0, 2} <= half for half in triangles(BOW_TIE, order))
+    assert all({1, 3} <= half for half in triangles(BOW_TIE, order, [1.0, 2.0, 9.0, 2.0]))
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 4), st.integers(0, 4)), min_size=4, max_size=4, unique=True),
+    st.integers(0, 3),
+    st.booleans(),
+)
+def test_the_triangles_do_not_depend_on_the_corner_that_is_written_first(
+    corners: list[tuple[float, float]], turn: int, backward: bool
+) -> None:
+    order = np.roll(np.arange(4), turn)
+    assert triangles(corners, order[::-1] if backward else order) == triangles(corners, np.arange(4))
+
+
+def test_triangles_take_the_place_of_their_quad_and_keep_its_winding() -> None:
+    x, y = np.array([*DART, (9, 9), (9, 8), (8, 8)], np.float64).T
+    positions = np.stack([x, y, np.ones(7)])
+    columns = np.array([(4, 5, 6, 6), (0, 1, 2, 3), (6, 5, 4, 4)]).T
+    split, _, parents = split_quads(np.array([1]), x, y, positions, columns, columns)
+    assert parents.tolist() == [0, 1, 1, 2]
+    assert split[:, [0, 3]].tolist() == columns[:, [0, 2]].tolist()
+    for column in split[:, 1:3].T.tolist():
+        # The nodes of a triangle follow each other around the quad as they did.
+        assert column[2] == column[3]
+        steps = np.diff([*column[:3], column[0]]) % 4
+        assert steps.sum() == 4

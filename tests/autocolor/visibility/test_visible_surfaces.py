@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import tracemalloc
 
@@ -11,11 +12,24 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View
+from autocolor.visibility.depth import depth_scale, polygons_of_numbers
 from autocolor.visibility.projection import projection
-from autocolor.visibility.visible_surfaces import visible_surfaces
+from autocolor.visibility.visible_points import NORMAL, POINT, POINT_SQUARED, REFLECTED_VIEW
+from autocolor.visibility.visible_surfaces import (
+    DEPTH,
+    POINTS,
+    RAY,
+    along_spans,
+    depth_test,
+    visible_spans,
+    visible_surfaces,
+)
+from autocolor.visibility.watkins import watkins
+from tests.autocolor import reference
 from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
 from tests.autocolor.reference import first_hit, ray
 from tests.autocolor.strategies import (
+    Vector,
     directions,
     meshes,
     numbers,
@@ -249,3 +263,222 @@ def test_of_polygons_in_a_plane_those_that_face_the_eye_hide_the_others(seed: in
     on_top = points.pixels[mesh.part_numbers[points.polygon_numbers] == facing]
     alone = visible_surfaces(part(both, facing), view, (1, 2), *raster).pixels
     assert sorted(on_top.tolist()) == sorted(alone.tolist())
+
+
+# -------------------- test_visible_spans
+# Interpolation along visible spans, where a polygon is edge-on or reaches far outside the picture.
+
+tenths = st.integers(-20, 20).map(lambda number: number / 10)
+
+
+def panel(*corners: tuple[float, float, float]) -> Mesh:
+    return Mesh(np.array(corners), np.array([[0, 1, 2, 3]]), np.array([0]), ("panel",))
+
+
+@given(tenths, tenths, tenths, st.integers(1, 30).map(lambda number: number / 10))
+def test_the_points_of_an_edge_on_board_are_on_the_board(
+    x: float, first: float, low: float, size: float
+) -> None:
+    mesh = panel(
+        (x, first, low),
+        (x, first + size, low),
+        (x, first + size, low + size),
+        (x, first, low + size),
+    )
+    for eye in ((x, first - 3.0, low + 0.3), (x + 1e-9, first - 3.0, low + 0.3)):
+        points = visible_surfaces(mesh, View(eye, direction=(0, 1, 0), field_of_view=40), (1,), 24, 33)
+        assert np.isfinite(points.rows).all()
+        on_board = points.world_points
+        assert (np.abs(on_board[:, 0] - x) < 1e-3 * size).all()
+        assert ((on_board[:, 1] > first - 0.01 * size) & (on_board[:, 1] < first + 1.01 * size)).all()
+
+
+@pytest.mark.parametrize("beside", [1e-4, 1e-3, 0.1])
+@pytest.mark.parametrize("turn", [0.0, 0.3, -0.7])
+def test_a_flat_wall_close_beside_the_eye_keeps_its_normal(beside: float, turn: float) -> None:
+    wall = panel((beside, -50, -20), (beside, 70, -20), (beside, 70, 20), (beside, -50, 20))
+    view = View((0.0, 0.0, 0.0), direction=(turn, 1.0, 0.1), field_of_view=60)
+    normals = visible_surfaces(wall, view, (1,), 48, 64).world_normals
+    assert len(normals)
+    assert normals == pytest.approx(np.tile([-1.0, 0.0, 0.0], (len(normals), 1)), abs=1e-5)
+
+
+@given(numbers(-1, 1), numbers(0.1, 1), numbers(-1, 1), numbers(-0.5, 0.5), st.integers(0, 3))
+def test_of_coincident_polygons_of_opposite_winding_the_one_that_faces_the_eye_is_visible(
+    left: float, width: float, slope: float, twist: float, first: int
+) -> None:
+    corners = [
+        (left, slope, -0.7),
+        (left + width, -slope, -0.6),
+        (left + width, -slope + twist, 0.5),
+        (left, slope, 0.8),
+    ]
+    backward = np.roll([3, 2, 1, 0], first)
+    view = View((0.3, -4.0, 0.2), target=(0.1, 0.0, 0.0), field_of_view=40)
+    for quads in ([[0, 1, 2, 3], backward], [backward, [0, 1, 2, 3]]):
+        mesh = Mesh(np.array(corners), np.array(quads), np.array([0, 1]), ("one", "other"))
+        projected = projection(mesh, view, 40, 53)
+        facing = set(projected.polygon_numbers[~projected.from_behind].tolist())
+        for algorithm in (visible_surfaces, watkins):
+            assert set(algorithm(mesh, view, (1, 2), 40, 53).polygon_numbers.tolist()) <= facing
+
+
+@given(meshes(), views() | outside_views(), rasters)
+def test_spans_are_the_runs_of_pixels_of_a_line_at_which_one_polygon_is_visible(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    projected = projection(mesh, view, *raster)
+    scale = depth_scale(projected)
+    number_at_pixel = np.zeros(raster[0] * raster[1], np.int64)
+    depth_test(number_at_pixel, projected, scale, np.arange(projected.corners.shape[1]))
+    number_at_pixel &= scale.number_limit - 1
+    spans = visible_spans(projected, number_at_pixel, (2, 1))
+
+    expected = []
+    pixel = 0
+    on_lines = ((number, place // raster[1]) for place, number in enumerate(number_at_pixel.tolist()))
+    for (number, _), run in itertools.groupby(on_lines):
+        count = len(list(run))
+        if number:
+            (polygon,) = polygons_of_numbers(projected, np.array([number])).tolist()
+            row = int(projected.polygon_numbers[polygon])
+            surface = (2, 1)[mesh.part_numbers[row]]
+            expected.append((pixel, count, polygon, row, surface))
+        pixel += count
+    found = list(zip(*(table.tolist() for table in vars(spans).values()), strict=True))
+    assert sorted(found) == expected
+    assert (np.diff(spans.surface.astype(int)) >= 0).all()
+    # Within a surface the spans of a polygon follow each other.
+    pairs = list(itertools.groupby(zip(spans.surface.tolist(), spans.polygon.tolist(), strict=True)))
+    assert len(pairs) == len({pair for pair, _ in pairs})
+
+    # At the first pixel of a span the point is the ray over the inverse depth.
+    start, step = along_spans(projected, spans)
+    assert start.dtype == step.dtype == np.float32
+    depth = 1 / start[DEPTH].astype(np.float64)
+    in_camera = start[POINTS] + projected.middle[:, None]
+    assert in_camera == pytest.approx(start[RAY] * depth, rel=1e-5, abs=1e-6)
+
+
+def test_a_segment_that_another_divides_is_visible_in_two_spans() -> None:
+    far = [(-2.0, 1.0, -1.0), (2.0, 1.0, -1.0), (2.0, 1.0, 1.0), (-2.0, 1.0, 1.0)]
+    near = [(-0.2, 0.0, -1.0), (0.2, 0.0, -1.0), (0.2, 0.0, 1.0), (-0.2, 0.0, 1.0)]
+    mesh = Mesh(np.array(far + near), np.arange(8).reshape(2, 4), np.array([0, 1]), ("far", "near"))
+    view = View((0.0, -4.0, 0.0), direction=(0, 1, 0), field_of_view=20)
+    points = visible_surfaces(mesh, view, (1, 2), 10, 20)
+    # Twenty spans of the far wall, two on each line, and ten of the near one.
+    assert points.span_polygons.tolist() == [0] * 20 + [1] * 10
+    assert sum(points.span_lengths) == len(points.pixels)
+
+
+@given(meshes(), views(), rasters)
+def test_no_row_is_ever_other_than_a_finite_number(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
+    points = visible_surfaces(mesh, view, (1, 2), *raster)
+    assert np.isfinite(points.rows).all()
+    assert len(np.unique(points.pixels)) == len(points.pixels)
+
+
+@given(meshes(), views(), rasters)
+def test_points_lie_on_their_rays_and_rows_agree(mesh: Mesh, view: View, raster: tuple[int, int]) -> None:
+    points = visible_surfaces(mesh, view, (1, 2), *raster)
+    for pixel, point in zip(points.pixels.tolist(), points.world_points, strict=True):
+        direction = np.array(ray(view, *raster, *divmod(pixel, raster[1])))
+        depth = float((point - np.array(view.eye)) @ view.axes[2])
+        assert point == pytest.approx(np.array(view.eye) + depth * direction, abs=4e-6 * max(depth, 4))
+    rows = points.rows.astype(np.float64)
+    normal_lengths = np.linalg.norm(rows[NORMAL], axis=0)
+    assert ((np.abs(normal_lengths - 1) < 1e-5) | (normal_lengths < 1e-5)).all()
+    assert np.linalg.norm(rows[REFLECTED_VIEW], axis=0) == pytest.approx(
+        np.ones(len(points.pixels)), abs=1e-5
+    )
+    size = 1 + np.abs(rows[POINT]).max(initial=0.0)
+    assert (rows[POINT] ** 2).sum(axis=0) == pytest.approx(rows[POINT_SQUARED], rel=1e-5, abs=1e-12)
+    for vector, product in ((NORMAL, NORMAL.stop), (REFLECTED_VIEW, REFLECTED_VIEW.stop)):
+        assert (rows[vector] * rows[POINT]).sum(axis=0) == pytest.approx(rows[product], abs=1e-5 * size)
+
+
+@pytest.mark.parametrize("columns", [1, 5])
+@pytest.mark.parametrize("eye", [(0.3, -4.0, 1.0), (0.3, 4.0, 1.0)])
+def test_a_normal_turns_to_the_eye_from_both_sides(columns: int, eye: Vector) -> None:
+    mesh = grid(columns, columns, (-1, 0, -1), (2, 0, 0), (0, 0, 2))
+    view = View(eye, target=(0.0, 0.0, 0.0))
+    toward_eye = math.copysign(1.0, eye[1])
+    two_sided = visible_surfaces(mesh, view, (1,), 12, 12)
+    assert two_sided.world_normals == pytest.approx(
+        np.tile([0, toward_eye, 0], (len(two_sided.pixels), 1)), abs=1e-6
+    )
+    one_sided = visible_surfaces(mesh, view, (1,), 12, 12, frozenset({1}))
+    assert one_sided.world_normals == pytest.approx(np.tile([0, -1, 0], (len(one_sided.pixels), 1)), abs=1e-6)
+
+
+def test_the_normals_of_a_fine_sphere_point_outward() -> None:
+    view = View((3.0, -4.0, 2.0), target=(0.0, 0.0, 0.0))
+    points = visible_surfaces(sphere(96, 48), view, (1,), 60, 60)
+    along = points.world_points / np.linalg.norm(points.world_points, axis=1)[:, None]
+    assert np.abs(points.world_normals - along).max() < 5e-3
+
+
+def test_normals_are_interpolated_perspective_correctly() -> None:
+    # A floor in one polygon with two normals: close to the eye, the middle of the floor is not the middle
+    # of its picture, and the normal there is the mean of the two.
+    ridge = Mesh(
+        np.array(
+            [
+                (-1, 0, 0),
+                (1, 0, 0),
+                (1, 8, 0),
+                (-1, 8, 0),
+                (-1, -1, -1),
+                (1, -1, -1),
+                (1, 9, -1),
+                (-1, 9, -1),
+            ],
+            np.float64,
+        ),
+        np.array([(0, 1, 2, 3), (4, 5, 1, 0), (3, 2, 6, 7)]),
+        np.zeros(3, np.intp),
+        ("ridge",),
+        crease_angle=180.0,
+    )
+    view = View((0.0, -4.0, 4.0), target=(0.0, 4.0, 0.0), field_of_view=60.0)
+    points = visible_surfaces(ridge, view, (1,), 80, 80)
+    on_floor = points.polygon_numbers == 0
+    way = points.world_points[on_floor, 1] / 8
+    ends = ridge.normals.vectors[ridge.normals.numbers[0][[0, 2]]]
+    expected = (1 - way)[:, None] * ends[0] + way[:, None] * ends[1]
+    expected /= np.linalg.norm(expected, axis=1)[:, None]
+    assert np.abs(points.world_normals[on_floor] - expected).max() < 1e-5
+
+
+@pytest.mark.parametrize(("one_sided", "sign"), [(frozenset[int](), -1), (frozenset({1}), 1)])
+def test_from_within_a_sphere_the_normals_point_inward_unless_it_is_one_sided(
+    one_sided: frozenset[int], sign: int
+) -> None:
+    view = View((0.3, -0.4, 0.2), direction=(1.0, 2.0, 0.5), field_of_view=90)
+    points = visible_surfaces(sphere(24, 16), view, (1,), 30, 30, one_sided)
+    along = points.world_points / np.linalg.norm(points.world_points, axis=1)[:, None]
+    assert np.abs(points.world_normals - sign * along).max() < 0.02
+
+
+@given(meshes(), views() | outside_views(), rasters)
+def test_the_view_direction_is_reflected_at_the_normal(
+    mesh: Mesh, view: View, raster: tuple[int, int]
+) -> None:
+    points = visible_surfaces(mesh, view, (1, 2), *raster)
+    reflected = points.rows[REFLECTED_VIEW].T.astype(np.float64) @ view.axes
+    for number, pixel in enumerate(points.pixels.tolist()):
+        to_eye = reference.unit(reference.times(-1, ray(view, *raster, *divmod(pixel, raster[1]))))
+        normal = points.world_normals[number].tolist()
+        expected = reference.minus(reference.times(2 * reference.dot(normal, to_eye), normal), to_eye)
+        assert reflected[number].tolist() == pytest.approx(expected, abs=1e-5)
+
+
+@given(outside_views(), rasters)
+def test_points_of_a_flat_polygon_lie_in_its_plane(view: View, raster: tuple[int, int]) -> None:
+    slope = grid(1, 1, (-1, -0.5, -1), (2, 0.3, 0.2), (0, 0.7, 2))
+    normal = np.cross((2, 0.3, 0.2), (0, 0.7, 2))
+    normal /= np.linalg.norm(normal)
+    points = visible_surfaces(slope, view, (1,), *raster)
+    assert (points.world_points - slope.coordinates[0]) @ normal == pytest.approx(
+        np.zeros(len(points.pixels)), abs=2e-5
+    )

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from hypothesis import strategies as st
 
-from autocolor.widgets.areas import Area
-from autocolor.widgets.items import Item, filled, image, lines, outline, text
+from autocolor.widgets.items import Area, Item, filled, image, lines, outline, text
 from ramtek_emu import Configuration, Ramtek9300
 
 TINY = Configuration(name="tiny", elements=48, lines=40, planes=10)

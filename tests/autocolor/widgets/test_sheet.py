@@ -6,9 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from autocolor.arrays import Words
-from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import WHITE
-from autocolor.widgets.items import Item, filled, lines, text
+from autocolor.widgets.items import WHITE, Area, Item, filled, lines, text
 from autocolor.widgets.sheet import Page, Sheet, differing_lines, uncovered
 from ramtek_emu import GMR_9300, PRINCETON_9300, Configuration, EntryFormat, PortError, Ramtek9300
 from tests.autocolor.widgets.drawing import TINY, items

@@ -1,20 +1,24 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import LIGHT_GRAY, NIGHT
-from autocolor.widgets.items import text
+from autocolor.widgets.items import LIGHT_GRAY, NIGHT, Area, text
 from autocolor.widgets.widget import (
+    FEWEST,
     Button,
     Choice,
     Entry,
     Gap,
     Heading,
+    Pair,
     Place,
     Steps,
     Switch,
     Widget,
+    short_label,
+    short_name,
 )
 
 ROW = Area(505, 32, 639, 47)
@@ -134,3 +138,62 @@ def test_the_label_of_a_value_that_needs_the_room_is_shortened_by_its_words() ->
     for widget in (Entry("background", value="#000000"), Choice("background", present="#000000")):
         expected = text("backgr.", area.left + 8, 3, LIGHT_GRAY, NIGHT)
         assert expected in widget.at(area).items(lit=False)
+
+
+@pytest.mark.parametrize(
+    ("label", "most", "short"),
+    [
+        ("cone angle", 10, "cone angle"),
+        ("x minimum", 7, "x min."),
+        ("normal reflectance", 12, "normal refl."),
+        ("concentration", 9, "concentr."),
+        ("aim", 1, "aim"),
+        ("", 0, ""),
+    ],
+)
+def test_the_longest_word_is_shortened_first(label: str, most: int, short: str) -> None:
+    assert short_label(label, most) == short
+
+
+@given(st.lists(st.text("abcdefgxyz", min_size=1), min_size=1).map(" ".join), st.integers(0, 40))
+def test_a_label_keeps_its_words_and_fits_if_it_can(label: str, most: int) -> None:
+    short = short_label(label, most)
+    words = label.split(" ")
+    shortened = short.split(" ")
+    assert len(shortened) == len(words)
+    for word, part in zip(words, shortened, strict=True):
+        assert part == word or (part.endswith(".") and word.startswith(part[:-1]) and len(part) < len(word))
+    least = sum(min(len(word), FEWEST + 1) for word in words) + len(words) - 1
+    assert len(short) <= max(most, least)
+    if len(label) <= most:
+        assert short == label
+
+
+@pytest.mark.parametrize(
+    ("name", "most", "shown"),
+    [
+        ("car.obj", 7, "car.obj"),
+        ("fender of the left door 12.obj", 16, "fender .. 12.obj"),
+        ("abcdef", 5, "ab..f"),
+        ("abcdef", 2, ".."),
+        ("abcdef", 1, "."),
+        ("abcdef", -3, ""),
+    ],
+)
+def test_the_middle_of_a_long_name_is_left_out(name: str, most: int, shown: str) -> None:
+    assert short_name(name, most) == shown
+
+
+@pytest.mark.parametrize(("element", "ran"), [(510, "add"), (630, "copy")])
+def test_each_half_of_a_pair_is_a_button(element: int, ran: str) -> None:
+    did: list[str] = []
+    pair = Pair("add", run=lambda: did.append("add"), other="copy", run_other=lambda: did.append("copy"))
+    pair.at(ROW).pick(Place(element, 40))
+    pair.nudge(1 if ran == "copy" else -1)
+    assert did == [ran, ran]
+
+
+@pytest.mark.parametrize("lit", [True, False])
+def test_a_pair_stays_in_its_area(lit: bool) -> None:
+    pair = Pair("a name that is too long", other="another one that is too long", area=ROW)
+    assert all(ROW.covers(item.area) for item in pair.items(lit))

@@ -1,8 +1,10 @@
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -11,6 +13,7 @@ import pytest
 from click.shell_completion import BashComplete
 
 from ramtek_emu import PRINCETON_9300, Ramtek9300, TcpPort, read_snapshot
+from ramtek_emu.commands.displays import end_signals
 from ramtek_emu.commands.ramtek import ramtek
 from tests.ramtek_emu.processes import environment, run, started, stream
 from tests.ramtek_emu.recorded_streams import COLOR_MAP, OUTLINE, words
@@ -114,3 +117,29 @@ def test_a_configuration_that_is_not_known_is_told_the_nearest() -> None:
     assert refused.returncode == 2
     assert b"must be one of GMR_9300, " in refused.stderr
     assert b"not 'gmr'; did you mean GMR_9300?" in refused.stderr
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_read_that_waits_and_every_one_after_it(number: signal.Signals) -> None:
+    read_end, write_end = os.pipe()
+    before = signal.getsignal(number)
+    with end_signals() as signals:
+        read = signals.until_received(lambda most: os.read(read_end, most))
+        os.write(write_end, b"words")
+        assert read(5) == b"words"
+        assert not signals.received
+        threading.Timer(0.2, os.kill, (os.getpid(), number)).start()
+        begin = time.monotonic()
+        assert read(5) == b""
+        assert time.monotonic() - begin < 5
+        assert signals.received
+        os.write(write_end, b"words")
+        assert read(5) == b""
+    assert signal.getsignal(number) is before
+    os.close(read_end)
+    os.close(write_end)
+
+
+def test_a_read_that_fails_is_the_end() -> None:
+    with end_signals() as signals:
+        assert signals.until_received(lambda most: os.read(-1, most))(5) == b""

@@ -17,7 +17,7 @@ import pytest
 
 from ramtek_emu import Ramtek9300, TcpPort, UnixPort, instructions, read_snapshot
 from ramtek_emu.commands.displays import show
-from ramtek_emu.host.tcp_server import TcpServer
+from ramtek_emu.host.server import TcpServer
 from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
 from tests.ramtek_emu.processes import ROOT, PipedHost, environment, field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import BARS, OUTLINE, words

@@ -19,8 +19,8 @@ import pytest
 
 from ramtek_emu import PortError, Ramtek9300
 from ramtek_emu.commands.tty import refuse_systems_without_pidfd
-from ramtek_emu.host.unix_server import UnixServer
-from ramtek_emu.host.write_notices import MACHINES
+from ramtek_emu.host.device import MACHINES
+from ramtek_emu.host.server import UnixServer
 from tests.ramtek_emu.processes import ROOT, environment, run, started, stream
 from tests.ramtek_emu.recorded_streams import words
 from tests.ramtek_emu.serving import serving_at, until
@@ -118,7 +118,7 @@ def test_as_a_stream_the_lines_that_stdio_makes_of_words_are_put_together(displa
 
 IN_A_SANDBOX = """
 import ctypes, os, platform, sys
-from ramtek_emu.host.write_notices import *
+from ramtek_emu.host.device import *
 number = MACHINES[platform.machine()].seccomp
 ends, allows = (RETURN, 0, 0, 0x80000000), (RETURN, 0, 0, 0x7FFF0000)
 steps = ((LOAD, 0, 0, 0), (JUMP_IF_EQUAL, 0, 1, number), ends, allows)

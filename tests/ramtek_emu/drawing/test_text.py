@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ramtek_emu import InstructionError, Ramtek9300, instructions
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
-from ramtek_emu.snapshot.snapshot import display_of, snapshot_bytes
+from ramtek_emu.snapshot import display_of, snapshot_bytes
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, points, quick, scan_codes, sent_words, thorough, windows
 

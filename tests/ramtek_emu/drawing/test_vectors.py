@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ramtek_emu import NCAR_9460, Ramtek9300, instructions
-from ramtek_emu.drawing.vectors import points
+from ramtek_emu.drawing.vectors import MOST_POINTS, points, steps
 from ramtek_emu.memory.scan_orders import Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.strategies import SMALL, masks, quick, sent_words, thorough, windows
@@ -182,3 +182,15 @@ def test_a_vector_across_the_whole_range_takes_no_more_points_than_the_memory_sh
     near = np.array([[0x7FFF, 0x7FFF], [0x7FFF, -0x8000], [-0x8000, 100], [0x7FFF, -3]])
     (part,) = points(far, near, window)
     assert np.bincount(part[3], minlength=4).tolist() == [480, 0, 640, 0]
+
+
+@quick
+@given(st.lists(st.integers(0, 5) | st.integers(MOST_POINTS - 3, MOST_POINTS + 3), max_size=12))
+def test_every_row_is_numbered_from_0_in_order(counts: list[int]) -> None:
+    rows, numbers = [], []
+    for which, part in steps(np.array(counts, np.int64)):
+        assert len(which) <= max(MOST_POINTS, *counts)
+        rows += which.tolist()
+        numbers += part.tolist()
+    assert rows == [row for row, count in enumerate(counts) for _ in range(count)]
+    assert numbers == [number for count in counts for number in range(count)]

@@ -3,12 +3,16 @@ from __future__ import annotations
 import random
 import time
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 
 from ramtek_emu import GMR_9300, Ramtek9300, instructions
-from ramtek_emu.host.host_session import HostSession
-from ramtek_emu.host.pipe import PolledPipe, serve_pipe
+from ramtek_emu.host.pipe import PacedReader, PolledPipe, serve_pipe
+from ramtek_emu.host.server import HostSession
+from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.monitor.window import Monitor
 from tests.ramtek_emu.processes import stream
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED
@@ -61,3 +65,73 @@ def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) 
         monitor.step(5)
     assert b"".join(replies) == display.words[100, 100:103].astype("<u2").tobytes()
     monitor.close()
+
+
+class Clock:
+    """A clock that only sleeping moves on, and what was slept."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+        self.slept: list[float] = []
+
+    def __call__(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.slept.append(seconds)
+        self.now += seconds
+
+
+def load(number: int) -> bytes:
+    return stream(instructions.load_entries(number, [(number, 0, 0)]))
+
+
+def paced(data: bytes, cuts: list[int], rate: int, clock: Clock) -> list[bytes]:
+    """What a paced reader returns of a stream that comes in pieces, up to its end."""
+    places = [0, *sorted(cut % (len(data) + 1) for cut in cuts), len(data)]
+    pieces = [data[start:end] for start, end in pairwise(places) if start < end]
+    read = PacedReader(lambda _: pieces.pop(0) if pieces else b"", rate, GMR_9300, clock, clock.sleep)
+    found = []
+    while piece := read(1 << 16):
+        found.append(piece)
+    return found
+
+
+cuts = st.lists(st.integers(0, 10_000), max_size=12)
+
+
+@given(st.lists(st.binary(max_size=60) | st.integers(0, 9).map(load), max_size=9), cuts)
+def test_a_paced_stream_is_the_stream_however_it_is_cut(parts: list[bytes], cuts: list[int]) -> None:
+    data = b"".join(parts)
+    assert b"".join(paced(data, cuts, 60, Clock())) == data
+
+
+@given(cuts)
+def test_each_load_but_the_first_waits_for_its_time(cuts: list[int]) -> None:
+    drawing = stream(np.concatenate(RECORDED))
+    clock = Clock()
+    pieces = paced(drawing + b"".join(map(load, range(5))), cuts, 20, clock)
+    loads = _loads(drawing) + 5
+    assert len(clock.slept) == loads - 1
+    assert np.allclose(clock.slept, 1 / 20)
+    # After each load there is a cut, so that the field is shown.
+    assert pieces[-1] == load(4)[-len(pieces[-1]) :]
+
+
+def _loads(data: bytes) -> int:
+    words = np.frombuffer(data, "<u2").astype(np.uint16)
+    return sum(each.format.name == "LAM" for each in Decoder().feed(words))
+
+
+def test_a_late_load_does_not_hurry_those_after_it() -> None:
+    clock = Clock()
+    data = [load(0), load(1), load(2)]
+
+    def slow_read(_: int) -> bytes:
+        clock.now += 3.0
+        return data.pop(0) if data else b""
+
+    read = PacedReader(slow_read, 1, GMR_9300, clock, clock.sleep)
+    while read(1 << 16):
+        pass
+    assert clock.slept == []

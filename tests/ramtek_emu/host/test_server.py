@@ -1,18 +1,27 @@
 from __future__ import annotations
 
+import itertools
+import os
+import selectors
 import socket
+import stat
 import threading
 import time
 from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from ramtek_emu import HostPort, PortError, Ramtek9300, TcpPort, instructions
-from ramtek_emu.host.client import REPLY_BYTES
-from ramtek_emu.host.tcp_server import TcpServer
+from ramtek_emu import HostPort, OutputError, OutputExistsError, PortError, Ramtek9300, TcpPort, instructions
+from ramtek_emu.arrays import Words
+from ramtek_emu.host.port import PacketConnection, UnixPort
+from ramtek_emu.host.server import REPLY_BYTES, Client, HostSession, TcpServer, UnixServer
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
-from tests.ramtek_emu.serving import READ_EVERYTHING, serving, until
+from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
+from tests.ramtek_emu.strategies import SMALL, quick, streams
 
 
 def connected(server: TcpServer) -> socket.socket:
@@ -307,3 +316,244 @@ def read_all(host: socket.socket) -> None:
     with suppress(ConnectionError):
         while host.recv(1 << 16):
             pass
+
+
+def test_a_session_never_lets_more_replies_wait_than_the_display_holds() -> None:
+    session = HostSession(Ramtek9300())
+    asked = np.tile(np.array([0x0B01, 0xFFFE], np.uint16), 2000).astype("<u2").tobytes()
+    count = sum(len(reply) for reply in session.feed(asked))
+    assert count == 2000 * 0xFFFE
+    assert session.words == 4000
+
+
+@quick
+@given(streams(), st.binary(max_size=1), st.lists(st.integers(0, 200), max_size=4))
+def test_a_display_gets_the_words_whatever_pieces_their_bytes_come_in(
+    stream: list[int], odd_byte: bytes, places: list[int]
+) -> None:
+    twin, session = Ramtek9300(SMALL), HostSession(Ramtek9300(SMALL))
+    twin.send(np.array(stream, np.uint16))
+    data = np.array(stream, "<u2").tobytes() + odd_byte
+    edges = sorted({0, len(data), *(place % (len(data) + 1) for place in places)})
+    pieces = [data[first:end] for first, end in itertools.pairwise(edges)]
+    replies = b"".join(reply for piece in pieces for reply in session.feed(piece))
+    assert np.frombuffer(replies, "<u2").tolist() == twin.receive(twin.processor.waiting).tolist()
+    assert (session.display.words == twin.words).all()
+    assert session.held_words == twin.decoder.held_words
+    assert session.odd_byte == odd_byte
+    assert session.unfinished == bool(odd_byte or twin.decoder.held_words)
+
+
+@quick
+@given(streams(), st.integers(0, 200))
+def test_what_is_recorded_ends_with_a_whole_instruction(stream: list[int], cut: int) -> None:
+    kept: list[bytes] = []
+    session = HostSession(Ramtek9300(SMALL), kept.append)
+    data = np.array(stream, "<u2").tobytes()
+    for piece in (data[:cut], data[cut:]):
+        for _ in session.feed(piece):
+            again = Ramtek9300(SMALL)
+            again.send(np.frombuffer(b"".join(kept), "<u2").astype(np.uint16))
+            assert again.decoder.held_words == 0
+    assert b"".join(kept) == data[: len(data) - 2 * session.held_words]
+
+
+def test_a_host_that_leaves_takes_its_unfinished_words_and_replies_with_it() -> None:
+    session = HostSession(Ramtek9300(SMALL))
+    feeding = session.feed(np.array([0x0B01, 8, 0x0A01, 0xFFFF, 1], "<u2").tobytes() + b"!")
+    next(feeding)
+    assert session.unfinished
+    assert session.display.processor.waiting == 4
+    session.leave()
+    assert not session.unfinished
+    assert session.display.processor.waiting == 0
+
+
+def packet(text: str) -> bytes:
+    return words(text).astype("<u2").tobytes()
+
+
+def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
+    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    display = Ramtek9300()
+    client = Client(PacketConnection(there), HostSession(display), 10, 10)
+    host.send(packet("0B03 0040 0 0 0 0 2"))
+    host.send(packet("0902 0044 7 5 5 5 5"))
+    host.close()
+    for _ in range(20):
+        client.serve(client.wanted)
+        client.work()
+    assert client.ended
+    assert display.words[5, 5] == 7
+    client.leave()
+
+
+def test_the_time_that_the_display_takes_is_no_silence_of_the_host(monkeypatch: pytest.MonkeyPatch) -> None:
+    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    display = Ramtek9300()
+    client = Client(PacketConnection(there), HostSession(display), 10, 10)
+    now = 1000.0
+    monkeypatch.setattr("ramtek_emu.host.server.time.monotonic", lambda: now)
+    monkeypatch.setattr("ramtek_emu.host.server.READING_PIECE", 4)
+    draw = display.send
+
+    def slow(sent: Words) -> None:
+        nonlocal now
+        now += 7
+        draw(sent)
+
+    monkeypatch.setattr(display, "send", slow)
+    host.send(packet("0902 0044 7 5 5 5 5 0B03 0040 0 0 0 0 2"))
+    client.serve(client.wanted)
+    while client.has_work:
+        client.work()
+        assert client.deadline > now
+    assert now > 1020
+    assert display.words[5, 5] == 7
+    now += 11
+    assert client.deadline < now
+    host.close()
+    client.leave()
+
+
+def test_a_mark_resets_the_display_and_is_recorded_as_a_reset() -> None:
+    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    kept: list[bytes] = []
+    display = Ramtek9300()
+    client = Client(PacketConnection(there), HostSession(display, kept.append), 10, 10)
+    with host:
+        for sent in (packet("0902 0044 7 5 5 5 5 0A01 0008"), b"", packet("0902 0044 9 6 6 6 6")):
+            host.send(sent)
+        for _ in range(20):
+            client.serve(client.wanted & selectors.EVENT_READ)
+            client.work()
+        assert display.words[[5, 6], [5, 6]].tolist() == [0, 9]
+        assert b"".join(kept) == packet("0902 0044 7 5 5 5 5 0500 0902 0044 9 6 6 6 6")
+        client.serve(selectors.EVENT_WRITE)
+        assert host.recv(10) == b""
+    client.leave()
+
+
+def test_a_port_that_is_taken_is_refused_in_one_sentence() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
+        with pytest.raises(PortError) as taken:
+            TcpServer(Ramtek9300(), port)
+    assert f"a server must have a port to itself, and 127.0.0.1:{port} cannot be had" in str(taken.value)
+
+
+def test_an_address_of_version_six_is_one_that_a_port_takes() -> None:
+    try:
+        server = TcpServer(Ramtek9300(), host="::1")
+    except PortError:
+        pytest.skip("this machine has no IPv6")
+    with server:
+        assert server.address == f"tcp://[::1]:{server.port}"
+        port = TcpPort(server.address)
+        port.send(words("0902 0044 5 0 0 0 0"))
+        while not server.display.words.any():
+            server.step(0.1)
+        port._socket.close()
+
+
+def test_hosts_in_line_are_turned_away_when_the_server_closes() -> None:
+    server = TcpServer(Ramtek9300())
+    ports = [TcpPort(server.address, timeout=5) for _ in range(3)]
+    server.step(1)
+    server.close()
+    for port in ports:
+        with pytest.raises(PortError, match="it left"):
+            port.close()
+
+
+def dead_socket(path: Path) -> None:
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
+        listener.bind(str(path))
+
+
+def test_the_socket_is_its_owner_s_alone_and_goes_with_the_server(tmp_path: Path) -> None:
+    path = tmp_path / "display"
+    before = os.umask(0)
+    try:
+        with UnixServer(Ramtek9300(), path) as server:
+            assert server.address == str(path)
+            assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    finally:
+        os.umask(before)
+    assert not path.exists()
+
+
+def test_the_socket_of_a_server_that_is_gone_is_replaced(tmp_path: Path) -> None:
+    path = tmp_path / "display"
+    dead_socket(path)
+    with serving_at(path) as server, UnixPort(path) as port:
+        port.send(OUTLINE)
+        port.close()
+        assert server.display.words.any()
+
+
+@pytest.mark.parametrize("kind", ["file", "folder", "link", "server"])
+def test_what_is_at_the_path_already_is_left_alone(tmp_path: Path, kind: str) -> None:
+    path = tmp_path / "display"
+    server = None
+    if kind == "file":
+        path.write_text("mine")
+    elif kind == "folder":
+        path.mkdir()
+    elif kind == "link":
+        path.symlink_to(tmp_path / "nothing")
+    else:
+        server = UnixServer(Ramtek9300(), path)
+    before = path.lstat()
+    with pytest.raises(OutputExistsError) as refusal:
+        UnixServer(Ramtek9300(), path)
+    assert str(refusal.value) == (
+        "a server's socket must be a new file or the socket of a server that is gone, "
+        f"not {path}, which {'belongs to a server that runs' if server else 'exists'}; choose another path"
+    )
+    assert path.lstat().st_ino == before.st_ino
+    if server is not None:
+        assert not server.step()
+        server.close()
+
+
+def test_a_server_leaves_a_file_that_took_the_place_of_its_socket(tmp_path: Path) -> None:
+    path = tmp_path / "display"
+    with UnixServer(Ramtek9300(), path):
+        path.unlink()
+        path.write_text("mine")
+    assert path.read_text() == "mine"
+
+
+@pytest.mark.parametrize("path", ["no folder/display", "x" * 200])
+def test_a_path_where_no_socket_can_be_made_is_refused(path: str, tmp_path: Path) -> None:
+    with pytest.raises(OutputError, match=r"a server's socket must be where one can be made, not at"):
+        UnixServer(Ramtek9300(), tmp_path / path)
+
+
+def test_a_system_without_sockets_of_packets_is_told_in_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delattr(socket, "SOCK_SEQPACKET")
+    with pytest.raises(PortError) as refusal:
+        UnixServer(Ramtek9300(), tmp_path / "display")
+    assert refusal.value.exit_code == 69
+    assert str(refusal.value) == (
+        "a system must have Unix sockets that keep the boundaries of writes, and this one does not "
+        "(no sock_seqpacket); use TCP or a pipe"
+    )
+
+
+def test_packets_of_random_bytes_leave_the_display_that_their_whole_words_leave(tmp_path: Path) -> None:
+    draw = np.random.default_rng(9400)
+    packets = [draw.bytes(int(draw.integers(1, 300))) for _ in range(400)]
+    twin = Ramtek9300()
+    for packet in packets:
+        twin.send(np.frombuffer(packet[: len(packet) & ~1], "<u2").astype(np.uint16))
+    with serving_at(tmp_path / "display") as server:
+        with UnixPort(tmp_path / "display") as port:
+            for packet in packets:
+                port.write(packet)
+        assert (server.display.words == twin.words).all()
+        assert (server.display.entries == twin.entries).all()
+        assert server.display.processor.waiting == 0

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from ramtek_emu import NoScreenError, Ramtek9300, instructions
+from ramtek_emu.monitor.glass import placement
 from ramtek_emu.monitor.pattern import pattern
-from ramtek_emu.monitor.placement import placement
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
 from tests.ramtek_emu.screens import shown
 

@@ -5,11 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ramtek_emu import (
-    PRINCETON_9300,
-    Ramtek9300,
-    instructions,
-)
+from ramtek_emu import PRINCETON_9300, Ramtek9300, instructions
 from ramtek_emu.instruction_set.table import FORMATS, OPERANDS
 from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu.displays import sent

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ramtek_emu import Configuration, Ramtek9300, instructions
+from ramtek_emu import PRINCETON_9300, Configuration, Ramtek9300, instructions
 from ramtek_emu.memory.scan_orders import Point, Window
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import box, sent
@@ -387,3 +387,24 @@ def test_pairs_that_begin_inside_a_line_end_past_the_edge_of_an_even_window() ->
     display = sent("0A0F 8040 0020 000A 0014 000D 0015 000B 0014 0001 0008 0201 0403 0605 0807")
     assert display.words[20:22, 10:15].tolist() == [[0, 1, 2, 3, 4], [5, 6, 7, 8, 0]]
     assert display.processor.parameters.start == (10, 20)
+
+
+def test_tables_that_are_not_there_take_and_give_nothing() -> None:
+    display = sent("0301 0000 0004 FFFF FFFF", "0401 0000 0004")
+    assert not display.entries.any()
+    assert display.receive(2).tolist() == [0, 0]
+
+
+def test_recorded_color_map_3_splits_the_word_four_three_three() -> None:
+    table = [(i & 0o1700) << 2 | (i & 0o070) << 2 | (i & 0o007) << 1 for i in range(1024)]
+    assert table[:9] == [0, 2, 4, 6, 8, 0xA, 0xC, 0xE, 0x20]
+    display = sent(
+        "0300 0000 0800 " + " ".join(f"{word:04X}" for word in table),
+        "0300 03FF 0002 0000",
+        configuration=PRINCETON_9300,
+    )
+    assert display.entries[0x1FF].tolist() == [7 * 17, 14 * 17, 14 * 17]
+    assert display.entries[1022].tolist() == [255, 14 * 17, 12 * 17]
+    # Parking the counter overwrites the last entry.
+    assert display.entries[1023].tolist() == [0, 0, 0]
+    assert display.lookup_table.address == 0

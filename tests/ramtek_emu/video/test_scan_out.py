@@ -21,8 +21,8 @@ from ramtek_emu import (
     Timing,
     instructions,
 )
-from ramtek_emu.memory.cursors import cross
-from ramtek_emu.video.scan_out import Stamp
+from ramtek_emu.memory.cursors import BLINK, VISIBLE, Cursors, cross
+from ramtek_emu.video.scan_out import Mark, Stamp, draw, lines_with, marks
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.displays import colored
 from tests.ramtek_emu.strategies import (
@@ -185,7 +185,7 @@ def test_a_field_that_is_kept_is_always_the_one_that_a_whole_scan_out_makes(
     display.send(instructions.write_image(words & configuration.largest_word))
     scan_out, held = display.scan_out, None
     kept, fresh = (np.zeros((scan_out.lines, scan_out.elements), np.uint32) for _ in range(2))
-    with patch("ramtek_emu.video.dirty_lines.STRIP", strip):
+    with patch("ramtek_emu.video.scan_out.STRIP", strip):
         for (name, value), is_scanned_out in steps:
             if name == "draw on it":
                 kept[value % len(kept)], held = 0xABCDEF, None
@@ -289,7 +289,7 @@ class KeptField:
         return bool((self.pixels == self.fresh).all())
 
 
-@patch("ramtek_emu.video.dirty_lines.STRIP", 1)
+@patch("ramtek_emu.video.scan_out.STRIP", 1)
 def test_words_that_were_written_meanwhile_show_the_next_load_of_the_same_entries() -> None:
     display = Ramtek9300(SMALL)
     kept = KeptField(display)
@@ -300,7 +300,7 @@ def test_words_that_were_written_meanwhile_show_the_next_load_of_the_same_entrie
         assert kept.is_right()
 
 
-@patch("ramtek_emu.video.dirty_lines.STRIP", 1)
+@patch("ramtek_emu.video.scan_out.STRIP", 1)
 def test_a_view_that_came_back_shows_the_next_load() -> None:
     display = Ramtek9300(SMALL)
     display.send(instructions.write_image(np.arange(117).reshape(9, 13)))
@@ -463,3 +463,51 @@ def test_the_same_stream_gives_the_same_field_however_it_is_cut(stream: list[int
     assert whole.scan_out.stamp == cut.scan_out.stamp
     # Looking takes no time.
     assert (whole.field() == cut.field()).all()
+
+
+def test_marks_are_those_of_the_cursors_that_are_seen_now() -> None:
+    cursors = Cursors(4)
+    cursors.place(0, 5, 6, 0)
+    cursors.place(1, 7, 8, VISIBLE)
+    cursors.place(3, 9, 10, VISIBLE | BLINK)
+    assert marks(cursors, True) == (Mark(1, 7, 8, 0), Mark(3, 9, 10, 0))
+    assert marks(cursors, False) == (Mark(1, 7, 8, 0),)
+    cursors.shape(2, np.zeros((1, 4), np.uint8))
+    assert marks(cursors, False) == (Mark(1, 7, 8, 1),)
+
+
+@pytest.mark.parametrize(("element", "line"), [(20, 50), (0, 0), (39, 99), (60, 50), (20, 130)])
+def test_a_mark_is_the_shape_in_black_or_white_on_its_lines(element: int, line: int) -> None:
+    mark, shape = Mark(0, element, line, 0), cross()
+    pixels = np.zeros((100, 40), np.uint32)
+    pixels[:, ::2] = 0xFFFFFF
+    before = pixels.copy()
+    draw(pixels, mark, shape)
+    for y, x in np.ndindex(100, 40):
+        row, column = y - line + 15, x - element + 15
+        is_dot = 0 <= row < 32 and 0 <= column < 32 and shape[row, column]
+        assert pixels[y, x] == (before[y, x] ^ 0xFFFFFF if is_dot else before[y, x])
+    changed = np.flatnonzero((pixels != before).any(axis=1)).tolist()
+    assert set(changed) <= set(range(*mark.lines))
+
+
+def test_a_part_of_a_field_takes_its_part_of_the_mark() -> None:
+    mark = Mark(0, 20, 50, 0)
+    whole, part = np.zeros((100, 40), np.uint32), np.zeros((100, 40), np.uint32)
+    draw(whole, mark, cross())
+    for first, end in ((0, 40), (40, 55), (55, 100)):
+        draw(part[first:end], mark, cross(), first)
+    assert whole.any()
+    assert (whole == part).all()
+
+
+@quick
+@given(rasters(60, 5), st.integers(0, 1023), st.integers(1, 1024))
+def test_the_lines_that_show_a_run_of_entries_are_found(
+    raster: NDArray[np.uint16], first: int, count: int
+) -> None:
+    end = min(first + count, 1024)
+    with patch("ramtek_emu.video.scan_out.STRIP", 7):
+        top, bottom = lines_with(raster, first, end)
+    showing = [line for line, words in enumerate(raster.tolist()) if any(first <= w < end for w in words)]
+    assert (top, bottom) == ((showing[0], showing[-1] + 1) if showing else (0, 0))

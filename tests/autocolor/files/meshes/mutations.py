@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from autocolor.errors import InputError
-from autocolor.files.repair.polygons import MeshReport
+from autocolor.files.meshes.repair import MeshReport
 
 SNIPPETS = (b"-1", b"0", b"99999999999", b"nan", b"1e999", b"\0", b"\n", b" ", b"x", b"4294967295", b"\xff")
 

@@ -7,8 +7,7 @@ import pytest
 from autocolor.errors import InputError
 from autocolor.files.meshes.byu import read_byu
 from autocolor.files.meshes.formats import format_of
-from autocolor.files.repair.placement import Placement
-from autocolor.files.repair.polygons import MeshReport
+from autocolor.files.meshes.repair import MeshReport, Placement
 from tests.autocolor.files.meshes.mutations import survives
 
 CUBE = [[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]

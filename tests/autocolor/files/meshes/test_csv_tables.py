@@ -1,15 +1,34 @@
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError, MissingInputError
-from autocolor.files.meshes.csv_tables import read_csv_tables
-from autocolor.files.repair.polygons import MeshReport
+from autocolor.files.meshes.csv_tables import (
+    CSV,
+    NOTHING,
+    ROWS_AT_ONCE,
+    Cells,
+    CsvRows,
+    NameCells,
+    NumberCells,
+    Problems,
+    WholeCells,
+    csv_tables_bytes,
+    read_csv_tables,
+    write_csv_tables,
+)
+from autocolor.files.meshes.formats import format_of_folder, read_mesh
+from autocolor.files.meshes.repair import MeshReport
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.files.meshes.mutations import survives
+from tests.autocolor.meshes import cube
 
 NODES = "node,x,y,z\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n"
 POLYGONS = "polygon,part,node1,node2,node3,node4\n1,hood,1,2,3,4\n2,roof,1,2,3,\n"
@@ -186,3 +205,145 @@ def test_damaged_tables_are_read_or_refused(tmp_path: Path) -> None:
         read(tmp_path)
         paths = tmp_path / "nodes.csv", tmp_path / "polygons.csv"
         survives(lambda _, both=paths: read_csv_tables(*both), paths[at], data.encode())  # type: ignore[misc]
+
+
+CELL = st.text("0123456789+-.eE _nx\u0661 ", max_size=6) | st.floats().map(repr) | st.integers().map(str)
+
+
+def refuse(sentence: str) -> None:
+    raise AssertionError(sentence)
+
+
+@given(st.lists(CELL.map(str.strip), min_size=1, max_size=3), st.booleans())
+def test_cells_converted_at_once_are_those_converted_one_by_one(cells: list[str], may_be_empty: bool) -> None:
+    for kind in (NumberCells("rule", may_be_empty), WholeCells("a number", may_be_empty)):
+        try:
+            values = kind.at_once(cells)
+        except (ValueError, OverflowError):
+            continue
+        for value, cell in zip(values.tolist(), cells, strict=True):
+            one = kind.one(cell, refuse)
+            assert value == one or (math.isnan(value) and math.isnan(one))
+
+
+def test_names_are_numbered_in_their_order_and_made_printable() -> None:
+    names = NameCells("file")
+    assert names.at_once(["hood", "", " hood", "a\0b", "hood"]).tolist() == [0, 1, 0, 2, 0]
+    assert list(names.rows) == ["hood", "file", "a?b"]
+
+
+def test_problems_come_in_the_order_of_tables_and_rows() -> None:
+    problems = Problems()
+    for place, row in (("nodes.csv", 9), ("polygons.csv", 1), ("nodes.csv", 2)):
+        problems.note(place, row, "wrong")
+    with pytest.raises(InputError) as caught:
+        problems.raise_any()
+    assert caught.value.problems == (
+        "nodes.csv, row 2: wrong",
+        "nodes.csv, row 9: wrong",
+        "polygons.csv, row 1: wrong",
+    )
+
+
+def test_there_are_at_most_twenty_problems() -> None:
+    problems = Problems()
+    for row in range(19):
+        problems.note("a.csv", row, "wrong")
+    with pytest.raises(InputError) as caught:
+        problems.note("a.csv", 19, "wrong")
+    assert len(caught.value.problems) == 20
+
+
+def test_rows_of_many_blocks_keep_their_numbers_and_values(tmp_path: Path) -> None:
+    count = 2 * ROWS_AT_ONCE + 5
+    path = tmp_path / "a.csv"
+    lines = [f"{row}.5,{row if row % 2 else ''}" for row in range(count)]
+    lines[ROWS_AT_ONCE + 3] = "\u00a07.5 ,8"
+    path.write_text("number, whole\n\n" + "\n".join(lines), "utf-8")
+    rows = CsvRows(path)
+    assert rows.header == ["number", "whole"]
+    problems = Problems()
+    kinds: list[Cells] = [NumberCells("rule"), WholeCells("a whole", may_be_empty=True)]
+    (numbers, wholes), in_file = rows.converted(problems, kinds)
+    expected = [row + 0.5 for row in range(count)]
+    expected[ROWS_AT_ONCE + 3] = 7.5
+    assert numbers.tolist() == expected
+    assert in_file.tolist() == list(range(3, count + 3))
+    assert wholes[:4].tolist() == [NOTHING, 1, NOTHING, 3]
+    problems.raise_any()
+
+
+SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 1 / 3]])
+TWO = np.array([[0, 1, 2, 3], [0, 1, 2, 2]])
+
+
+def test_a_mesh_is_two_tables_with_its_scalars() -> None:
+    mesh = Mesh(
+        SQUARE,
+        TWO,
+        np.array([0, 1]),
+        ("hood", 'a, "b"'),
+        scalars=(
+            MeshScalar("stress", np.array([0.1, math.nan, 1e-300, 4])),
+            MeshScalar("part", np.array([1.0, math.nan]), "polygon"),
+        ),
+    )
+    nodes, polygons = csv_tables_bytes(mesh)
+    assert nodes.decode() == (
+        "node,x,y,z,stress\n1,0.0,0.0,0.0,0.1\n2,1.0,0.0,0.0,\n3,1.0,1.0,0.0,1e-300\n"
+        "4,0.0,1.0,0.3333333333333333,4.0\n"
+    )
+    assert polygons.decode() == (
+        'polygon,part,node1,node2,node3,node4,scalar part\n1,hood,1,2,3,4,1.0\n2,"a, ""b""",1,2,3,,\n'
+    )
+
+
+NAMES = st.text(st.characters(exclude_categories=("C", "Z")), min_size=1, max_size=9)
+SCALAR_NAMES = NAMES | st.sampled_from(["x", "X", "node5", "scalar", "scalar x", "part", "nodes"])
+VALUES = st.floats(-1e30, 1e30) | st.just(math.nan)
+
+
+@given(
+    parts=st.lists(NAMES, min_size=2, max_size=2, unique=True),
+    names=st.lists(SCALAR_NAMES, max_size=4, unique=True),
+    places=st.lists(st.floats(-1e3, 1e3), min_size=4, max_size=4),
+    values=st.lists(VALUES, min_size=4, max_size=4),
+)
+def test_a_mesh_reads_back_equal(
+    parts: list[str],
+    names: list[str],
+    places: list[float],
+    values: list[float],
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    coordinates = SQUARE.copy()
+    coordinates[:, 2] = places
+    scalars = [
+        MeshScalar(name, np.array(values), "node")
+        if number % 2 == 0
+        else MeshScalar(name, np.array(values[:2]), "polygon")
+        for number, name in enumerate(names)
+    ]
+    mesh = Mesh(coordinates, TWO, np.array([0, 1]), tuple(parts), scalars=tuple(scalars))
+    folder = tmp_path_factory.getbasetemp()
+    paths = folder / "nodes.csv", folder / "polygons.csv"
+    for path, data in zip(paths, csv_tables_bytes(mesh), strict=True):
+        path.write_bytes(data)
+    report = read_csv_tables(*paths)
+    assert report.repairs == ()
+    assert report.mesh.part_names == mesh.part_names
+    for name in ("coordinates", "node_numbers", "part_numbers"):
+        np.testing.assert_array_equal(getattr(report.mesh, name), getattr(mesh, name))
+    found = {each.name: each for each in report.mesh.scalars}
+    assert set(found) == set(names)
+    for scalar in scalars:
+        assert found[scalar.name].of == scalar.of
+        np.testing.assert_array_equal(found[scalar.name].values, scalar.values)
+
+
+def test_the_tables_of_a_mesh_are_a_folder_that_is_read_again(tmp_path: Path) -> None:
+    write_csv_tables(tmp_path, cube())
+    assert format_of_folder(tmp_path) is CSV
+    again = read_mesh({"nodes": tmp_path / "nodes.csv", "polygons": tmp_path / "polygons.csv"})
+    assert np.array_equal(again.mesh.coordinates, cube().coordinates)
+    assert again.repairs == ()

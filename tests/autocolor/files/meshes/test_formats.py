@@ -18,8 +18,8 @@ from autocolor.files.meshes.formats import (
     mesh_suffixes,
     read_mesh,
 )
+from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.registry import Format, Registry
-from autocolor.files.repair.polygons import MeshReport
 from autocolor.files.scenes.formats import scene_formats
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"

@@ -7,7 +7,7 @@ import pytest
 from autocolor.errors import InputError
 from autocolor.files.meshes.formats import format_of
 from autocolor.files.meshes.off import read_off
-from autocolor.files.repair.polygons import MeshReport
+from autocolor.files.meshes.repair import MeshReport
 from tests.autocolor.files.meshes.mutations import survives
 
 CUBE = """OFF

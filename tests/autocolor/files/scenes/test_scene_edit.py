@@ -7,7 +7,7 @@ from hypothesis import given
 
 from autocolor import Flap, Flaps, InputError, Light, Scene
 from autocolor.files.meshes.formats import read_mesh
-from autocolor.files.repair.polygons import MeshReport
+from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scenes.scene_edit import (
     completed,
     edited_to,
@@ -16,7 +16,7 @@ from autocolor.files.scenes.scene_edit import (
     without_parts,
 )
 from autocolor.files.scenes.scene_file import report_of_text
-from autocolor.scene.columns.rows import with_values
+from autocolor.scene.columns import with_values
 from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.strategies import of_mesh
 

@@ -14,7 +14,7 @@ from autocolor.files.scenes.scene_file import read_scene_file
 from autocolor.files.scenes.scene_report import SceneReport
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.curves import CURVES
-from autocolor.scene.specular_growth import SpecularGrowth
+from autocolor.scene.reflection_models import SpecularGrowth
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng hood\nf 1 2 3 4\ng roof\nf 1 2 3\n"
 MESH = '[[mesh]]\nfile = "car.obj"\n'

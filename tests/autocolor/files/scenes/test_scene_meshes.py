@@ -1,16 +1,22 @@
 from __future__ import annotations
 
+import dataclasses
+import gc
 import os
+import shutil
 import tomllib
+import weakref
 from pathlib import Path
 
 import pytest
 
+from autocolor import read_scene, render, write_picture
 from autocolor.errors import InputError
-from autocolor.files.repair.polygons import MeshReport
+from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scenes import scene_meshes
-from autocolor.files.scenes.problems import SceneProblems
-from autocolor.files.scenes.scene_meshes import mesh_file, meshes_of
+from autocolor.files.scenes.scene_meshes import MeshSource, keep_source, mesh_file, meshes_of, source_of
+from autocolor.files.scenes.scene_report import SceneProblems
+from tests.autocolor.meshes import cube
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 2\nv 0 1 0\ng hood\nf 1 2 3 4\n"
 MESH = '[[mesh]]\nfile = "car.obj"\n'
@@ -153,3 +159,62 @@ def test_too_many_meshes_are_refused(folder: Path) -> None:
     assert refusal(folder, MESH * 1001) == [
         "scene.toml, line 1, mesh must have at most 1,000 tables, not 1,001; join some"
     ]
+
+
+CAR_2 = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nf 1 2 3 4\n"
+
+
+@pytest.fixture
+def folder_2(tmp_path: Path) -> Path:
+    (tmp_path / "car.obj").write_text(CAR_2)
+    (tmp_path / "scene.toml").write_text('[[mesh]]\nfile = "car.obj"\nup = "y"\n')
+    return tmp_path
+
+
+def test_a_mesh_is_from_the_files_that_it_was_read_from(folder_2: Path) -> None:
+    entry = {"file": "car.obj", "up": "y"}
+    assert source_of(read_scene(folder_2).mesh) == MeshSource(folder_2, (entry,), folder_2 / "scene.toml")
+    bare = source_of(read_scene(folder_2 / "car.obj", up="y").mesh)
+    assert bare == MeshSource(folder_2, (entry,), None)
+
+
+def test_a_folder_of_tables_is_the_place_of_its_files(tmp_path: Path) -> None:
+    (tmp_path / "nodes.csv").write_text("x,y,z\n0,0,0\n1,0,0\n1,1,0\n")
+    (tmp_path / "polygons.csv").write_text("node1,node2,node3,node4\n1,2,3,\n")
+    source = source_of(read_scene(tmp_path).mesh)
+    assert source is not None
+    assert source.folder == tmp_path
+    assert source.entries == ({"nodes": "nodes.csv", "polygons": "polygons.csv", "up": "z"},)
+
+
+def test_an_edit_of_the_scene_keeps_it_and_a_new_mesh_has_none(folder_2: Path) -> None:
+    scene = read_scene(folder_2)
+    assert source_of(scene.replace(ambient=0.5).mesh) == source_of(scene.mesh) is not None
+    assert source_of(dataclasses.replace(scene.mesh)) is None
+    assert source_of(cube()) is None
+
+
+def test_the_mesh_of_a_picture_file_has_none(folder_2: Path) -> None:
+    scene = read_scene(folder_2)
+    write_picture(folder_2 / "car.npz", render(scene, 12, 16), scene)
+    assert source_of(read_scene(folder_2 / "car.npz").mesh) is None
+
+
+def test_a_relative_path_is_not_lost_when_the_process_goes_elsewhere(
+    folder_2: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder_2)
+    source = source_of(read_scene("car.obj").mesh)
+    assert source is not None
+    assert source.folder == folder_2
+
+
+def test_it_is_forgotten_with_the_mesh(folder_2: Path) -> None:
+    mesh = cube()
+    source = MeshSource(folder_2, ())
+    keep_source(mesh, source)
+    kept = weakref.ref(source)
+    del source, mesh
+    gc.collect()
+    assert kept() is None
+    shutil.rmtree(folder_2)

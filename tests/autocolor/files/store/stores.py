@@ -13,7 +13,7 @@ import numpy as np
 
 from autocolor import Light, Mesh, Scene, Surface, scene_of
 from autocolor.files.store.store_file import write_store
-from autocolor.scene.scalars.mesh_scalars import MeshScalar
+from autocolor.scene.scalar import MeshScalar
 
 
 def small_scene() -> Scene:

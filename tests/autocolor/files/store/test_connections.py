@@ -12,13 +12,7 @@ import pytest
 
 from autocolor import InputError, MissingInputError, UnavailableError, WriteError, open_tables
 from autocolor.files.store import connections
-from autocolor.files.store.connections import (
-    Clock,
-    connected,
-    connected_to_change,
-    in_memory,
-    refusals,
-)
+from autocolor.files.store.connections import Clock, connected, connected_to_change, in_memory, refusals
 from tests.autocolor.files.store.stores import contents, hostile_journal, run, small_store
 
 Open = Callable[[Path], Any]

@@ -13,14 +13,11 @@ from autocolor import BlinnPhong, Flap, Flaps, Light, Paint, Surface
 from autocolor.checks import Color
 from autocolor.files.store.schema import row_table as table_of
 from autocolor.files.store.sql_columns import SqlValue, columns_of, in_sql, row_table, row_values
-from autocolor.scene.columns.color_kinds import ColorKind
-from autocolor.scene.columns.column import Column, Row, Tier, keys_of
-from autocolor.scene.columns.reference_kinds import References, WordOrName
-from autocolor.scene.columns.row_kinds import Nested, Variant
-from autocolor.scene.columns.rows import made
-from autocolor.scene.columns.value_kinds import Choice, Number, Switch, Text, VectorKind, Whole
+from autocolor.scene.columns import Column, Row, Tier, keys_of, made
+from autocolor.scene.kinds import Choice, ColorKind, Number, Switch, Text, VectorKind, Whole
 from autocolor.scene.reflection_models import MODELS
-from autocolor.scene.scalars.scalar import Scalar
+from autocolor.scene.row_kinds import Nested, References, Variant, WordOrName
+from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
 from autocolor.scene.view import View

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from autocolor import Light, Mesh, Scene, Surface, View, scene_of
-from autocolor.screens.light_and_view.grips import Grip
+from autocolor.screens.light_and_view.handles import Grip
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.screen import Handle
 from autocolor.screens.viewer import Viewer

@@ -1,17 +1,39 @@
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Scene, View
-from autocolor.screens.light_and_view.areas import FRONT_AREA, PICTURE_AREA, SIDE_AREA, TOP_AREA
-from autocolor.screens.light_and_view.grips import AIM, DIRECTION, EYE, FLAP, LIGHT, TARGET, Grip
-from autocolor.screens.light_and_view.orthographic_views import FRONT, SIDE, SIDES, TOP, Side
+from autocolor.screens.light_and_view.handles import AIM, DIRECTION, EYE, FLAP, LIGHT, TARGET, Grip
+from autocolor.screens.light_and_view.light_and_view_screen import (
+    MESH,
+    DisplayView,
+    FlapSwitch,
+    flap_switches,
+    light_rows,
+    smaller,
+)
+from autocolor.screens.light_and_view.object_lines import ObjectLines
+from autocolor.screens.light_and_view.orthographic_views import (
+    FRONT,
+    FRONT_AREA,
+    PICTURE_AREA,
+    SIDE,
+    SIDE_AREA,
+    SIDES,
+    TOP,
+    TOP_AREA,
+    OrthographicViews,
+    Side,
+)
 from autocolor.studio import Studio
-from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import ORANGE, SLATE, YELLOW
+from autocolor.widgets.items import GRAY, NIGHT, ORANGE, SLATE, YELLOW, Area, filled
+from autocolor.widgets.widget import Button, Place, Switch, Widget
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand
 from tests.autocolor.screens.light_and_view.pointing import (
@@ -25,6 +47,7 @@ from tests.autocolor.screens.light_and_view.pointing import (
     scene_of_hand,
     screen_of,
 )
+from tests.autocolor.screens.light_and_view.test_marks import drawn
 
 unit = st.floats(-3.0, 3.0)
 
@@ -455,3 +478,175 @@ def test_a_dragged_light_sends_the_small_picture_and_some_lines() -> None:
     hand.move(104, 95)
     picture = 232 * 174
     assert picture < display.words_received - before < picture + 3000
+
+
+def display_of(hand: Hand) -> DisplayView:
+    return DisplayView(hand.viewer.session, ObjectLines())
+
+
+def grays(display: DisplayView) -> int:
+    """The gray pixels within the frame."""
+    left, top, right, bottom = display.area
+    words = drawn(display.items()).words[top : bottom + 1, left : right + 1]
+    return int((words == GRAY).sum())
+
+
+def test_a_smaller_picture_has_the_words_of_pixels_from_all_over_it() -> None:
+    words = np.arange(12, dtype=np.uint16).reshape(3, 4)
+    assert smaller(words, Area(0, 0, 3, 2)).tolist() == words.tolist()
+    assert smaller(words, Area(5, 5, 5, 5)).tolist() == [[6]]
+    assert smaller(words, Area(0, 0, 1, 2)).tolist() == [[1, 3], [5, 7], [9, 11]]
+
+
+def test_the_picture_stands_in_a_frame_and_is_the_same_until_it_changes() -> None:
+    hand = opened(boxed(KEY))
+    display = display_of(hand)
+    assert PICTURE_AREA.inset(7).covers(display.area)
+    before, again = display.items(), display.items()
+    assert before[-1] is again[-1]
+    assert before[-1].area == display.area
+    hand.viewer.session.change_light("key", intensity=0.2, position=(5.0, 0.0, 0.0))
+    assert display.items()[-1] != before[-1]
+
+
+def test_the_mesh_follows_the_view() -> None:
+    hand = opened(boxed(KEY))
+    display = display_of(hand)
+    display.show(MESH)
+    before = display.items()
+    assert grays(display) > 100
+    hand.viewer.session.edit(scene_of_hand(hand).with_view(angle=20.0))
+    assert display.items() != before
+
+
+def test_hidden_lines_of_the_mesh_are_left_out_when_there_is_time_and_come_back_with_another_view() -> None:
+    hand = opened(boxed(KEY))
+    display = display_of(hand)
+    assert not display.leave_out_hidden()
+    display.show(MESH)
+    whole = grays(display)
+    assert display.leave_out_hidden()
+    assert grays(display) < 0.9 * whole
+    assert not display.leave_out_hidden()
+    # A light changes nothing of that.
+    hand.viewer.session.change_light("key", position=(5.0, 0.0, 0.0))
+    assert grays(display) < 0.9 * whole
+    assert not display.leave_out_hidden()
+    hand.viewer.session.edit(scene_of_hand(hand).with_view(angle=1.0))
+    assert grays(display) > 0.95 * whole
+    assert display.leave_out_hidden()
+
+
+def test_a_click_in_the_quarter_turns_from_the_picture_to_the_mesh_and_back() -> None:
+    hand = opened(boxed(KEY))
+    element, line = (round(each) for each in PICTURE_AREA.middle)
+    shown = []
+    for _ in range(3):
+        shown.append([each for each in screen_of(hand).items() if PICTURE_AREA.covers(each.area)])
+        hand.click(element, line)
+    assert shown[0] == shown[2] != shown[1]
+
+
+VIEWS = OrthographicViews((0.0, 0.0, 0.0), 10.0)
+
+
+def switches_of(flaps: Flaps, changes: list[Mapping[str, Any]] | None = None) -> list[FlapSwitch]:
+    light = Light("key", (1.0, 2.0, 3.0), flaps=flaps)
+    return list(flap_switches(VIEWS, light, (changes if changes is not None else []).append))
+
+
+def test_each_line_of_a_flap_has_a_switch_at_its_end() -> None:
+    switches = switches_of(Flaps(z=Flap(-1.0, 2.0)))
+    assert [each.label for each in switches] == [
+        "key: flap z, minimum, front",
+        "key: flap z, maximum, front",
+        "key: flap z, minimum, side",
+        "key: flap z, maximum, side",
+    ]
+    line = round(VIEWS.position(FRONT, (0.0, 0.0, 2.0))[1])
+    assert FRONT.area.right - 2 <= switches[1].area.right <= FRONT.area.right
+    assert line - 3 <= switches[1].area.bottom < line
+
+
+def test_switches_are_within_their_view_wherever_the_lines_are() -> None:
+    for tenth in range(-130, 131):
+        flaps = Flaps(*(Flap(minimum=tenth / 10) for _ in "xyz"))
+        for each in switches_of(flaps):
+            assert any(side.area.covers(each.area) for side in SIDES)
+            assert not each.area.is_empty
+
+
+def test_a_switch_is_full_while_its_flap_is_on_and_flips_it() -> None:
+    changes: list[Mapping[str, Any]] = []
+    on, off = switches_of(Flaps(x=Flap(minimum=0.0), y=Flap(minimum=1.0, on=False)), changes)[:2]
+    assert on.label == "key: flap x, minimum, top"
+    assert filled(on.area.inset(2), YELLOW) in on.items(lit=False)
+    assert filled(off.area.inset(1), NIGHT) in off.items(lit=False)
+    assert filled(off.area.inset(2), YELLOW) not in off.items(lit=False)
+    assert "off" in on.help
+    for each in (on, off):
+        each.pick(Place(each.area.left, each.area.top))
+    assert changes == [{"flaps": {"x": {"on": False}}}, {"flaps": {"y": {"on": True}}}]
+
+
+def test_a_flap_without_an_end_in_view_has_no_switch() -> None:
+    assert switches_of(Flaps(x=Flap(), y=Flap(minimum=1e9))) == []
+    assert TOP.area.width
+
+
+def rows_of(hand: Hand) -> dict[str, Widget]:
+    screen = screen_of(hand)
+    rows = light_rows(hand.viewer.session, screen.edits, screen.chosen, screen.choose)
+    return {row.label: row for row in rows}
+
+
+def test_each_light_has_a_row_with_its_number() -> None:
+    rows = rows_of(opened(boxed(KEY, FILL.replace(on=False))))
+    key, fill = rows["1 key"], rows["2 fill"]
+    assert isinstance(key, Switch)
+    assert isinstance(fill, Switch)
+    assert (key.is_on, key.is_chosen) == (True, True)
+    assert (fill.is_on, fill.is_chosen) == (False, False)
+
+
+def test_the_box_of_a_row_switches_the_light_and_the_rest_chooses_it() -> None:
+    hand = opened(boxed(KEY, FILL))
+    before = scene_of_hand(hand)
+    hand.pick("2 fill", 0.3)
+    assert hand.viewer.session.light_name == "fill"
+    assert scene_of_hand(hand) is before
+    hand.pick("1 key", 0.95)
+    assert not scene_of_hand(hand).light("key").on
+    assert hand.viewer.session.light_name == "fill"
+
+
+def test_the_chosen_light_has_rows_for_its_kind_concentration_cone_and_flaps() -> None:
+    rows = rows_of(opened(boxed(KEY, FILL)))
+    assert list(rows)[4:] == ["kind", "concentration", "cone angle", "flaps x", "flaps y", "flaps z"]
+
+
+def test_without_lights_there_is_the_row_of_the_eye_alone() -> None:
+    assert list(rows_of(opened(boxed()))) == ["eye"]
+
+
+def test_the_eye_has_a_row_and_hides_those_of_the_chosen_light() -> None:
+    hand = opened(boxed(KEY, FILL))
+    hand.pick("eye")
+    rows = rows_of(hand)
+    assert list(rows) == ["eye", "1 key", "2 fill"]
+    eye, key = rows["eye"], rows["1 key"]
+    assert isinstance(eye, Button)
+    assert isinstance(key, Switch)
+    assert (eye.is_chosen, key.is_chosen) == (True, False)
+    hand.pick("1 key", 0.3)
+    assert "kind" in rows_of(hand)
+
+
+def test_all_rows_of_sixteen_lights_can_be_reached() -> None:
+    hand = opened(boxed(*(Light(f"light {n}", (n, -3.0, 2.0)) for n in range(1, 17))))
+    labels = set()
+    for _ in range(3):
+        labels |= {each.label for each in hand.viewer.board.menu_rows()}
+        hand.pick("more")
+    assert {f"{n} light {n}" for n in range(1, 17)} <= labels
+    assert {"kind", "flaps z", "rescale", "display", "angle", "frame"} <= labels

@@ -1,15 +1,40 @@
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from autocolor import Mesh, Scene, View, scene_of
-from autocolor.screens.light_and_view.areas import PICTURE_AREA, area_of_picture
-from autocolor.screens.light_and_view.hidden_edges import visible_depths
-from autocolor.screens.light_and_view.object_lines import ObjectLines
-from autocolor.screens.light_and_view.orthographic_views import FRONT, SIDES, TOP, fitted_views
+from autocolor.screens.light_and_view import object_lines as module
+from autocolor.screens.light_and_view.object_lines import (
+    Kept,
+    MeshEdges,
+    ObjectLines,
+    depths_toward,
+    mesh_edges,
+    perspective_strokes,
+    silhouette_from,
+    silhouette_toward,
+    visible_depths,
+    without_hidden,
+)
+from autocolor.screens.light_and_view.orthographic_views import (
+    FRONT,
+    PICTURE_AREA,
+    SIDES,
+    TOP,
+    Side,
+    area_of_picture,
+    fitted_views,
+)
+from autocolor.visibility.projection import projection
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import cube, grid, sphere
+from autocolor.widgets.items import Area
+from tests.autocolor.meshes import CUBE_NODES, CUBE_QUADS, cube, grid, sphere, wall
+from tests.autocolor.strategies import Vector, directions, meshes, views
 
 AREA = area_of_picture(PICTURE_AREA)
 EYE = View((4.0, -5.0, 3.0), target=(0.5, 0.5, 0.5))
@@ -93,3 +118,384 @@ def test_a_scene_without_polygons_has_no_lines() -> None:
     for side in SIDES:
         assert not any(map(len, lines.of_side(scene, views, side)))
     assert not any(map(len, lines.of_eye(scene, AREA)))
+
+
+def shown(edges: MeshEdges, mesh: Mesh, side: Side) -> set[tuple[int, ...]]:
+    depths = depths_toward(mesh, side)
+    assert depths is not None
+    return {
+        tuple(sorted(pair)) for pair in without_hidden(edges.features, edges.coordinates, depths).tolist()
+    }
+
+
+@pytest.mark.parametrize("side", SIDES, ids=[side.name for side in SIDES])
+def test_the_far_side_of_a_cube_is_hidden_within_a_ring_around_it(side: Side) -> None:
+    # A smaller cube behind a wall of the same shape is hidden; the wall is not.
+    toward = np.array(side.toward)
+    box = cube()
+    behind = Mesh((box.coordinates - 0.5) * 0.5 - 3 * toward, box.node_numbers, box.part_numbers, ("behind",))
+    before = Mesh(box.coordinates - 0.5, box.node_numbers, box.part_numbers, ("before",))
+    both = Mesh.joined([before, behind])
+    edges = mesh_edges(both)
+    found = shown(edges, both, side)
+    assert all(max(pair) < 8 for pair in found)
+    nearest = np.flatnonzero(before.coordinates @ toward > 0).tolist()
+    assert {tuple(sorted(pair)) for pair in found if set(pair) <= set(nearest)} == {
+        tuple(sorted(pair)) for pair in edges.features.tolist() if set(pair) <= set(nearest)
+    }
+
+
+def test_the_eye_sees_nine_edges_of_a_cube() -> None:
+    view = View((4.0, 5.0, 6.0), target=(0.5, 0.5, 0.5))
+    edges = mesh_edges(cube())
+    depths = visible_depths(visible_surfaces(cube(), view, (1,), 240, 320))
+    found = without_hidden(edges.features, edges.coordinates, depths)
+    # The three that meet in the far corner are hidden.
+    assert len(found) == 9
+    assert (edges.coordinates[found] != 0).any(axis=2).all()
+
+
+def test_an_edge_outside_of_the_picture_counts_as_visible() -> None:
+    view = View((4.0, 5.0, 6.0), direction=(-1.0, -1.0, -1.0))
+    edges = mesh_edges(cube())
+    depths = visible_depths(visible_surfaces(cube(), view, (1,), 240, 320))
+    far = np.array([(-900.0, 0, 0), (-900.0, 0, 1), (9, 9, 9), (9, 9, 10)])
+    pairs = np.array([(0, 1), (2, 3)])
+    assert without_hidden(pairs, far, depths).tolist() == pairs.tolist()
+    assert len(without_hidden(edges.features, edges.coordinates, depths)) == 9
+
+
+def test_the_silhouette_of_a_fine_sphere_is_not_hidden() -> None:
+    mesh = sphere(200, 101)
+    edges = mesh_edges(mesh)
+    for side in SIDES:
+        outline = silhouette_toward(edges, side.toward)
+        depths = depths_toward(mesh, side)
+        assert depths is not None
+        assert len(without_hidden(outline, edges.coordinates, depths)) == len(outline)
+
+
+def test_a_floor_is_a_line_when_it_is_seen_from_the_side() -> None:
+    floor = grid(1, 1, (-1, -1, 0), (2, 0, 0), (0, 2, 0))
+    assert len(shown(mesh_edges(floor), floor, FRONT)) == 4
+    assert len(shown(mesh_edges(floor), floor, TOP)) == 4
+
+
+def test_a_stage_hides_nothing() -> None:
+    lid = grid(1, 1, (-5, -5, 4), (10, 0, 0), (0, 10, 0), "lid")
+    mesh = Mesh.joined([cube(), lid])
+    edges = mesh_edges(mesh, [0])
+    for part_numbers, count in ((None, 0), ([0], 4)):
+        depths = depths_toward(mesh, TOP, part_numbers)
+        assert depths is not None
+        # From straight above, the upper side covers all edges but its own.
+        assert len(without_hidden(edges.features, edges.coordinates, depths)) == count
+
+
+def test_there_are_no_depths_of_nothing() -> None:
+    assert depths_toward(Mesh(np.zeros((0, 3)), np.zeros((0, 4), np.intp)), TOP) is None
+    assert depths_toward(cube(), TOP, []) is None
+
+
+@given(meshes())
+def test_what_is_not_hidden_is_some_of_the_edges_in_their_order(mesh: Mesh) -> None:
+    edges = mesh_edges(mesh)
+    for side in SIDES:
+        depths = depths_toward(mesh, side)
+        assert depths is not None
+        rows = iter(edges.features.tolist())
+        found = without_hidden(edges.features, edges.coordinates, depths)
+        assert all(pair in rows for pair in found.tolist())
+
+
+Place = tuple[float, ...]
+
+
+def lines(edges: MeshEdges) -> set[frozenset[Place]]:
+    """The features by the places of their ends."""
+    return {frozenset(map(tuple, pair)) for pair in edges.coordinates[edges.features].tolist()}
+
+
+def repeating_its_nodes(mesh: Mesh) -> Mesh:
+    """The mesh with nodes of its own for each polygon, as in a file without sharing."""
+    numbers = np.arange(mesh.node_numbers.size).reshape(-1, 4)
+    coordinates = mesh.coordinates[mesh.node_numbers.ravel()]
+    return Mesh(coordinates, numbers, mesh.part_numbers, mesh.part_names)
+
+
+def folded(degrees: float) -> Mesh:
+    """Two squares that meet along the y axis at an angle; 0 is flat."""
+    turn = np.radians(degrees)
+    coordinates = [(-1, 0, 0), (0, 0, 0), (0, 1, 0), (-1, 1, 0)]
+    bent = [(np.cos(turn), 0, np.sin(turn)), (np.cos(turn), 1, np.sin(turn))]
+    return Mesh(np.array([*coordinates, *bent]), np.array([(0, 1, 2, 3), (1, 4, 5, 2)]))
+
+
+def test_a_cube_has_twelve_creases() -> None:
+    edges = mesh_edges(cube())
+    assert len(edges.features) == 12
+    assert len(edges.smooth) == 0
+    assert {len({a != b for a, b in zip(*pair, strict=True)}) for pair in map(tuple, lines(edges))} == {2}
+    assert all(sum(a != b for a, b in zip(*pair, strict=True)) == 1 for pair in map(tuple, lines(edges)))
+
+
+def test_the_diagonals_of_divided_sides_are_no_creases() -> None:
+    triangles = [three for a, b, c, d in CUBE_QUADS for three in ((a, b, c), (a, c, d))]
+    edges = mesh_edges(Mesh(np.array(CUBE_NODES), np.array(triangles)))
+    assert lines(edges) == lines(mesh_edges(cube()))
+    assert len(edges.smooth) == 6
+
+
+def test_a_sphere_has_no_feature() -> None:
+    edges = mesh_edges(sphere(32, 16))
+    assert len(edges.features) == 0
+    assert len(edges.smooth) == sphere(32, 16).edge_count
+
+
+def test_an_open_grid_has_its_border() -> None:
+    edges = mesh_edges(grid(4, 3, (0, 0, 0), (4, 0, 0), (0, 3, 0)))
+    assert len(edges.features) == 2 * (4 + 3)
+    assert len(edges.smooth) == 3 * 3 + 4 * 2
+    for pair in lines(edges):
+        (ax, ay, _), (bx, by, _) = pair
+        assert (ax == bx and ax in (0, 4)) or (ay == by and ay in (0, 3))
+
+
+@pytest.mark.parametrize(("fold", "creases"), [(0, 0), (29.9, 0), (30, 0), (30.1, 1), (90, 1), (179, 1)])
+def test_a_crease_is_an_angle_above_the_crease_angle(fold: float, creases: int) -> None:
+    for sign in (1, -1):
+        assert len(mesh_edges(folded(sign * fold), crease_angle=30).features) == 6 + creases
+
+
+def test_a_cylinder_of_twelve_sides_has_two_rims_and_no_lines_along_it() -> None:
+    turns = np.radians(np.arange(0, 360, 30))
+    rim = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
+    coordinates = np.concatenate([rim, rim + np.array([0, 0, 1])])
+    quads = [(k, (k + 1) % 12, 12 + (k + 1) % 12, 12 + k) for k in range(12)]
+    edges = mesh_edges(Mesh(coordinates, np.array(quads)))
+    assert (len(edges.features), len(edges.smooth)) == (24, 12)
+
+
+def test_polygons_of_different_parts_are_divided_by_a_line_and_of_one_part_by_none() -> None:
+    mesh = grid(2, 1, (0, 0, 0), (2, 0, 0), (0, 1, 0))
+    two = Mesh(mesh.coordinates, mesh.node_numbers, np.array([0, 1]), ("left", "right"))
+    assert len(mesh_edges(mesh).features) == 6
+    assert lines(mesh_edges(two)) - lines(mesh_edges(mesh)) == {frozenset({(1, 0, 0), (1, 1, 0)})}
+
+
+def test_a_part_can_be_left_out() -> None:
+    left = grid(1, 1, (0, 0, 0), (1, 0, 0), (0, 1, 0), "left")
+    stage = grid(3, 1, (9, 9, 0), (9, 0, 0), (0, 9, 0), "stage")
+    both = Mesh.joined([left, stage])
+    assert lines(mesh_edges(both, [0])) == lines(mesh_edges(left))
+    assert lines(mesh_edges(both, [1])) == lines(mesh_edges(stage))
+    assert len(mesh_edges(both, []).features) == 0
+
+
+@given(st.integers(0, 1 << 32))
+def test_the_way_the_polygons_run_does_not_matter(seed: int) -> None:
+    mesh = sphere(24, 12)
+    turned = np.random.default_rng(seed).integers(0, 2, len(mesh.node_numbers)).astype(bool)
+    numbers = mesh.node_numbers.copy()
+    numbers[turned] = numbers[turned][:, [1, 0, 3, 2]]
+    triangle = turned & (mesh.node_numbers[:, 2] == mesh.node_numbers[:, 3])
+    numbers[triangle] = mesh.node_numbers[triangle][:, [1, 0, 2, 2]]
+    edges = mesh_edges(Mesh(mesh.coordinates, numbers))
+    assert len(edges.features) == 0
+    one, other = edges.polygons
+    assert edges.same_direction.tolist() == (turned[one] != turned[other]).tolist()
+
+
+def test_a_sheet_whose_polygons_are_there_for_each_face_has_its_border_alone() -> None:
+    sheet = grid(3, 2, (0, 0, 0), (3, 0, 0), (0, 2, 0))
+    numbers = np.concatenate([sheet.node_numbers, sheet.node_numbers[:, ::-1]])
+    assert lines(mesh_edges(Mesh(sheet.coordinates, numbers))) == lines(mesh_edges(sheet))
+
+
+def test_three_walls_that_meet_in_a_line_show_it() -> None:
+    flat = folded(0)
+    wall = [(0, 0, 1), (0, 1, 1)]
+    numbers = [*flat.node_numbers.tolist(), [1, 2, 7, 6]]
+    edges = mesh_edges(Mesh(np.concatenate([flat.coordinates, wall]), np.array(numbers)))
+    assert frozenset({(0, 0, 0), (0, 1, 0)}) in lines(edges)
+
+
+@given(meshes())
+def test_nodes_at_one_place_count_as_one(mesh: Mesh) -> None:
+    one, other = mesh_edges(mesh), mesh_edges(repeating_its_nodes(mesh))
+    assert lines(one) == lines(other)
+    assert len(one.smooth) == len(other.smooth)
+
+
+@given(meshes())
+def test_each_edge_of_polygons_with_an_area_is_a_feature_or_smooth(mesh: Mesh) -> None:
+    edges = mesh_edges(mesh)
+    has_area = (edges.normals != 0).any(axis=0)
+    expected = set()
+    for quad in mesh.node_numbers[has_area].tolist():
+        corners = [tuple(place) for place in mesh.coordinates[quad].tolist()]
+        expected |= {
+            frozenset(pair) for pair in itertools.pairwise([*corners, corners[0]]) if len(set(pair)) == 2
+        }
+    smooth = {frozenset(map(tuple, pair)) for pair in mesh.coordinates[edges.smooth].tolist()}
+    assert lines(edges) | smooth == expected
+    assert len(edges.features) + len(edges.smooth) == len(expected)
+
+
+def test_a_mesh_without_polygons_has_no_edges() -> None:
+    edges = mesh_edges(Mesh(np.zeros((0, 3)), np.zeros((0, 4), np.intp)))
+    assert edges.features.shape == edges.smooth.shape == (0, 2)
+
+
+def test_of_too_many_features_the_longest_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "MOST_FEATURES", 4)
+    box = Mesh(cube().coordinates * (1, 2, 3), cube().node_numbers)
+    edges = mesh_edges(box)
+    assert np.abs(np.diff(box.coordinates[edges.features], axis=1)).reshape(4, 3).tolist() == [[0, 0, 3]] * 4
+
+
+AREA_2 = area_of_picture(Area(256, 0, 503, 223))
+
+
+def test_edges_are_where_the_renderer_has_their_pixels() -> None:
+    view = View((4.0, 5.0, 6.0), target=(0.5, 0.5, 0.5), angle=20.0)
+    edges = mesh_edges(cube())
+    projected = projection(cube(), view, AREA_2.height, AREA_2.width)
+    # The renderer has the centers of pixels at halves.
+    places = np.stack([projected.x - 0.5 + AREA_2.left, projected.y - 0.5 + AREA_2.top], axis=1)
+    found = perspective_strokes(edges.coordinates, edges.features, view, AREA_2)
+    assert found == pytest.approx(places[edges.features].reshape(-1, 4))
+
+
+def test_the_height_of_the_area_is_the_field_of_view() -> None:
+    view = View((0.0, -1.0, 0.0), target=(0.0, 0.0, 0.0), field_of_view=90.0)
+    edges = mesh_edges(wall(half=0.98))
+    found = perspective_strokes(edges.coordinates, edges.features, view, Area(0, 0, 99, 99))
+    # At 45 degrees a unit is half the height: the outer pixels end at -0.5 and 99.5.
+    assert (found.min(), found.max()) == pytest.approx((49.5 - 49, 49.5 + 49))
+    assert len(found) == 4
+
+
+def test_what_is_behind_the_eye_is_left_out_and_what_passes_it_is_cut_off() -> None:
+    view = View((0.0, 0.0, 0.0), direction=(0.0, 1.0, 0.0), field_of_view=90.0)
+    points = np.array([(0.5, 1, 0), (0.5, -1, 0), (0, -1, 0), (0, -2, 0)], np.float64)
+    middle = AREA_2.middle[0]
+    found = perspective_strokes(points, np.array([(0, 1), (1, 0), (2, 3)]), view, AREA_2)
+    one = [middle + AREA_2.height / 4, AREA_2.middle[1]]
+    end = [AREA_2.right, AREA_2.middle[1]]
+    assert found.tolist() == [[*one, *end], [*end, *one]]
+
+
+def test_an_eye_within_the_object_sees_its_edges() -> None:
+    view = View((0.5, 0.5, 0.5), direction=(0.3, 1.0, 0.1), field_of_view=120.0)
+    edges = mesh_edges(cube())
+    found = perspective_strokes(edges.coordinates, edges.features, view, AREA_2)
+    assert 4 <= len(found) < 12
+
+
+@given(meshes(), views())
+def test_all_strokes_are_within_the_area(mesh: Mesh, view: View) -> None:
+    edges = mesh_edges(mesh)
+    found = perspective_strokes(edges.coordinates, edges.features, view, AREA_2)
+    assert (found >= [AREA_2.left, AREA_2.top] * 2).all()
+    assert (found <= [AREA_2.right, AREA_2.bottom] * 2).all()
+
+
+def test_no_size_of_the_object_makes_a_difference() -> None:
+    edges = mesh_edges(sphere(8, 5), crease_angle=1)
+    view = View((3.0, 4.0, 1.0), target=(0.0, 0.0, 0.0))
+    expected = perspective_strokes(edges.coordinates, edges.features, view, AREA_2)
+    for size in (2.0**-60, 2.0**60):
+        scaled = View((3 * size, 4 * size, size), target=(0.0, 0.0, 0.0))
+        found = perspective_strokes(edges.coordinates * size, edges.features, scaled, AREA_2)
+        assert found == pytest.approx(expected)
+
+
+def turned_at_random(mesh: Mesh, seed: int) -> Mesh:
+    """The mesh with some of its quads running the other way."""
+    numbers = mesh.node_numbers.copy()
+    turned = np.random.default_rng(seed).integers(0, 2, len(numbers)).astype(bool)
+    turned &= numbers[:, 2] != numbers[:, 3]
+    numbers[turned] = numbers[turned][:, ::-1]
+    return Mesh(mesh.coordinates, numbers)
+
+
+def test_the_silhouette_of_a_sphere_is_a_circle() -> None:
+    columns = 32
+    edges = mesh_edges(sphere(columns, 17))
+    found = silhouette_toward(edges, (0.0, 0.0, 1.0))
+    # The rows beside the equator are its neighbors.
+    assert len(found) == columns
+    heights = edges.coordinates[found][..., 2]
+    assert np.ptp(heights) == pytest.approx(0, abs=1e-12)
+    assert abs(heights[0, 0]) < np.sin(np.pi / 17)
+
+
+@given(directions, st.integers(0, 1 << 32))
+def test_a_silhouette_is_closed_whichever_way_the_polygons_run(direction: Vector, seed: int) -> None:
+    toward = np.array(direction) / np.linalg.norm(direction)
+    edges = mesh_edges(turned_at_random(sphere(24, 13), seed))
+    found = silhouette_toward(edges, toward.tolist())
+    assert len(found) >= 3
+    assert (np.bincount(found.ravel()) % 2 == 0).all()
+    plain = silhouette_toward(mesh_edges(sphere(24, 13)), toward.tolist())
+    if np.abs(toward @ edges.normals).min() > 1e-6:
+        assert sorted(map(sorted, found.tolist())) == sorted(map(sorted, plain.tolist()))
+
+
+@given(directions)
+def test_a_distant_eye_sees_the_silhouette_of_its_direction(direction: Vector) -> None:
+    toward = np.array(direction) / np.linalg.norm(direction)
+    edges = mesh_edges(sphere(24, 13))
+    assume(np.abs(toward @ edges.normals).min() > 1e-6)
+    expected = silhouette_toward(edges, toward.tolist())
+    assert silhouette_from(edges, (1e9 * toward).tolist()).tolist() == expected.tolist()
+
+
+def test_an_eye_nearby_sees_a_smaller_cap_of_a_sphere() -> None:
+    edges = mesh_edges(sphere(64, 33))
+    found = silhouette_from(edges, (0.0, 0.0, 2.0))
+    # The horizon as seen from the distance 2 is at the height 1 / 2.
+    assert len(found) == 64
+    assert np.abs(edges.coordinates[found][..., 2] - 0.5).max() < 0.1
+
+
+def test_an_eye_within_sees_no_silhouette() -> None:
+    assert len(silhouette_from(mesh_edges(sphere()), (0.1, 0.2, 0.0))) == 0
+
+
+def test_looking_along_a_cylinder_shows_no_lines_along_it() -> None:
+    turns = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    rim = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
+    quads = [(k, (k + 1) % 40, 40 + (k + 1) % 40, 40 + k) for k in range(40)]
+    edges = mesh_edges(Mesh(np.concatenate([rim, rim + np.array([0, 0, 1])]), np.array(quads)))
+    assert len(silhouette_toward(edges, (0.0, 0.0, 1.0))) == 0
+    assert len(silhouette_toward(edges, (0.6, 0.8, 0.0))) == 2
+
+
+def test_a_value_is_made_once_for_the_same_sources() -> None:
+    kept: Kept[list[int]] = Kept()
+    source = [1]
+    first = kept.of(lambda: [2], source, "a")
+    assert first == [2]
+    assert kept.of(lambda: [3], source, "a") is first
+
+
+def test_a_value_is_made_anew_for_another_source_even_an_equal_one() -> None:
+    kept: Kept[list[int]] = Kept()
+    source = [1]
+    kept.of(lambda: [2], source)
+    assert kept.of(lambda: [3], [1]) == [3]
+    assert kept.of(lambda: [4], [1], source) == [4]
+    assert kept.of(lambda: [5]) == [5]
+
+
+def test_what_fails_is_tried_again() -> None:
+    kept: Kept[float] = Kept()
+    for _ in range(2):
+        try:
+            kept.of(lambda: 1 / 0, "a")
+        except ZeroDivisionError:
+            continue
+        raise AssertionError
+    assert kept.of(lambda: 1.0, "a") == 1.0

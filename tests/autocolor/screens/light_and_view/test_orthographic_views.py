@@ -7,20 +7,29 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from autocolor import Light, Mesh, Part, Scene, View, scene_of
 from autocolor.checks import LARGEST_COORDINATE, Vector
 from autocolor.screens.light_and_view.orthographic_views import (
     FILLED,
     FRONT,
+    FRONT_AREA,
+    PICTURE_AREA,
     SIDE,
+    SIDE_AREA,
     SIDES,
     TOP,
+    TOP_AREA,
     OrthographicViews,
     Side,
+    area_of_picture,
     fitted_views,
+    shown_points,
     side_at,
 )
-from tests.autocolor.meshes import cube
-from tests.autocolor.strategies import vectors
+from autocolor.widgets.items import Area
+from autocolor.widgets.menu import WORK
+from tests.autocolor.meshes import cube, grid
+from tests.autocolor.strategies import scenes, vectors
 
 coordinates = st.floats(-1e6, 1e6).map(lambda value: value + 0.0)
 points = st.tuples(coordinates, coordinates, coordinates)
@@ -190,3 +199,67 @@ def test_a_place_is_in_the_view_whose_area_holds_it_or_in_none() -> None:
     assert [side_at(*side.area.middle) for side in SIDES] == list(SIDES)
     assert side_at(250, 100) is None
     assert side_at(380, 100) is None
+
+
+QUARTERS = (TOP_AREA, PICTURE_AREA, FRONT_AREA, SIDE_AREA)
+
+
+def test_the_quarters_of_the_work_area_do_not_touch_and_stand_on_a_grid_of_eight() -> None:
+    covered = np.zeros((464, 504), np.intp)
+    for area in QUARTERS:
+        covered[area.top : area.bottom + 1, area.left : area.right + 1] += 1
+    assert covered.max() == 1
+    assert covered.sum() == 4 * 248 * 224
+    for area in QUARTERS:
+        assert {number % 8 for number in (area.left, area.top, area.width, area.height)} == {0}
+        assert WORK.covers(area)
+
+
+def test_the_top_view_is_above_the_front_view_and_the_side_view_beside_it() -> None:
+    assert (TOP_AREA.left, TOP_AREA.width) == (FRONT_AREA.left, FRONT_AREA.width)
+    assert (SIDE_AREA.top, SIDE_AREA.height) == (FRONT_AREA.top, FRONT_AREA.height)
+    assert TOP_AREA.bottom < FRONT_AREA.top
+    assert FRONT_AREA.right < SIDE_AREA.left
+
+
+def test_the_picture_has_its_shape_in_a_high_area_and_in_a_wide_one() -> None:
+    assert area_of_picture(Area(0, 0, 63, 99)) == Area(0, 26, 63, 73)
+    assert area_of_picture(Area(0, 0, 99, 47)) == Area(18, 0, 81, 47)
+
+
+VIEW = View((5.0, -6.0, 7.0), target=(0.5, 0.5, 0.25))
+
+
+def test_the_object_the_eye_and_its_target_and_the_lights_and_their_aims_are_shown() -> None:
+    lights = [
+        Light("key", (1.0, 2.0, 3.0), aim=(0.0, 0.5, 0.5)),
+        Light("back", (4.0, 5.0, 6.0), on=False, direction=(0.0, 0.0, -1.0)),
+    ]
+    found = shown_points(scene_of(cube(), view=VIEW, lights=lights))
+    assert [tuple(point) for point in found.tolist()] == [
+        (0, 0, 0), (1, 1, 1), VIEW.eye, VIEW.target, (1, 2, 3), (0, 0.5, 0.5), (4, 5, 6)
+    ]  # fmt: skip
+
+
+def test_a_stage_is_left_out_of_the_scale() -> None:
+    floor = grid(1, 1, (-50, -50, 0), (100, 0, 0), (0, 100, 0), "floor")
+    scene = scene_of(Mesh.joined([cube(), floor]), view=VIEW, lights=[])
+    assert shown_points(scene).min() == -50
+    parts = [Part(part.name, part.surface, stage=part.name == "floor") for part in scene.parts]
+    assert shown_points(scene.replace(parts=tuple(parts))).min() == -6
+
+
+@given(scenes())
+def test_all_that_can_be_grabbed_is_in_each_of_the_fitted_views(scene: Scene) -> None:
+    views = fitted_views(shown_points(scene))
+    for side in SIDES:
+        for light in scene.lights_in_world:
+            assert side.area.has(*views.position(side, light.position))
+        assert side.area.has(*views.position(side, scene.view.eye))
+
+
+def test_lights_that_follow_are_shown_where_they_are() -> None:
+    lights = [Light("lamp", (0.0, 0.0, 0.0), follows="eye"), Light("key", (1.0, 2.0, 3.0), aim=(0, 0.5, 0.5))]
+    lights.append(Light("beside", (0.0, 0.0, 1.0), follows="key"))
+    found = [tuple(point) for point in shown_points(scene_of(cube(), view=VIEW, lights=lights)).tolist()]
+    assert found[4:] == [VIEW.eye, (1, 2, 3), (0, 0.5, 0.5), (0, 0.5, 1.5)]

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from autocolor import Light, Scene, Studio
-from autocolor.lighting.light_drags import cone_placed, highlight_placed
-from autocolor.lighting.rims import rims
+from autocolor.lighting.picking import cone_placed, highlight_placed, rims
 from autocolor.screens.picture.light_handles import HandleKey
-from autocolor.widgets.colors import YELLOW
+from autocolor.widgets.items import YELLOW
 from autocolor.widgets.menu import WORK
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before

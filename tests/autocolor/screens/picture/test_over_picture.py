@@ -7,12 +7,19 @@ import numpy as np
 import pytest
 
 from autocolor import Scene, View
-from autocolor.screens.input.gestures import turn_between, wheel_ratio
-from autocolor.screens.picture.orbit import moved, panned, turned
+from autocolor.mapping.legend import legend
+from autocolor.screens.input import turn_between, wheel_ratio
+from autocolor.screens.picture.over_picture import legend_items, surface_row
+from autocolor.screens.picture.picture_edits import moved, panned, turned
+from autocolor.screens.viewer import Viewer
+from autocolor.sending import drawn_legend
+from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before
+from tests.autocolor.screens.boxes import boxes
 from tests.autocolor.screens.hand import Hand
+from tests.autocolor.sessions import car
 
 FLOOR = 320, 430
 BACKGROUND = 20, 20
@@ -121,3 +128,50 @@ def test_the_wheel_comes_closer(hand: Hand) -> None:
     before = hand.viewer.studio.scene
     hand.viewer.on_pointer(400, 100, "wheel up", steps=2)
     assert hand.viewer.studio.scene.view == moved(before, wheel_ratio(2))
+
+
+def test_without_a_legend_there_is_nothing_to_draw() -> None:
+    assert legend_items(None) == ()
+
+
+def test_a_screen_draws_the_same_legend_as_a_studio(tmp_path: Path) -> None:
+    scene = boxes().with_scalar(name="z")
+    found = legend(Studio(scene, Ramtek9300()).image)
+    assert found is not None
+    drawn, by_items = Ramtek9300(), Ramtek9300()
+    drawn.send(drawn_legend(found))
+    for item in legend_items(found):
+        by_items.send(np.frombuffer(item.stream, np.uint16))
+    assert (drawn.words == by_items.words).all()
+    assert drawn.words.any()
+    viewer, display = Viewer(scene, Ramtek9300(), tmp_path), Ramtek9300()
+    viewer.clear()
+    Studio(scene, display)
+    assert isinstance(viewer.display, Ramtek9300)
+    assert (viewer.display.words == display.words).all()
+
+
+@pytest.mark.parametrize(
+    ("screen", "left", "right"), [("scalar", 8, 100), ("mapping", 350, 500), ("picture", 500, 640)]
+)
+def test_it_stands_where_a_screen_has_room(tmp_path: Path, screen: str, left: int, right: int) -> None:
+    viewer = Viewer(boxes().with_scalar(name="z"), Ramtek9300(), tmp_path)
+    viewer.session.turn_to(screen)
+    viewer.tell("")
+    area = viewer.board.screen.items()[0].area
+    assert left <= area.left <= area.right < right
+    viewer.session.turn_to("blending")
+    viewer.tell("")
+    assert not viewer.board.screen.items()
+
+
+def test_the_row_has_the_surfaces_in_use_and_chooses_one(tmp_path: Path) -> None:
+    session = Viewer(car(), Ramtek9300(), tmp_path).session
+    row = surface_row(session, "which")
+    assert (tuple(row.names), row.present) == (("body", "glass", "wheels"), "body")
+    row.nudge(1)
+    assert session.surface_name == "glass"
+    chosen: list[str] = []
+    surface_row(session, "which", chosen.append).nudge(1)
+    assert chosen == ["wheels"]
+    assert session.surface_name == "glass"

@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
+import numpy as np
+import numpy.typing as npt
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from autocolor.screens.picture.picture_edits import PictureEdits
+from autocolor import Mesh, View, scene_of
+from autocolor.scene.defaults import OBJECT_COLORS
+from autocolor.screens.picture.picture_edits import (
+    PictureEdits,
+    color_after,
+    moved,
+    panned,
+    seen_from,
+    target_of,
+    turned,
+)
 from autocolor.screens.session import Session
 from autocolor.studio import Studio
 from ramtek_emu import Ramtek9300
-from tests.autocolor.meshes import wall_scene
+from tests.autocolor.meshes import cube, grid, wall_scene
 
 
 @pytest.fixture
@@ -35,3 +50,138 @@ def test_an_edit_of_a_movement_passes_on_that_it_is_one(
         session.same_step = session.moving = is_one
         PictureEdits(session).turn(5, 0)
     assert told == [(False, False), (True, True)]
+
+
+colors = st.sampled_from(OBJECT_COLORS) | st.just("#123456")
+
+
+@given(colors, st.sampled_from([1, -1]))
+def test_a_step_and_its_opposite_come_back_to_the_same_color(own: str, step: int) -> None:
+    assert color_after(color_after(own, own, step), own, -step) == own
+
+
+@given(colors)
+def test_steps_in_one_direction_go_through_all_colors_and_the_own_one(own: str) -> None:
+    present, seen = own, []
+    for _ in range(len({own, *OBJECT_COLORS})):
+        present = color_after(present, own, 1)
+        seen.append(present)
+    assert present == own
+    assert set(seen) == {own, *OBJECT_COLORS}
+
+
+def test_a_color_that_came_from_elsewhere_is_followed_by_the_first() -> None:
+    assert color_after("#654321", "#123456", 1) == "#123456"
+    assert color_after("#654321", OBJECT_COLORS[3], 1) == OBJECT_COLORS[0]
+
+
+def distance(view: View) -> float:
+    assert view.target is not None
+    return math.dist(view.eye, view.target)
+
+
+@given(st.floats(-180, 180), st.floats(-40, 40))
+def test_going_around_keeps_the_distance_and_the_target(right: float, up: float) -> None:
+    scene = wall_scene(view=View((3, -4, 1), target=(0, 0, 0.5)))
+    view = turned(scene, right, up)
+    assert view.target == (0, 0, 0.5)
+    assert distance(view) == pytest.approx(distance(scene.view))
+
+
+def test_going_around_right_and_left_again_comes_back() -> None:
+    scene = wall_scene(view=View((3, -4, 1), target=(0, 0, 0)))
+    there = turned(scene, 5, 0)
+    assert there.eye[2] == pytest.approx(1)
+    assert turned(scene.replace(view=there), -5, 0).eye == pytest.approx(scene.view.eye)
+
+
+def test_the_eye_stays_away_from_straight_above() -> None:
+    scene = wall_scene(view=View((0, -4, 0), target=(0, 0, 0)))
+    for _ in range(40):
+        scene = scene.replace(view=turned(scene, 0, 5))
+    assert scene.view.eye[2] == pytest.approx(4 * math.sin(math.radians(85)))
+    assert turned(scene, 0, 5) is scene.view
+    assert turned(scene, 0, -5) != scene.view
+
+
+def test_a_direction_is_gone_around_without_a_jump() -> None:
+    scene = wall_scene(view=View((0, -4, 0), direction=(0, 2, 0)))
+    assert np.allclose(target_of(scene), 0)
+    view = turned(scene, 0, 0)
+    assert view.eye == pytest.approx(scene.view.eye)
+    assert np.allclose(view.axes, scene.view.axes)
+
+
+def test_what_lies_behind_the_eye_is_not_gone_around() -> None:
+    scene = wall_scene(view=View((0, -4, 0), direction=(0, -1, 0)))
+    assert target_of(scene)[1] < -4
+
+
+def test_moving_closer_and_farther_again_comes_back() -> None:
+    scene = wall_scene(view=View((3, -4, 1), target=(0, 0, 0)))
+    closer = moved(scene, 0.5)
+    assert distance(closer) == pytest.approx(0.5 * distance(scene.view))
+    assert moved(scene.replace(view=closer), 2).eye == pytest.approx(scene.view.eye)
+
+
+@pytest.mark.parametrize("height", [10.0, -10.0])
+def test_going_around_from_straight_above_or_below_does_not_turn_the_picture(height: float) -> None:
+    scene = wall_scene(view=View((0, 0, height), target=(0, 0, 0)))
+    before = scene.view.axes
+    after = turned(scene, 1e-6, 0).axes
+    assert after[0] == pytest.approx(before[0], abs=1e-5)
+    assert float(after[2] @ before[2]) > np.cos(np.radians(6))
+
+
+def test_the_eye_goes_around_the_object_and_not_around_its_stage() -> None:
+    view = View((0.5, -4, 0.5), direction=(0, 1, 0))
+    floor = grid(1, 1, (-50, -50, 0), (100, 0, 0), (0, 100, 0), "floor")
+    alone = scene_of(cube(), view=view)
+    scene = scene_of(Mesh.joined([cube(), floor]), view=view, parts={"floor": {"stage": True}})
+    assert target_of(scene).tolist() == target_of(alone).tolist() == [0.5, 0.5, 0.5]
+    assert target_of(scene.with_part("floor", stage=False))[1] > 1
+
+
+def place(view: View, point: npt.ArrayLike) -> tuple[float, float]:
+    """Where a point is seen, in elements and lines from the middle of a picture of 480 lines."""
+    right, down, deep = (np.array(point) - np.array(view.eye)) @ view.axes.T
+    scale = 240 / math.tan(math.radians(view.field_of_view) / 2)
+    return scale * right / deep, scale * down / deep
+
+
+@given(st.floats(-300, 300), st.floats(-200, 200), st.floats(-170, 170), st.booleans())
+def test_the_target_moves_with_the_picture(right: float, down: float, angle: float, has_target: bool) -> None:
+    aim = {"target": (0.3, 0.1, 0.5)} if has_target else {"direction": (-3, 4, -1)}
+    scene = wall_scene(view=View((3, -4, 1), angle=angle, field_of_view=40, **aim))
+    before = target_of(scene)
+    view = panned(scene, right, down, 480)
+    assert np.allclose(view.axes, scene.view.axes)
+    old = place(scene.view, before)
+    assert place(view, before) == pytest.approx((old[0] + right, old[1] + down), abs=1e-6)
+    assert distance(view) == pytest.approx(math.dist(scene.view.eye, before))
+
+
+@pytest.mark.parametrize(
+    ("side", "right", "down"),
+    [
+        ("front", (1, 0, 0), (0, 0, -1)),
+        ("side", (0, 1, 0), (0, 0, -1)),
+        ("back", (-1, 0, 0), (0, 0, -1)),
+        ("top", (1, 0, 0), (0, -1, 0)),
+    ],
+)
+def test_a_named_view_has_the_axes_of_a_drawing_and_the_object_fills_it(
+    side: str, right: tuple[int, ...], down: tuple[int, ...]
+) -> None:
+    scene = scene_of(cube()).with_view(angle=30.0, field_of_view=20.0)
+    view = seen_from(scene, side)
+    assert np.allclose(view.axes[:2], (right, down))
+    assert view.field_of_view == 20
+    places = np.array([place(view, node) for node in cube().coordinates])
+    assert np.abs(places).max() == pytest.approx(0.86 * 240)
+
+
+def test_the_view_of_three_quarters_is_the_one_that_is_created() -> None:
+    scene = scene_of(cube())
+    turned_away = scene.replace(view=turned(scene, 50, 10))
+    assert seen_from(turned_away, "three quarters").eye == pytest.approx(scene.view.eye)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import Scene, View
-from autocolor.screens.picture.orbit import SIDES, moved, panned, seen_from, turned
+from autocolor.screens.picture.picture_edits import SIDES, moved, panned, seen_from, turned
 from autocolor.screens.picture.picture_screen import CLOSER, PAN, TURN
 from autocolor.widgets.widget import Choice, Switch
 from tests.autocolor.screens.ball import MIDDLE, ball_scene, hand_before

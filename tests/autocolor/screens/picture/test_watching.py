@@ -12,13 +12,11 @@ from hypothesis import strategies as st
 
 from autocolor import Scene
 from autocolor.files.scene_writing import write_scene
-from autocolor.mapping.level_ranges import BACKGROUND
+from autocolor.mapping.ranges import BACKGROUND
 from autocolor.screens.picture.watching import MESSAGE, PICTURE_SECONDS, TICK_SECONDS
 from autocolor.screens.viewer import Viewer
 from autocolor.studio import Studio
-from autocolor.widgets.areas import Area
-from autocolor.widgets.colors import WHITE
-from autocolor.widgets.items import filled
+from autocolor.widgets.items import WHITE, Area, filled
 from ramtek_emu import Ramtek9300
 from tests.autocolor.screens.hand import Hand
 from tests.autocolor.sessions import SMALL, car

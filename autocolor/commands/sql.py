@@ -1,0 +1,345 @@
+"""`autocolor sql`: the tables of a scene as a relational data base."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+import sqlite3
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from functools import partial
+from itertools import chain, islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import click
+
+from autocolor.checks import printable
+from autocolor.commands.options import as_usage
+from autocolor.commands.outputs import tell_written
+from autocolor.commands.scenes import SceneSource, ended, read, scene_options
+from autocolor.errors import AutocolorError, InputError, UsageError
+
+if TYPE_CHECKING:
+    from autocolor.files.scenes.scene_report import SceneReport
+    from autocolor.files.store.statements import Answer, Value
+    from autocolor.files.store.tables import Tables
+
+
+# -------------------- answers
+# Printing the rows of an answer: as an aligned table, as CSV, or as JSON.
+
+FORMATS: Final = ("table", "csv", "json")
+
+MEASURED: Final = 1000
+"""Rows whose widths are looked at; those after them are printed as they come."""
+
+WIDEST: Final = 60
+"""Assumed: letters of a cell of a table; longer text is cut."""
+
+ABSENT: Final = "NULL"
+
+
+def lines_of(answer: Answer, form: str) -> Iterator[str]:
+    """The lines of an answer in one of FORMATS, made as its rows come."""
+    if form == "csv":
+        return _csv(answer)
+    return _json(answer) if form == "json" else _table(answer)
+
+
+def _table(answer: Answer) -> Iterator[str]:
+    """The columns and the rows, aligned; numbers stand to the right."""
+    rows = iter(answer.rows)
+    cells = []
+    has_number = [False] * len(answer.columns)
+    has_other = [False] * len(answer.columns)
+    for values in islice(rows, MEASURED):
+        cells.append([_cell(value) for value in values])
+        for place, value in enumerate(values):
+            has_number[place] |= isinstance(value, (int, float))
+            has_other[place] |= not isinstance(value, (int, float, type(None)))
+    if not answer.columns:
+        return
+    header = [printable(name) for name in answer.columns]
+    widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
+    is_number = [number and not other for number, other in zip(has_number, has_other, strict=True)]
+    yield _line(header, widths, is_number)
+    yield "  ".join("-" * width for width in widths)
+    for row in chain(cells, ([_cell(value) for value in each] for each in rows)):
+        yield _line(row, widths, is_number)
+
+
+def _line(cells: Sequence[str], widths: Sequence[int], is_number: Sequence[bool]) -> str:
+    placed = [
+        cell.rjust(width) if right else cell.ljust(width)
+        for cell, width, right in zip(cells, widths, is_number, strict=True)
+    ]
+    return "  ".join(placed).rstrip()
+
+
+def _cell(value: Value) -> str:
+    if value is None:
+        return ABSENT
+    text = f"{len(value):,} bytes" if isinstance(value, bytes) else str(value)
+    return printable(text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}...")
+
+
+def _csv(answer: Answer) -> Iterator[str]:
+    """Rows as CSV, NULL as an empty cell."""
+    yield _csv_line(answer.columns)
+    for row in answer.rows:
+        yield _csv_line(["" if value is None else _plain(value) for value in row])
+
+
+def _csv_line(cells: Sequence[object]) -> str:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="").writerow(cells)
+    return text.getvalue()
+
+
+def _json(answer: Answer) -> Iterator[str]:
+    """A list of objects by the names of columns, one a line."""
+    opening = "["
+    for row in answer.rows:
+        values = dict(zip(answer.columns, map(_plain, row), strict=True))
+        yield f"{opening}{json.dumps(values, ensure_ascii=False)}"
+        opening = ","
+    yield "[]" if opening == "[" else "]"
+
+
+def _plain(value: Value) -> object:
+    """A value that JSON and CSV can hold: infinite numbers and bytes as text."""
+    if isinstance(value, bytes):
+        return value.hex()
+    if isinstance(value, float) and value - value != 0:
+        return str(value)
+    return value
+
+
+EXAMPLES: Final = """\b
+Examples:
+  autocolor sql scenes/coupe "SELECT name, intensity FROM lights"
+  autocolor sql car.obj "SELECT part, count(*) FROM polygons GROUP BY part" --csv
+  autocolor sql car.sqlite "UPDATE lights SET intensity = 2 WHERE name = 'key'" --write
+  autocolor sql car.sqlite                      ask at a prompt
+  autocolor sql car.sqlite < statements.sql     run the statements of a file
+"""
+
+
+@click.command(epilog=EXAMPLES)
+@scene_options
+@click.argument("statement", required=False)
+@click.option("--write", is_flag=True, help="Let INSERT, UPDATE and DELETE through, and save SCENE.")
+@click.option(
+    "--format", "form", type=click.Choice(FORMATS), help="How to print rows: as a table by default."
+)
+@click.option("--csv", "as_csv", is_flag=True, help="Print CSV.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+@click.option(
+    "--seconds",
+    type=click.FloatRange(0.001, 86400),
+    default=30.0,
+    show_default=True,
+    help="How long a statement may take.",
+)
+@click.pass_context
+def sql(
+    context: click.Context,
+    source: SceneSource,
+    statement: str | None,
+    write: bool,
+    form: str | None,
+    as_csv: bool,
+    as_json: bool,
+    seconds: float,
+) -> None:
+    """Ask the tables of SCENE with a statement of SQL; without one, at a prompt or from stdin.
+
+    SCENE is a store (.sqlite), or any other scene, which is read into memory for it. `.schema` at the prompt
+    shows the tables; docs/STORE.md describes them. A change is checked as a scene file is, and refused as a
+    whole if anything would be wrong.
+    """
+    asked = [each for each, is_asked in zip(FORMATS, (False, as_csv, as_json), strict=True) if is_asked]
+    if len(asked) + (form is not None) > 1:
+        raise UsageError("rows must be printed in one way, not several; leave one of the options")
+    tables, report = _opened(source, write)
+    tables.seconds = seconds
+    run = partial(_run, tables, source, write, form or next(iter(asked), "table"))
+
+    with tables:
+        if statement is not None:
+            run(statement)
+        elif reads_from_a_terminal():
+            prompt(tables, run)
+        else:
+            for each in statements_in(sys.stdin):
+                run(each)
+    context.exit(0 if report is None else ended(report, source))
+
+
+def _opened(source: SceneSource, write: bool) -> tuple[Tables, SceneReport | None]:
+    """The tables of a scene, and the report of what was read; None for a store, which needs no repair."""
+    from autocolor.files.store.tables import is_store, open_tables, tables_of
+
+    path = Path(source.path)
+    if is_store(path):
+        return open_tables(path), None
+    if write:
+        _refuse_write(path)
+    report = read(source)
+    return tables_of(report.scene), report
+
+
+def _refuse_write(path: Path) -> None:
+    """Raise UsageError for a file that no scene is saved to."""
+    if path.is_dir() or path.suffix.lower() == ".toml":
+        return
+    advice = "take its scene out with `autocolor tables --write`"
+    if path.suffix.lower() != ".npz":
+        advice = "make a scene of it with `autocolor tables --write`, or a store with `autocolor convert`"
+    raise UsageError(f"--write must save to a store or to a scene's folder, not to {path}; {advice}")
+
+
+def _run(tables: Tables, source: SceneSource, write: bool, form: str, statement: str) -> None:
+    """Run one statement, and print its rows, or how many it changed."""
+    if not (write and tables.would_change(statement)):
+        for line in lines_of(tables.answer(statement), form):
+            click.echo(line)
+        return
+    try:
+        count = tables.change(statement)
+    except InputError as error:
+        with as_usage():
+            raise InputError(["nothing was changed", *error.problems]) from None
+    click.echo(f"changed {count:,} row{'' if count == 1 else 's'}", err=True)
+    if not tables.is_in_a_file:
+        from autocolor.files.scene_writing import write_scene_with_tables
+
+        path = Path(source.path)
+        tell_written(*map(str, write_scene_with_tables(path, tables.scene(), overwrite=True, complete=False)))
+
+
+# -------------------- prompt
+# The prompt of `autocolor sql`: statements that end with a semicolon, and words that begin with a dot.
+
+GREETING: Final = "statements end with ;   .tables   .schema [TABLE]   .help   .quit, or Ctrl+D"
+FIRST: Final = "sql> "
+NEXT: Final = "...> "
+
+MOST_LETTERS: Final = 1 << 20
+"""Assumed: letters of one statement."""
+
+_PIECES: Final = re.compile(
+    r"""'[^']*(?:'|\Z)|"[^"]*(?:"|\Z)|`[^`]*(?:`|\Z)|\[[^]]*(?:]|\Z)|--[^\n]*|/\*.*?(?:\*/|\Z)|;""", re.DOTALL
+)
+"""Texts, names and comments, which may hold semicolons, and semicolons."""
+
+
+def prompt(tables: Tables, run: Callable[[str], None]) -> None:
+    """Ask for statements until Ctrl+D or `.quit`; Ctrl+C takes back what was typed, or ends a statement."""
+    with suppress(ImportError):
+        # Lines can be edited, and come back with the arrow keys.
+        import readline  # noqa: F401
+    click.echo(GREETING, err=True)
+    text = ""
+    while True:
+        try:
+            line = input(NEXT if text else FIRST)
+            if not text and _dotted(line, tables):
+                continue
+            whole, text = split(f"{text}{line}\n")
+            for statement in whole:
+                run(statement)
+        except EOFError:
+            click.echo(err=True)
+            return
+        except KeyboardInterrupt:
+            text = ""
+            click.echo("taken back; Ctrl+D ends", err=True)
+        except AutocolorError as error:
+            click.echo(f"autocolor: {error}", err=True)
+        except _Quit:
+            return
+
+
+class _Quit(Exception):  # noqa: N818
+    """The user asked to leave the prompt."""
+
+
+def _dotted(line: str, tables: Tables) -> bool:
+    """Do what a word with a dot asks for; False for a line that is none."""
+    words = line.split()
+    if not words:
+        return True
+    if not words[0].startswith("."):
+        return False
+    if words[0] == ".tables":
+        click.echo("\n".join(map(printable, tables.names)))
+    elif words[0] == ".schema":
+        for name in words[1:] or tables.names:
+            click.echo("\n".join(map(printable, tables.definition(name).split("\n"))))
+    elif words[0] in (".quit", ".exit"):
+        raise _Quit
+    else:
+        click.echo(GREETING, err=True)
+    return True
+
+
+def statements_in(lines: Iterable[str]) -> Iterator[str]:
+    """The statements of some lines; the last one may lack its semicolon."""
+    text = ""
+    for line in _readable(lines):
+        text += line
+        if ";" in line:
+            whole, text = split(text)
+            yield from whole
+        if len(text) > MOST_LETTERS:
+            break
+    if text.strip():
+        yield text
+
+
+def _readable(lines: Iterable[str]) -> Iterator[str]:
+    """The lines. Raises UsageError for one that is not text in UTF-8."""
+    try:
+        yield from lines
+    except UnicodeDecodeError:
+        raise _not_text() from None
+
+
+def _not_text() -> UsageError:
+    return UsageError("statements must be text in UTF-8 without NUL; save them so")
+
+
+def split(text: str) -> tuple[list[str], str]:
+    """The whole statements of a text, each with its semicolon, and what is left after them.
+
+    Raises UsageError for what is not text in UTF-8.
+
+    >>> split("SELECT ';'; SELECT 2; SELECT")
+    (["SELECT ';';", ' SELECT 2;'], ' SELECT')
+    """
+    whole = []
+    begin = 0
+    for found in _PIECES.finditer(text):
+        if found[0] == ";" and _is_complete(text[begin : found.end()]):
+            whole.append(text[begin : found.end()])
+            begin = found.end()
+    rest = text[begin:]
+    return whole, rest if rest.strip() else ""
+
+
+def _is_complete(text: str) -> bool:
+    """Whether a text is a statement to its end: the semicolons in a trigger end none."""
+    try:
+        return sqlite3.complete_statement(text)
+    except ValueError:
+        raise _not_text() from None
+
+
+def reads_from_a_terminal() -> bool:
+    """Whether somebody types."""
+    return sys.stdin is not None and sys.stdin.isatty()

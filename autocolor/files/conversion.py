@@ -1,0 +1,337 @@
+"""The formats that a scene can be written in, found by the name of what is written or by their own."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import secrets
+import shutil
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Final
+
+from autocolor.checks import shown
+from autocolor.errors import OutputError, UsageError, WriteError, reason_of
+from autocolor.files.meshes.formats import (
+    HELD,
+    NODE_SCALARS,
+    PARTS,
+    POLYGON_SCALARS,
+    MeshFormat,
+    format_of_folder,
+    mesh_formats,
+)
+from autocolor.files.meshes.obj import OBJ, materials_of, mtl_text, obj_text
+from autocolor.files.meshes.repair import name_of
+from autocolor.files.paths import SCENE_FILE
+from autocolor.files.registry import format_named, suffix_rule, suffixes_of
+from autocolor.files.scene_writing import write_scene_with_tables
+from autocolor.files.scenes.store_scene import STORE
+from autocolor.files.writing import refuse_output, write_atomically
+from autocolor.scene.columns import fields_of
+from autocolor.scene.creation import SHARED
+from autocolor.scene.geometry.normals import CREASE_ANGLE
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalar import NODE
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Surface
+
+# -------------------- output
+# What a scene is written as: one format, what it holds beside nodes and polygons, and how it is written.
+
+SURFACES: Final = "surfaces"
+LIGHTS: Final = "lights"
+VIEW: Final = "view"
+SETTINGS: Final = "settings"
+WHOLE_SCENE: Final = frozenset((*HELD, SURFACES, LIGHTS, VIEW, SETTINGS))
+"""What a format holds that holds a whole scene."""
+
+SceneWriter = Callable[[Path, Scene, bool], list[Path]]
+"""A function that writes a scene to a path, and overwrites what is there if that is allowed.
+
+It returns the files that it wrote, and raises OutputError or WriteError, with nothing left half written."""
+
+
+@dataclass(frozen=True)
+class Output:
+    """One format that a scene is written in.
+
+    `suffixes` are those of its file, or of its folder; `in_folder` are the names of the files of a folder.
+    `holds` is what is read back from it, of WHOLE_SCENE.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    write: SceneWriter
+    holds: frozenset[str] = WHOLE_SCENE
+    in_folder: tuple[str, ...] = ()
+
+
+# -------------------- folder_output
+# Writing a mesh of several files: all are complete before the first of them has its name.
+
+
+def write_folder(
+    path: Path, mesh: Mesh, write: Callable[[Path, Mesh], object], *, overwrite: bool
+) -> list[Path]:
+    """Write the files of a mesh to a folder, which is made if there is none; returns them.
+
+    `write` writes them into an empty folder; only then do they move to the path. Other files that are there
+    stay. Raises OutputError if one of them exists and `overwrite` is false, or if there can be no such
+    folder; WriteError if writing fails.
+    """
+    parent = path.resolve().parent
+    if not parent.is_dir():
+        raise OutputError(f"an output must be in an existing folder, not {path.parent}; create it")
+    if os.path.exists(path) and not os.path.isdir(path):
+        raise OutputError(f"an output of several files must be a folder, not the file {path}; name another")
+    beside = parent / f".{path.name[:100]}.{secrets.token_hex(6)}.part"
+    try:
+        os.mkdir(beside)
+    except OSError as error:
+        raise OutputError(
+            f"an output must have a place, and at {path} it cannot be made ({reason_of(error)}); choose"
+            " another"
+        ) from None
+    try:
+        write(beside, mesh)
+        names = sorted(str(file.relative_to(beside)) for file in beside.rglob("*") if file.is_file())
+        there = [name for name in names if os.path.lexists(path / name)]
+        if there and not overwrite:
+            raise OutputError(
+                f"an output must be new files, not {path / there[0]}, which exists; choose another folder, or"
+                " overwrite it with --force"
+            )
+        _synced(beside, names)
+        if path.exists():
+            # Remove the old files first: if this is cut off, the folder has files of one mesh only.
+            for name in there:
+                os.unlink(path / name)
+            for name in names:
+                (path / name).parent.mkdir(parents=True, exist_ok=True)
+                os.replace(beside / name, path / name)
+        else:
+            os.rename(beside, path)
+    except OSError as error:
+        raise WriteError(
+            f"an output must be written whole, and {path} could not be ({reason_of(error)}); make room or"
+            " choose another place"
+        ) from None
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+    return [path / name for name in names]
+
+
+def _synced(folder: Path, names: list[str]) -> None:
+    for name in names:
+        with open(folder / name, "rb+") as file:
+            os.fsync(file.fileno())
+
+
+# -------------------- obj_output
+# Writing a scene as an OBJ file, with the surfaces of its parts as the materials of a library beside it.
+
+LIBRARY_SUFFIX: Final = ".mtl"
+
+
+def write_obj(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    """Write the mesh of a scene to an OBJ file, and its surfaces to a library beside it; returns both.
+
+    There is no library if one surface was created for all parts. Raises OutputError or WriteError.
+    """
+    refuse_output(path, overwrite=overwrite)
+    if [surface.name for surface in scene.surfaces] == [SHARED]:
+        write_atomically(path, obj_text(scene.mesh), overwrite=overwrite)
+        return [path]
+    library = path.with_suffix(LIBRARY_SUFFIX)
+    names = material_names(surface.name for surface in scene.surfaces)
+    surface_of = {part.name: part.surface for part in scene.parts}
+    materials = [names[surface_of[part]] for part in scene.mesh.part_names]
+    data = mtl_text((names[surface.name], surface) for surface in scene.surfaces)
+    was_there = os.path.lexists(library)
+    write_atomically(library, data, overwrite=overwrite)
+    try:
+        write_atomically(path, obj_text(scene.mesh, materials, library.name), overwrite=overwrite)
+    except BaseException:
+        if not was_there:
+            with suppress(OSError):
+                os.unlink(library)
+        raise
+    return [path, library]
+
+
+def material_names(surfaces: Iterable[str]) -> dict[str, str]:
+    """The name of the material of each surface: its own, as far as it can be read back, and unique."""
+    names: dict[str, str] = {}
+    for surface in surfaces:
+        name = stem = name_of(surface.encode("utf-8", "replace")) or "surface"
+        number = 1
+        while name in names.values():
+            number += 1
+            name = f"{stem} {number}"
+        names[surface] = name
+    return names
+
+
+def beyond_materials(surfaces: Iterable[Surface]) -> list[str]:
+    """The names of the surfaces of which a material library does not hold everything."""
+    return [surface.name for surface in surfaces if _read_back(surface) != surface]
+
+
+def _read_back(surface: Surface) -> Surface:
+    found, _ = materials_of(mtl_text([("material", surface)]), "", {"material"})
+    return found["material"].replace(name=surface.name)
+
+
+def _write_scene(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    return write_scene_with_tables(path, scene, overwrite=overwrite, complete=False)
+
+
+def _write_store(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    from autocolor.files.store.store_file import write_store
+
+    write_store(path, scene, overwrite=overwrite)
+    return [path]
+
+
+STORE_OUTPUT: Final = Output(STORE.name, STORE.suffixes, _write_store)
+SCENE: Final = Output("scene", (".toml",), _write_scene, in_folder=(SCENE_FILE,))
+
+
+def outputs() -> tuple[Output, ...]:
+    """All formats that a scene can be written in, sorted by name without regard to capitals."""
+    meshes = [_mesh_output(each) for each in mesh_formats() if each.written or each.write]
+    return tuple(sorted([*meshes, SCENE, STORE_OUTPUT], key=lambda each: each.name.casefold()))
+
+
+def _mesh_output(mesh_format: MeshFormat) -> Output:
+    name, suffixes = mesh_format.name, mesh_format.suffixes
+    if mesh_format is OBJ:
+        return Output(name, suffixes, write_obj, mesh_format.holds | {SURFACES})
+    if mesh_format.written is not None:
+        return Output(name, suffixes, partial(_write_file, mesh_format), mesh_format.holds)
+    return Output(
+        name, suffixes, partial(_write_files, mesh_format), mesh_format.holds, mesh_format.in_folder
+    )
+
+
+def _write_file(mesh_format: MeshFormat, path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    assert mesh_format.written is not None
+    write_atomically(path, mesh_format.written(scene.mesh), overwrite=overwrite)
+    return [path]
+
+
+def _write_files(mesh_format: MeshFormat, path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    assert mesh_format.write is not None
+    folder = path.parent if path.name in mesh_format.in_folder else path
+    return write_folder(folder, scene.mesh, mesh_format.write, overwrite=overwrite)
+
+
+def output_named(name: str) -> Output:
+    """The format of a name, in any capitals. Raises UsageError if there is none."""
+    known = {each.name.casefold(): each for each in outputs()}
+    if name.casefold() in known:
+        return known[name.casefold()]
+    near = difflib.get_close_matches(name.casefold(), known, 1)
+    raise UsageError(
+        f"--to must be {_listed([each.name for each in outputs()])}, not {name!r}"
+        + (f"; did you mean {known[near[0]].name}?" if near else "; choose one")
+    )
+
+
+def output_of(path: Path) -> Output:
+    """The format of what is written to a path.
+
+    A folder that is there keeps its format, and has a scene if it has none; a file has that of its suffix,
+    or of its name if it is one of several; what has no suffix becomes the folder of a scene. Raises
+    UsageError for any other suffix.
+    """
+    every = outputs()
+    # Unlike `Path.is_dir`, it never raises for a name that is too long.
+    if os.path.isdir(path):
+        if not (path / SCENE_FILE).exists():
+            mesh_format = format_of_folder(path)
+            found = next((each for each in every if mesh_format and each.name == mesh_format.name), None)
+            if found is not None:
+                return found
+            named = format_named(path, [each for each in every if each.in_folder])
+            return SCENE if named is None else named
+        return SCENE
+    by_name = next((each for each in every if path.name in each.in_folder), None)
+    found = by_name or format_named(path, every)
+    if found is not None:
+        return found
+    if not path.suffix:
+        return SCENE
+    raise UsageError(
+        f"OUT must {suffix_rule(path, suffixes_of(every))}; name another, without an ending for the folder of"
+        " a scene, or choose a format with --to"
+    )
+
+
+def _listed(names: list[str]) -> str:
+    return f"{', '.join(names[:-1])} or {names[-1]}"
+
+
+# -------------------- left_out
+# What a format does not hold of a scene, counted, to be told when the scene is written in it.
+
+MOST_NAMED: Final = 5
+
+
+def left_out(scene: Scene, output: Output, *, is_bare: bool) -> list[str]:
+    """A phrase for each thing that a format does not hold of a scene: "2 node scalars ('stress', 'u')".
+
+    Of a mesh without a scene, which `is_bare`, only what belongs to the mesh is told: all else was created.
+    """
+    phrases = list(_of_mesh(scene, output))
+    if not is_bare:
+        phrases.extend(_of_scene(scene, output))
+    return phrases
+
+
+def _of_mesh(scene: Scene, output: Output) -> Iterator[str]:
+    mesh = scene.mesh
+    if PARTS not in output.holds and len(mesh.part_names) > 1:
+        yield f"{len(mesh.part_names):,} parts ({_named(mesh.part_names)})"
+    for held, noun in ((NODE_SCALARS, "node scalar"), (POLYGON_SCALARS, "polygon scalar")):
+        names = [each.name for each in mesh.scalars if (each.of == NODE) == (held == NODE_SCALARS)]
+        if held not in output.holds and names:
+            yield f"{len(names):,} {noun}{'s' if len(names) > 1 else ''} ({_named(names)})"
+    if SETTINGS not in output.holds and mesh.crease_angle != CREASE_ANGLE:
+        yield f"the crease angle of {mesh.crease_angle:g} degrees"
+
+
+def _of_scene(scene: Scene, output: Output) -> Iterator[str]:
+    count = len(scene.surfaces)
+    if SURFACES not in output.holds and count:
+        named = _named([each.name for each in scene.surfaces])
+        yield f"{count:,} surface{'s' if count > 1 else ''} ({named})"
+    elif LIGHTS not in output.holds and (names := beyond_materials(scene.surfaces)):
+        yield f"what a material does not have of {len(names):,} of {count:,} surfaces ({_named(names)})"
+    if LIGHTS not in output.holds and scene.lights:
+        count = len(scene.lights)
+        yield f"{count:,} light{'s' if count > 1 else ''} ({_named([each.name for each in scene.lights])})"
+    if VIEW not in output.holds:
+        yield "the view"
+    if SETTINGS not in output.holds and (names := _settings(scene)):
+        yield f"{len(names)} setting{'s' if len(names) > 1 else ''} ({_named(names)})"
+
+
+def _settings(scene: Scene) -> list[str]:
+    """The names of the fields of a scene, tables apart, that are not their defaults."""
+    return [
+        name
+        for name, field in fields_of(Scene).items()
+        if name not in ("name", "view", "lights", "parts", "surfaces")
+        and field.default is not None
+        and vars(scene)[name] != field.default()
+    ]
+
+
+def _named(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MOST_NAMED:,} more" if len(names) > MOST_NAMED else ""
+    return ", ".join(shown(name) for name in names[:MOST_NAMED]) + more

@@ -1,0 +1,435 @@
+"""The process in which a library reads a file: the only module that imports trimesh and meshio.
+
+It is started as `python -m autocolor.files.meshes.foreign_worker LIBRARY FORMAT MESH RESULT SECONDS MEMORY
+BYTES`. The limits of time, of memory and of the result are set by the system, and none can be raised again.
+Once the library is loaded, this process opens no file but in the folder of the mesh and of Python, writes
+none but the result, and has no network. What the library prints goes nowhere. Failures are written as the
+result, after FAILED.
+"""
+
+from __future__ import annotations
+
+import math
+import mimetypes
+import os
+import re
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from autocolor.arrays import AnyArray, Floats, Indices
+from autocolor.checks import Color
+from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
+from autocolor.files.meshes.foreign import (
+    FAILED,
+    LONGEST_SENTENCE,
+    ForeignMesh,
+    foreign_mesh_bytes,
+    part_names_of,
+)
+from autocolor.files.meshes.found_scalars import FoundScalars
+from autocolor.files.meshes.repair import Polygons
+from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, POLYGON, MeshScalar
+
+# -------------------- trimesh_scene
+# The triangles of a scene of trimesh: each node of the scene with a mesh is a part, placed by its
+# transform.
+#
+# Nodes of a part with equal coordinates and scalars are welded: glTF writes a corner again for each normal
+# and texture coordinate that it has. Points and paths are skipped and counted. Of materials the name and
+# the base color are taken, of textures nothing. Nothing of trimesh is imported here.
+
+MOST_PLACED: Final = 100_000
+"""Assumed: parts of a scene, of which many may be the same mesh."""
+
+
+def polygons_of_trimesh(scene: Any, stem: str) -> ForeignMesh:
+    """The triangles of a scene of trimesh; a part without a name has that of the file, `stem`."""
+    order = {name: at for at, name in enumerate(scene.geometry)}
+    placed = [(str(node), *scene.graph[node]) for node in scene.graph.nodes_geometry]
+    if len(placed) > MOST_PLACED:
+        raise ValueError(f"{len(placed):,} parts, and at most {MOST_PLACED:,} are read")
+    placed.sort(key=lambda each: (order.get(each[2], len(order)), each[0]))
+    coordinates: list[Floats] = []
+    triangles: list[Indices] = []
+    values: list[dict[str, Floats]] = []
+    names: list[str] = []
+    materials: list[tuple[str, Color | None]] = []
+    skipped = textured = nodes = doubles = 0
+    for name, transform, geometry in placed:
+        mesh = scene.geometry[geometry]
+        faces = getattr(mesh, "faces", None)
+        if faces is None or not len(faces):
+            skipped += 1
+            continue
+        scalars = _scalars_of(mesh)
+        places, rows = _welded(_moved(np.asarray(mesh.vertices, np.float64), transform), scalars)
+        table = np.asarray(faces, np.intp)
+        if table.min() < 0 or table.max() >= len(rows[1]):
+            raise ValueError(f"a triangle of {name} with a node that it does not have")
+        doubles += len(rows[1]) - len(places)
+        # A reflection turns the triangles over.
+        turned = np.linalg.det(transform[:3, :3]) < 0
+        triangles.append(nodes + rows[1][table[:, ::-1] if turned else table])
+        coordinates.append(places)
+        values.append({key: each[rows[0]] for key, each in scalars.items()})
+        names.append(name.strip() or stem)
+        material, has_texture = _material_of(mesh)
+        materials.append(material)
+        textured += has_texture
+        nodes += len(places)
+    if not names:
+        raise ValueError("no triangles")
+    part_names = part_names_of(names)
+    keys = list(dict.fromkeys(key for each in values for key in each))[:MOST_SCALARS]
+    scalars_found = tuple(
+        MeshScalar(
+            key,
+            np.concatenate(
+                [
+                    each.get(key, np.full(len(places), np.nan))
+                    for each, places in zip(values, coordinates, strict=True)
+                ]
+            ),
+            NODE,
+        )
+        for key in keys
+    )
+    corners = np.concatenate(triangles)
+    counts = [len(each) for each in triangles]
+    polygons = Polygons(
+        np.concatenate(coordinates),
+        corners.ravel(),
+        np.full(len(corners), 3, np.intp),
+        np.repeat(np.arange(len(counts)), counts),
+        part_names,
+        scalars_found,
+    )
+    told = (
+        ("skipped parts without triangles", skipped),
+        ("left out the textures of parts", textured),
+    )
+    sentences = [f"{what}: {number:,}" for what, number in told if number]
+    return ForeignMesh(
+        polygons,
+        tuple(sentences),
+        {part: name for part, (name, _) in zip(part_names, materials, strict=True) if name},
+        {name: color for name, color in materials if name and color is not None},
+    )
+
+
+def _moved(places: Floats, transform: AnyArray) -> Floats:
+    """Coordinates after a transform of a scene, (4, 4)."""
+    matrix = np.asarray(transform, np.float64)
+    moved: Floats = places @ matrix[:3, :3].T + matrix[:3, 3]
+    return moved
+
+
+def _scalars_of(mesh: Any) -> dict[str, Floats]:
+    """The attributes of the nodes that are one number each; too large ones become missing."""
+    found = {}
+    for name, values in (getattr(mesh, "vertex_attributes", None) or {}).items():
+        numbers = np.asarray(values)
+        numbers = numbers[:, 0] if numbers.ndim == 2 and numbers.shape[1] == 1 else numbers
+        if numbers.shape == (len(mesh.vertices),) and numbers.dtype.kind in "iuf":
+            numbers = numbers.astype(np.float64)
+            found[str(name).removeprefix("_")] = np.where(np.abs(numbers) <= LARGEST_SCALAR, numbers, np.nan)
+    return found
+
+
+def _welded(places: Floats, scalars: dict[str, Floats]) -> tuple[Floats, tuple[Indices, Indices]]:
+    """The coordinates without doubles, the row of each in the given ones, and the new row of each given."""
+    columns = np.column_stack([places, *scalars.values()]) + 0.0
+    _, first, rows = np.unique(columns, axis=0, return_index=True, return_inverse=True)
+    # Keep the order of the file.
+    order = np.argsort(first)
+    rank = np.empty(len(order), np.intp)
+    rank[order] = np.arange(len(order))
+    kept = first[order]
+    return places[kept], (kept, rank[rows.reshape(-1)])
+
+
+def _material_of(mesh: Any) -> tuple[tuple[str, Color | None], bool]:
+    """The name and base color of the material of a mesh, and whether it has a texture."""
+    material = getattr(getattr(mesh, "visual", None), "material", None)
+    name = getattr(material, "name", None)
+    texture = getattr(material, "baseColorTexture", None) is not None
+    color = getattr(material, "baseColorFactor", None)
+    if not isinstance(name, str) or not name:
+        return ("", None), texture
+    if color is None or len(color) < 3:
+        return (name, None), texture
+    red, green, blue = (int(each) for each in np.asarray(color)[:3])
+    return (name, (red, green, blue)), texture
+
+
+# -------------------- meshio_cells
+# The surface of a mesh of meshio: its polygons, the outer faces of its volume cells, parts and scalars.
+#
+# Of cells of higher order the corners are taken. Vertices, lines and cells of other kinds are skipped and
+# counted. Parts are the physical groups of Gmsh, the sets of cells of Abaqus and others, or the numbers
+# with which Medit, Nastran and SU2 tell cells apart; a cell in several sets is of the first, and one in
+# none of the part named after the file. Nothing of meshio is imported here: its mesh is known by what it
+# has.
+
+SHAPE: Final = re.compile(r"(triangle|quad|tetra|hexahedron|wedge|pyramid)([0-9]*)")
+POLYGONS: Final = re.compile(r"polygon[0-9]*")
+ALL_CORNERS: Final = {"triangle": 3, "quad": 4, **CORNERS}
+
+GROUPS: Final = ("gmsh:physical", "medit:ref", "nastran:ref", "su2:tag", "ugrid:ref", "cell_tags")
+"""The data of cells that number their groups, the first that a file has."""
+
+INTERNAL: Final = re.compile(r"(gmsh|medit|nastran|su2|ugrid|abaqus):")
+
+
+def polygons_of_meshio(mesh: Any, stem: str) -> ForeignMesh:
+    """The surface of a mesh of meshio; `stem` is the name of the part of what is in no group."""
+    points = np.asarray(mesh.points, np.float64)
+    if points.ndim != 2 or points.shape[1] > 3:
+        raise ValueError(f"nodes of shape {points.shape}")
+    coordinates = np.zeros((len(points), 3))
+    coordinates[:, : points.shape[1]] = points
+
+    flats: list[Flats] = []
+    volumes: list[Volumes] = []
+    skipped: dict[str, int] = {}
+    higher_order = count = 0
+    for block in mesh.cells:
+        rows = np.arange(count, count + len(block.data))
+        count += len(rows)
+        shape = SHAPE.fullmatch(block.type)
+        if shape is None and not POLYGONS.fullmatch(block.type):
+            skipped[block.type] = skipped.get(block.type, 0) + len(rows)
+            continue
+        if shape is None:
+            sizes = np.array([len(row) for row in block.data], np.intp)
+            flats.append(Flats(_rows(np.concatenate([np.empty(0, np.intp), *block.data])), sizes, rows))
+            continue
+        table = np.asarray(block.data).reshape(len(rows), -1)
+        name, corners = shape[1], ALL_CORNERS[shape[1]]
+        higher_order += len(rows) if table.shape[1] > corners else 0
+        table = _rows(table[:, :corners])
+        if len(rows) and table.shape[1] != corners:
+            raise ValueError(f"cells of type {block.type} with {table.shape[1]} corners")
+        if name in CORNERS:
+            volumes.append(Volumes(name, table, rows))
+        else:
+            flats.append(Flats.of(table, rows))
+    every = Flats.joined(flats)
+    for numbers in (every.corners, *(each.corners.ravel() for each in volumes)):
+        if len(numbers) and not (numbers.min() >= 0 and numbers.max() < len(coordinates)):
+            raise ValueError(f"a cell with a node that is none of the {len(coordinates):,} of the file")
+    surface = cell_surface(coordinates, every, volumes)
+    part_of_cell, part_names = _parts(mesh, count, stem)
+    scalars = _scalars(mesh, surface.nodes, surface.flats.cells)
+    used, part_numbers = np.unique(part_of_cell[surface.flats.cells], return_inverse=True)
+    polygons = Polygons(
+        coordinates[surface.nodes],
+        surface.flats.corners,
+        surface.flats.corner_counts,
+        part_numbers.reshape(-1).astype(np.intp),
+        tuple(part_names[part] for part in used.tolist()),
+        scalars.scalars,
+    )
+    sentences = [f"skipped cells of type {kind}: {number:,}" for kind, number in skipped.items()]
+    if higher_order:
+        sentences.append(f"took the corners alone of cells of higher order: {higher_order:,}")
+    return ForeignMesh(polygons, (*sentences, *surface.sentences, *scalars.messages))
+
+
+def _rows(numbers: AnyArray) -> Indices:
+    """Node numbers as rows. Raises ValueError for those that are not whole."""
+    with np.errstate(invalid="ignore"):
+        rows = numbers.astype(np.intp)
+    if not np.array_equal(rows, numbers):
+        raise ValueError("node numbers that are not whole")
+    return rows
+
+
+def _parts(mesh: Any, count: int, stem: str) -> tuple[Indices, list[str]]:
+    """The part number of each cell, and the names of the parts."""
+    data = getattr(mesh, "cell_data", {}) or {}
+    for key in GROUPS:
+        tags = _joined(data.get(key), count)
+        if tags is not None and tags.ndim == 1 and tags.dtype.kind in "iu":
+            named = {
+                int(value[0]): str(name)
+                for name, value in (getattr(mesh, "field_data", {}) or {}).items()
+                if np.size(value) >= 1
+            }
+            numbers, parts = np.unique(tags, return_inverse=True)
+            names = [named.get(number, f"part {number}") for number in numbers.tolist()]
+            return parts.reshape(-1).astype(np.intp), names
+    part_of_cell = np.zeros(count, np.intp)
+    names = [stem]
+    starts = np.cumsum([0, *(len(block.data) for block in mesh.cells)])
+    for name, blocks in (getattr(mesh, "cell_sets", {}) or {}).items():
+        if INTERNAL.match(str(name)):
+            continue
+        names.append(str(name))
+        for start, end, chosen in zip(starts, starts[1:], blocks, strict=False):
+            rows = np.asarray([] if chosen is None else chosen)
+            rows = start + rows.astype(np.intp)
+            rows = rows[(rows >= start) & (rows < end)]
+            part_of_cell[rows[part_of_cell[rows] == 0]] = len(names) - 1
+    return part_of_cell, names
+
+
+def _joined(blocks: Any, count: int) -> AnyArray | None:
+    """The data of the cells of all blocks; None if they do not fit together."""
+    try:
+        joined = np.concatenate([np.asarray(each) for each in blocks])
+    except (TypeError, ValueError):
+        return None
+    return joined if len(joined) == count else None
+
+
+def _scalars(mesh: Any, nodes: Indices, cells: Indices) -> FoundScalars:
+    """The scalars of nodes and cells, at the rows that are kept."""
+    found = FoundScalars()
+    count = sum(len(block.data) for block in mesh.cells)
+    of_nodes = {name: np.asarray(each) for name, each in (mesh.point_data or {}).items()}
+    of_cells = {name: _joined(each, count) for name, each in (mesh.cell_data or {}).items()}
+    for of, arrays, rows, length in (
+        (NODE, of_nodes, nodes, len(mesh.points)),
+        (POLYGON, of_cells, cells, count),
+    ):
+        for name, values in arrays.items():
+            if INTERNAL.match(str(name)) or name in GROUPS:
+                continue
+            if values is None or len(values) != length or values.dtype.kind not in "iufb":
+                found.sentences.append(f"skipped the {of} array {name!r}, which has no number for each {of}")
+            else:
+                found.add(str(name), values, of, rows)
+    return found
+
+
+FORBIDDEN: Final = (
+    "socket.", "subprocess.", "os.system", "os.exec", "os.posix_spawn", "os.spawn", "os.fork", "pty.",
+    "ctypes.dlopen", "urllib.", "http.", "ftplib.", "smtplib.", "os.remove", "os.rename", "os.rmdir",
+    "os.mkdir", "os.link", "os.symlink", "os.truncate", "os.kill", "shutil.",
+)  # fmt: skip
+"""The beginnings of the names of audit events of what a reader has no need of."""
+
+WRITING: Final = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
+
+
+def main(arguments: list[str]) -> int:
+    """Read a file and write its mesh, or why there is none. Returns the exit code."""
+    library, kind, mesh, result, seconds, memory, largest = arguments
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for number in (0, 1, 2):
+        os.dup2(nothing, number)
+    limit_memory(int(memory), int(largest))
+    warnings.simplefilter("ignore")
+    try:
+        read = LIBRARIES[library](kind)
+        limit_time(float(seconds))
+        sys.addaudithook(guard(Path(mesh).parent, Path(result)))
+        data = foreign_mesh_bytes(read(mesh))
+    except (Exception, SystemExit) as error:
+        what = "it needs more memory than its size allows" if isinstance(error, MemoryError) else ""
+        data = FAILED + (what or sentence_of(error)).encode("utf-8", "replace")
+    with open(result, "wb") as file:
+        file.write(data)
+    return 0
+
+
+def sentence_of(error: BaseException) -> str:
+    """What an exception says, in one line of at most LONGEST_SENTENCE letters."""
+    if isinstance(error, SystemExit):
+        return "it gave up"
+    text = " ".join(str(error).split())
+    name = type(error).__name__
+    return (f"{name}: {text}" if text else name)[:LONGEST_SENTENCE]
+
+
+def limit_memory(memory: int, largest: int) -> None:
+    """Limit the addresses of this process, and the size of files that it writes, in bytes."""
+    try:
+        import resource
+    except ImportError:
+        return
+    for limit, value in (
+        (resource.RLIMIT_AS, memory),
+        (resource.RLIMIT_FSIZE, largest),
+        (resource.RLIMIT_CORE, 0),
+    ):
+        hard = resource.getrlimit(limit)[1]
+        value = value if hard == resource.RLIM_INFINITY else min(value, hard)
+        resource.setrlimit(limit, (value, value))
+
+
+def limit_time(seconds: float) -> None:
+    """End this process after so many seconds of computing from now on, or twice as many on the clock."""
+    try:
+        import resource
+        import signal
+    except ImportError:
+        return
+    used = math.ceil(time.process_time() + seconds)
+    # At the hard limit a process is killed without a reason; a second before, SIGXCPU tells it.
+    resource.setrlimit(resource.RLIMIT_CPU, (used, used + 1))
+    signal.setitimer(signal.ITIMER_REAL, 2 * seconds)
+
+
+def guard(folder: Path, result: Path) -> Callable[[str, tuple[Any, ...]], None]:
+    """An audit hook that refuses what no reader of a mesh needs, with PermissionError."""
+    readable = [
+        os.path.realpath(each) for each in {str(folder), sys.prefix, sys.base_prefix, *sys.path} if each
+    ]
+    written = os.path.realpath(result)
+
+    def refuse(event: str, values: tuple[Any, ...]) -> None:
+        if event == "open":
+            path, _, flags = values
+            if isinstance(path, int):
+                return
+            real = os.path.realpath(os.fsdecode(path))
+            if real == written:
+                return
+            writes = isinstance(flags, int) and flags & WRITING
+            if writes or not any(os.path.commonpath([real, each]) == each for each in readable):
+                raise PermissionError(f"the file names {os.fsdecode(path)!r}, which is not in its folder")
+        elif event.startswith(FORBIDDEN):
+            raise PermissionError(f"{event} is not allowed")
+
+    return refuse
+
+
+def meshio_reader(kind: str) -> Callable[[str], ForeignMesh]:
+    """The function that reads a file of a format with meshio, which is loaded."""
+    import meshio
+
+    def read(path: str) -> ForeignMesh:
+        return polygons_of_meshio(meshio.read(path, kind), Path(path).stem)
+
+    return read
+
+
+def trimesh_reader(kind: str) -> Callable[[str], ForeignMesh]:
+    """The function that reads a file of a format with trimesh, which is loaded."""
+    import trimesh
+
+    # What would be loaded from outside of Python's folders later on.
+    mimetypes.init()
+
+    def read(path: str) -> ForeignMesh:
+        scene = trimesh.load_scene(path, file_type=kind, process=False)
+        return polygons_of_trimesh(scene, Path(path).stem)
+
+    return read
+
+
+LIBRARIES: Final[dict[str, Callable[[str], Callable[[str], ForeignMesh]]]] = {
+    "meshio": meshio_reader,
+    "trimesh": trimesh_reader,
+}
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

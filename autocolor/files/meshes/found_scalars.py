@@ -1,0 +1,107 @@
+"""Scalars as they are found in files: arrays of one or several components, with any values.
+
+- An array of one component is a scalar of its name.
+- Of a vector (two or three components) its length is taken, as in "velocity magnitude".
+- Of a tensor (six components in the order xx, yy, zz, xy, yz, xz, or nine) von Mises' stress is taken, as in
+  "stress von Mises".
+- Arrays of other sizes are skipped and told.
+- A value that is infinite or above 1e30 in size becomes missing, and is counted.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from autocolor.arrays import AnyArray, Floats, Indices
+from autocolor.files.meshes.repair import printable_name
+from autocolor.files.reading import shown
+from autocolor.immutable import read_only
+from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, MeshScalar
+
+SYMMETRIC: Final = (0, 3, 5, 3, 1, 4, 5, 4, 2)
+"""Where the nine components of a tensor stand among six."""
+
+
+class FoundScalars:
+    """Collects the scalars of a file, with different names, and sentences about what was left out."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, MeshScalar] = {}
+        self.sentences: list[str] = []
+        self._skipped = 0
+
+    def add(self, name: str, values: AnyArray, of: str, rows: Indices | None = None) -> None:
+        """Add an array, (rows,) or (rows, components); `rows` are those to take, in this order."""
+        if len(self.found) >= MOST_SCALARS:
+            self._skipped += 1
+            return
+        name = printable_name(name) or "scalar"
+        values = values if rows is None else values[rows]
+        values = values.reshape(len(values), -1) if values.size else values.reshape(len(values), 1)
+        what, numbers = _one_component(values)
+        if numbers is None:
+            self.sentences.append(
+                f"skipped the {of} array {shown(name)}, which has {values.shape[1]:,} components"
+            )
+            return
+        with np.errstate(invalid="ignore"):
+            is_large = np.abs(numbers) > LARGEST_SCALAR
+        name = self._unique(f"{name}{what}", of)
+        if count := int(is_large.sum()):
+            numbers = np.where(is_large, np.nan, numbers)
+            self.sentences.append(
+                f"scalar {shown(name)}: {count:,} value{'s' * (count > 1)} above 1e30 in size"
+                f" {'was' if count == 1 else 'were'} made missing"
+            )
+        self.found[name] = MeshScalar(name, read_only(np.array(numbers, np.float64)), of)
+
+    def _unique(self, name: str, of: str) -> str:
+        """The name, or one with an ending where another scalar has it."""
+        if name not in self.found:
+            return name
+        stem = name if self.found[name].of == of else f"{name} of {of}s"
+        name, number = stem, 1
+        while name in self.found:
+            number += 1
+            name = f"{stem} {number}"
+        return name
+
+    @property
+    def scalars(self) -> tuple[MeshScalar, ...]:
+        """The scalars, those of nodes first."""
+        return tuple(sorted(self.found.values(), key=lambda each: each.of != NODE))
+
+    @property
+    def messages(self) -> tuple[str, ...]:
+        """Sentences about what was left out or made missing."""
+        more = f"skipped {self._skipped:,} arrays: a mesh has at most {MOST_SCALARS:,} scalars"
+        return (*self.sentences, more) if self._skipped else tuple(self.sentences)
+
+
+def _one_component(values: AnyArray) -> tuple[str, Floats | None]:
+    """What is put after the name of an array, and the number of each of its rows; None for other sizes."""
+    components = values.shape[1]
+    values = values.astype(np.float64, copy=False)
+    with np.errstate(over="ignore", invalid="ignore"):
+        if components == 1:
+            return "", values[:, 0]
+        if components in (2, 3):
+            return " magnitude", np.sqrt((values * values).sum(axis=1))
+        if components in (6, 9):
+            return " von Mises", von_mises(values if components == 9 else values[:, SYMMETRIC])
+    return "", None
+
+
+def von_mises(tensors: Floats) -> Floats:
+    """Von Mises' equivalent stress of stress tensors, (n, 9), of which the symmetric part counts.
+
+    >>> float(von_mises(np.array([[3.0, 0, 0, 0, 0, 0, 0, 0, 0]]))[0])
+    3.0
+    """
+    xx, yy, zz = tensors[:, 0], tensors[:, 4], tensors[:, 8]
+    xy, yz, zx = ((tensors[:, one] + tensors[:, other]) / 2 for one, other in ((1, 3), (5, 7), (2, 6)))
+    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    stress: Floats = np.sqrt(normal / 2 + 3 * (xy * xy + yz * yz + zx * zx))
+    return stress

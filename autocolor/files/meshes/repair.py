@@ -1,0 +1,285 @@
+"""Converting the polygons of a file to a mesh of triangles and quads, with a message for each repair.
+
+- A corner that repeats the previous one is removed: a quad becomes a triangle.
+- A polygon with fewer than three corners left, or without area, is dropped.
+- A polygon with more than four corners is split into quads and triangles.
+- Warped, concave and crossed quads (bow-ties) are kept, since the renderer fills them scan line by scan line;
+  `geometry/faults` finds them. Unused nodes are kept.
+"""
+
+from __future__ import annotations
+
+import codecs
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from autocolor.arrays import Booleans, Floats, Indices, cross, dot, lengths
+from autocolor.checks import printable
+from autocolor.errors import InputError
+from autocolor.immutable import read_only
+from autocolor.scene.geometry.normals import CREASE_ANGLE
+from autocolor.scene.geometry.polygon_split import split_polygons
+from autocolor.scene.kinds import Number
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
+from autocolor.scene.surfaces import Surface
+
+# -------------------- placement
+# How the mesh of a file is placed in the world: its up axis, its scale, and where its edges stay sharp.
+
+UPS: Final = ("x", "y", "z")
+
+SCALES: Final = Number(at_least=0, at_most=1e30, above=True)
+"""The factors that a mesh may be scaled by."""
+
+
+@dataclass(frozen=True)
+class Placement:
+    """The axis of the file that is up, a factor for its coordinates, and a crease angle or None."""
+
+    up: str = "z"
+    scale: float = 1.0
+    crease_angle: float | None = None
+
+
+PLAIN: Final = Placement()
+"""The placement of a file whose coordinates are those of the world."""
+
+
+def placed(coordinates: Floats, placement: Placement) -> Floats:
+    """The coordinates, (nodes, 3), in the world: the file's up axis turned to z, and scaled.
+
+    Polygons keep their winding: with y up, (x, y, z) becomes (x, -z, y), a rotation about x; with x up it
+    becomes (y, z, x). The scaled coordinates may be too large for a mesh, which refuses them.
+    """
+    if placement.up == "y":
+        coordinates = coordinates[:, [0, 2, 1]]
+        coordinates[:, 1] = 0.0 - coordinates[:, 1]
+    elif placement.up == "x":
+        coordinates = coordinates[:, [1, 2, 0]]
+    return coordinates if placement.scale == 1 else coordinates * placement.scale
+
+
+# -------------------- polygons
+# Polygons as they were in a file, before repair: with any number of corners, possibly repeated.
+
+
+@dataclass(frozen=True, eq=False)
+class Polygons:
+    """Nodes, and polygons with any number of corners.
+
+    `coordinates` is (nodes, 3) float64. `corners` holds the rows in `coordinates` of all corners, polygon
+    after polygon; they must be valid. `corner_counts` and `part_numbers`, indices of `part_names`, have one
+    element for each polygon. `scalars` are those of the nodes and of the polygons.
+    """
+
+    coordinates: Floats
+    corners: Indices
+    corner_counts: Indices
+    part_numbers: Indices
+    part_names: tuple[str, ...]
+    scalars: tuple[MeshScalar, ...] = ()
+
+
+@dataclass(frozen=True)
+class MeshReport:
+    """A mesh that was read, with messages about what was repaired or skipped.
+
+    `material_of_part` has the names of materials by part name, where the file gives any; `materials` are the
+    surfaces of those that it describes.
+    """
+
+    mesh: Mesh
+    repairs: tuple[str, ...] = ()
+    material_of_part: Mapping[str, str] = field(default_factory=dict)
+    materials: tuple[Surface, ...] = ()
+
+
+AT_A_TIME: Final = 1 << 14
+"""Polygons to check at once, so that the arrays fit in the processor cache."""
+
+FLAT: Final = 1e-12
+"""Assumed: a triangle has no area if twice its area is below this fraction of the squared polygon size."""
+
+SURE: Final = 16 * (10 * FLAT) ** 2
+"""A triangle has area if its cross product, squared, exceeds this fraction of its squared edges, squared: the
+size of a polygon is at most twice the longest way from its first corner to another."""
+
+LEAST_SQUARE: Final = 1e-250
+"""Squares below have lost digits."""
+
+
+def repaired(
+    polygons: Polygons,
+    place: str,
+    placement: Placement = PLAIN,
+    *,
+    skipped: tuple[str, ...] = (),
+) -> MeshReport:
+    """The mesh of the polygons, with messages about what was repaired.
+
+    `place` is the file's name in messages; `skipped` are messages to put before those of the repairs. Raises
+    InputError if no polygon is left.
+    """
+    coordinates = placed(polygons.coordinates, placement)
+    repairs = list(skipped)
+    corners, counts, shortened = _without_repeats(polygons.corners, polygons.corner_counts)
+    too_few = counts < 3
+    try:
+        node_numbers, owners = split_polygons(coordinates, corners, counts)
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from None
+
+    # Drop pieces without area, and so the polygons of which no piece is left.
+    has_area = np.concatenate(
+        [
+            _have_area(coordinates, node_numbers[first : first + AT_A_TIME])
+            for first in range(0, max(len(node_numbers), 1), AT_A_TIME)
+        ]
+    )
+    if not has_area.all():
+        node_numbers, owners = node_numbers[has_area], owners[has_area]
+    is_kept = np.zeros(len(counts), np.bool_)
+    is_kept[owners] = True
+    kinds = (
+        (shortened & ~too_few & is_kept, "{} with repeated corners {} repaired"),
+        (too_few, "{} with fewer than three different corners {} dropped"),
+        (~too_few & ~is_kept, "{} without area {} dropped"),
+        ((counts > 4) & is_kept, "{} with more than four corners {} split"),
+    )
+    for repaired_polygons, sentence in kinds:
+        if count := int(repaired_polygons.sum()):
+            polygon, was = ("polygon", "was") if count == 1 else ("polygons", "were")
+            repairs.append(sentence.format(f"{count:,} {polygon}", was))
+    if not len(node_numbers):
+        raise InputError(f"{place}: a mesh must have a polygon with area, not none; add polygons")
+    # A piece of a polygon has the scalars of the whole.
+    scalars = tuple(
+        each if each.of == NODE else MeshScalar(each.name, read_only(each.values[owners]), POLYGON)
+        for each in polygons.scalars
+    )
+    mesh = Mesh(
+        coordinates,
+        node_numbers,
+        polygons.part_numbers[owners],
+        polygons.part_names,
+        CREASE_ANGLE if placement.crease_angle is None else placement.crease_angle,
+        scalars,
+    )
+    return MeshReport(mesh, tuple(f"{place}: {repair}" for repair in repairs))
+
+
+def _without_repeats(corners: Indices, counts: Indices) -> tuple[Indices, Indices, Booleans]:
+    """The corners and counts without corners that equal the next one, and which polygons had such corners."""
+    sides = int(counts[0]) if len(counts) else 0
+    if sides > 0 and (counts == sides).all():
+        # Measured: where all polygons have the same number of sides, a fifth of the time of what follows.
+        table = corners.reshape(-1, sides).T
+        if not any((table[at] == table[at - 1]).any() for at in range(sides)):
+            return corners, counts, np.zeros(len(counts), np.bool_)
+    following = np.arange(1, len(corners) + 1)
+    ends = np.cumsum(counts)
+    filled = counts > 0
+    following[ends[filled] - 1] = (ends - counts)[filled]
+    kept = corners != corners[following]
+    if kept.all():
+        return corners, counts, np.zeros(len(counts), np.bool_)
+    owners = np.repeat(np.arange(len(counts)), counts)
+    kept_counts = np.bincount(owners[kept], minlength=len(counts))
+    return corners[kept], kept_counts, kept_counts != counts
+
+
+def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
+    """Whether each polygon of (n, 4) has area: neither diagonal splits it into two flat triangles.
+
+    A bow-tie whose halves cancel has area; a polygon that runs forth and back along one path has none.
+    Measured: to look closely only at those that are not sure to have area takes a third of the time of
+    triangles, and two thirds of that of quads.
+    """
+    have_area = _surely_have_area(coordinates, node_numbers.T)
+    others = np.flatnonzero(~have_area)
+    if len(others):
+        have_area[others] = ~_are_flat(coordinates[node_numbers[others]])
+    return have_area
+
+
+def _surely_have_area(coordinates: Floats, corners: Indices) -> Booleans:
+    """Which polygons, given by (4, n), are far from flat, whichever diagonal splits them."""
+    first = coordinates.take(corners[0], axis=0).T
+    one, two = (coordinates.take(row, axis=0).T - first for row in corners[1:3])
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        if (corners[2] == corners[3]).all():
+            return _far_from_flat(one, two, dot(two, two))
+        three = coordinates.take(corners[3], axis=0).T - first
+        squares = np.maximum(dot(two, two), dot(three, three))
+        return _far_from_flat(one, two, squares) & _far_from_flat(one, three, squares)
+
+
+def _far_from_flat(one: Floats, other: Floats, squares: Floats) -> Booleans:
+    """Whether the triangles of two edges, (3, n), have area for sure; `squares` are at least the other's."""
+    normals = cross(one, other)
+    sizes = np.maximum(dot(one, one), squares)
+    found: Booleans = dot(normals, normals) > np.maximum(SURE * sizes * sizes, LEAST_SQUARE)
+    return found
+
+
+def _are_flat(corners: Floats) -> Booleans:
+    """Whether each polygon of (n, 4, 3) has no area."""
+    rows = np.ascontiguousarray(corners.T)
+    size = np.ptp(rows, axis=1).max(axis=0)
+    size[size == 0] = 1.0
+    scaled = (rows - rows[:, :1]) / size
+
+    def flat(first: int, second: int, third: int) -> Booleans:
+        one, other = scaled[:, second] - scaled[:, first], scaled[:, third] - scaled[:, first]
+        is_flat: Booleans = lengths(cross(one, other)) < FLAT
+        return is_flat
+
+    are_flat: Booleans = (flat(0, 1, 2) & flat(0, 2, 3)) | (flat(0, 1, 3) & flat(1, 2, 3))
+    return are_flat
+
+
+# -------------------- names
+# Names of parts, materials and scalars as files have them, made printable, not too long, and different.
+
+LONGEST_NAME: Final = 200
+"""Assumed: letters of a name; the rest of a longer one is left out."""
+
+
+def name_of(data: bytes) -> str:
+    """The name in bytes, as `printable_name`; bytes that are not UTF-8 are Latin-1."""
+    data = data.strip()
+    start = data[: 4 * LONGEST_NAME]
+    try:
+        # What is cut may end within a letter.
+        text = codecs.getincrementaldecoder("utf-8")().decode(start, final=start == data)
+    except UnicodeDecodeError:
+        text = start.decode("latin-1")
+    return printable_name(text)
+
+
+def printable_name(text: str) -> str:
+    """The name without spaces around it, as printable text of at most LONGEST_NAME letters."""
+    return printable(text.strip()[:LONGEST_NAME])
+
+
+def different(names: Sequence[str], addition: str = "") -> tuple[str, ...]:
+    """The names, each that was there before with an addition or a number.
+
+    >>> different(["hood", "hood", "hood"])
+    ('hood', 'hood 2', 'hood 3')
+    """
+    found: dict[str, None] = {}
+    counts: dict[str, int] = {}
+    for name in names:
+        unique = name if name not in found else f"{name}{addition}"
+        number = counts.get(name, 1)
+        while unique in found:
+            number += 1
+            unique = f"{name}{addition} {number}"
+        counts[name] = number
+        found[unique] = None
+    return tuple(found)

@@ -1,0 +1,162 @@
+"""What was used lately: colors and files, newest first, in small lists that outlast the program.
+
+Each list is a JSON file in the state folder. They are a convenience: a list that is damaged, or that cannot
+be read or written, is an empty one, and never an error. Programs that run at the same time add to one list.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Final
+
+from autocolor.checks import Color
+from autocolor.errors import AutocolorError, OutputError
+from autocolor.files.reading import read_bytes
+from autocolor.files.writing import write_atomically
+from autocolor.scene.kinds import IN_FULL, ColorKind, in_digits
+
+# -------------------- state_folder
+# The folder in which a program keeps what must outlast it, such as journals, on each system.
+
+
+def state_folder() -> Path:
+    """The folder for the state of `autocolor`, which need not exist. Raises OutputError if there is no home.
+
+    It is in `XDG_STATE_HOME`, or `~/.local/state` without it; on Windows in `LOCALAPPDATA`, and on macOS in
+    `~/Library/Application Support`.
+    """
+    if sys.platform == "win32":
+        named, usual = os.environ.get("LOCALAPPDATA", ""), ("AppData", "Local")
+    else:
+        # The standard says to ignore a path that is not absolute.
+        named = os.environ.get("XDG_STATE_HOME", "")
+        usual = ("Library", "Application Support") if sys.platform == "darwin" else (".local", "state")
+    if os.path.isabs(named):
+        return Path(named, "autocolor")
+    try:
+        return Path.home().joinpath(*usual, "autocolor")
+    except RuntimeError:
+        raise OutputError(
+            "the state folder must be in a home folder, and there is none; set XDG_STATE_HOME"
+        ) from None
+
+
+# -------------------- file_lock
+# Locks on files: one program has each, and it goes when that program ends, in whatever way it does.
+
+
+def lock_file(path: Path) -> int | None:
+    """A descriptor that holds the lock on a file, which is made if there is none; None if another has it.
+
+    The lock lasts until `os.close`, or until the program ends. Raises OSError if the file cannot be opened.
+    """
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
+    try:
+        _lock(descriptor)
+    except OSError:
+        os.close(descriptor)
+        return None
+    return descriptor
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _lock(descriptor: int) -> None:
+        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+else:
+    import fcntl
+
+    def _lock(descriptor: int) -> None:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+MOST_COLORS: Final = 12
+MOST_FILES: Final = 10
+
+COLORS: Final = "recent-colors.json"
+FILES: Final = "recent-files.json"
+LOCK: Final = "recent.lock"
+
+LONGEST_PATH: Final = 4096
+"""Letters; systems have no longer ones."""
+
+LARGEST: Final = 1 << 18
+"""In bytes: more than MOST_FILES paths of LONGEST_PATH letters, each written in six bytes."""
+
+LONGEST_WAIT: Final = 0.2
+"""Assumed: seconds to wait for another program, which holds the lock for a few milliseconds."""
+
+
+def recent_colors() -> tuple[Color, ...]:
+    """The colors that were picked last, newest first, at most MOST_COLORS."""
+    return tuple(ColorKind().accepted(text) for text in _entries(COLORS, MOST_COLORS, _is_color))
+
+
+def note_color(color: Color) -> None:
+    """Put a color first among the recent ones."""
+    _note(COLORS, in_digits(color), MOST_COLORS, _is_color)
+
+
+def recent_files() -> tuple[Path, ...]:
+    """The files and folders that were opened last, newest first, at most MOST_FILES; some may be gone."""
+    return tuple(map(Path, _entries(FILES, MOST_FILES, _is_path)))
+
+
+def note_file(path: str | os.PathLike[str]) -> None:
+    """Put a file or folder first among the recent ones, by its absolute path."""
+    _note(FILES, os.path.abspath(path), MOST_FILES, _is_path)
+
+
+def _is_color(entry: str) -> bool:
+    return IN_FULL.fullmatch(entry) is not None
+
+
+def _is_path(entry: str) -> bool:
+    return os.path.isabs(entry) and "\0" not in entry and len(entry) <= LONGEST_PATH
+
+
+def _entries(name: str, most: int, is_right: Callable[[str], bool]) -> list[str]:
+    """The entries of a list; those that are damaged, or there twice, are left out."""
+    try:
+        found = json.loads(read_bytes(state_folder() / name, LARGEST))
+    except (AutocolorError, ValueError, RecursionError):
+        return []
+    if not isinstance(found, list):
+        return []
+    right = [each for each in found if isinstance(each, str) and is_right(each)]
+    return list(dict.fromkeys(right))[:most]
+
+
+def _note(name: str, entry: str, most: int, is_right: Callable[[str], bool]) -> None:
+    """Put an entry first in a list; nothing happens if it is not right, or the list cannot be written."""
+    if not is_right(entry):
+        return
+    with suppress(AutocolorError, OSError):
+        folder = state_folder()
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with _lock_held(folder):
+            others = [each for each in _entries(name, most, is_right) if each != entry]
+            data = json.dumps([entry, *others][:most], indent=1).encode()
+            write_atomically(folder / name, data, overwrite=True)
+
+
+@contextmanager
+def _lock_held(folder: Path) -> Iterator[None]:
+    """Hold the lock of the lists; go on without it where another program does not release it in time."""
+    give_up = time.monotonic() + LONGEST_WAIT
+    descriptor = lock_file(folder / LOCK)
+    while descriptor is None and time.monotonic() < give_up:
+        time.sleep(0.005)
+        descriptor = lock_file(folder / LOCK)
+    try:
+        yield
+    finally:
+        if descriptor is not None:
+            os.close(descriptor)

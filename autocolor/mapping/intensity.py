@@ -1,0 +1,219 @@
+"""From intensities to levels, and from levels to words.
+
+Paper: "The Lighting Model": the unscaled intensities are mapped to integer intensities for the display,
+by the range of each surface or of the entire object; nonlinear mappings can be tried. "Light Source Color
+Blending", Figure 11: a word is the first word of the surface's range plus the level.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from autocolor.arrays import HALF, LARGEST_SINGLE, Singles, Words, halves_up
+from autocolor.errors import InputError
+from autocolor.lighting.picture import IntensityRange, Picture
+from autocolor.mapping.bands import Bands, band_numbers
+from autocolor.mapping.ranges import BACKGROUND, LevelRange
+from autocolor.scene.curves import CurvePoints, Fractions, mapping_curve
+from autocolor.scene.scene import AUTO, OBJECT, Exposure
+from autocolor.visibility.visible_points import point_chunks
+
+# -------------------- exposure
+# Exposure: the range of intensities that the levels of each surface show.
+#
+# Paper: "The Lighting Model": the minimum and the maximum intensity of each surface, or of the entire
+# object, are mapped to the display. Departs: a scene can hold ranges, which then do not follow the picture,
+# so that less light looks darker; intensities beyond a held range are shown as its nearest end.
+
+WHOLE: Final = 0
+"""The number of the whole object's range, beside those of the surfaces."""
+
+ROUNDING: Final = 2.0**-20
+"""Assumed: eight units in the last place of float32, which a sum of lights may be off by."""
+
+
+def has_extent(extent: IntensityRange) -> bool:
+    """Whether the minimum and the maximum differ by more than float32 rounding.
+
+    >>> has_extent(IntensityRange(0.25, 0.5)), has_extent(IntensityRange(0.5, 0.5000001))
+    (True, False)
+    """
+    return extent.maximum - extent.minimum > ROUNDING * extent.maximum
+
+
+def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping[int, IntensityRange]:
+    """The range that is mapped to the levels of each visible surface, by number; the whole object's is WHOLE.
+
+    Intensities are relative to the picture's scale. A surface has its held range; else the object's, if that
+    is held or the scaling is "object"; else its own in the picture. One without extent has the object's.
+    Assumed: an unlit floor has the intensity of the ambient light all over, and should look as dark as that
+    is beside the rest.
+    """
+    held: dict[str, IntensityRange] = {}
+    if not isinstance(exposure, str):
+        for name, limits in exposure:
+            # As exact as intensities are, so that what is too narrow for them has no extent.
+            low, high = (min(limit / picture.scale, LARGEST_SINGLE) for limit in limits)
+            held[name] = IntensityRange(float(np.float32(low)), float(np.float32(high)))
+    found = picture.relative_ranges
+    whole = held.get(OBJECT, found[WHOLE])
+    shares_whole = scaling == "object" or OBJECT in held
+    ranges = {WHOLE: whole}
+    for surface in picture.slices:
+        number = surface.surface_number
+        name = picture.surfaces[number - 1]
+        own = whole if shares_whole else found[number]
+        if name != OBJECT:
+            own = held.get(name, own)
+        ranges[number] = own if has_extent(own) else whole
+    return ranges
+
+
+def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> Exposure:
+    """The exposure that holds the ranges that are mapped now, so that no word changes.
+
+    A range without extent is not held; the result is AUTO if none has one.
+    """
+    held = {} if isinstance(exposure, str) else dict(exposure)
+    each_has_its_own = scaling == "surface" and OBJECT not in held
+    for number, extent in picture.relative_ranges.items():
+        if (number == WHOLE or each_has_its_own) and has_extent(extent):
+            name = picture.surfaces[number - 1] if number else OBJECT
+            if number and name == OBJECT:
+                continue
+            held.setdefault(name, (extent.minimum * picture.scale, extent.maximum * picture.scale))
+    return tuple(held.items()) or AUTO
+
+
+def words_of(
+    picture: Picture,
+    ranges: Mapping[str, LevelRange],
+    scaling: str = "surface",
+    mapping: str | CurvePoints = "linear",
+    exposure: Exposure = AUTO,
+    dither: str = "off",
+    bands: Mapping[str, Bands] = MappingProxyType({}),
+) -> Words:
+    """The words of a picture, (lines, elements) uint16, read-only; BACKGROUND where nothing is visible.
+
+    The minimum and the maximum of the range that is mapped for a surface (see `mapped_ranges`) become its
+    lowest and its highest level; intensities beyond it become the nearest of these. Where no range has an
+    extent, as with all lights off, every pixel gets the middle level, which is neither black nor a highlight.
+    On a surface with `bands`, the intensity tells the shade and the scalar the band. Raises InputError if an
+    intensity is not finite.
+    """
+    words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
+    for surface in picture.slices:
+        extent = picture.relative_ranges[surface.surface_number]
+        if not (np.isfinite(extent.minimum) and np.isfinite(extent.maximum)):
+            name = picture.surfaces[surface.surface_number - 1]
+            raise InputError(f"surface {name!r}: an intensity must be finite, not {extent.maximum:g}")
+    extents = mapped_ranges(picture, scaling, exposure)
+    fractions_of = fractions_by_surface(picture, extents, mapping)
+    thresholds = ordered_thresholds(picture.lines, picture.elements) if dither == "ordered" else None
+    for chunk in point_chunks(picture.slices):
+        intensities, pixels = picture.relative[chunk.pixels], picture.pixels[chunk.pixels]
+        here = np.empty(len(pixels), np.uint16)
+        for surface in chunk.slices:
+            name = picture.surfaces[surface.surface_number - 1]
+            first, levels = ranges[name]
+            if name in bands:
+                levels = bands[name].shades
+            fractions = fractions_of[surface.surface_number](intensities[surface.pixels])
+            if thresholds is None or not has_extent(extents[surface.surface_number]):
+                here_levels = levels_of(fractions, levels, out=fractions)
+            else:
+                here_levels = dithered_levels(fractions, levels, thresholds.take(pixels[surface.pixels]))
+            np.copyto(here[surface.pixels], here_levels, casting="unsafe")
+            here[surface.pixels] += np.uint16(first)
+            if name in bands and picture.scalar_values is not None:
+                values = picture.scalar_values[chunk.pixels][surface.pixels]
+                here[surface.pixels] += band_numbers(values, bands[name]) * np.uint16(levels)
+        words[pixels] = here
+    words.flags.writeable = False
+    return words.reshape(picture.lines, picture.elements)
+
+
+def fractions_by_surface(
+    picture: Picture,
+    extents: Mapping[int, IntensityRange],
+    mapping: str | CurvePoints,
+    only: int | None = None,
+) -> Mapping[int, Fractions]:
+    """The function from the intensities of each visible surface to fractions, 0 to 1, by surface number.
+
+    `extents` are those of `mapped_ranges`; intensities are relative to the picture's scale. With `only`, the
+    function of that surface alone is made, if it is visible.
+    """
+    intensities_of = {
+        surface.surface_number: picture.relative[surface.pixels]
+        for surface in picture.slices
+        if only in (None, surface.surface_number)
+    }
+    made: dict[int, Fractions] = {}
+    found: dict[int, Fractions] = {}
+    for number in intensities_of:
+        # Surfaces that are mapped by the whole object's range share one function.
+        of = WHOLE if extents[number] is extents[WHOLE] else number
+        if of not in made:
+            everything = picture.relative if of == WHOLE else intensities_of[number]
+            made[of] = fraction_of(extents[of], mapping, everything, picture.relative_ranges[of])
+        found[number] = made[of]
+    return found
+
+
+def levels_of(fractions: Singles, levels: int, out: Singles | None = None) -> Singles:
+    """The levels, 0 to levels - 1, for fractions from 0 to 1, as float32; `out` may be `fractions`."""
+    scaled = np.multiply(fractions, np.float32(levels - 1), out=out)
+    return halves_up(scaled, out=scaled)
+
+
+def dithered_levels(fractions: Singles, levels: int, thresholds: Singles) -> Singles:
+    """The levels, 0 to levels - 1, for fractions from 0 to 1 and a threshold between 0 and 1 for each.
+
+    A fraction that lies between two levels gets the upper one where it exceeds the lower one by more than
+    the complement of the threshold. The lowest and the highest level stay whole.
+    """
+    scaled = fractions * np.float32(levels - 1)
+    scaled += thresholds
+    levels_below: Singles = np.floor(scaled, out=scaled)
+    return levels_below
+
+
+@lru_cache(maxsize=2)
+def ordered_thresholds(lines: int, elements: int) -> Singles:
+    """The thresholds of a raster, (lines * elements,) float32: 64 values in tiles of 8 x 8 pixels.
+
+    The order within a tile is that of B. E. Bayer, 1973, "An optimum method for two-level rendition of
+    continuous-tone pictures". The mean of the thresholds is a half, so dithering keeps the mean level.
+    """
+    tile = np.zeros((1, 1))
+    for _ in range(3):
+        tile = np.block([[4 * tile, 4 * tile + 2], [4 * tile + 3, 4 * tile + 1]])
+    tile = (tile + HALF) / tile.size
+    line, element = np.arange(lines) % len(tile), np.arange(elements) % len(tile)
+    thresholds = tile[np.ix_(line, element)].astype(np.float32).ravel()
+    thresholds.flags.writeable = False
+    return thresholds
+
+
+def fraction_of(
+    mapped: IntensityRange, mapping: str | CurvePoints, everything: Singles, found: IntensityRange
+) -> Fractions:
+    """The function from intensities to fractions of a range, 0 to 1; a half for a range without extent.
+
+    `everything` holds all intensities that are mapped with this range, and `found` is their own range; those
+    beyond the range that is mapped have the fractions of its ends.
+    """
+    if not has_extent(mapped):
+        return lambda intensities: np.full_like(intensities, HALF)
+    low, high = np.float32(mapped.minimum), np.float32(mapped.maximum)
+    if low <= found.minimum and found.maximum <= high:
+        return mapping_curve(mapping)(low, high, everything)
+    curve = mapping_curve(mapping)(low, high, np.clip(everything, low, high))
+    return lambda intensities: curve(np.clip(intensities, low, high))

@@ -1,0 +1,432 @@
+"""The kinds of columns that hold one value: numbers, switches, strings, vectors, choices, curves."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping, Set
+from dataclasses import dataclass
+from itertools import pairwise
+from numbers import Integral, Real
+from typing import Any, ClassVar, Final
+
+import numpy as np
+
+from autocolor.checks import Color, either, nearest, shown
+from autocolor.scene.columns import REFUSED, Bar, Kind, Path, Problem, Tier, bar_within
+
+LARGEST_PLACE: Final = 1e36
+"""Assumed: leaves room for the eye and the lights around the largest object."""
+
+NO_NUMBERS: Final = (bool, np.bool_, str, bytes, bytearray)
+"""Types that Python converts to numbers, but that are not accepted as numbers."""
+
+UNORDERED: Final = (str, bytes, bytearray, Mapping, Set)
+"""Types with elements that are not accepted as components in their order."""
+
+
+class Leaf(Kind):
+    """A kind of values without fields: a value is accepted or refused as a whole."""
+
+    def accepted(self, value: Any) -> Any:
+        """The converted value. Raises TypeError, ValueError or OverflowError if it breaks the rule."""
+        raise NotImplementedError
+
+    def advice(self, value: object) -> str:
+        """A clause for the message about an invalid value: what to do."""
+        return ""
+
+    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
+        try:
+            return self.accepted(value)
+        except (TypeError, ValueError, OverflowError):
+            problems.append(Problem(path, f"{self.rule()}, not {shown(value)}{self.advice(value)}"))
+            return REFUSED
+
+
+def require(condition: bool) -> None:
+    """Raise ValueError unless the condition holds."""
+    if not condition:
+        raise ValueError
+
+
+@dataclass(frozen=True)
+class Number(Leaf):
+    """A finite number within bounds, converted to float.
+
+    With `above`, the lower bound is excluded. `endless` is an infinite value that is also accepted, for no
+    limit, and is not written.
+    """
+
+    at_least: float = -math.inf
+    at_most: float = math.inf
+    above: bool = False
+    endless: float | None = None
+
+    def accepts(self) -> str:
+        return "float"
+
+    def rule(self) -> str:
+        if self.above:
+            end = f" and at most {self.at_most:g}" if self.at_most < math.inf else ""
+            return f"must be a number above {self.at_least:g}{end}"
+        if self.at_least > -math.inf and self.at_most < math.inf:
+            return f"must be a number from {self.at_least:g} to {self.at_most:g}"
+        return "must be a finite number" + (
+            f" of at least {self.at_least:g}" if self.at_least > -math.inf else ""
+        )
+
+    def accepted(self, value: Any) -> float:
+        if isinstance(value, NO_NUMBERS):
+            raise TypeError
+        number = float(value)
+        is_within = self.at_least <= number <= self.at_most and not (self.above and number == self.at_least)
+        if number != self.endless and not (is_within and -math.inf < number < math.inf):
+            raise ValueError
+        return number
+
+    def bar(self) -> Bar | None:
+        is_limited = -math.inf < self.at_least < self.at_most < math.inf and not self.above
+        return bar_within(self.at_least, self.at_most) if is_limited else None
+
+    def written(self, name: str, value: float) -> Mapping[str, object]:
+        return {name: None if value == self.endless else value}
+
+    def difference(self, name: str, one: float, other: float) -> Mapping[str, object]:
+        # A limit that is taken away must be told: the key that is left out keeps its value.
+        return {} if repr(one) == repr(other) else {name: other}
+
+
+@dataclass(frozen=True)
+class Whole(Leaf):
+    """A whole number within bounds."""
+
+    is_whole: ClassVar[bool] = True
+
+    at_least: int
+    at_most: int
+
+    def accepts(self) -> str:
+        return "int"
+
+    def bar(self) -> Bar:
+        return Bar(self.at_least, self.at_most, 1)
+
+    def rule(self) -> str:
+        return f"must be a whole number from {self.at_least} to {self.at_most}"
+
+    def accepted(self, value: Any) -> int:
+        require(isinstance(value, (int, np.integer)) and not isinstance(value, bool))
+        number = int(value)
+        require(self.at_least <= number <= self.at_most)
+        return number
+
+
+@dataclass(frozen=True)
+class Switch(Leaf):
+    """A boolean."""
+
+    def rule(self) -> str:
+        return "must be true or false"
+
+    def accepts(self) -> str:
+        return "bool"
+
+    def accepted(self, value: Any) -> bool:
+        require(isinstance(value, (bool, np.bool_)))
+        return bool(value)
+
+
+@dataclass(frozen=True)
+class Text(Leaf):
+    """A string, which must not be empty unless `may_be_empty`."""
+
+    may_be_empty: bool = False
+
+    def rule(self) -> str:
+        return "must be a string" + ("" if self.may_be_empty else " of at least one character")
+
+    def accepts(self) -> str:
+        return "str"
+
+    def accepted(self, value: Any) -> str:
+        require(isinstance(value, str) and (value != "" or self.may_be_empty))
+        text: str = value
+        return text
+
+
+@dataclass(frozen=True)
+class VectorKind(Leaf):
+    """A point or a direction: three finite numbers; with `has_length`, not all zero."""
+
+    has_length: bool = False
+
+    def rule(self) -> str:
+        return "must be three finite numbers of at most 1e36"
+
+    def accepts(self) -> str:
+        return "Sequence[float]"
+
+    def accepted(self, value: Any) -> tuple[float, float, float]:
+        require(not isinstance(value, UNORDERED))
+        given = list(value)
+        require(len(given) == 3 and not any(isinstance(component, NO_NUMBERS) for component in given))
+        x, y, z = (float(component) for component in given)
+        require(all(abs(component) <= LARGEST_PLACE for component in (x, y, z)))
+        return x, y, z
+
+    def advice(self, value: object) -> str:
+        return "; write them as in [1, 2, 3]" if isinstance(value, str) else ""
+
+    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
+        vector = super().held(value, path, problems)
+        if self.has_length and vector == (0.0, 0.0, 0.0):
+            problems.append(Problem(path, f"must not be zero, not {shown(value)}; give it a length"))
+            return REFUSED
+        return vector
+
+
+@dataclass(frozen=True)
+class Choice(Leaf):
+    """One of several names."""
+
+    names: tuple[str, ...]
+
+    def rule(self) -> str:
+        return f"must be {either(self.names)}"
+
+    def accepts(self) -> str:
+        return f"Literal[{', '.join(map(json.dumps, self.names))}]"
+
+    def accepted(self, value: Any) -> str:
+        require(isinstance(value, str) and value in self.names)
+        name: str = value
+        return name
+
+    def advice(self, value: object) -> str:
+        close = nearest(value, self.names) if isinstance(value, str) else ""
+        return close if "did you mean" in close else ""
+
+
+@dataclass(frozen=True, eq=False)
+class CurveKind(Leaf):
+    """The name of a curve, or points (x, y) of a nondecreasing one from x = 0 to x = 1."""
+
+    names: Mapping[str, object]
+
+    def accepts(self) -> str:
+        return "str | Sequence[Sequence[float]]"
+
+    def rule(self) -> str:
+        return f"must be {', '.join(map(repr, self.names))}, or rising points [x, y] from x = 0 to x = 1"
+
+    def accepted(self, value: Any) -> str | tuple[tuple[float, float], ...]:
+        if isinstance(value, str):
+            require(value in self.names)
+            return value
+        require(not isinstance(value, UNORDERED))
+        pairs = list(value)
+        require(not any(isinstance(pair, UNORDERED) for pair in pairs))
+        along = Number(at_least=0, at_most=1).accepted
+        points = tuple((along(x), along(y)) for x, y in pairs)
+        xs, ys = [x for x, _ in points], [y for _, y in points]
+        require(len(points) >= 2 and xs[0] == 0 and xs[-1] == 1 and all(a < b for a, b in pairwise(xs)))
+        require(all(a <= b for a, b in pairwise(ys)))
+        return points
+
+    def advice(self, value: object) -> str:
+        return nearest(value, self.names) if isinstance(value, str) else ""
+
+
+@dataclass(frozen=True, eq=False)
+class Instance(Leaf):
+    """An instance of a class, such as the mesh; it is compared by identity and not written."""
+
+    value_class: type
+
+    def rule(self) -> str:
+        return f"must be a {self.value_class.__name__}"
+
+    def accepts(self) -> str:
+        return "object"
+
+    def accepted(self, value: Any) -> object:
+        require(isinstance(value, self.value_class))
+        return value
+
+    def written(self, name: str, value: Any) -> Mapping[str, object]:
+        return {}
+
+    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
+        return {}
+
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
+        return own
+
+
+# -------------------- angle_kinds
+# The kind of columns that hold a curve over the angles from 0 to 90 degrees.
+
+RIGHT_ANGLE: Final = 90.0
+
+MOST_POINTS: Final = 91
+"""Assumed: a point for each degree is enough of a curve."""
+
+AngleCurve = tuple[tuple[float, float], ...]
+"""Points (angle in degrees, value), with rising angles from 0 to 90; between them the curve is linear."""
+
+
+@dataclass(frozen=True)
+class AngleCurveKind(Leaf):
+    """Points (angle, share) of a curve from 0 to 90 degrees, with shares from 0 to 1.
+
+    `least` is the least share at 0 degrees. `start` is what an absent curve begins with when it is switched
+    on.
+    """
+
+    least: float
+    start: AngleCurve
+
+    def accepts(self) -> str:
+        return "Sequence[Sequence[float]]"
+
+    def rule(self) -> str:
+        return (
+            f"must be 2 to {MOST_POINTS} points [angle, share], with angles that rise from 0 to 90 and shares"
+            f" from 0 to 1, the first at least {self.least:g}"
+        )
+
+    def advice(self, value: object) -> str:
+        return f"; write them as in {[list(point) for point in self.start]}"
+
+    def accepted(self, value: Any) -> AngleCurve:
+        require(not isinstance(value, UNORDERED))
+        pairs = list(value)
+        require(2 <= len(pairs) <= MOST_POINTS)
+        require(not any(isinstance(pair, UNORDERED) for pair in pairs))
+        angle, share = Number(0, RIGHT_ANGLE).accepted, self.share_kind(1).accepted
+        points = tuple((angle(x), share(y)) for x, y in pairs)
+        require(points[0][0] == 0 and points[-1][0] == RIGHT_ANGLE)
+        require(all(one[0] < other[0] for one, other in pairwise(points)))
+        self.share_kind(0).accepted(points[0][1])
+        return points
+
+    def share_kind(self, number: int) -> Number:
+        """The kind of the share of a point, by its number from 0."""
+        return Number(0 if number else self.least, 1)
+
+
+# -------------------- color_kinds
+# The kind of columns that hold a color, and the ways to write one.
+#
+# A color is "#rrggbb", three whole numbers, or anything without transparency that Pillow's `ImageColor`
+# knows: a name of CSS, "#rgb", "rgb(10%, 20%, 30%)", "hsl(0, 100%, 50%)". Pillow is loaded for those alone,
+# so that scenes that are written in "#rrggbb" need no time for it.
+
+LONGEST_COLOR: Final = 100
+"""Letters of a color; Pillow takes no more either."""
+
+IN_FULL: Final = re.compile("#[0-9a-fA-F]{6}")
+OF_DIGITS: Final = re.compile("#[0-9a-fA-F]*")
+A_NAME: Final = re.compile("[A-Za-z]{2,}")
+
+
+@dataclass(frozen=True)
+class ColorKind(Leaf):
+    """A color: red, green and blue from 0 to 255, written as "#rrggbb"."""
+
+    def rule(self) -> str:
+        return 'must be "#rrggbb", a name such as "red", or three whole numbers from 0 to 255'
+
+    def accepts(self) -> str:
+        return "str | Sequence[int]"
+
+    def accepted(self, value: Any) -> Color:
+        if isinstance(value, str):
+            return _color_of_text(value)
+        require(not isinstance(value, UNORDERED))
+        given = list(value)
+        # A float is refused even if it is whole: (1.0, 0, 0) is red elsewhere, and nearly black here.
+        require(all(isinstance(part, Integral) and not isinstance(part, NO_NUMBERS) for part in given))
+        return _within_range(tuple(int(part) for part in given))
+
+    def advice(self, value: object) -> str:
+        return _advice_on_text(value) if isinstance(value, str) else _advice_on_floats(value)
+
+    def written(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: in_digits(value)}
+
+
+def in_digits(color: Color) -> str:
+    """The color as "#rrggbb".
+
+    >>> in_digits((176, 16, 32))
+    '#b01020'
+    """
+    return "#{:02x}{:02x}{:02x}".format(*color)
+
+
+def color_names() -> tuple[str, ...]:
+    """The names of colors, in small letters."""
+    from PIL import ImageColor
+
+    return tuple(ImageColor.colormap)
+
+
+def _color_of_text(text: str) -> Color:
+    """The color that a text means. Raises ValueError if it means none, or one with transparency."""
+    if IN_FULL.fullmatch(text):
+        red, green, blue = bytes.fromhex(text[1:])
+        return red, green, blue
+    return _within_range(_components(text))
+
+
+def _components(text: str) -> tuple[int, ...]:
+    """The three or four components of a text that Pillow knows, of any size. Raises ValueError."""
+    # Pillow also takes a line break at the end, and digits of other alphabets.
+    require(len(text) <= LONGEST_COLOR and text.isascii() and text.isprintable())
+    from PIL import ImageColor
+
+    return ImageColor.getrgb(text)
+
+
+def _within_range(components: tuple[int, ...]) -> Color:
+    require(len(components) == 3 and min(components) >= 0 and max(components) <= 255)
+    red, green, blue = components
+    return red, green, blue
+
+
+def _advice_on_text(text: str) -> str:
+    """What to do about a text that means no color."""
+    try:
+        components = _components(text)
+    except ValueError:
+        components = ()
+    if len(components) == 4 and max(components) <= 255:
+        red, green, blue, _ = components
+        return f", which has transparency; write {in_digits((red, green, blue))!r}"
+    if components:
+        return "; keep its parts from 0 to 255, or from 0% to 100%"
+    if OF_DIGITS.fullmatch(text):
+        return "; write three or six hexadecimal digits after the #"
+    if A_NAME.fullmatch(text):
+        return nearest(text.lower(), color_names()) or '; write it as in "#b01020"'
+    return '; write it as in "#b01020"'
+
+
+def _advice_on_floats(value: object) -> str:
+    """What to write instead of three numbers that are not all whole; nothing for anything else."""
+    try:
+        parts = list(value)  # type: ignore[call-overload]
+        if len(parts) != 3 or all(isinstance(part, (Integral, *NO_NUMBERS)) for part in parts):
+            return ""
+        require(all(isinstance(part, Real) for part in parts))
+        # Numbers up to 1 are fractions, as most programs write colors with floats.
+        scale = 255 if max(parts) <= 1 else 1
+        red, green, blue = (int(float(part) * scale + 0.5) for part in parts)
+        color = _within_range((red, green, blue))
+    except (TypeError, ValueError, OverflowError):
+        return ""
+    # A list is one in Python, in scene files and after --set.
+    return f"; write {list(color)} or {in_digits(color)!r}"

@@ -1,0 +1,462 @@
+"""Lights and their controls, as data.
+
+Paper: "Light Controls". A light has a position and an intensity. With a direction or an aim it is a directed
+light, which concentration and a cone can narrow; flaps can restrict any light. The effect of these controls
+is computed in `lighting/light_controls`. What a light follows is worked out in `following`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar, Final, Unpack
+
+import numpy as np
+
+from autocolor.arrays import Floats
+from autocolor.checks import Vector
+from autocolor.errors import InputError
+from autocolor.scene.changes import FlapChanges, FlapsChanges, HalfSpaceChanges, LightChanges, LinksChanges
+from autocolor.scene.columns import REFUSED, WORLD_UNITS, Bar, Column, Problem, Row, RowError, Tier, changed
+from autocolor.scene.kinds import Choice, Number, Switch, Text, VectorKind
+from autocolor.scene.row_kinds import NamedRows, Nested, References, WordOrName
+
+# -------------------- flaps
+# Flaps: ranges of object coordinates outside of which a light has no effect.
+#
+# Paper: "Light Flaps and Cones", Figure 9. Their effect is computed in
+# `lighting.light_controls.flap_sides`.
+
+
+@dataclass(frozen=True, repr=False)
+class Flap(Row):
+    """A range of one object coordinate outside of which a light has no effect, and a switch.
+
+    Paper: "Light Flaps and Cones", Figure 9. A point at the minimum or the maximum is lit. Departs: with an
+    edge width, the light goes from nothing at an end to all of it at this distance inside.
+    """
+
+    noun: ClassVar[str] = "flap"
+
+    minimum: Annotated[
+        float,
+        Column(Number(endless=-math.inf), Tier.LIGHT, "The smallest coordinate that is lit.", WORLD_UNITS),
+    ] = -math.inf
+    maximum: Annotated[
+        float,
+        Column(Number(endless=math.inf), Tier.LIGHT, "The largest coordinate that is lit.", WORLD_UNITS),
+    ] = math.inf
+    on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether the flap restricts the light.")] = True
+    edge_width: Annotated[
+        float,
+        Column(
+            Number(at_least=0),
+            Tier.LIGHT,
+            "How far inside its ends the light is whole; 0 for sharp edges.",
+            WORLD_UNITS,
+        ),
+    ] = 0.0
+
+    def rules(self) -> Iterator[Problem]:
+        """The minimum must not be above the maximum."""
+        if self.minimum > self.maximum:
+            ends = f"{self.minimum:g} to {self.maximum:g}"
+            yield Problem((), f"the minimum must not be above the maximum, not {ends}; exchange them")
+
+    def replace(self, /, **changes: Unpack[FlapChanges]) -> Flap:
+        """The flap with some fields changed."""
+        return changed(self, changes)
+
+
+@dataclass(frozen=True, repr=False)
+class Flaps(Row):
+    """The flaps of one light in the X, Y and Z directions; None where there is no flap."""
+
+    noun: ClassVar[str] = "flaps"
+
+    x: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of X that is lit.")] = None
+    y: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Y that is lit.")] = None
+    z: Annotated[Flap | None, Column(Nested(Flap), Tier.LIGHT, "The range of Z that is lit.")] = None
+
+    def replace(self, /, **changes: Unpack[FlapsChanges]) -> Flaps:
+        """The flaps with some changed; a table of fields changes only these fields of a flap."""
+        return changed(self, changes)
+
+
+# -------------------- half_spaces
+# Half-spaces: flaps along any planes, of which a light may have any number.
+#
+# Paper: "Light Flaps and Cones" names flaps that are not parallel to the axes as an addition. Their effect
+# is computed in `lighting.light_controls.half_spaces`.
+
+LEAST_TURN: Final = 1e-9
+"""Assumed: the least sine of the angle between two sides of a triangle; below it, rounding would decide."""
+
+
+@dataclass(frozen=True, repr=False)
+class HalfSpace(Row):
+    """The points on one side of a plane, outside of which a light has no effect, and a switch.
+
+    A point of the plane is lit. With an edge width, the light goes from nothing at the plane to all of it at
+    this distance inside. One that is carried by its light, as barn doors are, is told in the coordinates of
+    the light (see `following.light_frame`).
+    """
+
+    noun: ClassVar[str] = "half-space"
+
+    name: Annotated[str, Column(Text(), Tier.NOTHING, "The name of the half-space, unique for the light.")]
+    point: Annotated[Vector, Column(VectorKind(), Tier.LIGHT, "A point of the plane.", WORLD_UNITS)]
+    direction: Annotated[
+        Vector,
+        Column(
+            VectorKind(has_length=True),
+            Tier.LIGHT,
+            "The direction from the plane to the side that is lit, of any length.",
+        ),
+    ]
+    edge_width: Annotated[
+        float,
+        Column(
+            Number(at_least=0),
+            Tier.LIGHT,
+            "How far inside the plane the light is whole; 0 for a sharp edge.",
+            WORLD_UNITS,
+        ),
+    ] = 0.0
+    carried: Annotated[
+        bool, Column(Switch(), Tier.LIGHT, "Whether it moves and turns with the light, as barn doors do.")
+    ] = False
+    on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether it restricts the light.")] = True
+
+    @classmethod
+    def through(
+        cls,
+        name: str,
+        a: Sequence[float],
+        b: Sequence[float],
+        c: Sequence[float],
+        /,
+        **changes: Unpack[HalfSpaceChanges],
+    ) -> HalfSpace:
+        """The half-space whose plane goes through three points, (3,) each; `a` becomes its point.
+
+        The lit side is the one from which a, b and c turn counterclockwise. `changes` are further fields.
+        Raises InputError for an invalid point, and for three points in one line.
+
+        >>> HalfSpace.through("left", (0, 0, 0), (1, 0, 0), (0, 2, 0)).direction
+        (0.0, 0.0, 1.0)
+        """
+        points = _checked_points(name, a, b, c)
+        # Scale the sides of the triangle first, so that no product over- or underflows.
+        to_b, to_c = (_scaled(points[number] - points[0]) for number in (1, 2))
+        across = np.cross(to_b, to_c)
+        length = float(np.linalg.norm(across))
+        if length <= LEAST_TURN * float(np.linalg.norm(to_b) * np.linalg.norm(to_c)):
+            raise InputError(
+                f"half-space {name!r}: its three points must not be in one line, not"
+                f" {', '.join(str(tuple(each)) for each in points.tolist())}; move one of them"
+            )
+        point, direction = tuple(points[0].tolist()), tuple((across / length).tolist())
+        return cls(name, point, direction).replace(**changes)
+
+    def replace(self, /, **changes: Unpack[HalfSpaceChanges]) -> HalfSpace:
+        """The half-space with some fields changed."""
+        return changed(self, changes)
+
+
+def _checked_points(name: str, *points: Sequence[float]) -> Floats:
+    """Three points that are finite, (3, 3)."""
+    kind, problems = VectorKind(), list[Problem]()
+    held = [kind.held(point, (key,), problems) for key, point in zip("abc", points, strict=True)]
+    if any(each is REFUSED for each in held):
+        raise RowError(problems, f"half-space {name!r}")
+    return np.array(held, np.float64)
+
+
+def _scaled(vector: Floats) -> Floats:
+    """The vector with a largest component of 1; zero stays zero."""
+    scaled: Floats = vector / (float(np.abs(vector).max()) or 1.0)
+    return scaled
+
+
+# -------------------- links
+# The links of a light: which surfaces and parts it shines on.
+#
+# Departs: the paper's lights shine on everything. A point is lit if its surface is one that the light
+# shines on, and its part is, too.
+
+Names = tuple[str, ...]
+
+
+@dataclass(frozen=True, repr=False)
+class Links(Row):
+    """The names of surfaces and of parts; None where all are meant."""
+
+    noun: ClassVar[str] = "links"
+
+    only_surfaces: Annotated[
+        Names | None,
+        Column(References("surfaces"), Tier.MIX, "The surfaces that it shines on; if absent, on all."),
+    ] = None
+    except_surfaces: Annotated[
+        Names | None,
+        Column(References("surfaces"), Tier.MIX, "The surfaces that it does not shine on."),
+    ] = None
+    only_parts: Annotated[
+        Names | None,
+        Column(References("parts"), Tier.LIGHT, "The parts that it shines on; if absent, on all."),
+    ] = None
+    except_parts: Annotated[
+        Names | None,
+        Column(References("parts"), Tier.LIGHT, "The parts that it does not shine on."),
+    ] = None
+
+    def rules(self) -> Iterator[Problem]:
+        """Surfaces are named or excepted, not both, and parts as well."""
+        for what in ("surfaces", "parts"):
+            only, excepted = (vars(self)[f"{which}_{what}"] for which in ("only", "except"))
+            if only is not None and excepted is not None:
+                yield Problem(
+                    (f"except_{what}",), f"must not come with only_{what}, not with both; leave one out"
+                )
+
+    def replace(self, /, **changes: Unpack[LinksChanges]) -> Links:
+        """The links with some fields changed."""
+        return changed(self, changes)
+
+    @property
+    def depend_on_parts(self) -> bool:
+        """Whether it depends on the part if a point is lit."""
+        return self.only_parts is not None or self.except_parts is not None
+
+    def shines_on_surface(self, surface: str) -> bool:
+        """Whether the light shines on the surface of that name."""
+        return bool(_meant([surface], self.only_surfaces, self.except_surfaces))
+
+    def lit_parts(self, parts: Iterable[str]) -> set[str]:
+        """Those of the parts of these names that the light shines on, as far as their surfaces are lit."""
+        return _meant(parts, self.only_parts, self.except_parts)
+
+    def within(self, surfaces: Collection[str], parts: Collection[str]) -> Links:
+        """The links without the names that are not among some surfaces and parts.
+
+        Assumed: where none of the names of a list is left, there is no list: a light for what is not there
+        shines on everything, as no picture would show a light that shines on nothing.
+        """
+        kept = {
+            field: _kept(names, known)
+            for known, fields in (
+                (surfaces, ("only_surfaces", "except_surfaces")),
+                (parts, ("only_parts", "except_parts")),
+            )
+            for field in fields
+            if (names := vars(self)[field])
+        }
+        return changed(self, kept) if any(kept[field] != vars(self)[field] for field in kept) else self
+
+
+def _meant(names: Iterable[str], only: Names | None, excepted: Names | None) -> set[str]:
+    """Those of the names that are among `only`, or not among the excepted ones."""
+    # A mesh may have many thousands of parts: no name is looked for in a list.
+    return (set(names) if only is None else set(names).intersection(only)).difference(excepted or ())
+
+
+def _kept(names: Names, known: Collection[str]) -> Names | None:
+    """The names that are known; None if there is none."""
+    return tuple(name for name in names if name in known) or None
+
+
+# -------------------- vectors
+# Unit vectors of directions of any length, and points between others.
+
+
+def unit_vector(direction: Vector) -> Vector:
+    """The direction with the length 1; it must not be zero.
+
+    >>> unit_vector((0.0, 3e36, 4e36))
+    (0.0, 0.6, 0.8)
+    """
+    # Scale by the largest component first, as squares of very large or small ones over- or underflow.
+    largest = max(abs(component) for component in direction)
+    scaled = tuple(component / largest for component in direction)
+    length = math.hypot(*scaled)
+    return (scaled[0] / length, scaled[1] / length, scaled[2] / length)
+
+
+def middle_between(one: Vector, other: Vector) -> Vector:
+    """The point halfway between two points, however large their coordinates are."""
+    x, y, z = (a / 2 + b / 2 for a, b in zip(one, other, strict=True))
+    return x, y, z
+
+
+FALLOFFS: Final = ("none", "linear", "quadratic")
+"""What is left of a light at a distance, as a fraction f of its reach: all of it, 1 - f, or (1 - f)^2."""
+
+EYE: Final = "eye"
+"""What a light that is fixed to the eye follows."""
+
+
+@dataclass(frozen=True, repr=False)
+class Light(Row):
+    """One light.
+
+    It has a direction, or an aim (its direction is then from the position to the aim), or neither; then it is
+    a point source. Paper: "Light Direction and Concentration", "Light Flaps and Cones". The rays of a light
+    at infinity all have its direction: its concentration and its cone have no effect, its flaps still have.
+    """
+
+    noun: ClassVar[str] = "light"
+    alternatives: ClassVar[tuple[str, ...]] = ("direction", "aim")
+
+    name: Annotated[str, Column(Text(), Tier.LIGHT, "The name of the light, which must be unique.")]
+    position: Annotated[Vector, Column(VectorKind(), Tier.LIGHT, "The position of the light.", WORLD_UNITS)]
+    intensity: Annotated[
+        float,
+        Column(
+            Number(at_least=0),
+            Tier.MIX,
+            "The intensity of the light, without an upper limit.",
+            bar=Bar(0, 2, 0.01),
+        ),
+    ] = 1.0
+    on: Annotated[bool, Column(Switch(), Tier.MIX, "Whether the light is switched on.")] = True
+    direction: Annotated[
+        Vector | None,
+        Column(
+            VectorKind(has_length=True),
+            Tier.LIGHT,
+            "The direction of the light, of any length; excludes an aim.",
+        ),
+    ] = None
+    aim: Annotated[
+        Vector | None,
+        Column(
+            VectorKind(),
+            Tier.LIGHT,
+            "The point at which the light is aimed; excludes a direction.",
+            WORLD_UNITS,
+        ),
+    ] = None
+    concentration: Annotated[
+        float,
+        Column(
+            Number(at_least=0),
+            Tier.LIGHT,
+            "C: the exponent of the cosine of the angle from the direction.",
+            bar=Bar(0, 100, 1),
+        ),
+    ] = 0.0
+    cone_angle: Annotated[
+        float | None,
+        Column(
+            Number(at_least=0, at_most=180, above=True),
+            Tier.LIGHT,
+            "A: the largest angle from the direction that is lit; if absent, there is no cone.",
+            "degrees",
+            bar=Bar(1, 90, 1),
+            start=30.0,
+        ),
+    ] = None
+    inner_angle: Annotated[
+        float | None,
+        Column(
+            Number(at_least=0, at_most=180),
+            Tier.LIGHT,
+            "The angle up to which all of the light is left; if absent, the cone is sharp.",
+            "degrees",
+            bar=Bar(0, 90, 1),
+            start=0.0,
+        ),
+    ] = field(default=None, kw_only=True)
+    flaps: Annotated[
+        Flaps, Column(Nested(Flaps), Tier.LIGHT, "The ranges of object coordinates that are lit.")
+    ] = field(default_factory=Flaps)
+    half_spaces: Annotated[
+        tuple[HalfSpace, ...],
+        Column(NamedRows(HalfSpace), Tier.LIGHT, "Flaps along any planes, by name."),
+    ] = ()
+    falloff: Annotated[
+        str,
+        Column(Choice(FALLOFFS), Tier.LIGHT, "How it falls with the distance, to nothing at its reach."),
+    ] = "none"
+    reach: Annotated[
+        float | None,
+        Column(
+            Number(at_least=0, above=True),
+            Tier.LIGHT,
+            "The distance at which nothing is left of a light that falls with the distance.",
+            WORLD_UNITS,
+        ),
+    ] = None
+    at_infinity: Annotated[
+        bool,
+        Column(Switch(), Tier.LIGHT, "Whether its rays are parallel, as if the position were endlessly far."),
+    ] = False
+    follows: Annotated[
+        str | None,
+        Column(
+            WordOrName("lights", EYE),
+            Tier.LIGHT,
+            "What it is fixed to: 'eye', or the name of another light, for the point at which that is aimed.",
+        ),
+    ] = None
+    links: Annotated[
+        Links, Column(Nested(Links, inline=True), Tier.LIGHT, "The surfaces and parts that it shines on.")
+    ] = field(default_factory=Links)
+
+    def rules(self) -> Iterator[Problem]:
+        """At most one of direction and aim is given; without both, no control that needs one is given.
+
+        An inner angle comes with a cone that is not narrower, and a falloff with a reach.
+        """
+        if self.direction is not None and self.aim is not None:
+            yield Problem((), "it must have a direction or an aim, not both; leave one out")
+        if self.aim is not None and self.aim == self.position:
+            yield Problem((), f"the aim must not be the position, not both {self.aim}; move one of them")
+        if self.direction is None and self.aim is None:
+            for name, is_given in (
+                ("concentration", self.concentration > 0),
+                ("cone_angle", self.cone_angle is not None),
+                ("at_infinity", self.at_infinity is True),
+            ):
+                if is_given:
+                    rule = "must come with a direction or an aim, not with a point source; add an aim"
+                    yield Problem((name,), rule)
+        yield from self._rules_of_controls()
+
+    def _rules_of_controls(self) -> Iterator[Problem]:
+        inner, outer = self.inner_angle, self.cone_angle
+        if inner is not None and outer is None:
+            yield Problem(("inner_angle",), "must come with a cone, not without one; add a cone_angle")
+        elif inner is not None and outer is not None and inner > outer:
+            rule = f"must not be above the cone_angle, not {inner:g} and {outer:g}; exchange them"
+            yield Problem(("inner_angle",), rule)
+        if self.falloff in FALLOFFS[1:] and self.reach is None:
+            yield Problem(("falloff",), f"must come with a reach, not {self.falloff!r} alone; add a reach")
+        if self.falloff in FALLOFFS[1:] and self.at_infinity is True:
+            rule = f"must be 'none' for a light at infinity, not {self.falloff!r}; change one of them"
+            yield Problem(("falloff",), rule)
+
+    @property
+    def shines(self) -> bool:
+        """Whether the light is on and its intensity is above 0."""
+        return self.on and self.intensity > 0
+
+    @property
+    def axis(self) -> Vector | None:
+        """The unit vector of the light direction; None for a point source."""
+        if self.direction is not None:
+            toward = self.direction
+        elif self.aim is not None:
+            toward = tuple(a - p for a, p in zip(self.aim, self.position, strict=True))  # type: ignore[assignment]
+        else:
+            return None
+        return unit_vector(toward)
+
+    def replace(self, /, **changes: Unpack[LightChanges]) -> Light:
+        """The light with some fields changed; a new direction removes the aim, and vice versa.
+
+        Raises InputError for an unknown field or an invalid value.
+        """
+        return changed(self, changes)

@@ -1,0 +1,467 @@
+"""The kinds of columns that hold rows: one row, a row of one of several classes, a table of rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, Final, NamedTuple
+
+from autocolor.arrays import LARGEST_SINGLE
+from autocolor.checks import either, listed, nearest, shown
+from autocolor.scene.columns import (
+    REFUSED,
+    Column,
+    Kind,
+    Path,
+    Problem,
+    Row,
+    RowError,
+    Tier,
+    changed,
+    cost,
+    difference,
+    fields_of,
+    keys_of,
+    made,
+    plain,
+)
+from autocolor.scene.kinds import Leaf, Number, Text
+
+MOST_ROWS: Final = 1_000_000
+
+
+@dataclass(frozen=True)
+class Nested(Kind):
+    """A row of another class; if it is `inline`, its keys are among those of the containing row."""
+
+    row_class: type[Row]
+    inline: bool = False
+
+    def rule(self) -> str:
+        return f"must be a table of {listed(keys_of(self.row_class))}"
+
+    def accepts(self) -> str:
+        return f"Row | {self.row_class.__name__}Changes"
+
+    def has_keys_inside(self) -> bool:
+        return self.inline
+
+    def keys(self, name: str, column: Column) -> Mapping[str, Column]:
+        if not self.inline:
+            return {name: column}
+        return {key: inner.column for key, inner in keys_of(self.row_class).items()}
+
+    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
+        if isinstance(value, self.row_class):
+            return value
+        if isinstance(value, Mapping):
+            try:
+                return made(self.row_class, value)
+            except RowError as error:
+                return _refused(error, self._path(path), problems)
+        rule = f"must be a {self.row_class.__name__}" if self.inline else self.rule()
+        problems.append(Problem(path, f"{rule}, not {shown(value)}"))
+        return REFUSED
+
+    def changed(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
+        if isinstance(present, self.row_class):
+            try:
+                return changed(present, table)
+            except RowError as error:
+                return _refused(error, self._path(path), problems)
+        # Make a new row if there was none or an invalid one; anything else is refused where it is held.
+        is_made = present is REFUSED or (present is None and not self.inline)
+        return self.held(table, path, problems) if is_made else present
+
+    def written(self, name: str, value: Any) -> Mapping[str, object]:
+        return plain(value) if self.inline else {name: plain(value)}
+
+    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
+        told = difference(one, other)
+        return told if self.inline or not told else {name: told}
+
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
+        return own if one is None or other is None else cost(one, other)
+
+    def _path(self, path: Path) -> Path:
+        return path[:-1] if self.inline else path
+
+
+@dataclass(frozen=True, eq=False)
+class Variant(Kind):
+    """A row of one of several classes, chosen by name; the name and its keys are in the containing row."""
+
+    classes: Mapping[str, type[Row]]
+
+    def has_keys_inside(self) -> bool:
+        return True
+
+    def accepts(self) -> str:
+        return "str | Row"
+
+    def rule(self) -> str:
+        return f"must be {either(self.classes)}"
+
+    def name_of(self, value: Row) -> str:
+        """The name of the class of a value."""
+        return next(name for name, cls in self.classes.items() if type(value) is cls)
+
+    def keys(self, name: str, column: Column) -> Mapping[str, Column]:
+        inner = {key: each.column for cls in self.classes.values() for key, each in keys_of(cls).items()}
+        return {name: column, **inner}
+
+    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
+        if type(value) in self.classes.values():
+            return value
+        if isinstance(value, str) and value in self.classes:
+            return self.classes[value]()
+        clause = nearest(value, self.classes) if isinstance(value, str) else ""
+        problems.append(Problem(path, f"{self.rule()}, not {shown(value)}{clause}"))
+        return REFUSED
+
+    def changed(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
+        name = path[-1]
+        value = self.held(table[str(name)], path, problems) if name in table else present
+        if not isinstance(value, Row):
+            return value
+        own = keys_of(type(value))
+        keys = {key: inner for key, inner in table.items() if key != name}
+        for key in [key for key in keys if key not in own]:
+            having = [repr(other) for other, cls in self.classes.items() if key in keys_of(cls)]
+            problems.append(
+                Problem(
+                    (*path[:-1], key),
+                    f"must go with {name} = {' or '.join(having)}, not with {self.name_of(value)!r};"
+                    " leave it out, or change the other",
+                )
+            )
+            del keys[key]
+        try:
+            return changed(value, keys) if keys else value
+        except RowError as error:
+            return _refused(error, path[:-1], problems)
+
+    def written(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: self.name_of(value), **plain(value)}
+
+    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
+        return difference(one, other) if type(one) is type(other) else self.written(name, other)
+
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
+        return cost(one, other, own)
+
+
+@dataclass(frozen=True)
+class Rows(Kind):
+    """A table: rows of a class with unique names; scene files write them `by_name` or as an array."""
+
+    row_class: type[Row]
+    by_name: bool = False
+
+    def accepts(self) -> str:
+        return "Sequence[Row]"
+
+    def rule(self) -> str:
+        return f"must be a list of {self.row_class.__name__} rows"
+
+    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
+        if not isinstance(value, (list, tuple)) or len(value) > MOST_ROWS:
+            problems.append(Problem(path, f"{self.rule()}, not {shown(value)}"))
+            return REFUSED
+        nested = Nested(self.row_class)
+        rows = tuple(
+            row if type(row) is self.row_class else nested.held(row, (*path, number), problems)
+            for number, row in enumerate(value)
+        )
+        first: dict[str, int] = {}
+        for number, row in enumerate(value):
+            name = row.get("name") if isinstance(row, Mapping) else getattr(row, "name", None)
+            if isinstance(name, str) and first.setdefault(name, number) != number:
+                text = f"must be unique, not the same as {path[-1]}[{first[name] + 1}]; rename it"
+                problems.append(Problem((*path, number, "name"), text))
+        return REFUSED if any(row is REFUSED for row in rows) else rows
+
+    def written(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: [plain(row) for row in value]}
+
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
+        if len(one) != len(other):
+            return own
+        pairs = zip(one, other, strict=True)
+        costs = [cost(a, b) for a, b in pairs if a is not b]
+        return max((each for each in costs if each is not None), default=None)
+
+
+def _refused(error: RowError, path: Path, problems: list[Problem]) -> Any:
+    """Append the problems of a nested row, with its path before theirs, and return REFUSED."""
+    problems.extend(problem.under(path) for problem in error.found)
+    return REFUSED
+
+
+# -------------------- reference_kinds
+# The kinds of columns that refer to rows of other tables by name.
+
+
+@dataclass(frozen=True)
+class Referring(Leaf):
+    """References to rows of another table by name; the scene checks that these rows exist."""
+
+    table: str
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What may stand for a name, and is none."""
+        return ()
+
+    def names_in(self, value: Any) -> Sequence[str]:
+        """The names that a value refers to."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class Reference(Referring):
+    """The name of a row of another table."""
+
+    def rule(self) -> str:
+        return Text().rule()
+
+    def accepts(self) -> str:
+        return "str"
+
+    def accepted(self, value: Any) -> str:
+        return Text().accepted(value)
+
+    def names_in(self, value: Any) -> Sequence[str]:
+        return (value,)
+
+
+@dataclass(frozen=True)
+class WordOrName(Referring):
+    """A word that means the same in every scene, or else the name of a row of another table."""
+
+    word: str
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        return (self.word,)
+
+    def rule(self) -> str:
+        return f"must be {self.word!r} or the name of one of the {self.table}"
+
+    def accepts(self) -> str:
+        return "str"
+
+    def accepted(self, value: Any) -> str:
+        return Text().accepted(value)
+
+    def names_in(self, value: Any) -> Sequence[str]:
+        return () if value == self.word else (value,)
+
+
+@dataclass(frozen=True)
+class References(Referring):
+    """A list of names of rows of another table."""
+
+    def rule(self) -> str:
+        return "must be a list of names"
+
+    def accepts(self) -> str:
+        return "Sequence[str]"
+
+    def accepted(self, value: Any) -> tuple[str, ...]:
+        if not isinstance(value, (list, tuple)):
+            raise TypeError
+        return tuple(Text().accepted(name) for name in value)
+
+    def names_in(self, value: Any) -> Sequence[str]:
+        return tuple(value)
+
+
+@dataclass(frozen=True)
+class RangesByName(Referring):
+    """The word `none`, or ranges [minimum, maximum] by the name of a row, or by the name `others`.
+
+    They are held as pairs of a name and a range. Numbers are at least 0, and each maximum above its minimum.
+    """
+
+    none: str
+    others: str
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        return (self.others,)
+
+    def rule(self) -> str:
+        return (
+            f"must be {self.none!r}, or a table of ranges [minimum, maximum] from 0 to 3.4e38 by the names of"
+            f" {self.table} and {self.others!r}"
+        )
+
+    def accepts(self) -> str:
+        return "str | Mapping[str, Sequence[float]] | Sequence[tuple[str, Sequence[float]]]"
+
+    def accepted(self, value: Any) -> str | tuple[tuple[str, tuple[float, float]], ...]:
+        if isinstance(value, str):
+            if value != self.none:
+                raise ValueError
+            return self.none
+        pairs = list(value.items()) if isinstance(value, Mapping) else list(value)
+        intensity = Number(at_least=0, at_most=LARGEST_SINGLE).accepted
+        ranges = tuple(
+            (Text().accepted(name), (intensity(minimum), intensity(maximum)))
+            for name, (minimum, maximum) in pairs
+        )
+        names = [name for name, _ in ranges]
+        if not ranges or len(set(names)) < len(names) or not all(low < high for _, (low, high) in ranges):
+            raise ValueError
+        return ranges
+
+    def names_in(self, value: Any) -> Sequence[str]:
+        return () if isinstance(value, str) else [name for name, _ in value if name != self.others]
+
+    def written(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: value if isinstance(value, str) else {key: list(limits) for key, limits in value}}
+
+
+class ReferenceAt(NamedTuple):
+    """A column that refers to other rows: its kind, and the fields that lead to it from the row."""
+
+    kind: Referring
+    path: tuple[str, ...]
+
+    def value_in(self, row: Row) -> Any:
+        """The value in a row, which may be None or REFUSED."""
+        value: Any = row
+        for name in self.path:
+            value = vars(value)[name] if isinstance(value, Row) else REFUSED
+        return value
+
+
+def references_of(cls: type[Row]) -> Mapping[str, ReferenceAt]:
+    """The columns of a row class that refer to rows of other tables, by key."""
+    found = _REFERENCES.get(cls)
+    if found is None:
+        found = _REFERENCES[cls] = {}
+        for name, field in fields_of(cls).items():
+            kind = field.column.kind
+            if isinstance(kind, Referring):
+                found[name] = ReferenceAt(kind, (name,))
+            elif isinstance(kind, Nested) and kind.inline:
+                inner = references_of(kind.row_class)
+                found |= {key: each._replace(path=(name, *each.path)) for key, each in inner.items()}
+    return found
+
+
+_REFERENCES: Final[dict[type[Row], dict[str, ReferenceAt]]] = {}
+
+
+# -------------------- named_row_kinds
+# The kind of columns that hold rows by name, any number of them, inside another row.
+
+MOST_NAMED_ROWS: Final = 64
+"""Assumed: the most rows inside another one; more would hardly be told apart on a screen."""
+
+
+@dataclass(frozen=True)
+class NamedRows(Kind):
+    """Rows of a class with unique names, inside another row; they are sorted by name.
+
+    Files write them as a table of tables by name. A change is such a table, too: it changes the keys of the
+    rows that are there, of which `name` renames one, adds rows, and removes those for which it has None.
+    """
+
+    row_class: type[Row]
+
+    def accepts(self) -> str:
+        name = self.row_class.__name__
+        return f"Mapping[str, Row | {name}Changes | None] | Sequence[Row]"
+
+    def rule(self) -> str:
+        return f"must be a table of {self.row_class.noun}s by name"
+
+    def held(self, value: object, path: Path, problems: list[Problem]) -> object:
+        if isinstance(value, Mapping):
+            return self.changed((), value, path, problems)
+        if not isinstance(value, (list, tuple)) or not all(type(row) is self.row_class for row in value):
+            problems.append(Problem(path, f"{self.rule()}, not {shown(value)}"))
+            return REFUSED
+        if not self._are_few(len(value), MOST_NAMED_ROWS, path, problems):
+            return REFUSED
+        rows: list[Any] = sorted(value, key=lambda row: row.name)
+        taken = {one.name: None for one, other in pairwise(rows) if one.name == other.name}
+        for name in taken:
+            text = "must have a name of its own, not that of another; rename one of them"
+            problems.append(Problem((*path, name), text))
+        return REFUSED if taken else tuple(rows)
+
+    def changed(self, present: object, table: Mapping[str, Any], path: Path, problems: list[Problem]) -> Any:
+        rows = {row.name: row for row in present} if isinstance(present, tuple) else {}
+        # All of them may be removed, and as many added.
+        if not self._are_few(len(table), 2 * MOST_NAMED_ROWS, path, problems):
+            return REFUSED
+        for name, given in table.items():
+            if not isinstance(name, str) or not name:
+                text = f"{self.rule()}, not by {shown(name)}; name it by at least one character"
+                problems.append(Problem(path, text))
+                rows[name] = REFUSED
+            elif given is None and name in rows:
+                del rows[name]
+            elif given is None:
+                advice = nearest(name, rows) or "; leave it out"
+                text = f"there is no {self.row_class.noun} of this name{advice}"
+                problems.append(Problem((*path, name), text))
+                rows[name] = REFUSED
+            elif name in rows and isinstance(given, Mapping):
+                rows[name] = Nested(self.row_class).changed(rows[name], given, (*path, name), problems)
+            else:
+                rows[name] = self._new(name, given, (*path, name), problems)
+        if any(row is REFUSED for row in rows.values()):
+            return REFUSED
+        return self.held(tuple(rows.values()), path, problems)
+
+    def _new(self, name: str, given: object, path: Path, problems: list[Problem]) -> object:
+        """The row of a name, of keys or as a row; REFUSED if it is invalid, or has another name."""
+        if not isinstance(given, (Mapping, self.row_class)):
+            keys = [key for key in keys_of(self.row_class) if key != "name"]
+            problems.append(Problem(path, f"must be a table of {listed(keys)}, not {shown(given)}"))
+            return REFUSED
+        own = given.get("name", name) if isinstance(given, Mapping) else vars(given)["name"]
+        if own != name:
+            text = f"must be that of the table, {shown(name)}, not {shown(own)}; leave it out"
+            problems.append(Problem((*path, "name"), text))
+            return REFUSED
+        new = {**given, "name": name} if isinstance(given, Mapping) else given
+        return Nested(self.row_class).held(new, path, problems)
+
+    def _are_few(self, count: int, most: int, path: Path, problems: list[Problem]) -> bool:
+        """Whether rows or changes are not too many; else that is a problem."""
+        if count > most:
+            problems.append(
+                Problem(path, f"must be at most {MOST_NAMED_ROWS}, not {count:,}; leave some out")
+            )
+        return count <= most
+
+    def written(self, name: str, value: Any) -> Mapping[str, object]:
+        return {name: {row.name: without_name(plain(row)) for row in value} or None}
+
+    def difference(self, name: str, one: Any, other: Any) -> Mapping[str, object]:
+        before, after = ({row.name: row for row in rows} for rows in (one, other))
+        told: dict[str, object] = {gone: None for gone in before if gone not in after}
+        for key, row in after.items():
+            if key not in before:
+                told[key] = without_name(plain(row))
+            elif inner := difference(before[key], row):
+                told[key] = inner
+        return {name: told} if told else {}
+
+    def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
+        if [row.name for row in one] != [row.name for row in other]:
+            return own
+        costs = [cost(a, b) for a, b in zip(one, other, strict=True) if a is not b]
+        return max((each for each in costs if each is not None), default=None)
+
+
+def without_name(keys: Mapping[str, object]) -> dict[str, object]:
+    """The keys of a row that is written by name, which are those but its name."""
+    return {key: value for key, value in keys.items() if key != "name"}

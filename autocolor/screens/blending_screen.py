@@ -1,0 +1,87 @@
+"""The light blending screen: the picture, and an upright bar of the chosen surface's own levels.
+
+Paper: Figure 14. "The vertical bar indicates intensity with the highest intensity at the top and lowest at
+the bottom. By selecting a new blend intensity on this bar, the image is redisplayed instantly". A second
+handle is the control that the paper asks for, "to adjust the percentage of the specular color at the maximum
+intensity".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Final
+
+from autocolor.mapping.colors import blend_from, blend_level
+from autocolor.screens.picture.over_picture import OverPicture, surface_row
+from autocolor.widgets.bars import LANE, LevelBar, PercentBar
+from autocolor.widgets.items import WIDTH, Area, Item
+from autocolor.widgets.menu import MENU
+from autocolor.widgets.rows import rows_of
+from autocolor.widgets.widget import Gap, Widget
+
+TOP: Final = 24
+BOTTOM: Final = MENU.bottom - 24
+BAR_ELEMENTS: Final = 24
+PERCENT_ELEMENTS: Final = 36
+BESIDE: Final = 5
+"""Elements from the numbers to the menu, or to the right edge, where the pointer brings it."""
+
+COLORS: Final = ("object_color", "light_color")
+
+
+class BlendingScreen(OverPicture):
+    """The picture, and how the two colors of the chosen surface blend."""
+
+    name = "blending"
+    title = "light blending"
+    help = "Pick a level on the bar: the light color blends in above it"
+    has_menu = False
+
+    def items(self) -> Sequence[Item]:
+        # Its bar stands where the legend would.
+        return ()
+
+    def rows(self) -> Sequence[Widget]:
+        surface = self.session.chosen_surface
+        if surface is None:
+            return []
+        rows = rows_of(surface.paint, self._put, self.session.world, leave_out=COLORS)
+        return [
+            surface_row(self.session, "The surface whose colors blend; a click in the picture chooses, too."),
+            Gap("blend gap"),
+            # The names of the columns, such that they fit beside their numbers.
+            *(replace(row, label=row.label.replace("percentage", "percent")) for row in rows),
+        ]
+
+    def widgets(self) -> Sequence[Widget]:
+        surface = self.session.chosen_surface
+        if surface is None:
+            return []
+        levels = self.session.studio.level_ranges[surface.name].levels
+        # Where the menu comes, the bar moves to its left.
+        right = (MENU.left if self.is_under_menu else WIDTH) - BESIDE
+        between = right - PERCENT_ELEMENTS
+        paint = surface.paint
+        return [
+            LevelBar(
+                "blend level",
+                "The light color blends in above the handle; pick a level, or drag.",
+                area=Area(between - BAR_ELEMENTS - LANE, TOP, between - 1, BOTTOM),
+                words=self.session.studio.image.words_at_levels(surface.name),
+                level=blend_level(paint.blend, levels),
+                put=lambda level: self._put({"blend": blend_from(level, levels)}),
+                number=f"{paint.blend:.2f}",
+                upright=True,
+            ),
+            PercentBar(
+                "light color at the maximum",
+                "The percentage of the light color at the highest level.",
+                area=Area(between, TOP, right - 1, BOTTOM),
+                value=paint.light_percentage,
+                put=lambda value: self._put({"light_percentage": value}),
+            ),
+        ]
+
+    def _put(self, changes: Mapping[str, Any]) -> None:
+        self.session.paint(**changes)

@@ -1,0 +1,253 @@
+"""Gestures: what a user does with the pointer, told in the same way by the mouse and by the joystick unit.
+
+A hover is a movement, a pick a click or ENTER. A drag begins with a grab, and ends with a drop. The unit has
+a place, ENTER and TRACK alone; TRACK is held for a drag. The mouse also has other buttons, a wheel and
+modifiers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final, Generic, NamedTuple, TypeVar
+
+from ramtek_emu import HostPort, instructions
+
+LEFT: Final = 1
+MIDDLE: Final = 2
+RIGHT: Final = 3
+"""The buttons of the mouse; the right one is TRACK."""
+
+SLOP: Final = 2
+"""Assumed: elements or lines that the mouse may move while its button is down for a click."""
+
+DEGREES: Final = 0.4
+"""Assumed: degrees for each element or line of a drag; across the whole picture is most of a turn."""
+
+STEP_CLOSER: Final = 0.92
+"""Assumed: the ratio of distances for each step of the wheel."""
+
+
+class Gesture(NamedTuple):
+    """One thing that the pointer did at an element and a line.
+
+    `kind` is "hover", "pick", "grab", "drag", "drop" or "wheel"; `steps` are those of the wheel, up positive.
+    """
+
+    kind: str
+    element: int
+    line: int
+    button: int = LEFT
+    steps: float = 0.0
+    shift: bool = False
+    control: bool = False
+
+
+class Mouse:
+    """Makes gestures of what the mouse does: a click is a pick, a movement with a button down is a drag."""
+
+    def __init__(self) -> None:
+        self._pressed: Gesture | None = None
+        """The press of the button that is down."""
+        self._drags = False
+
+    def forget(self) -> None:
+        """Take the button for released."""
+        self._pressed, self._drags = None, False
+
+    def gestures(
+        self,
+        element: int,
+        line: int,
+        action: str,
+        button: int = 0,
+        steps: int = 1,
+        shift: bool = False,
+        control: bool = False,
+    ) -> list[Gesture]:
+        """The gestures of an action: "move", "press", "release", "wheel up" or "wheel down"."""
+        place = Gesture("hover", element, line, button, 0.0, shift, control)
+        pressed = self._pressed
+        if action.startswith("wheel"):
+            return [place._replace(kind="wheel", steps=float(steps if action == "wheel up" else -steps))]
+        if action == "press":
+            if pressed is None:
+                self._pressed, self._drags = place, False
+            return []
+        if action == "release":
+            if pressed is None or button != pressed.button:
+                return []
+            drags = self._drags
+            self.forget()
+            kind = "drop" if drags else "pick"
+            # The other buttons have no clicks.
+            return [place._replace(kind=kind)] if drags or button == LEFT else []
+        if pressed is None:
+            return [place]
+        moved = place._replace(kind="drag", button=pressed.button)
+        if self._drags:
+            return [moved]
+        if max(abs(element - pressed.element), abs(line - pressed.line)) <= SLOP:
+            return []
+        self._drags = True
+        return [pressed._replace(kind="grab"), moved]
+
+
+def turn_between(element: int, line: int, other_element: int, other_line: int) -> tuple[float, float]:
+    """How far to turn to the right and up, in degrees, so that the object follows a drag to another place.
+
+    >>> turn_between(100, 100, 110, 95)
+    (-4.0, -2.0)
+    """
+    return DEGREES * (element - other_element), DEGREES * (other_line - line)
+
+
+def wheel_ratio(steps: float) -> float:
+    """The ratio of distances for some steps of the wheel; those up move closer."""
+    return float(STEP_CLOSER**steps)
+
+
+# -------------------- keys
+# Keys and key bindings, from which the viewer and its help page work.
+
+Viewer = TypeVar("Viewer")
+
+
+@dataclass(frozen=True)
+class Chord:
+    """A key and its modifiers. `shift` is significant for letters, but not for digits and signs."""
+
+    name: str
+    control: bool = False
+    shift: bool = False
+
+    @property
+    def is_sign(self) -> bool:
+        """Whether it is a digit or a sign, whose key depends on the keyboard layout."""
+        return len(self.name) == 1 and not self.name.isalpha()
+
+    def __str__(self) -> str:
+        held = ["Ctrl"] * self.control + ["Shift"] * self.shift
+        names = {
+            "escape": "Esc",
+            "up": "Up",
+            "down": "Down",
+            "left": "Left",
+            "right": "Right",
+            "space": "Space",
+            "tab": "Tab",
+        }
+        return "+".join([*held, names.get(self.name, self.name.upper())])
+
+
+@dataclass(frozen=True)
+class Binding(Generic[Viewer]):
+    """Keys that are bound to an action.
+
+    `run` is called with the viewer and the index in `chords` of the key that was pressed. While the key is
+    held down, it is called again and again only with `held`, where all is undone as one step, or with
+    `repeats`, where each is a step. `release` is called when one of the keys is let go.
+    `does` describes the action on the help page; `label` replaces the names of the keys there.
+    """
+
+    chords: tuple[Chord, ...]
+    does: str
+    run: Callable[[Viewer, int], object]
+    label: str | None = None
+    held: bool = False
+    repeats: bool = False
+    release: Callable[[Viewer], object] | None = None
+
+    def __str__(self) -> str:
+        return self.label or ", ".join(map(str, self.chords))
+
+
+def bound_to(
+    bindings: Sequence[Binding[Viewer]], name: str, control: bool, shift: bool, typed: str
+) -> tuple[Binding[Viewer], int] | None:
+    """The binding of a key that was pressed, and the index of its chord; None if it has none.
+
+    Signs are matched by the typed character, as keyboards place them differently, letters by the key's name.
+    """
+    chords = [
+        (binding, number, chord)
+        for binding in bindings
+        for number, chord in enumerate(binding.chords)
+        if chord.control == control
+    ]
+    by_sign = [row for row in chords if row[2].is_sign and row[2].name == typed]
+    by_name = [row for row in chords if row[2].name == name and (row[2].is_sign or row[2].shift == shift)]
+    return next(((binding, number) for binding, number, _ in by_sign or by_name), None)
+
+
+# -------------------- unit
+# The joystick unit of the display, as a host uses it: it reads the cursor, and makes gestures of that.
+#
+# Hardware: the cursor's word has its place, TRACK while that switch is on, and ENTER once for each press;
+# there is no other input. So ENTER is a pick, and a drag lasts as long as TRACK. The cursor is the pointer;
+# a second one marks what it can grab.
+
+POINTER: Final = 0
+MARK: Final = 1
+"""The numbers of the cursors."""
+
+POLL_SECONDS: Final = 1 / 100
+"""Assumed: the time between two reads of the cursor; a read takes 0.1 ms over TCP."""
+
+ELEMENT_BITS: Final = 0x7FF
+LINE_BITS: Final = 0x3FF
+TRACK: Final = 1 << 12
+ENTER: Final = 1 << 13
+"""Hardware: LIN, the bits of an element, and those of the second word."""
+
+
+class Unit:
+    """The unit of a display."""
+
+    def __init__(self, display: HostPort) -> None:
+        self._display = display
+        self._place: tuple[int, int] | None = None
+        self._tracks = False
+        self._mark: tuple[int, int] | None = None
+
+    def show(self) -> None:
+        """Show the pointer where it is."""
+        element, line, _ = self._read()
+        self._display.send(instructions.write_cursor(POINTER, element, line))
+
+    def hide(self) -> None:
+        """Hide the pointer and the mark."""
+        for number in (POINTER, MARK):
+            self._display.send(instructions.write_cursor(number, 0, 0, visible=False))
+        self._mark = None
+
+    def mark(self, place: tuple[int, int] | None) -> None:
+        """Put the mark at an element and a line, at most at an edge; or hide it."""
+        if place != self._mark:
+            element, line = place or (0, 0)
+            element, line = min(max(element, 0), ELEMENT_BITS), min(max(line, 0), LINE_BITS)
+            self._display.send(instructions.write_cursor(MARK, element, line, visible=place is not None))
+            self._mark = place
+
+    def poll(self) -> list[Gesture]:
+        """What was done since the last poll. Raises PortError if the display cannot be reached."""
+        element, line, state = self._read()
+        place, before = (element, line), self._place
+        tracks, tracked = bool(state & TRACK), self._tracks
+        self._place, self._tracks = place, tracks
+        found = []
+        if tracks and not tracked:
+            found.append(Gesture("grab", *(before if before is not None else place)))
+        if before is not None and place != before:
+            found.append(Gesture("drag" if tracks or tracked else "hover", *place))
+        if tracked and not tracks:
+            found.append(Gesture("drop", *place))
+        if state & ENTER:
+            found.append(Gesture("pick", *place))
+        return found
+
+    def _read(self) -> tuple[int, int, int]:
+        """The element and line of the pointer, and the word of its state."""
+        self._display.send(instructions.read_cursor(POINTER))
+        element, line = self._display.receive(2).tolist()
+        return element, line & LINE_BITS, line

@@ -1,0 +1,150 @@
+"""The rows of a light's parameters, for the menus of all screens where lights are set."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any, Final
+
+from autocolor.checks import Vector
+from autocolor.scene.columns import fields_of
+from autocolor.scene.following import names_to_follow
+from autocolor.scene.lights import EYE, Light
+from autocolor.screens.session import Session
+from autocolor.widgets.rows import rows_of
+from autocolor.widgets.widget import Choice, Widget
+
+POINT: Final = "point source"
+DIRECTION: Final = "direction"
+AIM: Final = "aim"
+"""The kinds of lights: those with an axis have a direction, or an aim."""
+
+WORLD: Final = "world"
+"""The choice of following nothing."""
+
+OF_AN_AXIS: Final = ("direction", "aim", "concentration", "cone_angle", "inner_angle", "at_infinity")
+"""The columns that only a light with an axis has."""
+
+EXCLUDING: Final = (
+    ("only_surfaces", "except_surfaces"),
+    ("except_surfaces", "only_surfaces"),
+    ("only_parts", "except_parts"),
+    ("except_parts", "only_parts"),
+)
+"""The columns of which a light has one or the other."""
+
+DOWN: Final = (0.0, 0.0, -1.0)
+"""The direction of a light that had none."""
+
+NEEDS_AXIS: Final = "a point source has none; choose the kind aim first"
+
+
+def kind_of(light: Light) -> str:
+    """The kind of a light."""
+    return DIRECTION if light.direction is not None else AIM if light.aim is not None else POINT
+
+
+def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()) -> list[Widget]:
+    """The rows of the columns of a light, without some, and of its kind, before what only some kinds have."""
+    rows = rows_of(light, partial(_put_with_reach, session, light), session.world, leave_out)
+    # What a light follows is chosen among what it can follow, and it stays where it is.
+    if "follows" not in leave_out:
+        found = [row for row in rows if row.label != "follows"]
+        place = next((number for number, row in enumerate(rows) if row.label == "follows"), len(found))
+        rows = [*found[:place], _follows_row(session, light), *found[place:]]
+    # A point source has no axis: what needs one cannot be used, and says so.
+    if kind_of(light) == POINT:
+        needing = ("concentration", "cone angle", "inner angle", "at infinity")
+        rows = [replace(row, why_not=NEEDS_AXIS) if row.label in needing else row for row in rows]
+    axis = ("direction", "aim", "concentration")
+    before = next((number for number, row in enumerate(rows) if row.label.startswith(axis)), len(rows))
+    choice = Choice(
+        "kind",
+        "A point source shines to all sides; others along a direction, or at an aim.",
+        names=(POINT, AIM, DIRECTION),
+        present=kind_of(light),
+        choose=partial(choose_kind, session, light),
+    )
+    return [*rows[:before], choice, *rows[before:]]
+
+
+def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
+    """Change fields of a light; one that gets another name stays chosen.
+
+    A cone that becomes narrower than its inner angle, or absent, takes that along. Names that it shines on
+    only take the place of those that it excepts, and vice versa.
+    """
+    for chosen, other in EXCLUDING:
+        if changes.get(chosen) is not None:
+            changes = {other: None, **changes}
+    inner = session.scene.light(name).inner_angle
+    if "cone_angle" in changes and inner is not None:
+        outer = changes["cone_angle"]
+        changes = {"inner_angle": None if outer is None else min(inner, outer), **changes}
+    session.change_light(name, **changes)
+    if "name" in changes:
+        session.choose_light(str(changes["name"]))
+
+
+def choose_kind(session: Session, light: Light, kind: str) -> None:
+    """Make a light one of another kind; one that has a direction or an aim keeps where it shines."""
+    if kind == POINT:
+        # Without an axis there is no concentration, no cone and no direction to come from.
+        put_light(session, light.name, {name: _default(name) for name in OF_AN_AXIS})
+        return
+    scene = session.scene
+    light = scene.light_in_world(light.name)
+    if kind == AIM:
+        scene = scene.with_light_in_world(
+            light.name, aim=aim_of(light, session.world.low, session.world.high)
+        )
+    else:
+        scene = scene.with_light_in_world(light.name, direction=light.axis or DOWN)
+    session.edit(scene)
+
+
+def aim_of(light: Light, low: Vector, high: Vector) -> Vector:
+    """A point at which a light without an aim is aimed: ahead of it, or else the middle of the object.
+
+    A directed light keeps its direction. `low` and `high` are the bounds of the object.
+    """
+    middle = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
+    away = tuple(a - b for a, b in zip(middle, light.position, strict=True))
+    axis = light.axis or (DOWN if not any(away) else None)
+    if axis is None:
+        x, y, z = middle
+        return x, y, z
+    ahead = sum(a * b for a, b in zip(axis, away, strict=True))
+    distance = ahead if ahead > 0 else math.hypot(*away) or 1.0
+    x, y, z = (a + distance * b for a, b in zip(light.position, axis, strict=True))
+    return x, y, z
+
+
+def choose_follows(session: Session, name: str, follows: str) -> None:
+    """Let a light follow the eye or another light, or nothing; it stays where it is now."""
+    session.edit(session.scene.with_light_following(name, None if follows == WORLD else follows))
+
+
+def _follows_row(session: Session, light: Light) -> Choice:
+    """The choice of what a light follows: the world, the eye, or an aim that does not move with it."""
+    return Choice(
+        "follows",
+        "What it moves with: nothing in the world, the eye, or the aim of another light.",
+        names=(WORLD, EYE, *names_to_follow(light, session.scene.lights)),
+        present=light.follows or WORLD,
+        choose=partial(choose_follows, session, light.name),
+    )
+
+
+def _put_with_reach(session: Session, light: Light, changes: Mapping[str, Any]) -> None:
+    """Change fields of a light; one that is to fall with the distance gets a reach, the object's size."""
+    if changes.get("falloff", "none") != "none" and light.reach is None:
+        changes = {**changes, "reach": session.world.size}
+    put_light(session, light.name, changes)
+
+
+def _default(name: str) -> object:
+    default = fields_of(Light)[name].default
+    return None if default is None else default()

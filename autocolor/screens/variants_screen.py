@@ -1,0 +1,286 @@
+"""The screen of kept variants: small pictures of them, to come back to one, or to compare with it.
+
+Nothing else is shown there, so the small pictures borrow the words of all surfaces: each has a share of them,
+with the colors that it needs most.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Final
+
+import numpy as np
+
+from autocolor.arrays import Bytes
+from autocolor.errors import InputError
+from autocolor.mapping.display_image import display_image
+from autocolor.mapping.palette import in_palette, thumbnail
+from autocolor.mapping.ranges import BACKGROUND, SCREENS
+from autocolor.rendering import Rendering, rendering
+from autocolor.scene.scene import Scene
+from autocolor.screens.screen import Screen
+from autocolor.screens.session import BEFORE, PICTURE, Other, Session
+from autocolor.widgets.items import (
+    CHARACTER,
+    GRAY,
+    LIGHT_GRAY,
+    NIGHT,
+    SLATE,
+    WHITE,
+    YELLOW,
+    Area,
+    Item,
+    filled,
+    image,
+    outline,
+    text,
+)
+from autocolor.widgets.widget import (
+    ROW_LINES,
+    TEXT_DOWN,
+    Button,
+    Choice,
+    Entry,
+    Gap,
+    Pair,
+    Place,
+    Widget,
+    short_name,
+)
+
+LINES: Final = 84
+ELEMENTS: Final = 112
+"""The size of a small picture."""
+
+ACROSS: Final = 4
+DOWN: Final = 4
+ON_PAGE: Final = ACROSS * DOWN
+STEP_ACROSS: Final = 124
+STEP_DOWN: Final = 114
+FRAME: Final = 4
+NAME_LINES: Final = 14
+
+PLACES: Final = tuple(
+    Area(left, top, left + ELEMENTS + 2 * FRAME - 1, top + LINES + 2 * FRAME - 1 + NAME_LINES)
+    for top in range(8, 8 + DOWN * STEP_DOWN, STEP_DOWN)
+    for left in range(8, 8 + ACROSS * STEP_ACROSS, STEP_ACROSS)
+)
+"""Where the small pictures stand, with their frames and names."""
+
+MOST_COLORS: Final = 200
+"""Assumed: the most colors of one; more are not seen at this size."""
+
+
+class KeptScreen(Screen):
+    """The kept variants: small pictures of them, which are computed one by one while nothing moves."""
+
+    name = "kept"
+    title = "kept"
+    help = "Click a kept variant to choose it; then come back to it, or drop it"
+    shows_scene = False
+
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
+        self._chosen = ""
+        self._page = 0
+        self._last: Rendering | None = None
+        """The rendering of the last small picture, of which the next one can use what did not change."""
+        self._small: dict[Scene, SmallPicture] = {}
+
+    # What is seen.
+
+    @property
+    def _pages(self) -> list[list[str]]:
+        """The names of the variants, page by page; one page if there are none."""
+        names = list(self.session.studio.variants)
+        return [names[first : first + ON_PAGE] for first in range(0, len(names), ON_PAGE)] or [[]]
+
+    def _names(self) -> list[str]:
+        """The variants of this page."""
+        pages = self._pages
+        return pages[min(self._page, len(pages) - 1)]
+
+    def _scenes(self) -> list[Scene]:
+        """The scenes of this page."""
+        return [self.session.studio.variants[name].scene for name in self._names()]
+
+    def _share(self) -> int:
+        """How many colors a small picture of this page may have."""
+        return min(MOST_COLORS, (SCREENS.first - BACKGROUND - 1) // max(1, len(self._names())))
+
+    def _shown(self) -> list[tuple[Area, int, SmallPicture]]:
+        """The small pictures of this page that are there: where they stand, and the first of their words."""
+        share = self._share()
+        found = []
+        for number, (scene, area) in enumerate(zip(self._scenes(), PLACES, strict=False)):
+            small = self._small.get(scene)
+            if small is not None and small.most == share:
+                found.append((area, BACKGROUND + 1 + number * share, small))
+        return found
+
+    def loads(self) -> Sequence[tuple[int, Bytes]]:
+        return [(first, small.colors) for _, first, small in self._shown()]
+
+    def items(self) -> Sequence[Item]:
+        if not self.session.studio.variants:
+            return [
+                text("no variant is kept yet", 16, TEXT_DOWN, LIGHT_GRAY),
+                text("keep: the scene as it is now, to come back to it", 16, ROW_LINES + TEXT_DOWN, GRAY),
+            ]
+        return [small.item(first, area) for area, first, small in self._shown()]
+
+    def widgets(self) -> Sequence[Widget]:
+        return [
+            Variant(
+                name,
+                f"Variant {name}: a click chooses it",
+                run=partial(self._choose, name),
+                is_chosen=name == self._present,
+            ).at(area)
+            for name, area in zip(self._names(), PLACES, strict=False)
+        ]
+
+    def idle(self) -> bool:
+        """Compute the next small picture that is missing."""
+        share = self._share()
+        for scene in self._scenes():
+            small = self._small.get(scene)
+            if small is None or small.most != share:
+                colors = self._colors_of(scene) if small is None else small.full
+                self._small[scene] = SmallPicture(colors, share)
+                return True
+        return False
+
+    def _colors_of(self, scene: Scene) -> Bytes:
+        """The colors of a small picture, (84, 112, 3); one that is refused is black."""
+        try:
+            self._last = rendering(scene, 2 * LINES, 2 * ELEMENTS, self._last)
+            return thumbnail(display_image(scene, self._last.picture), LINES, ELEMENTS)
+        except InputError:
+            # At this size a surface can be seen that is not in the whole picture, and be too bright.
+            return np.zeros((LINES, ELEMENTS, 3), np.uint8)
+
+    def enter(self) -> None:
+        if self._present:
+            self._choose(self._present)
+
+    def leave(self) -> None:
+        kept = {variant.scene for variant in self.session.studio.variants.values()}
+        self._small = {scene: small for scene, small in self._small.items() if scene in kept}
+        self._last = None
+
+    # What is done.
+
+    @property
+    def _present(self) -> str:
+        """The chosen variant; the last one kept where none is chosen."""
+        names = list(self.session.studio.variants)
+        return self._chosen if self._chosen in names else names[-1] if names else ""
+
+    def rows(self) -> Sequence[Widget]:
+        name = self._present
+        why_not = "" if name else "no variant is kept yet"
+        found: list[Widget] = [
+            Button("keep", "Keep the scene as it is now under a free letter.", run=self._keep),
+            Entry("keep as", "Keep the scene under a name of your own.", take=self._keep_as),
+            Gap("chosen gap"),
+            Button(
+                "come back",
+                f"Make {name} the current scene again; undo goes back.",
+                why_not,
+                run=self._come_back,
+                value=name,
+            ),
+            Pair(
+                "compare",
+                f"Compare with {name}, here and by the key; or with the state before the last step again.",
+                why_not,
+                run=self._compare,
+                other="off",
+                run_other=self._compare_with_before,
+            ),
+            Button("drop", f"Keep {name} no longer.", why_not, run=self._drop, value=name),
+        ]
+        pages = len(self._pages)
+        if pages > 1:
+            names = tuple(f"{number} of {pages}" for number in range(1, pages + 1))
+            found.append(
+                Choice(
+                    "page",
+                    "The next variants; at the left end, those before.",
+                    names=names,
+                    present=names[min(self._page, pages - 1)],
+                    choose=lambda name: setattr(self, "_page", names.index(name)),
+                )
+            )
+        return found
+
+    def _choose(self, name: str) -> None:
+        self._chosen = name
+        self._page = list(self.session.studio.variants).index(name) // ON_PAGE
+
+    def _keep(self) -> None:
+        self._keep_as(None)
+
+    def _keep_as(self, name: str | None) -> None:
+        name = self.session.studio.keep_variant(name)
+        self._choose(name)
+        self.session.tell(f"kept as {name}")
+
+    def _come_back(self) -> None:
+        self.session.studio.show_variant(self._present)
+        self.session.tell(f"{self._present} is the scene again; undo goes back")
+        self.session.turn_to(PICTURE)
+
+    def _compare(self) -> None:
+        session, name = self.session, self._present
+        session.comparing.choose(Other(f"variant {name}", session.studio.variants[name].scene))
+        session.turn_to(PICTURE)
+        session.compare()
+
+    def _compare_with_before(self) -> None:
+        self.session.comparing.choose(None)
+        self.session.tell(f"compared from now on: {BEFORE}")
+
+    def _drop(self) -> None:
+        name = self._present
+        kept = self.session.studio.variants[name]
+        self.session.studio.drop_variant(name)
+        self.session.comparing.forget(kept.scene)
+        self.session.tell(f"{name} is kept no longer")
+
+
+class Variant(Button):
+    """The frame of a small picture with its name below."""
+
+    def items(self, lit: bool) -> list[Item]:
+        word = YELLOW if self.is_chosen else LIGHT_GRAY if lit else SLATE
+        area = self.area
+        top = area.bottom - 12
+        name = short_name(self.label, (area.width - 8) // CHARACTER)
+        return [
+            outline(area._replace(bottom=area.top + LINES + 2 * FRAME - 1), word),
+            filled(Area(area.left, top, area.right, area.bottom), NIGHT),
+            text(name, area.left + FRAME, top + 2, YELLOW if self.is_chosen else WHITE),
+        ]
+
+    def pick(self, place: Place) -> object:
+        return self.run()
+
+
+class SmallPicture:
+    """A picture in at most `most` colors; `full` has all of them, (84, 112, 3)."""
+
+    def __init__(self, full: Bytes, most: int) -> None:
+        self.full = full
+        self.most = most
+        self._places, self.colors = in_palette(full, most)
+        self._item: tuple[int, Area, Item] | None = None
+
+    def item(self, first: int, area: Area) -> Item:
+        """The picture in its frame, with words from a first one on."""
+        if self._item is None or self._item[:2] != (first, area):
+            words = (self._places + np.uint16(first)).astype(np.uint16)
+            self._item = first, area, image(words, area.left + FRAME, area.top + FRAME)
+        return self._item[2]

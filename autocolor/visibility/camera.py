@@ -1,0 +1,273 @@
+"""The polygons in camera space.
+
+Camera space has its origin at the eye and the axes of the view: right, down and forward.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from autocolor.arrays import Floats, Indices, Real, RealArray, Singles, chunks
+from autocolor.checks import Vector
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.view import View
+
+NEAR: Final = 1e-6
+"""Assumed: the near plane where the object reaches behind the eye; what is nearer vanishes.
+
+It is a fraction of the depth of the farthest corner.
+"""
+
+LEAST_NEAR: Final = 1e-9
+"""Assumed: the least depth of the near plane, in units.
+
+An object wholly before the eye is clipped only here: nothing of it vanishes that is farther, however small
+it is. Closer to the eye, crossings would be rounded by more than a thousandth of a pixel.
+"""
+
+LEAST_UNIT: Final = 2.0**-800
+"""Assumed: far below the size of any object, and still a divisor for the farthest light."""
+
+POINTS_AT_ONCE: Final = 1 << 14
+
+
+@dataclass(frozen=True, eq=False)
+class CameraPolygons:
+    """Nodes and polygons in camera space, measured in `unit`, a power of two near the size of the view.
+
+    `positions` is (3, nodes) float64, `normals` (3, normals) float32. `corners` and `corner_normals` are (4,
+    polygons) intp: the node and the normal at each corner. `polygon_numbers` are rows of the mesh's polygon
+    table. The near plane is at depth `near`; `nearest` is the least depth of a node of the mesh.
+    """
+
+    unit: float
+    near: float
+    nearest: float
+    positions: Floats
+    normals: Singles
+    corners: Indices
+    corner_normals: Indices
+    polygon_numbers: Indices
+
+
+def camera_space(mesh: Mesh, view: View) -> CameraPolygons:
+    """All polygons of the mesh in the camera space of a view."""
+    unit, near = unit_and_near(mesh, view)
+    positions = rotated(view.axes / unit, mesh.coordinates.T, view.eye)
+    nearest = float(positions[2].min(initial=np.inf))
+    if nearest < near:
+        near = near_of(near, float(positions[2].take(mesh.node_numbers.T).min(initial=near)))
+    return CameraPolygons(
+        unit,
+        near,
+        nearest,
+        positions,
+        rotated(view.axes, mesh.normals.vectors.T),
+        mesh.node_numbers.T,
+        mesh.normals.numbers.T,
+        np.arange(len(mesh.node_numbers)),
+    )
+
+
+def unit_and_near(mesh: Mesh, view: View) -> tuple[float, float]:
+    """The unit of a view of a mesh, and the depth of the near plane if the mesh reaches behind it."""
+    box = (
+        np.array(list(itertools.product(*np.stack(mesh.bounds, axis=1)))) - np.array(view.eye)
+    ) @ view.axes.T
+    unit = max(2.0 ** math.frexp(float(np.abs(box).max()))[1], LEAST_UNIT)
+    return unit, max(NEAR * float(box[:, 2].max()) / unit, LEAST_NEAR)
+
+
+def near_of(near: float, nearest_corner: float) -> float:
+    """The depth of the near plane, given the depth of the nearest corner of a polygon.
+
+    Nothing needs to be clipped where all corners lie before the eye.
+    """
+    return max(nearest_corner, LEAST_NEAR) if nearest_corner > 0 else near
+
+
+def rotated(axes: Floats, points: RealArray[Real], origin: Vector = (0.0, 0.0, 0.0)) -> RealArray[Real]:
+    """Points, (3, n), relative to an origin and in other axes, the rows of a matrix.
+
+    Measured: a matrix product of so few rows takes as long, and up to thirty times as long while another
+    process uses the second processor, because its threads wait for each other.
+    """
+    out = np.empty_like(points)
+    axes = axes.astype(points.dtype)
+    for chunk in chunks(points.shape[1], POINTS_AT_ONCE):
+        relative = [row[chunk] - start for row, start in zip(points, origin, strict=True)]
+        for axis, row in zip(axes, out[:, chunk], strict=True):
+            np.multiply(relative[0], axis[0], out=row)
+            row += relative[1] * axis[1]
+            row += relative[2] * axis[2]
+    return out
+
+
+# -------------------- clipping
+# Clipping polygons at the near plane: only what lies beyond it is kept.
+
+
+def clipped_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
+    """The polygons with no corner nearer than the near plane; clipping adds nodes and normals.
+
+    A clipped edge is always followed from its lower to its higher node number, and clipped once for all
+    polygons that share it, so that they still share it afterwards.
+    """
+    positions, near = polygons.positions, polygons.near
+    if positions[2].min(initial=near) >= near:
+        return polygons
+    before = (positions[2] < near).take(polygons.corners)
+    all_before = before[0] & before[1] & before[2] & before[3]
+    some_before = before[0] | before[1] | before[2] | before[3]
+    kept, crossing = np.flatnonzero(~some_before), np.flatnonzero(some_before & ~all_before)
+
+    clipped = _Clipped(polygons)
+    for column in crossing.tolist():
+        clipped.add(column)
+
+    normals = polygons.normals
+    if clipped.new_positions:
+        positions = np.column_stack([positions, *clipped.new_positions])
+        normals = np.column_stack([normals, *clipped.new_normals])
+    columns = np.concatenate([kept, np.array(clipped.columns, np.intp)])
+    # Keep the order of the polygon table: of equally near polygons the later one is visible.
+    order = np.argsort(columns, kind="stable")
+    return dataclasses.replace(
+        polygons,
+        positions=positions,
+        normals=normals,
+        corners=_merged(polygons.corners, kept, clipped.corners, order),
+        corner_normals=_merged(polygons.corner_normals, kept, clipped.corner_normals, order),
+        polygon_numbers=polygons.polygon_numbers[columns[order]],
+    )
+
+
+class _Clipped:
+    """Clipped polygons, and the nodes and normals that clipping adds.
+
+    `corners` and `corner_normals` hold four numbers for each polygon that clipping leaves, and `columns` the
+    polygon that it is a part of.
+    """
+
+    def __init__(self, polygons: CameraPolygons) -> None:
+        self._polygons = polygons
+        self._node_of_edge: dict[tuple[int, int], int] = {}
+        self.new_positions: list[Floats] = []
+        self.new_normals: list[Floats] = []
+        self.corners: list[list[int]] = []
+        self.corner_normals: list[list[int]] = []
+        self.columns: list[int] = []
+
+    def add(self, column: int) -> None:
+        """Clip the polygon in a column, and divide what is left into polygons of four corners."""
+        polygons, near = self._polygons, self._polygons.near
+        nodes, rows = polygons.corners[:, column].tolist(), polygons.corner_normals[:, column].tolist()
+        depths = polygons.positions[2, polygons.corners[:, column]].tolist()
+        left_nodes: list[int] = []
+        left_rows: list[int] = []
+        # Begin where the polygon comes out of the near plane, whichever corner is written first.
+        steps = [(corner, (corner + 1) % 4) for corner in range(4)]
+        begin = min(
+            (step for step in steps if depths[step[0]] < near <= depths[step[1]]),
+            key=lambda step: polygons.positions[:, [nodes[step[1]], nodes[step[0]]]].T.tolist(),
+        )[0]
+        for corner, following in steps[begin:] + steps[:begin]:
+            # A triangle repeats a node.
+            if nodes[corner] == nodes[following]:
+                continue
+            if depths[corner] >= near:
+                left_nodes.append(nodes[corner])
+                left_rows.append(rows[corner])
+            if (depths[corner] < near) != (depths[following] < near):
+                low, high = (corner, following) if nodes[corner] < nodes[following] else (following, corner)
+                fraction = (near - depths[low]) / (depths[high] - depths[low])
+                left_nodes.append(self._node_on_edge(nodes[low], nodes[high], fraction))
+                left_rows.append(self._normal_between(rows[low], rows[high], fraction))
+        # Divide a polygon of five or six corners into a quad and what remains.
+        for first in range(1, len(left_nodes) - 1, 2):
+            picked = [0, first, first + 1, min(first + 2, len(left_nodes) - 1)]
+            self.corners.append([left_nodes[corner] for corner in picked])
+            self.corner_normals.append([left_rows[corner] for corner in picked])
+            self.columns.append(column)
+
+    def _node_on_edge(self, low: int, high: int, fraction: float) -> int:
+        """The number of the node where an edge meets the near plane, the same for all its polygons."""
+        positions = self._polygons.positions
+        if (low, high) not in self._node_of_edge:
+            self._node_of_edge[low, high] = positions.shape[1] + len(self.new_positions)
+            position = positions[:, low] + fraction * (positions[:, high] - positions[:, low])
+            position[2] = self._polygons.near
+            self.new_positions.append(position)
+        return self._node_of_edge[low, high]
+
+    def _normal_between(self, low: int, high: int, fraction: float) -> int:
+        """The number of a new normal, interpolated between two."""
+        normals = self._polygons.normals
+        self.new_normals.append(normals[:, low] + fraction * (normals[:, high] - normals[:, low]))
+        return int(normals.shape[1]) + len(self.new_normals) - 1
+
+
+def _merged(table: Indices, kept: Indices, clipped: list[list[int]], order: Indices) -> Indices:
+    """The columns of the kept polygons and those of the clipped ones, in an order."""
+    columns = np.array(clipped, np.intp).reshape(-1, 4).T
+    return np.take(np.concatenate([np.take(table, kept, axis=1), columns], axis=1), order, axis=1)
+
+
+# -------------------- raster
+# Nodes on the raster: where the perspective puts them, and which lines and pixel centers they are before.
+
+ROUNDING: Final = 1e-6
+"""In pixels, far above the rounding of a crossing."""
+
+NODES_AT_ONCE: Final = 1 << 14
+
+
+class Raster(NamedTuple):
+    """The lines and elements of a raster, and its focal length in pixels."""
+
+    lines: int
+    elements: int
+    focal_length: float
+
+
+class OnRaster(NamedTuple):
+    """Where nodes lie on a raster, each (nodes,): as in `projection.Projection`."""
+
+    x: Floats
+    y: Floats
+    inverse_depth: Floats
+    first_line: Indices
+
+
+def on_raster(positions: Floats, near: float, raster: Raster) -> OnRaster:
+    """Where nodes lie on the raster; those nearer than the near plane are put on it.
+
+    `positions`, (3, nodes), are in camera space.
+    """
+    count = positions.shape[1]
+    x, y, inverse_depth = np.empty(count), np.empty(count), np.empty(count)
+    first_line = np.empty(count, np.intp)
+    for chunk in chunks(count, NODES_AT_ONCE):
+        right, down, depth = positions[:, chunk]
+        np.divide(1.0, np.maximum(depth, near), out=inverse_depth[chunk])
+        scale = raster.focal_length * inverse_depth[chunk]
+        np.add(right * scale, raster.elements / 2, out=x[chunk])
+        np.add(down * scale, raster.lines / 2, out=y[chunk])
+        first_line[chunk] = np.clip(np.ceil(y[chunk] - 0.5), 0, raster.lines)
+    return OnRaster(x, y, inverse_depth, first_line)
+
+
+def left_center(x: Floats) -> Floats:
+    """The first element whose center may be at x or right of it, if a crossing is rounded to the left."""
+    return np.ceil(x - (0.5 + ROUNDING))
+
+
+def right_center(x: Floats) -> Floats:
+    """The first element whose center is right of x, if a crossing is rounded to the right."""
+    return np.ceil(x - (0.5 - ROUNDING))

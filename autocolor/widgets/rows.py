@@ -1,0 +1,322 @@
+"""The rows of a menu for a row of a table, made from the descriptions of its columns.
+
+So a column that is added to a table appears on the screens by itself: a number as a bar, a switch as a box, a
+choice, a text, a vector as three bars, a row within a row with its name before those of its columns, a list
+of names as a box for each.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any, Final, NamedTuple
+
+from autocolor.checks import Vector
+from autocolor.scene.columns import WORLD_UNITS, Column, Field, Row, bar_of, bar_within, fields_of
+from autocolor.scene.columns import Bar as Range
+from autocolor.scene.kinds import (
+    AngleCurve,
+    AngleCurveKind,
+    ColorKind,
+    Number,
+    Text,
+    VectorKind,
+    Whole,
+    in_digits,
+)
+from autocolor.scene.kinds import Choice as ChoiceKind
+from autocolor.scene.kinds import Switch as SwitchKind
+from autocolor.scene.row_kinds import NamedRows, Nested, Reference, References, Referring, Variant, WordOrName
+from autocolor.widgets.bars import Bar
+from autocolor.widgets.widget import Choice, Entry, Heading, Switch, Widget, short_label
+
+# -------------------- name_rows
+# The rows of a menu for columns that refer to rows of other tables by name.
+#
+# A list of names has a switch that gives it, and then one for each known name. Many names come in pages, so
+# that they do not fill the menu.
+
+NAMES_A_PAGE: Final = 12
+"""Assumed: names that are shown at once; two lists of them fit in a menu."""
+
+LONGEST_LABEL: Final = 14
+"""Characters of a label beside a box."""
+
+INDENT: Final = "  "
+
+NONE: Final = "none"
+"""The choice of no name."""
+
+TakeNames = Callable[[Any], object]
+"""Takes a name, names, or None."""
+
+
+class KnownNames(NamedTuple):
+    """The names that can be chosen: those of a table, and the page of them that is shown, by table."""
+
+    of: Callable[[str], Sequence[str]]
+    pages: dict[str, int]
+
+
+def reference_rows(
+    label: str, field: Field, kind: Referring, value: Any, take: TakeNames, known: KnownNames
+) -> Iterator[Widget]:
+    """The rows for names in a column; `take` is called with what they are to be."""
+    column, names = field.column, known.of(kind.table)
+    if isinstance(kind, References):
+        yield from _list_rows(label, column, value, take, known.pages, (kind.table, names))
+    elif isinstance(kind, (Reference, WordOrName)):
+        first = (NONE,) if field.is_optional else ()
+        word = (kind.word,) if isinstance(kind, WordOrName) else ()
+        yield Choice(
+            label,
+            column.help,
+            names=(*first, *word, *(name for name in names if name not in (*first, *word))),
+            present=NONE if value is None else value,
+            choose=partial(_choose, take, field.is_optional),
+        )
+
+
+def _list_rows(
+    label: str,
+    column: Column,
+    value: Sequence[str] | None,
+    take: TakeNames,
+    pages: dict[str, int],
+    table: tuple[str, Sequence[str]],
+) -> Iterator[Widget]:
+    """A switch that gives a list, without a name at first; below it one for each name of a page."""
+    what, names = table
+    is_given = value is not None
+    short = short_label(label, LONGEST_LABEL)
+    yield Switch(short, column.help, is_on=is_given, flip=partial(take, None if is_given else ()))
+    if value is None:
+        return
+    page = min(pages.get(what, 0), max(0, len(names) - 1) // NAMES_A_PAGE)
+    if len(names) > NAMES_A_PAGE:
+        numbers = range(0, len(names), NAMES_A_PAGE)
+        titles = [f"{first + 1} to {min(first + NAMES_A_PAGE, len(names))}" for first in numbers]
+        yield Choice(
+            what,
+            within=label,
+            help=f"Which of the {len(names)} {what} are shown below; {len(value)} are in the list.",
+            names=titles,
+            present=titles[page],
+            choose=lambda title: pages.__setitem__(what, titles.index(title)),
+        )
+    for name in names[page * NAMES_A_PAGE : (page + 1) * NAMES_A_PAGE]:
+        wanted = {*value} ^ {name}
+        chosen = tuple(each for each in names if each in wanted)
+        is_in = name in value
+        told = f"Take {name} {'from' if is_in else 'into'} the list: {label}."
+        yield Switch(f"{INDENT}{name}", told, within=label, is_on=is_in, flip=partial(take, chosen))
+
+
+def _choose(take: TakeNames, has_none: bool, name: str) -> object:
+    return take(None if has_none and name == NONE else name)
+
+
+Put = Callable[[Mapping[str, object]], object]
+"""Changes fields of the row, by name."""
+
+AXES: Final = "xyz"
+
+
+class World(NamedTuple):
+    """The bounds of the object, from which bars of coordinates get their range, and the names of tables."""
+
+    low: Vector
+    high: Vector
+    names: KnownNames = KnownNames(lambda _: (), {})
+
+    @property
+    def size(self) -> float:
+        """The whole size of the object, from its least corner to its largest; 1 for a point."""
+        return math.dist(self.low, self.high) or 1.0
+
+    def range_of(self, axis: str) -> Range:
+        """The usual range of a coordinate: that of the object and its whole size around.
+
+        Without an axis, it is that of all three.
+        """
+        low, high = min(self.low), max(self.high)
+        if axis:
+            low, high = self.low[AXES.index(axis)], self.high[AXES.index(axis)]
+        return bar_within(low - self.size, high + self.size)
+
+    def range_of_lengths(self, is_zero_left_out: bool) -> Range:
+        """The usual range of a length: up to the whole size of the object."""
+        usual = bar_within(0, self.size)
+        return usual._replace(low=usual.step) if is_zero_left_out else usual
+
+
+class _Menu(NamedTuple):
+    """What the rows of a row of a table are made with; `label` stands before the names of its columns.
+
+    `axis` is the axis of its coordinates, where it is a row for one axis.
+    """
+
+    put: Put
+    world: World
+    label: str = ""
+    axis: str = ""
+
+
+def rows_of(row: Row, put: Put, world: World, leave_out: Sequence[str] = ()) -> list[Widget]:
+    """The rows for a row of a table, in the order of its columns; `put` is called with what is changed.
+
+    Columns of `leave_out`, tables, held ranges and absent vectors have none.
+    """
+    return list(_rows_in(_Menu(put, world), row, leave_out))
+
+
+def _rows_in(menu: _Menu, row: Row, leave_out: Sequence[str] = ()) -> Iterator[Widget]:
+    for name, field in fields_of(type(row)).items():
+        if name not in leave_out:
+            yield from _rows_of_field(menu, name, field, vars(row)[name])
+
+
+def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator[Widget]:
+    column = field.column
+    kind, told = column.kind, column.help
+    shown = f"{menu.label}{name}".replace("_", " ")
+    put = partial(_put, menu.put, name)
+    if isinstance(kind, (Number, Whole)):
+        yield _bar(menu, shown, name, field, value)
+    elif isinstance(kind, SwitchKind):
+        yield Switch(shown, told, is_on=bool(value), flip=partial(put, not value))
+    elif isinstance(kind, ChoiceKind):
+        yield Choice(shown, told, names=kind.names, present=str(value), choose=put)
+    elif isinstance(kind, Text):
+        yield Entry(shown, told, value=str(value), take=put)
+    elif isinstance(kind, ColorKind):
+        yield Entry(shown, told, value=in_digits(value), take=put)
+    elif isinstance(kind, VectorKind) and value is not None:
+        yield from _vector_rows(menu, shown, name, column, value)
+    elif isinstance(kind, AngleCurveKind):
+        yield from _curve_rows(menu, shown, name, kind, told, value)
+    elif isinstance(kind, Referring):
+        yield from reference_rows(shown, field, kind, value, put, menu.world.names)
+    elif isinstance(kind, Variant):
+        yield Choice(shown, told, names=tuple(kind.classes), present=kind.name_of(value), choose=put)
+        yield from _rows_in(menu, value)
+    elif isinstance(kind, Nested) and kind.inline:
+        yield from _rows_in(menu, value)
+    elif isinstance(kind, Nested):
+        axis = name if name in AXES else ""
+        # In a narrow menu the name of the row itself is enough before those of its fields.
+        inside = _Menu(put, menu.world, f"{name} ", axis)
+        yield from _rows_of_row(inside, shown, told, value)
+    elif isinstance(kind, NamedRows):
+        if value:
+            yield Heading(shown)
+        for row in value:
+            inside = _Menu(partial(_put, put, row.name), menu.world, INDENT)
+            for each in _rows_of_row(inside, row.name, told, row, ("name",)):
+                # Others have rows of the same labels.
+                yield replace(each, within=f"{name}.{row.name}", help=f"{row.name}: {each.help}")
+
+
+def _rows_of_row(
+    menu: _Menu, label: str, told: str, row: Row | None, leave_out: Sequence[str] = ()
+) -> Iterator[Widget]:
+    """The rows of a row within a row, after its own switch if it has one; of an absent row, what makes it."""
+    if row is None:
+        yield Switch(label, told, is_on=False, flip=partial(menu.put, {}))
+        return
+    if "on" in fields_of(type(row)):
+        is_on = vars(row)["on"]
+        yield Switch(label, told, is_on=is_on, flip=partial(_put, menu.put, "on", not is_on))
+    yield from _rows_in(menu, row, (*leave_out, "on"))
+
+
+def _bar(menu: _Menu, label: str, name: str, field: Field, value: float | None) -> Bar:
+    """The bar of a number; one that may be absent, or without a limit, has a box that switches it."""
+    column, put, axis = field.column, menu.put, menu.axis
+    kind = column.kind
+    usual = bar_of(column) or Range(0, 1, 0.01)
+    if column.unit == WORLD_UNITS and isinstance(kind, Number) and kind.at_least == 0:
+        usual = menu.world.range_of_lengths(is_zero_left_out=kind.above)
+    elif column.unit == WORLD_UNITS:
+        usual = menu.world.range_of(axis)
+    endless = kind.endless if isinstance(kind, Number) else None
+    flip: Callable[[], object] | None = None
+    present = value
+    if endless is not None:
+        limit = (menu.world.low if endless < 0 else menu.world.high)[AXES.find(axis)] if axis else 0.0
+        present = None if value == endless else value
+        flip = partial(_put, put, name, limit if present is None else endless)
+    elif field.is_optional:
+        start = usual.low if column.start is None else column.start
+        start = int(start) if isinstance(kind, Whole) else start
+        flip = partial(_put, put, name, start if value is None else None)
+    return Bar(
+        label,
+        _help(column),
+        value=present,
+        low=usual.low,
+        high=usual.high,
+        step=usual.step,
+        unit=column.unit if len(column.unit) < 8 else "",
+        put=partial(_put_number, put, name, isinstance(kind, Whole)),
+        flip=flip,
+    )
+
+
+def _vector_rows(menu: _Menu, label: str, name: str, column: Column, value: Vector) -> Iterator[Widget]:
+    for number, axis in enumerate(AXES):
+        is_place = column.unit == WORLD_UNITS
+        usual = menu.world.range_of(axis) if is_place else Range(-1, 1, 0.01)
+        yield Bar(
+            f"{label} {axis}",
+            _help(column),
+            value=value[number],
+            low=usual.low,
+            high=usual.high,
+            step=usual.step,
+            put=partial(_put_component, menu.put, name, value, number),
+        )
+
+
+def _curve_rows(
+    menu: _Menu, label: str, name: str, kind: AngleCurveKind, told: str, curve: AngleCurve | None
+) -> Iterator[Widget]:
+    """A switch for a curve over angles, and a bar for the share of each of its points."""
+    begun = kind.start if curve is None else None
+    yield Switch(label, told, is_on=curve is not None, flip=partial(_put, menu.put, name, begun))
+    curve = curve or ()
+    for number, (angle, share) in enumerate(curve):
+        limits = kind.share_kind(number)
+        usual = bar_within(limits.at_least, limits.at_most)
+        yield Bar(
+            f"at {angle:g} degrees",
+            told,
+            value=share,
+            low=usual.low,
+            high=usual.high,
+            step=usual.step,
+            put=partial(_put_share, menu.put, name, curve, number),
+        )
+
+
+def _help(column: Column) -> str:
+    """What the message line says of a number: what it is, and its unit."""
+    return f"{column.help} In {column.unit}." if column.unit else column.help
+
+
+def _put(put: Put, name: str, value: object) -> object:
+    return put({name: value})
+
+
+def _put_number(put: Put, name: str, is_whole: bool, value: float) -> object:
+    return put({name: int(value) if is_whole and value == int(value) else value})
+
+
+def _put_share(put: Put, name: str, curve: AngleCurve, number: int, share: float) -> object:
+    return put({name: (*curve[:number], (curve[number][0], share), *curve[number + 1 :])})
+
+
+def _put_component(put: Put, name: str, vector: Vector, number: int, value: float) -> object:
+    return put({name: (*vector[:number], value, *vector[number + 1 :])})

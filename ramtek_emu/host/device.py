@@ -1,0 +1,285 @@
+"""DeviceRelay: a program's device on a pseudoterminal, whose writes a display gets with their boundaries.
+
+The program opens the pseudoterminal by its path, as it opened the device, and it reads and writes whole
+words there in raw mode. Each of its writes is rounded down to whole words alone, as the driver did (Hardware:
+PRG DRIVER.c, V8K), and goes to the display at a Unix socket; the replies come back.
+
+How far a pseudoterminal carries that by itself, measured on Linux 6.18: a write of up to 4,095 bytes is read
+whole if it is read before the next one; of 4,096 bytes a read gives 4,095 and then 1; and 2,000 writes of a
+program that does not wait were read in 80 pieces. Packet mode (TIOCPKT) marks no boundaries. Therefore the
+kernel tells of each write before it begins (`write_notices`); what was read until then is whole. That is
+exact for writes of any size while one process writes at a time. Where there are no notices, a write that
+follows another before this relay has read is taken as a part of it, which shifts what follows if the first
+was of odd length; a piece shorter than 4,095 bytes is taken as the end of a write.
+
+A terminal is line-buffered in C's stdio: a program that draws with `fwrite` ends a write at each byte 0A,
+wherever that is in a word. What it means is one stream of bytes, and it can be passed on as that.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import errno
+import os
+import platform
+import select
+import struct
+from contextlib import suppress
+from typing import Final, NamedTuple
+
+from ramtek_emu.errors import PortError
+from ramtek_emu.host.port import Sign, UnixPort, read_packet
+
+# -------------------- write_notices
+# WriteNotices: the kernel tells before a program writes, so that one write can be told from the next.
+#
+# A terminal hands over bytes, not writes: what a program wrote twice in quick succession is read at once.
+# With a seccomp filter, Linux (5.5 and later) stops each `write` of the program before it begins and lets
+# it go on when we say so. Everything that arrived until then belongs to the writes before it. The program
+# and its children need not know: they may be statically linked, or of 32 bits. A write takes about a tenth
+# of a millisecond longer.
+#
+# What this does **not** do: writes of two processes or threads at the same time are not told apart, nor
+# those by other calls (`io_uring`). With the filter, the program gains no privileges from set-user-ID
+# files; children that outlive us cannot write any more, to any file (ENOSYS); and a signal that comes while
+# a write waits to begin ends it with EINTR, unless its handler was installed with SA_RESTART.
+
+# linux/filter.h, linux/seccomp.h, linux/prctl.h, linux/audit.h
+INSTRUCTION: Final = struct.Struct("HBBI")
+PROGRAM: Final = struct.Struct("HP")
+LOAD: Final = 0x20
+JUMP_IF_EQUAL: Final = 0x15
+RETURN: Final = 0x06
+NUMBER_PLACE: Final = 0
+ARCHITECTURE_PLACE: Final = 4
+ALLOW: Final = 0x7FFF0000
+NOTIFY: Final = 0x7FC00000
+NO_NEW_PRIVILEGES: Final = 38
+SET_FILTER: Final = 1
+NEW_LISTENER: Final = 8
+RECEIVE: Final = 0xC0502100
+ANSWER: Final = 0xC0182101
+NOTICE_BYTES: Final = 80
+IDENTITY: Final = struct.Struct("Q")
+RESPONSE: Final = struct.Struct("QqiI")
+CONTINUE: Final = 1
+
+
+class Architecture(NamedTuple):
+    """What a program of one kind calls, by number."""
+
+    audit: int
+    write: int
+    writev: int
+
+
+class Machine(NamedTuple):
+    """The number of the call `seccomp`, and the kinds of programs that run on a machine."""
+
+    seccomp: int
+    architectures: tuple[Architecture, ...]
+
+
+MACHINES: Final = {
+    "x86_64": Machine(317, (Architecture(0xC000003E, 1, 20), Architecture(0x40000003, 4, 146))),
+    "aarch64": Machine(277, (Architecture(0xC00000B7, 64, 66), Architecture(0x40000028, 4, 146))),
+}
+
+
+def filter_of(machine: Machine) -> bytes:
+    """The filter that tells of `write` and `writev` and lets everything else pass."""
+    steps = [(LOAD, 0, 0, ARCHITECTURE_PLACE)]
+    for each in machine.architectures:
+        steps += [
+            (JUMP_IF_EQUAL, 0, 5, each.audit),
+            (LOAD, 0, 0, NUMBER_PLACE),
+            (JUMP_IF_EQUAL, 2, 0, each.write),
+            (JUMP_IF_EQUAL, 1, 0, each.writev),
+            (RETURN, 0, 0, ALLOW),
+            (RETURN, 0, 0, NOTIFY),
+        ]
+    steps.append((RETURN, 0, 0, ALLOW))
+    return b"".join(INSTRUCTION.pack(*step) for step in steps)
+
+
+def ask_for_notices() -> int:
+    """Tell of all writes of this process from now on; returns the file to give to WriteNotices.
+
+    The filter stays when a program is run in this process. OSError where the system does not offer it.
+    """
+    machine = MACHINES.get(platform.machine())
+    # A Python of 32 bits has other numbers than the machine it runs on.
+    if platform.system() != "Linux" or machine is None or PROGRAM.size != 16:
+        raise OSError(errno.ENOSYS, f"not on {platform.system()}, {platform.machine()}")
+    library = ctypes.CDLL(None, use_errno=True)
+    steps = filter_of(machine)
+    kept = ctypes.create_string_buffer(steps, len(steps))
+    program = ctypes.create_string_buffer(
+        PROGRAM.pack(len(steps) // INSTRUCTION.size, ctypes.addressof(kept)), PROGRAM.size
+    )
+    zero = ctypes.c_ulong(0)
+    if library.prctl(NO_NEW_PRIVILEGES, ctypes.c_ulong(1), zero, zero, zero) == 0:
+        arguments = ctypes.c_ulong(SET_FILTER), ctypes.c_ulong(NEW_LISTENER), program
+        number: int = library.syscall(ctypes.c_long(machine.seccomp), *arguments)
+        if number >= 0:
+            return number
+    code = ctypes.get_errno()
+    raise OSError(code, os.strerror(code))
+
+
+class WriteNotices:
+    """The writes of a program that are about to begin."""
+
+    def __init__(self, number: int) -> None:
+        self._number = number
+
+    def fileno(self) -> int:
+        """The number of the file that can be read when a write is about to begin."""
+        return self._number
+
+    def next(self) -> int | None:
+        """What identifies the next write; None if the program has gone meanwhile."""
+        from fcntl import ioctl
+
+        notice = bytearray(NOTICE_BYTES)
+        try:
+            ioctl(self._number, RECEIVE, notice)
+        except OSError:
+            return None
+        identity: int = IDENTITY.unpack_from(notice)[0]
+        return identity
+
+    def allow(self, identity: int) -> None:
+        """Let a write begin."""
+        from fcntl import ioctl
+
+        # A program that was killed is no longer waiting.
+        with suppress(OSError):
+            ioctl(self._number, ANSWER, RESPONSE.pack(identity, 0, 0, CONTINUE))
+
+    def close(self) -> None:
+        """Ask for no more notices."""
+        os.close(self._number)
+
+
+PIECE: Final = 1 << 16
+"""The most bytes that are read or sent at once."""
+FULL: Final = 1 << 18
+"""When this many bytes wait in one direction, no more are read for it."""
+TERMINAL_PIECE: Final = 4095
+"""The most bytes that a pseudoterminal holds for one read."""
+
+
+class DeviceRelay:
+    """Passes bytes between the terminal of a program and a display, until the program has ended."""
+
+    def __init__(
+        self, port: UnixPort, terminal: int, notices: WriteNotices | None, as_stream: bool = False
+    ) -> None:
+        """Begin; `terminal` is our side of the pseudoterminal, which is set not to block.
+
+        With `as_stream`, writes are not rounded down: all of them are one stream of bytes.
+        """
+        self._port, self._terminal, self._notices = port, terminal, notices
+        self._as_stream = as_stream
+        self._written = bytearray()
+        """What the program wrote and the display has not got; it ends with an odd byte in mid-write."""
+        self._replies = bytearray()
+        os.set_blocking(terminal, False)
+
+    def relay(self, ended: int) -> None:
+        """Relay until the program has ended, so that the file `ended` can be read; PortError if lost.
+
+        The rest of what it wrote is sent by `finish`.
+        """
+        display, notices = self._port.socket.fileno(), self._notices
+        while True:
+            takes_words, takes_replies = len(self._written) < FULL, len(self._replies) < FULL
+            has_words, has_replies = len(self._written) > 1, len(self._replies) > 0
+            polled = select.poll()
+            polled.register(ended, select.POLLIN)
+            polled.register(display, select.POLLIN * takes_replies | select.POLLOUT * has_words)
+            polled.register(self._terminal, select.POLLIN * takes_words | select.POLLOUT * has_replies)
+            if notices is not None and takes_words:
+                polled.register(notices.fileno(), select.POLLIN)
+            events = dict(polled.poll())
+            self._serve_display(events.get(display, 0))
+            if events.get(self._terminal, 0) & select.POLLOUT:
+                self._send_replies()
+            if events.get(self._terminal, 0) & select.POLLIN:
+                self._take_written()
+            if notices is not None and events.get(notices.fileno(), 0) & select.POLLIN:
+                self._allow_next_write(notices)
+            if ended in events:
+                self._take_written()
+                self._end_write()
+                return
+
+    def finish(self) -> None:
+        """Send the rest of what the program wrote; replies are dropped. PortError if the display left."""
+        while self._written:
+            self._replies.clear()
+            polled = select.poll()
+            polled.register(self._port.socket, select.POLLIN | select.POLLOUT)
+            for _, events in polled.poll():
+                self._serve_display(events)
+
+    def _serve_display(self, events: int) -> None:
+        if events & ~select.POLLOUT:
+            self._take_replies()
+        if events & select.POLLOUT:
+            self._send_written()
+
+    def _allow_next_write(self, notices: WriteNotices) -> None:
+        identity = notices.next()
+        if identity is not None:
+            # A terminal gives all that was written before, when it is read until there is nothing left.
+            self._take_written()
+            self._end_write()
+            notices.allow(identity)
+
+    def _take_written(self) -> None:
+        while len(self._written) < 2 * FULL:
+            try:
+                data = os.read(self._terminal, PIECE)
+            except OSError:
+                return
+            self._written += data
+            if self._notices is None and not self._as_stream and len(data) < TERMINAL_PIECE:
+                self._end_write()
+
+    def _end_write(self) -> None:
+        """Round what was written down to whole words."""
+        if len(self._written) & 1:
+            del self._written[-1]
+
+    def _send_written(self) -> None:
+        try:
+            sent = self._port.socket.send(self._written[: min(PIECE, len(self._written) & ~1)])
+        except BlockingIOError:
+            return
+        except OSError as cause:
+            raise self._lost() from cause
+        del self._written[:sent]
+
+    def _take_replies(self) -> None:
+        try:
+            data = read_packet(self._port.socket, PIECE)
+        except BlockingIOError:
+            return
+        except OSError as cause:
+            raise self._lost() from cause
+        if data is Sign.END:
+            raise self._lost()
+        if not isinstance(data, Sign):
+            self._replies += data
+
+    def _send_replies(self) -> None:
+        with suppress(BlockingIOError):
+            del self._replies[: os.write(self._terminal, self._replies[:PIECE])]
+
+    def _lost(self) -> PortError:
+        return PortError(
+            f"a display must stay at {self._port.address} while a program uses it, and it left; "
+            "start the program again later"
+        )

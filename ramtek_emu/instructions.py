@@ -1,0 +1,345 @@
+"""Streams of words, put together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from struct import Struct
+from typing import Final
+
+import numpy as np
+
+from ramtek_emu.arrays import Words
+from ramtek_emu.checks import (
+    checked_colors,
+    checked_coordinate,
+    checked_cursor,
+    checked_number,
+    checked_size,
+    checked_stream,
+    checked_table_address,
+    checked_words,
+    is_whole,
+    whole_numbers,
+)
+from ramtek_emu.errors import InstructionError, WordsError
+from ramtek_emu.instruction_set.instruction import (
+    MOST_BYTES,
+    NO_WORDS,
+    Instruction,
+    OperandValue,
+    encode,
+    normal,
+)
+from ramtek_emu.instruction_set.table import FORMAT_OF_NAME, Flags
+
+
+def concatenate(*parts: Words) -> Words:
+    """Several streams, one after the other, as one."""
+    return np.concatenate([checked_stream(part) for part in parts]) if parts else NO_WORDS
+
+
+# -------------------- settings
+# Encoders that set the display up: reset, parameters, zoom.
+#
+# >>> " ".join(f"{word:04X}" for word in set_parameters(foreground=1))
+# '0802 0002 0001'
+
+
+def reset() -> Words:
+    """RSET: set every parameter as at power-on and erase the screen; the lookup table is kept."""
+    return encode(Instruction(FORMAT_OF_NAME["RSET"]))
+
+
+def initialize() -> Words:
+    """INIT: set every parameter as at power-on; screen and lookup table are kept."""
+    return encode(Instruction(FORMAT_OF_NAME["INIT"]))
+
+
+def no_operation() -> Words:
+    """NOP: do nothing."""
+    return encode(Instruction(FORMAT_OF_NAME["NOP"]))
+
+
+def set_parameters(**operands: OperandValue | None) -> Words:
+    """SET: set operands by name (`foreground=3`, `window=(0, 0, 639, 479)`); they stay until set again."""
+    return encode(normal("SET", operands))
+
+
+def zoom(across: int = 1, down: int | None = None) -> Words:
+    """ZOOM: show each pixel `across` elements wide and `down` lines high, 1 to 16; `down` may be left out."""
+    factors = (across, across if down is None else down)
+    if not all(is_whole(each) and 1 <= each <= 16 for each in factors):
+        raise InstructionError(f"zoom factors must be 1 to 16, not {factors}; choose smaller ones")
+    word = int(factors[1]) - 1 << 8 | int(factors[0]) - 1
+    return np.array((FORMAT_OF_NAME["ZOOM"].opcode << 8, word), np.uint16)
+
+
+# -------------------- images
+# Encoders of images: windows that are filled, written and read.
+
+
+def erase(window: Sequence[int] | None = None, word: int | None = None) -> Words:
+    """ERS: fill a window with a word. Both stay set, the word as the background."""
+    return encode(normal("ERS", {"window": window, "background": word}))
+
+
+def write_image(words: object, left: int = 0, top: int = 0, planes: int = 10) -> Words:
+    """WI: write a (lines, elements) array of words with its top-left corner at (left, top).
+
+    The first instruction sets the window. An image that is too long for one instruction goes on in further
+    ones. WordsError names the first word that has more bits than there are planes.
+    """
+    planes = checked_number(planes, "the number of planes", 1, 16, "choose that of the display", WordsError)
+    left, top = (checked_coordinate(each, "the words' corner") for each in (left, top))
+    image = checked_words(words, planes)
+    lines, elements = image.shape
+    flat = np.ascontiguousarray(image).reshape(-1)
+    most = MOST_BYTES // 2
+    if elements <= most:
+        most -= most % elements
+    starts = range(0, flat.size, most)
+    head = image_head(left, top, left + elements - 1, top + lines - 1, 2 * min(most, flat.size))
+    stream = np.empty(flat.size + len(head) + 2 * (len(starts) - 1), np.uint16)
+    place = 0
+    for start in starts:
+        part = flat[start : start + most]
+        first = head if start == 0 else (FORMAT_OF_NAME["WI"].opcode << 8 | Flags.DATA, 2 * part.size)
+        stream[place : place + len(first)] = first
+        place += len(first)
+        stream[place : place + part.size] = part
+        place += part.size
+    return stream
+
+
+@lru_cache(maxsize=64, typed=True)
+def image_head(left: int, top: int, right: int, bottom: int, length: int) -> Words:
+    """The words of a WI with a window, up to its data."""
+    head = encode(normal("WI", {"window": (left, top, right, bottom)}, length=length))
+    head.flags.writeable = False
+    return head
+
+
+def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple[Words, int]]:
+    """RI: read a window, in as many instructions as needed, each with the number of words to receive."""
+    left, top = (checked_coordinate(each, "the corner of the words to read") for each in (left, top))
+    elements, lines = (
+        checked_number(each, f"the {name} to read", 1, 0x10000, "read one at least", InstructionError)
+        for each, name in ((elements, "elements"), (lines, "lines"))
+    )
+    most = MOST_BYTES // 2
+    if elements <= most:
+        most -= most % elements
+    window: tuple[int, ...] | None = (left, top, left + elements - 1, top + lines - 1)
+    for start in range(0, elements * lines, most):
+        count = min(most, elements * lines - start)
+        yield encode(normal("RI", {"window": window}, length=2 * count)), count
+        window = None
+
+
+# -------------------- shapes
+# Encoders of circles and of areas that are filled.
+
+
+def write_circles(circles: Sequence[Sequence[int]], word: int | None = None) -> Words:
+    """CIRC: draw the outlines of (n, 3) circles: element and line of the center, and radius."""
+    numbers = whole_numbers(circles, "circles", WordsError)
+    if numbers.ndim != 2 or numbers.shape[1] != 3 or not 0 < len(numbers) <= MOST_BYTES // 6:
+        raise WordsError(
+            f"circles must be an (n, 3) array of element, line and radius with 1 to {MOST_BYTES // 6} rows, "
+            f"not of shape {numbers.shape}; reshape or divide it"
+        )
+    least, most = numbers.min(axis=0), numbers.max(axis=0)
+    if (least < (-0x8000, -0x8000, 0)).any() or (most > 0xFFFF).any():
+        raise WordsError(
+            "a circle must have a center within -32768 to 65535 and a radius within 0 to 65535, not "
+            f"{least.tolist()} to {most.tolist()}; leave out what lies farther away"
+        )
+    words = (numbers.astype(np.int64) & 0xFFFF).astype(np.uint16)
+    return encode(normal("CIRC", {"foreground": word}, words.reshape(-1)))
+
+
+def fill(element: int, line: int, word: int | None = None) -> Words:
+    """FILL: fill the area around a pixel with the foreground, up to pixels that have it already."""
+    operands: dict[str, OperandValue | None] = {"foreground": word, "start": (element, line)}
+    return encode(normal("FILL", operands, np.zeros(1, np.uint16)))
+
+
+# -------------------- vectors
+# Encoders of straight lines, linked and unlinked.
+#
+# Lines are clipped at the write window, never at the window of images and text, and are drawn with the
+# texture. Both stay as earlier instructions set them. Where other programs drew before, give the window: it
+# is sent with a texture without gaps. Both are operands that only the 9400 and the 9460 have.
+
+SOLID: Final = (0xFFFF, 0)
+"""The texture without gaps."""
+
+
+def write_vectors(
+    vertices: object,
+    word: int | None = None,
+    start: Sequence[int] | None = None,
+    window: Sequence[int] | None = None,
+) -> Words:
+    """WVL: draw the lines that link (n, 2) vertices (element, line), from `start` or the first vertex on.
+
+    Vertices that do not fit in one instruction go on in the next. The word stays set as the foreground.
+    `window` (left, top, right, bottom) sets the write window, which stays and clips images and text too, and
+    a texture without gaps; the mask is never set. WordsError if the vertices are not such an array.
+    """
+    words = checked_places(vertices, "vertices", "vertex", ("element", "line"))
+    if start is None:
+        start = words[0].tolist()
+        words = words[1:] if len(words) > 1 else words
+    return in_instructions("WVL", words, {**surroundings(word, window), "start": start})
+
+
+def write_segments(segments: object, word: int | None = None, window: Sequence[int] | None = None) -> Words:
+    """WVU: draw a line for each of (n, 4) segments (element, line, element, line), from end to end.
+
+    Segments that do not fit in one instruction go on in the next. The word and the window stay set, as after
+    `write_vectors`. WordsError if the segments are not such an array.
+    """
+    words = checked_places(segments, "segments", "segment", ("element", "line", "element", "line"))
+    return in_instructions("WVU", words, surroundings(word, window))
+
+
+def surroundings(word: int | None, window: Sequence[int] | None) -> dict[str, OperandValue | None]:
+    """The operands that lines depend on."""
+    return {"foreground": word, "write_window": window, "texture": None if window is None else SOLID}
+
+
+def in_instructions(name: str, rows: Words, operands: dict[str, OperandValue | None]) -> Words:
+    """The instructions for rows of coordinates; the first sets the operands."""
+    most = MOST_BYTES // (2 * rows.shape[1])
+    parts = []
+    for first in range(0, len(rows), most):
+        parts.append(encode(normal(name, operands, rows[first : first + most].reshape(-1))))
+        operands = {}
+    return concatenate(*parts)
+
+
+def checked_places(values: object, things: str, thing: str, columns: tuple[str, ...]) -> Words:
+    """The values as rows of 16-bit words; WordsError unless they are at least one row of whole numbers."""
+    numbers = whole_numbers(values, things, WordsError)
+    if numbers.ndim != 2 or numbers.shape[1] != len(columns) or not len(numbers):
+        raise WordsError(
+            f"{things} must be an (n, {len(columns)}) array of {', '.join(columns[:-1])} and {columns[-1]} "
+            f"with at least one row, not of shape {numbers.shape}; reshape it"
+        )
+    if numbers.min() < -0x8000 or numbers.max() > 0xFFFF:
+        raise WordsError(
+            f"a {thing} must be within -32768 to 65535, not {numbers.min()} to {numbers.max()}; "
+            "clip the lines first"
+        )
+    return (numbers.astype(np.int64) & 0xFFFF).astype(np.uint16)
+
+
+# -------------------- text
+# Encoder of text.
+
+
+def write_text(
+    text: str | bytes,
+    left: int,
+    top: int,
+    word: int | None = None,
+    background: int | None = None,
+    size: int | tuple[int, int] = 1,
+    transparent: bool = False,
+) -> Words:
+    """WT: write text in cells of 7 x 9 dots, the top-left corner of the first cell at (left, top).
+
+    `size` repeats each dot, as one number or as (across, down); `transparent` leaves the pixels between the
+    dots unchanged. The window, the words and the size stay set. Characters that are not ASCII become question
+    marks.
+    """
+    if not isinstance(text, str | bytes | bytearray):
+        raise InstructionError(
+            f"text must be a str or bytes, not {type(text).__name__}; write str() around it"
+        )
+    data = text.encode("ascii", "replace") if isinstance(text, str) else bytes(text)
+    across, down = checked_size(size)
+    left, top = (checked_coordinate(each, "the corner of text") for each in (left, top))
+    window = (left, top, left + 7 * across * max(1, len(data)) - 1, top + 9 * down - 1)
+    operands: dict[str, OperandValue | None] = {
+        "foreground": word,
+        "background": background,
+        "window": window,
+        "scan_order": 0,
+        "dimensions": (7, 9),
+        "spacing": (0, 0),
+        "scale": (down - 1) << 8 | (across - 1),
+    }
+    packed = np.frombuffer(data + bytes(len(data) % 2), ">u2").astype(np.uint16)
+    return encode(normal("WT", operands, packed, len(data), Flags.ADDITIVE if transparent else 0))
+
+
+# -------------------- cursors
+# Encoders of cursors: they are placed and read.
+
+
+def write_cursor(
+    number: int, element: int, line: int, *, visible: bool = True, blinking: bool = False
+) -> Words:
+    """WCSS: place a cursor on the screen, and show or hide it."""
+    number = checked_cursor(number)
+    element, line = (
+        checked_number(each, f"a cursor's {name}", 0, most, "keep to the screen", InstructionError)
+        for each, name, most in ((element, "element", 0x7FF), (line, "line", 0x3FF))
+    )
+    state = (0x0400 if visible else 0) | (0x0800 if blinking else 0)
+    return np.array((FORMAT_OF_NAME["WCSS"].opcode << 8 | number, element, line | state), np.uint16)
+
+
+def read_cursor(number: int) -> Words:
+    """RCSS: ask for a cursor; then receive two words: element, and line with the state above ten bits."""
+    return np.array([FORMAT_OF_NAME["RCSS"].opcode << 8 | checked_cursor(number)], np.uint16)
+
+
+# -------------------- table
+# Encoders of the lookup table: its entries are loaded and read.
+
+LOW_BYTE_FIRST: Final = np.dtype("<u2")
+THREE_WORDS: Final = Struct("<3H")
+LOAD: Final = FORMAT_OF_NAME["LAM"].opcode << 8
+"""The instruction word of LAM for table 0."""
+
+
+def load_entries(first: int, colors: object, entries: int = 1024) -> Words:
+    """LAM: load (n, 3) colors, 0 to 255, into the entries from `first` on, in the 24-bit format."""
+    checked = checked_colors(first, colors, entries)
+    data = checked.tobytes()
+    # In the memory of a VAX the two words of an entry are the bytes blue, green, red, 0.
+    memory = bytearray(6 + 4 * len(checked))
+    memory[6::4], memory[7::4], memory[8::4] = data[2::3], data[1::3], data[0::3]
+    memory[:6] = THREE_WORDS.pack(LOAD, 2 * int(first), 4 * len(checked))
+    return np.frombuffer(memory, LOW_BYTE_FIRST)
+
+
+def load_short_entries(first: int, colors: object, entries: int = 1024) -> Words:
+    """LAM: load (n, 3) colors, 0 to 255, into the entries from `first` on, in the 12-bit format.
+
+    Only the upper four bits of each component are sent.
+    """
+    checked = checked_colors(first, colors, entries)
+    red, green, blue = checked.astype(np.uint16).T >> 4
+    head = np.array((LOAD, int(first), 2 * len(checked)), np.uint16)
+    return np.concatenate((head, red << 8 | green << 4 | blue))
+
+
+def park_table(address: int = 0) -> Words:
+    """LAM without data: set the address counter of the table, whose upper bits select the section shown.
+
+    Hardware: LIN, JPL, NCAR send it after a load; it matters with fewer planes than address bits.
+    """
+    return np.array((LOAD, checked_table_address(address), 0), np.uint16)
+
+
+def read_entries(address: int = 0, words: int = 2048) -> Words:
+    """RAM: ask for words of the lookup table from a word address on; then receive that many words."""
+    words = checked_number(
+        words, "the words to read", 0, MOST_BYTES // 2, "read the rest with another", InstructionError
+    )
+    return np.array((FORMAT_OF_NAME["RAM"].opcode << 8, checked_table_address(address), 2 * words), np.uint16)

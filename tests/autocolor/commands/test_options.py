@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+
+import click
+import pytest
+
+from autocolor.commands.options import LARGEST, as_usage, size_of, with_normals
+from autocolor.errors import InputError, MissingInputError, UsageError
+from ramtek_emu import GMR_9300, Configuration, ConfigurationError
+from tests.autocolor.commands.conftest import Run
+from tests.autocolor.sessions import car
+
+
+def test_every_problem_of_a_value_from_the_command_line_is_told_as_wrong_usage() -> None:
+    with pytest.raises(UsageError) as caught, as_usage("--set: "):
+        raise InputError(["a must be 1, not 2", "b must be 3, not 4"])
+    assert str(caught.value) == "--set: a must be 1, not 2\n--set: b must be 3, not 4"
+    assert caught.value.exit_code == 2
+
+
+def test_any_other_error_stays_as_it_is() -> None:
+    with pytest.raises(ZeroDivisionError), as_usage():
+        raise ZeroDivisionError
+    with pytest.raises(UsageError), as_usage():
+        raise MissingInputError("none of your business")
+
+
+def test_words_stand_for_normals_where_that_is_asked_for() -> None:
+    scene = car()
+    assert with_normals(scene, normals=True).words == "normals"
+    assert with_normals(scene, normals=False) is scene
+
+
+def test_a_scene_that_a_scalar_colors_is_refused_by_the_name_of_the_option() -> None:
+    with pytest.raises(UsageError) as error:
+        with_normals(car().with_scalar(name="z"), normals=True)
+    assert str(error.value) == (
+        "--normals: words must be 'levels' where a scalar colors surfaces, not 'normals'; change it, or take"
+        " the scalar away"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "size"), [("640x480", (640, 480)), ("1X1", (1, 1)), ("4096x4096", (4096, 4096))]
+)
+def test_a_size_is_its_elements_and_its_lines(text: str, size: tuple[int, int]) -> None:
+    assert size_of(text) == size
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "640", "640x", "x480", "640,480", "0x5", "5x0", "4097x1", "-1x5", "1.5x2", "\uff11x1", "1x1\n"],
+)
+def test_what_is_no_size_is_refused_in_a_sentence(text: str) -> None:
+    with pytest.raises(click.BadParameter) as refusal:
+        size_of(text)
+    assert refusal.value.message == (
+        f"a size must be ELEMENTSxLINES, each from 1 to 4096, not {text!r}; write it as in 1280x960"
+    )
+
+
+def test_the_largest_size_is_that_of_the_largest_display() -> None:
+    def display(size: int) -> Configuration:
+        return Configuration(name="large", elements=size, lines=size, planes=GMR_9300.planes)
+
+    assert display(LARGEST).lines == LARGEST
+    with pytest.raises(ConfigurationError):
+        display(LARGEST + 1)
+
+
+@pytest.mark.parametrize("arguments", [("-v", "render", "two.obj"), ("render", "two.obj", "--verbose")])
+def test_what_is_read_created_and_computed_is_told_on_stderr(
+    folder: Path, run: Run, arguments: tuple[str, ...]
+) -> None:
+    ran = run(*arguments)
+    assert (ran.code, ran.out) == (0, "")
+    *told, last = ran.err.splitlines()
+    assert last == "wrote two.png"
+    assert all(line.startswith("autocolor: ") for line in told)
+    for each in ("read two.obj: ", "Mesh(nodes 6, polygons 2, parts 2)", "created 4 lights: key", "visible"):
+        assert sum(line.startswith(f"autocolor: {each}") for line in told) == 1
+    assert "Picture(" not in ran.err
+
+
+@pytest.mark.parametrize(
+    "arguments", [("-vv", "info", "two.obj"), ("info", "-vv", "two.obj"), ("-v", "info", "two.obj", "-v")]
+)
+def test_given_twice_more_is_told_and_nothing_twice(
+    folder: Path, run: Run, arguments: tuple[str, ...]
+) -> None:
+    ran = run(*arguments)
+    assert ran.code == 0
+    assert ran.err.count("autocolor: Picture(480 x 640") == 1
+    assert ran.err.count("autocolor: read two.obj") == 1
+
+
+def test_what_is_recolored_is_told(folder: Path, run: Run) -> None:
+    run("render", "scene", "--save", "saved.npz", "--size", "30x20")
+    told = run("recolor", "saved.npz", "side", "-v", "-o", "side.png").err.splitlines()
+    assert [line.partition("(")[0].split(":")[1] for line in told[:-1]] == [
+        " read saved.npz",
+        " Picture",
+        " words and entries sent",
+    ]
+    assert told[-1] == "wrote side.png"
+
+
+def test_without_it_nothing_is_told_not_even_after_it_was_given(folder: Path, run: Run) -> None:
+    assert run("render", "two.obj", "-v", "-o", "a.png").code == 0
+    assert run("render", "two.obj", "-o", "b.png").err == "wrote b.png\n"
+    assert run("recolor", "none.npz", "body", "-v").code == 66
+    assert run("info", "two.obj").err == ""
+    assert [type(handler) for handler in logging.getLogger("autocolor").handlers] == [logging.NullHandler]

@@ -1,0 +1,331 @@
+from __future__ import annotations
+
+import io
+import json
+import sqlite3
+from collections.abc import Iterator
+from itertools import count
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from autocolor import read_scene, write_scene
+from autocolor.commands import sql as module
+from autocolor.commands.sql import lines_of, prompt, split, sql, statements_in
+from autocolor.errors import AutocolorError, UsageError
+from autocolor.files.store.statements import Answer, Value
+from autocolor.files.store.tables import open_tables
+from autocolor.scene.lights import HalfSpace, Links
+from tests.autocolor.files.store.stores import small_scene, small_store, tables_of
+
+LIGHTS = "SELECT name, intensity FROM lights"
+
+
+def asked(*arguments: object, stdin: str = "") -> Result:
+    return CliRunner().invoke(sql, [str(each) for each in arguments], input=stdin)
+
+
+def refused(*arguments: object, stdin: str = "") -> AutocolorError:
+    error = asked(*arguments, stdin=stdin).exception
+    assert isinstance(error, AutocolorError)
+    return error
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a scene file that has a comment."""
+    path = tmp_path / "small"
+    write_scene(path, small_scene().replace(mesh=small_scene().mesh.with_scalars()))
+    file = path / "scene.toml"
+    file.write_text(f"# mine\n{file.read_text()}")
+    return path
+
+
+def test_rows_are_a_table_csv_or_json(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    assert asked(path, LIGHTS).stdout.splitlines() == [
+        "name  intensity",
+        "----  ---------",
+        "key         1.0",
+        "rim         1.0",
+    ]
+    assert asked(path, LIGHTS, "--csv").stdout == "name,intensity\nkey,1.0\nrim,1.0\n"
+    rows = [{"name": "key", "intensity": 1.0}, {"name": "rim", "intensity": 1.0}]
+    assert json.loads(asked(path, LIGHTS, "--json").stdout) == rows
+    assert json.loads(asked(path, LIGHTS, "--format", "json").stdout) == rows
+    assert "leave one of the options" in str(refused(path, LIGHTS, "--json", "--csv"))
+
+
+def test_a_folder_and_a_picture_file_are_asked_as_a_store_is(folder: Path, tmp_path: Path) -> None:
+    from autocolor import render, write_picture
+
+    picture = tmp_path / "small.npz"
+    scene = read_scene(folder)
+    write_picture(picture, render(scene, 12, 16), scene)
+    for source in (folder, folder / "scene.toml", picture, small_store(tmp_path)):
+        assert asked(source, "SELECT count(*) AS n FROM nodes", "--csv").stdout == "n\n5\n"
+
+
+def test_a_change_needs_write(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    before = path.read_bytes()
+    error = refused(path, "UPDATE lights SET intensity = 2")
+    assert error.exit_code == 2
+    assert "this one changes lights; allow changes with --write" in str(error)
+    assert path.read_bytes() == before
+
+
+def test_a_change_is_saved_to_the_store(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    result = asked(path, "UPDATE lights SET intensity = 2 WHERE name = 'key'", "--write")
+    assert (result.exit_code, result.stdout, result.stderr) == (0, "", "changed 1 row\n")
+    assert read_scene(path).light("key").intensity == 2
+    assert asked(path, LIGHTS, "--write").stdout.endswith("rim         1.0\n")
+
+
+def test_a_change_is_saved_to_the_scene_file_and_its_comments_stay(folder: Path) -> None:
+    result = asked(folder, "DELETE FROM lights WHERE name = 'rim'", "--write")
+    assert result.exit_code == 0, result.output
+    assert [light.name for light in read_scene(folder).lights] == ["key"]
+    assert (folder / "scene.toml").read_text().startswith("# mine\n")
+
+
+def test_a_change_that_would_be_wrong_is_refused_as_a_whole(tmp_path: Path, folder: Path) -> None:
+    path = small_store(tmp_path)
+    before = tables_of(path)
+    error = refused(path, "UPDATE polygons SET node1 = 9", "--write")
+    assert error.exit_code == 2
+    assert str(error).splitlines() == [
+        "nothing was changed",
+        "small.sqlite: polygons, row 1: node 9 is not in the node table (1 to 5); correct it",
+        "small.sqlite: polygons, row 2: node 9 is not in the node table (1 to 5); correct it",
+    ]
+    assert tables_of(path) == before
+    text = (folder / "scene.toml").read_bytes()
+    refused(folder, "UPDATE polygons SET node1 = 9", "--write")
+    assert (folder / "scene.toml").read_bytes() == text
+
+
+HALF_SPACE = '{"left": {"point": [0, 0, 0], "direction": [0, 0, 1], "edge_width": %s}}'
+
+
+def test_half_spaces_and_links_are_changed_as_json(tmp_path: Path, folder: Path) -> None:
+    for path in (small_store(tmp_path), folder):
+        values = f"half_spaces = '{HALF_SPACE % 0.5}', only_parts = '[\"hood\"]', follows = 'eye'"
+        result = asked(path, f"UPDATE lights SET {values} WHERE name = 'rim'", "--write")
+        assert result.exit_code == 0, result.output
+        light = read_scene(path).light("rim")
+        assert light.half_spaces == (HalfSpace("left", (0, 0, 0), (0, 0, 1), 0.5),)
+        assert (light.links, light.follows) == (Links(only_parts=("hood",)), "eye")
+        query = (
+            "SELECT json_extract(half_spaces, '$.left.edge_width') AS width FROM lights WHERE name = 'rim'"
+        )
+        assert json.loads(asked(path, query, "--json").stdout) == [{"width": 0.5}]
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (
+            f"half_spaces = '{HALF_SPACE % -1}'",
+            "lights, row 1: half_spaces.left.edge_width must be a finite number of at least 0, not -1",
+        ),
+        (
+            "follows = 'key'",
+            "light 'key': follows must not lead back to it, as 'key' to 'key' does; change one of them",
+        ),
+        (
+            "except_parts = '[\"hod\"]'",
+            "light 'key': except_parts 'hod' is not in the part table; did you mean 'hood'?",
+        ),
+    ],
+)
+def test_half_spaces_and_names_that_are_wrong_are_told_and_not_saved(
+    tmp_path: Path, change: str, told: str
+) -> None:
+    path = small_store(tmp_path)
+    before = tables_of(path)
+    error = refused(path, f"UPDATE lights SET {change} WHERE name = 'key'", "--write")
+    assert str(error).splitlines() == ["nothing was changed", f"small.sqlite: {told}"]
+    assert tables_of(path) == before
+    empty = refused(path, "UPDATE lights SET follows = ''", "--write")
+    assert "follows must be 'eye' or the name of one of the lights, and a changed row does not" in str(empty)
+
+
+@pytest.mark.parametrize(
+    ("name", "advice"), [("a.npz", "take its scene out"), ("a.obj", "make a scene of it")]
+)
+def test_a_picture_or_a_mesh_is_not_written_to(tmp_path: Path, name: str, advice: str) -> None:
+    error = refused(tmp_path / name, "DELETE FROM lights", "--write")
+    assert error.exit_code == 2
+    assert f"--write must save to a store or to a scene's folder, not to {tmp_path / name}; {advice}" in str(
+        error
+    )
+
+
+def test_statements_come_from_stdin_one_after_the_other(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    text = "UPDATE lights\nSET intensity = 3; SELECT max(intensity) AS m FROM lights;\nSELECT ';' AS s"
+    result = asked(path, "--write", "--csv", stdin=text)
+    assert result.stdout == "m\n3.0\ns\n;\n"
+    assert "'lihgts'" in str(refused(path, stdin="SELECT 1;\nSELECT * FROM lihgts;\n"))
+
+
+def test_repairs_of_a_mesh_are_told_and_strict(tmp_path: Path) -> None:
+    path = tmp_path / "torn.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\nf 1 1 2\n")
+    result = asked(path, "SELECT count(*) AS n FROM polygons", "--csv", "--strict")
+    assert (result.exit_code, result.stdout) == (1, "n\n1\n")
+    assert result.stderr
+
+
+def lines(form: str, columns: tuple[str, ...], *rows: tuple[Value, ...]) -> list[str]:
+    return list(lines_of(Answer(columns, iter(rows)), form))
+
+
+def test_numbers_stand_to_the_right_and_text_to_the_left() -> None:
+    assert lines("table", ("name", "n"), ("a", 1), ("body", 100), ("b", None)) == [
+        "name     n",
+        "----  ----",
+        "a        1",
+        "body   100",
+        "b     NULL",
+    ]
+
+
+def test_an_answer_without_rows_has_its_columns_and_one_without_columns_nothing() -> None:
+    assert lines("table", ("name",)) == ["name", "----"]
+    assert lines("table", ()) == []
+    assert lines("csv", ("name",)) == ["name"]
+    assert lines("json", ("name",)) == ["[]"]
+
+
+def test_text_of_a_stranger_commands_no_terminal() -> None:
+    assert lines("table", ("\x1b[2J",), ("\x1b]0;x\x07\n",))[2] == "?]0;x??"
+
+
+def test_csv_and_json_hold_any_value() -> None:
+    rows = [('a,"b"\n', 0.1), (None, float("inf")), (b"\x01", 2)]
+    assert "\n".join(lines("csv", ("x", "y"), *rows)) == 'x,y\n"a,""b""\n",0.1\n,inf\n01,2'
+    assert json.loads("".join(lines("json", ("x", "y"), *rows))) == [
+        {"x": 'a,"b"\n', "y": 0.1},
+        {"x": None, "y": "inf"},
+        {"x": "01", "y": 2},
+    ]
+
+
+def test_rows_without_an_end_are_printed_as_they_come() -> None:
+    for form in ("table", "csv", "json"):
+        endless = lines_of(Answer(("n",), ((number,) for number in count())), form)
+        assert len([next(endless) for _ in range(2000)]) == 2000
+
+
+def typed(monkeypatch: pytest.MonkeyPatch, path: Path, *lines: object) -> list[str]:
+    """The statements that are run when these lines are typed; an exception is what a key raises."""
+    left: Iterator[object] = iter([*lines, EOFError()])
+    run: list[str] = []
+
+    def answer(_: str) -> str:
+        line = next(left)
+        if isinstance(line, BaseException):
+            raise line
+        return str(line)
+
+    def note(statement: str) -> None:
+        run.append(" ".join(statement.split()))
+        if "wrong" in statement:
+            raise UsageError("it is wrong; correct it")
+
+    monkeypatch.setattr("builtins.input", answer)
+    with open_tables(path) as tables:
+        prompt(tables, note)
+    assert next(left, None) is None or lines[-1] == ".quit"
+    return run
+
+
+def test_a_statement_ends_with_a_semicolon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = small_store(tmp_path)
+    run = typed(monkeypatch, path, "SELECT", "", "  1;", "SELECT 2; SELECT 3;", "SELECT ';", "';")
+    assert run == ["SELECT 1;", "SELECT 2;", "SELECT 3;", "SELECT '; ';"]
+
+
+def test_ctrl_c_takes_back_what_was_typed_and_errors_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = small_store(tmp_path)
+    assert typed(monkeypatch, path, "SELECT", KeyboardInterrupt(), "wrong;", "SELECT 2;") == [
+        "wrong;",
+        "SELECT 2;",
+    ]
+    told = capsys.readouterr().err
+    assert "taken back; Ctrl+D ends" in told
+    assert "autocolor: it is wrong; correct it" in told
+
+
+def test_words_with_a_dot_show_the_tables_and_leave(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = small_store(tmp_path)
+    assert typed(monkeypatch, path, ".tables", ".schema lights", ".schema light", ".what", ".quit") == []
+    out, told = capsys.readouterr()
+    assert "polygons\n" in out
+    assert 'CREATE TABLE "lights" (' in out
+    assert "there is no table 'light'; did you mean 'lights'?" in told
+    assert told.count(module.GREETING) == 2
+
+
+def test_the_statements_of_a_file_are_parted_at_their_semicolons() -> None:
+    assert list(statements_in(["SELECT 1; SEL", "ECT\n", "2 -- a; b\n", "; SELECT 3"])) == [
+        "SELECT 1;",
+        " SELECT\n2 -- a; b\n;",
+        " SELECT 3",
+    ]
+    assert split("  \n") == ([], "")
+
+
+def test_text_without_an_end_is_not_collected_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "MOST_LETTERS", 10)
+    endless = iter(lambda: "x" * 6, None)
+    assert list(statements_in(endless)) == ["x" * 12]
+
+
+@pytest.mark.parametrize("text", ["SELECT '\udcff';", "SELECT '\0';"])
+def test_what_is_not_text_is_refused(text: str) -> None:
+    with pytest.raises(UsageError, match="must be text in UTF-8 without NUL; save them so"):
+        list(statements_in([text]))
+
+
+def test_bytes_that_are_not_utf_8_are_refused() -> None:
+    with pytest.raises(UsageError, match="must be text in UTF-8"):
+        list(statements_in(io.TextIOWrapper(io.BytesIO(b"SELECT 1;\nSELECT '\xff';\n"), "utf-8")))
+
+
+def test_semicolons_in_long_texts_names_and_comments_are_passed_over_at_once() -> None:
+    many = ";" * 300_000
+    for text in (f"SELECT '{many}';", f'SELECT "{many}";', f"SELECT 1 /*{many}*/;", f"--{many}\nSELECT 1;"):
+        assert split(text) == ([text], "")
+    assert split(f"SELECT '{many}") == ([], f"SELECT '{many}")
+
+
+def test_the_name_of_a_stranger_commands_no_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = small_store(tmp_path)
+    with sqlite3.connect(path) as connection:
+        connection.execute('CREATE TABLE "a\x1b[31m" (b)')
+    connection.close()
+    lines = iter([".tables", ".schema"])
+
+    def typed(_: str) -> str:
+        try:
+            return next(lines)
+        except StopIteration:
+            raise EOFError from None
+
+    monkeypatch.setattr("builtins.input", typed)
+    with open_tables(path) as tables:
+        prompt(tables, lambda statement: None)
+    told = capsys.readouterr().out
+    assert "a?[31m" in told
+    assert "\x1b" not in told

@@ -1,0 +1,465 @@
+from __future__ import annotations
+
+import struct
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.errors import InputError, MissingInputError
+from autocolor.files.meshes import ply as ply_bytes_module
+from autocolor.files.meshes import ply as ply_file_module
+from autocolor.files.meshes import ply as ply_polygons_module
+from autocolor.files.meshes.formats import format_of, read_mesh
+from autocolor.files.meshes.ply import ply_bytes, ply_polygons, read_ply, triangles_of_strips
+from autocolor.files.meshes.ply_elements import Column, Comments, Lists, PlyTables, Rows
+from autocolor.files.meshes.repair import MeshReport, Placement, Polygons
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalar import MeshScalar
+from tests.autocolor.files.meshes.mutations import changes
+
+NODES = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+TYPES = {"char": "b", "uint8": "B", "short": "h", "uint16": "H", "int": "i", "uint": "I", "double": "d"}
+
+
+def cube(order: str = "", number: str = "double", corner: str = "int", feed: str = "\n") -> bytes:
+    """A cube with the stress x + y at its nodes, and the quality of its quads before their corners."""
+    name = {"": "ascii", "<": "binary_little_endian", ">": "binary_big_endian"}[order]
+    lines = [
+        "ply", f"format {name} 1.0", "element vertex 8",
+        *(f"property {number} {axis}" for axis in "zyx"), "property short stress",
+        "element face 6", "property uchar quality",
+        f"property list uchar {corner} vertex_indices", "end_header",
+    ]  # fmt: skip
+    rows: list[tuple[str, tuple[int, ...]]] = [
+        (TYPES[number] * 3 + "h", (z, y, x, x + y)) for x, y, z in NODES
+    ]
+    rows += [("BB" + TYPES[corner] * 4, (at, 4, *quad)) for at, quad in enumerate(QUADS)]
+    header = "".join(line + feed for line in lines).encode()
+    if order:
+        return header + b"".join(struct.pack(order + code, *values) for code, values in rows)
+    return header + "".join(" ".join(map(str, values)) + feed for _, values in rows).encode()
+
+
+CUBES = [cube(order) for order in ("", "<", ">")]
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "cube.ply"
+
+
+def read(path: Path, data: bytes, up: str = "z") -> MeshReport:
+    path.write_bytes(data)
+    return read_ply(path, Placement(up))
+
+
+def is_read_or_refused(path: Path, data: bytes) -> bool:
+    begin = time.perf_counter()
+    try:
+        mesh = read(path, data).mesh
+        sound = np.isfinite(mesh.coordinates).all() and mesh.node_numbers.max() < len(mesh.coordinates)
+    except InputError as error:
+        sound = all(problem.startswith(path.name) for problem in error.problems)
+    return bool(sound) and time.perf_counter() - begin < 2
+
+
+@pytest.mark.parametrize("order", ["", "<", ">"])
+@pytest.mark.parametrize("number", TYPES)
+@pytest.mark.parametrize("corner", [name for name in TYPES if name != "double"])
+def test_a_cube_is_read_in_any_types(path: Path, order: str, number: str, corner: str) -> None:
+    mesh = read(path, cube(order, number, corner)).mesh
+    assert [tuple(node) for node in mesh.coordinates.tolist()] == NODES
+    assert [tuple(quad) for quad in mesh.node_numbers.tolist()] == QUADS
+    assert mesh.part_names == ("cube",)
+    assert [(each.name, each.of, each.values.tolist()) for each in mesh.scalars] == [
+        ("stress", "node", [x + y for x, y, _ in NODES]),
+        ("quality", "polygon", [0, 1, 2, 3, 4, 5]),
+    ]
+
+
+@pytest.mark.parametrize("order", ["", "<", ">"])
+@pytest.mark.parametrize("feed", ["\n", "\r\n", "\r"])
+def test_lines_end_in_any_way(path: Path, order: str, feed: str) -> None:
+    assert len(read(path, cube(order, feed=feed)).mesh.node_numbers) == 6
+
+
+def test_the_files_up_axis_becomes_z(path: Path) -> None:
+    assert read(path, CUBES[1], up="y").mesh.coordinates[1].tolist() == [0, -1, 0]
+
+
+def test_a_file_of_another_name_is_known_by_how_it_begins(tmp_path: Path) -> None:
+    path = tmp_path / "cube.model"
+    path.write_bytes(CUBES[0])
+    found = format_of(path)
+    assert found is not None
+    assert found.name == "PLY"
+    assert len(read_mesh({"file": path}).mesh.node_numbers) == 6
+
+
+def test_what_is_skipped_and_repaired_stands_in_the_report(path: Path) -> None:
+    data = CUBES[0].replace(b"4 1 5 7 3", b"4 1 1 1 3") + b"what is this\n"
+    assert b"what" in data
+    with pytest.raises(InputError):
+        read(path, data)
+    assert read(path, data.replace(b"what is this", b"1 2 3")).repairs == (
+        "cube.ply: skipped lines after the last element: 1",
+        "cube.ply: 1 polygon with fewer than three different corners was dropped",
+    )
+
+
+def test_a_file_without_polygons_is_refused(path: Path) -> None:
+    header = b"ply\nformat ascii 1.0\nelement vertex 1\n"
+    header += b"property int x\nproperty int y\nproperty int z\nend_header\n1 2 3\n"
+    with pytest.raises(InputError) as refusal:
+        read(path, header)
+    assert str(refusal.value) == "cube.ply: a mesh must have a polygon with area, not none; add polygons"
+
+
+def test_a_file_that_is_missing_or_too_large_is_refused(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(MissingInputError):
+        read_ply(path)
+    monkeypatch.setattr(ply_file_module, "LARGEST_MESH_FILE", 100)
+    for data in (CUBES[0], CUBES[0].replace(b"format ascii", b"format  ascii")):
+        with pytest.raises(InputError, match="at most 100 bytes, not more"):
+            read(path, data)
+    assert len(read(path, CUBES[1]).mesh.node_numbers) == 6
+    monkeypatch.setattr(ply_file_module, "LARGEST_BINARY_MESH_FILE", 200)
+    with pytest.raises(InputError, match="at most 200 bytes, not more"):
+        read(path, CUBES[1])
+
+
+@pytest.mark.parametrize("data", CUBES)
+def test_a_file_cut_short_anywhere_is_refused(path: Path, data: bytes) -> None:
+    text = data.startswith(b"ply\nformat ascii")
+    for length in range(len(data) - text):
+        # In text, the last number may lose a digit.
+        with pytest.raises(InputError):
+            read(path, data[:length])
+
+
+@pytest.mark.parametrize("data", CUBES)
+def test_two_hundred_mutations_are_read_or_refused(path: Path, data: bytes) -> None:
+    for changed in changes(data):
+        assert is_read_or_refused(path, changed)
+
+
+@given(data=st.binary(max_size=60), order=st.sampled_from(["", "<", ">"]))
+def test_any_bytes_after_a_header_are_read_or_refused(
+    data: bytes, order: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "any.ply"
+    header = (
+        cube(order)
+        .partition(b"end_header\n")[0]
+        .replace(b"vertex 8", b"vertex 3")
+        .replace(b"face 6", b"face 1")
+    )
+    assert is_read_or_refused(path, header + b"end_header\n" + data)
+
+
+NONE = Comments({}, {})
+SQUARE = {"x": [0, 1, 1, 0], "y": [0, 0, 1, 1], "z": [0, 0, 0, 0]}
+
+
+def lists(*rows: list[float], dtype: str = "i4") -> Lists:
+    flat = np.array([number for row in rows for number in row], dtype)
+    return Lists(flat, np.array([len(row) for row in rows], np.intp))
+
+
+def rows(name: str, columns: dict[str, Any]) -> Rows:
+    found: dict[str, Column] = {
+        key: each if isinstance(each, Lists) else np.array(each) for key, each in columns.items()
+    }
+    first = next(iter(found.values()), np.empty(0))
+    count = len(first.counts) if isinstance(first, Lists) else len(first)
+    return Rows(count, found, lambda row: f"a.ply, {name} {row}")
+
+
+def read_2(
+    comments: Comments = NONE, vertex: dict[str, Any] = SQUARE, **elements: dict[str, Any]
+) -> tuple[Polygons, list[str]]:
+    tables = {name: rows(name, columns) for name, columns in {"vertex": vertex, **elements}.items()}
+    return ply_polygons(PlyTables(tables), comments, "a.ply", "a")
+
+
+def refusal(elements: dict[str, dict[str, Any]]) -> str:
+    with pytest.raises(InputError) as caught:
+        read_2(NONE, **elements)
+    return str(caught.value)
+
+
+def scalars(polygons: Polygons) -> list[tuple[str, str, list[float]]]:
+    def shown(scalar: MeshScalar) -> list[float]:
+        values: list[float] = np.where(np.isnan(scalar.values), -9, scalar.values).tolist()
+        return values
+
+    return [(each.name, each.of, shown(each)) for each in polygons.scalars]
+
+
+@pytest.mark.parametrize("name", ["vertex_indices", "vertex_index"])
+@pytest.mark.parametrize("dtype", ["u1", ">u4", "i8", "f8"])
+def test_faces_are_polygons(name: str, dtype: str) -> None:
+    polygons, messages = read_2(face={name: lists([0, 1, 2, 3], [2, 1, 0], dtype=dtype)})
+    assert polygons.coordinates.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    assert polygons.corners.tolist() == [0, 1, 2, 3, 2, 1, 0]
+    assert polygons.corner_counts.tolist() == [4, 3]
+    assert (polygons.part_names, polygons.part_numbers.tolist()) == (("a",), [0, 0])
+    assert messages == []
+
+
+def test_strips_are_polygons_where_there_are_no_faces() -> None:
+    strips = {"vertex_indices": lists([0, 1, 3, 2, -1])}
+    polygons, messages = read_2(tristrips=strips)
+    assert polygons.corners.tolist() == [0, 1, 3, 3, 1, 2]
+    assert messages == []
+    polygons, messages = read_2(tristrips=strips, face={"vertex_indices": lists([0, 1, 2])})
+    assert polygons.corners.tolist() == [0, 1, 2]
+    assert messages == ["skipped elements 'tristrips': 1"]
+
+
+def test_other_elements_are_counted() -> None:
+    _, messages = read_2(face={"vertex_indices": lists([0, 1, 2])}, edge={"vertex1": [0, 1]}, none={})
+    assert messages == ["skipped elements 'edge': 2"]
+
+
+def test_other_numbers_are_scalars() -> None:
+    vertex = {
+        **SQUARE,
+        "nx": [1, 1, 1, 1],
+        "red": [9, 9, 9, 9],
+        "stress": [1.5, 2, np.nan, 3],
+        "of": lists([], [], [], []),
+    }
+    face = {"vertex_indices": lists([0, 1, 2]), "quality": np.array([7], "u1"), "stress": [5]}
+    polygons, messages = read_2(vertex=vertex, face=face)
+    assert scalars(polygons) == [
+        ("stress", "node", [1.5, 2, -9, 3]),
+        ("quality", "polygon", [7]),
+        ("stress of polygons", "polygon", [5]),
+    ]
+    assert messages == []
+
+
+def test_infinite_values_become_missing_and_are_counted() -> None:
+    vertex = {**SQUARE, "stress": [np.inf, -np.inf, 1e31, 1e30]}
+    polygons, messages = read_2(vertex=vertex, face={"vertex_indices": lists([0, 1, 2])})
+    assert scalars(polygons) == [("stress", "node", [-9, -9, -9, 1e30])]
+    assert messages == ["scalar 'stress': infinite or larger than 1e30, and so missing: 3"]
+
+
+def test_comments_name_scalars() -> None:
+    face = {"vertex_indices": lists([0, 1, 2]), "value_0": [1.0], "red": [2.0]}
+    polygons, _ = read_2(Comments({}, {"value_0": "von Mises", "red": "red"}), face=face)
+    assert [name for name, _, _ in scalars(polygons)] == ["von Mises", "red"]
+
+
+@pytest.mark.parametrize("name", ["part", "material_index", "group"])
+def test_a_number_of_faces_divides_them_into_parts(name: str) -> None:
+    face = {"vertex_indices": lists([0, 1, 2], [0, 2, 3], [1, 2, 3]), name: np.array([7, -1, 7], "i1")}
+    polygons, _ = read_2(face=face)
+    assert polygons.part_names == (f"{name} -1", f"{name} 7")
+    assert polygons.part_numbers.tolist() == [1, 0, 1]
+    assert polygons.scalars == ()
+
+
+def test_only_the_first_such_number_does() -> None:
+    face = {"vertex_indices": lists([0, 1, 2]), "group": [3], "part": [4]}
+    polygons, _ = read_2(face=face)
+    assert polygons.part_names == ("part 4",)
+    assert scalars(polygons) == [("group", "polygon", [3])]
+
+
+def test_comments_name_parts_and_those_without_polygons_too() -> None:
+    face = {"vertex_indices": lists([0, 1, 2], [0, 2, 3]), "part": [2, 5]}
+    polygons, _ = read_2(Comments({0: "hood", 2: "roof", 3: "roof"}, {}), face=face)
+    assert polygons.part_names == ("hood", "roof", "roof 2", "part 5")
+    assert polygons.part_numbers.tolist() == [1, 3]
+
+
+def test_a_comment_names_the_one_part() -> None:
+    polygons, _ = read_2(Comments({0: "hood"}, {}), face={"vertex_indices": lists([0, 1, 2])})
+    assert polygons.part_names == ("hood",)
+
+
+def test_numbers_that_are_no_parts_are_scalars(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ply_polygons_module, "MOST_UNNAMED_PARTS", 1)
+    corners = lists([0, 1, 2], [0, 2, 3])
+    for values in ([1, 2], [0.5, 0.5], [np.nan, 1], [1e300, 1e300]):
+        polygons, _ = read_2(face={"vertex_indices": corners, "part": values})
+        assert polygons.part_names == ("a",)
+        assert len(polygons.scalars) == 1
+    polygons, _ = read_2(Comments({1: "one", 2: "two"}, {}), face={"vertex_indices": corners, "part": [1, 2]})
+    assert polygons.part_names == ("one", "two")
+
+
+@pytest.mark.parametrize(
+    ("elements", "sentence"),
+    [
+        (
+            {"vertex": {"x": [1], "y": [2]}},
+            "a.ply: an element 'vertex' must have the properties x, y and z, not only x and y; export it with"
+            " coordinates",
+        ),
+        (
+            {"vertex": {}},
+            "a.ply: an element 'vertex' must have the properties x, y and z, not none; export it with"
+            " coordinates",
+        ),
+        (
+            {"vertex": {"x": lists([1]), "y": [2], "z": [3]}},
+            "a.ply: an element 'vertex' must have the properties x, y and z, not only x, y and z; export it"
+            " with coordinates",
+        ),
+        (
+            {"vertex": {**SQUARE, "y": [0, np.nan, -np.inf, 1e31]}},
+            "a.ply, vertex 1: a coordinate must be a finite number of at most 1e30 in size, not nan; correct"
+            " it\n"
+            "a.ply, vertex 2: a coordinate must be a finite number of at most 1e30 in size, not -inf; correct"
+            " it\n"
+            "a.ply, vertex 3: a coordinate must be a finite number of at most 1e30 in size, not 1e+31;"
+            " correct it",
+        ),
+        (
+            {"face": {"quality": [1]}},
+            "a.ply: an element 'face' must have a list 'vertex_indices', not only quality; export it with"
+            " polygons",
+        ),
+        (
+            {"face": {"vertex_indices": [1]}},
+            "a.ply: an element 'face' must have a list 'vertex_indices', not only vertex_indices; export it"
+            " with polygons",
+        ),
+        (
+            {"face": {"vertex_indices": lists([0, 1, 2], [0, 4, -1, 3], [2, 1, -3])}},
+            "a.ply, face 1: a corner must be a node number from 0 to 3, not 4; correct it\n"
+            "a.ply, face 2: a corner must be a node number from 0 to 3, not -3; correct it",
+        ),
+        (
+            {"face": {"vertex_indices": lists([0, 1, 2**64 - 1], dtype="u8")}},
+            "a.ply, face 0: a corner must be a node number from 0 to 3, not 1.84467440737096e+19; correct it",
+        ),
+        (
+            {"face": {"vertex_indices": lists([0, 1.5, np.nan], dtype="f4")}},
+            "a.ply, face 0: a corner must be a node number from 0 to 3, not 1.5; correct it",
+        ),
+        (
+            {"vertex": {"x": [], "y": [], "z": []}, "face": {"vertex_indices": lists([0, 1, 2])}},
+            "a.ply, face 0: a corner must be a node number of a node in the file, which has none, not 0;"
+            " correct it",
+        ),
+        (
+            {"face": {"vertex_indices": lists([0, 1, 2], [0] * 1001)}},
+            "a.ply, face 1: a polygon must have at most 1,000 corners, not 1,001; split it",
+        ),
+        (
+            {"tristrips": {"vertex_indices": lists([0, 1, 2, -2])}},
+            "a.ply, tristrips 0: a corner must be a node number from -1 to 3, not -2; correct it",
+        ),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_refused(elements: dict[str, Any], sentence: str) -> None:
+    assert refusal(elements) == sentence
+
+
+def triangles(lists: list[list[int]]) -> list[list[int]]:
+    numbers = np.array([number for each in lists for number in each], np.intp)
+    counts = np.array([len(each) for each in lists], np.intp)
+    corners, sides = triangles_of_strips(numbers, counts)
+    assert (sides == 3).all()
+    return corners.reshape(len(sides), 3).tolist()
+
+
+def test_every_second_triangle_of_a_strip_is_turned() -> None:
+    assert triangles([[0, 1, 2, 3, 4]]) == [[0, 1, 2], [2, 1, 3], [2, 3, 4]]
+
+
+def test_a_strip_ends_at_minus_one_and_where_its_list_ends() -> None:
+    assert triangles([[0, 1, 2, -1, 3, 4, 5], [], [6, 7], [8, 9, 10]]) == [[0, 1, 2], [3, 4, 5], [8, 9, 10]]
+
+
+def test_triangles_that_only_lead_on_are_left_out() -> None:
+    assert triangles([[0, 1, 2, 2, 3, 4]]) == [[0, 1, 2], [3, 2, 4]]
+
+
+@given(lists=st.lists(st.lists(st.integers(-1, 5), max_size=12), max_size=4))
+def test_triangles_are_those_of_one_strip_after_the_other(lists: list[list[int]]) -> None:
+    expected = []
+    for each in lists:
+        strip: list[int] = []
+        for number in [*each, -1]:
+            if number >= 0:
+                strip.append(number)
+                continue
+            for at in range(len(strip) - 2):
+                a, b, c = strip[at : at + 3]
+                if len({a, b, c}) == 3:
+                    expected.append([b, a, c] if at % 2 else [a, b, c])
+            strip = []
+    assert triangles(lists) == expected
+
+
+COORDINATES = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.1, 1 / 3, 1e-300], [7, 8, 9]])
+POLYGONS = ([0, 1, 2, 3], [0, 1, 2, 2], [1, 2, 4, 4], [2, 3, 4, 1])
+names = st.text(st.characters(categories=("L", "N", "P")), min_size=1, max_size=12)
+
+
+@st.composite
+def meshes(draw: st.DrawFn) -> Mesh:
+    polygons = draw(st.lists(st.sampled_from(POLYGONS), min_size=1, max_size=8))
+    part_names = draw(st.lists(names, min_size=1, max_size=4, unique=True))
+    parts = draw(
+        st.lists(st.integers(0, len(part_names) - 1), min_size=len(polygons), max_size=len(polygons))
+    )
+    scalars = []
+    special = st.sampled_from(["x", "red", "part", "value_0", "von Mises", "stress", "vertex_indices"])
+    for name in draw(st.lists(names | special, max_size=4, unique=True)):
+        of = draw(st.sampled_from(["node", "polygon"]))
+        count = len(COORDINATES) if of == "node" else len(polygons)
+        number = st.floats(-1e30, 1e30) | st.just(np.nan)
+        scalars.append(MeshScalar(name, np.array(draw(st.lists(number, min_size=count, max_size=count))), of))
+    return Mesh(COORDINATES, np.array(polygons), np.array(parts), tuple(part_names), scalars=tuple(scalars))
+
+
+@given(mesh=meshes(), at_once=st.sampled_from([1, 3, 1 << 16]))
+def test_what_is_written_reads_back_equal(
+    mesh: Mesh, at_once: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "written.ply"
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(ply_bytes_module, "ROWS_AT_ONCE", at_once)
+        path.write_bytes(ply_bytes(mesh))
+    report = read_ply(path)
+    assert report.repairs == ()
+    read = report.mesh
+    for name in ("coordinates", "node_numbers", "part_numbers"):
+        assert np.array_equal(getattr(read, name), getattr(mesh, name))
+    assert read.part_names == mesh.part_names
+    found = {each.name: each for each in read.scalars}
+    assert set(found) == {each.name for each in mesh.scalars}
+    for each in mesh.scalars:
+        assert found[each.name].of == each.of
+        assert np.array_equal(found[each.name].values, each.values, equal_nan=True)
+
+
+def test_a_mesh_of_one_part_is_written_as_other_programs_do(tmp_path: Path) -> None:
+    mesh = Mesh(COORDINATES[:3], np.array([[0, 1, 2]]), part_names=("hood\n",))
+    header, _, data = ply_bytes(mesh).partition(b"end_header\n")
+    assert header.decode().splitlines() == [
+        "ply",
+        "format binary_little_endian 1.0",
+        "comment written by autocolor",
+        "comment part 0 hood?",
+        "element vertex 3",
+        "property double x",
+        "property double y",
+        "property double z",
+        "element face 1",
+        "property list uchar int vertex_indices",
+    ]
+    assert data == COORDINATES[:3].astype("<f8").tobytes() + b"\3" + np.array([0, 1, 2], "<i4").tobytes()

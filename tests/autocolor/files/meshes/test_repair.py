@@ -1,0 +1,212 @@
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.errors import InputError
+from autocolor.files.meshes.repair import (
+    LONGEST_NAME,
+    MeshReport,
+    Placement,
+    Polygons,
+    _have_area,
+    different,
+    name_of,
+    placed,
+    printable_name,
+    repaired,
+)
+from autocolor.scene.scalar import MeshScalar
+from tests.autocolor.strategies import vectors
+
+SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [0, 0, 1]]
+
+
+def mesh_of(*polygons: list[int], coordinates: Any = SQUARE, up: str = "z") -> MeshReport:
+    return repaired(
+        Polygons(
+            np.array(coordinates, np.float64),
+            np.array([corner for polygon in polygons for corner in polygon], np.intp),
+            np.array([len(polygon) for polygon in polygons], np.intp),
+            np.arange(len(polygons)),
+            tuple(f"part {number}" for number in range(len(polygons))),
+        ),
+        "a.obj",
+        Placement(up),
+    )
+
+
+def test_a_sound_mesh_is_left_alone() -> None:
+    report = mesh_of([0, 1, 2, 3], [0, 1, 2])
+    assert report.repairs == ()
+    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 3], [0, 1, 2, 2]]
+
+
+@pytest.mark.parametrize("quad", [[0, 0, 1, 2], [0, 1, 1, 2], [0, 1, 2, 2], [0, 1, 2, 0]])
+def test_a_repeated_corner_makes_a_quad_a_triangle(quad: list[int]) -> None:
+    report = mesh_of(quad)
+    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 2]]
+    assert report.repairs == ("a.obj: 1 polygon with repeated corners was repaired",)
+
+
+@pytest.mark.parametrize("polygon", [[], [0], [0, 1], [0, 0, 1], [0, 1, 0], [0, 0, 0, 0], [0, 1, 1, 0]])
+def test_fewer_than_three_different_corners_are_dropped(polygon: list[int]) -> None:
+    report = mesh_of([0, 1, 2], polygon, [1, 2, 3], polygon)
+    assert report.mesh.node_numbers.tolist() == [[0, 1, 2, 2], [1, 2, 3, 3]]
+    assert report.mesh.part_numbers.tolist() == [0, 2]
+    assert report.repairs == ("a.obj: 2 polygons with fewer than three different corners were dropped",)
+
+
+@pytest.mark.parametrize("polygon", [[0, 1, 4], [0, 1, 0, 3], [0, 1, 4, 1], [0, 4, 1, 0, 4, 1]])
+def test_polygons_without_area_are_dropped(polygon: list[int]) -> None:
+    report = mesh_of([0, 1, 2], polygon)
+    assert len(report.mesh.node_numbers) == 1
+    assert report.repairs == ("a.obj: 1 polygon without area was dropped",)
+
+
+def test_nodes_at_one_place_make_no_area() -> None:
+    report = mesh_of([0, 1, 2], [3, 4, 5], coordinates=[*SQUARE[:3], [7, 7, 7], [7, 7, 7], [8, 8, 8]])
+    assert report.repairs == ("a.obj: 1 polygon without area was dropped",)
+
+
+def test_a_bow_tie_whose_halves_cancel_is_kept() -> None:
+    report = mesh_of([0, 2, 1, 3])
+    assert report.mesh.node_numbers.tolist() == [[0, 2, 1, 3]]
+    assert report.repairs == ()
+
+
+def test_a_polygon_of_more_corners_is_split_and_counted() -> None:
+    report = mesh_of([0, 4, 2, 3, 5])
+    assert len(report.mesh.node_numbers) == 2
+    assert report.repairs == ("a.obj: 1 polygon with more than four corners was split",)
+
+
+def test_unused_nodes_are_kept() -> None:
+    assert len(mesh_of([0, 1, 2]).mesh.coordinates) == len(SQUARE)
+
+
+def test_a_mesh_without_polygons_left_is_refused() -> None:
+    for polygons in ([], [[0, 1, 4]], [[0, 1]]):
+        with pytest.raises(InputError) as caught:
+            mesh_of(*polygons)
+        assert str(caught.value) == "a.obj: a mesh must have a polygon with area, not none; add polygons"
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-20, 1e20, 1e30])
+def test_size_does_not_matter(scale: float) -> None:
+    assert mesh_of([0, 1, 2, 3], coordinates=np.array(SQUARE[:4]) * scale).repairs == ()
+
+
+@given(st.lists(st.lists(st.integers(0, 5), max_size=9), max_size=6))
+def test_whatever_is_left_has_area_and_normals(polygons: list[list[int]]) -> None:
+    try:
+        mesh = mesh_of(*polygons).mesh
+    except InputError:
+        return
+    assert np.isfinite(mesh.normals.vectors).all()
+    for row in mesh.node_numbers:
+        assert len(set(row.tolist())) >= 3
+
+
+def flat(corners: list[list[float]]) -> bool:
+    """Whether a triangle has no area, worked out with fractions."""
+    a, b, c = ([Fraction(number) for number in corner] for corner in corners)
+    one = [q - p for p, q in zip(a, b, strict=True)]
+    other = [q - p for p, q in zip(a, c, strict=True)]
+    return all(one[i] * other[j] == one[j] * other[i] for i, j in ((0, 1), (1, 2), (2, 0)))
+
+
+@given(
+    quads=st.lists(
+        st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=4, max_size=4), min_size=1, max_size=30
+    ),
+    scale=st.sampled_from([1.0, 2.0**-100, 2.0**-400, 2.0**-530, 2.0**90]),
+    far=st.sampled_from([0.0, 1e3]),
+)
+def test_a_polygon_has_area_at_any_size_unless_both_its_diagonals_make_flat_triangles(
+    quads: list[list[tuple[int, int, int]]], scale: float, far: float
+) -> None:
+    coordinates = (np.array(quads, np.float64).reshape(-1, 3) + far) * scale
+    numbers = np.arange(len(coordinates)).reshape(-1, 4)
+    # Half of them are triangles.
+    numbers[::2, 3] = numbers[::2, 2]
+    expected = []
+    for quad in coordinates[numbers].tolist():
+        a, b, c, d = quad
+        expected.append(
+            not (flat([a, b, c]) and flat([a, c, d])) and not (flat([a, b, d]) and flat([b, c, d]))
+        )
+    assert _have_area(coordinates, numbers).tolist() == expected
+
+
+def test_the_up_axis_becomes_z_and_windings_stay() -> None:
+    axes = np.eye(3)
+    assert placed(axes, Placement("z")).tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    assert placed(axes, Placement("y")).tolist() == [[1, 0, 0], [0, 0, 1], [0, -1, 0]]
+    assert placed(axes, Placement("x")).tolist() == [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
+    for up in "xyz":
+        assert np.linalg.det(placed(axes, Placement(up))) == 1
+
+
+def test_turning_makes_no_negative_zero() -> None:
+    assert not np.signbit(placed(np.zeros((1, 3)), Placement("y"))).any()
+
+
+@pytest.mark.parametrize("up", ["x", "y", "z"])
+@given(points=st.lists(vectors(), max_size=9))
+def test_the_coordinate_on_the_up_axis_becomes_the_height(up: str, points: list[tuple[float, ...]]) -> None:
+    coordinates = np.array(points).reshape(-1, 3)
+    turned = placed(coordinates, Placement(up))
+    assert turned[:, 2].tolist() == coordinates[:, "xyz".index(up)].tolist()
+    assert (np.sort(np.abs(turned), axis=1) == np.sort(np.abs(coordinates), axis=1)).all()
+
+
+@pytest.mark.parametrize("up", ["x", "y", "z"])
+def test_the_coordinates_that_were_given_stay_as_they_are(up: str) -> None:
+    coordinates = np.arange(6.0).reshape(2, 3)
+    placed(coordinates, Placement(up))
+    assert coordinates.tolist() == [[0, 1, 2], [3, 4, 5]]
+
+
+def test_coordinates_are_scaled_after_they_are_turned() -> None:
+    assert placed(np.array([[1.0, 2.0, 3.0]]), Placement("y", 0.5)).tolist() == [[0.5, -1.5, 1.0]]
+
+
+def test_a_piece_of_a_polygon_has_the_scalars_of_the_whole_and_nodes_keep_theirs() -> None:
+    hexagon = [[2, 0, 0], [1, 2, 0], [-1, 2, 0], [-2, 0, 0], [-1, -2, 0], [1, -2, 0]]
+    polygons = Polygons(
+        np.array(hexagon, np.float64),
+        np.array([0, 0, 1, 0, 1, 2, 3, 4, 5, 0, 1, 2]),
+        np.array([3, 6, 3]),
+        np.zeros(3, np.intp),
+        ("all",),
+        (MeshScalar("stress", np.arange(6.0)), MeshScalar("error", np.array([7.0, 8.0, 9.0]), "polygon")),
+    )
+    mesh = repaired(polygons, "a.ply").mesh
+    stress, error = mesh.scalars
+    assert stress.values.tolist() == [0, 1, 2, 3, 4, 5]
+    assert error.values.tolist() == [8, 8, 9]
+    assert len(mesh.node_numbers) == 3
+
+
+def test_names_that_repeat_become_different() -> None:
+    assert different(["a", "a", "b", "a", "a 2"]) == ("a", "a 2", "b", "a 3", "a 2 2")
+    assert different(["q", "q", "q"], " of polygons") == ("q", "q of polygons", "q of polygons 2")
+
+
+def test_a_name_is_printable_and_not_too_long() -> None:
+    assert printable_name("  b\0" + "c" * 300) == "b?" + "c" * (LONGEST_NAME - 2)
+    assert printable_name(" \t") == ""
+
+
+def test_bytes_that_are_not_utf_8_are_latin_1() -> None:
+    assert (name_of(" Kühler ".encode()), name_of("Kühler".encode("latin-1"))) == ("Kühler", "Kühler")
+
+
+def test_a_name_that_is_cut_within_a_letter_is_still_utf_8() -> None:
+    assert name_of(("x" + "ü" * 1000).encode()) == "x" + "ü" * (LONGEST_NAME - 1)

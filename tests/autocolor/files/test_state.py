@@ -1,0 +1,239 @@
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import OutputError, WriteError
+from autocolor.files import state as recent
+from autocolor.files.state import (
+    COLORS,
+    FILES,
+    LOCK,
+    LONGEST_PATH,
+    MOST_COLORS,
+    MOST_FILES,
+    lock_file,
+    note_color,
+    note_file,
+    recent_colors,
+    recent_files,
+    state_folder,
+)
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_at_first_there_is_nothing_and_no_folder_is_made(state: Path) -> None:
+    assert recent_colors() == ()
+    assert recent_files() == ()
+    assert not state.exists()
+
+
+def test_what_was_used_last_stands_first_and_only_once(tmp_path: Path) -> None:
+    for color in ((176, 16, 32), (255, 255, 255), (0, 0, 255), (176, 16, 32)):
+        note_color(color)
+    assert recent_colors() == ((176, 16, 32), (0, 0, 255), (255, 255, 255))
+    for name in ("one", "two", "one"):
+        note_file(tmp_path / name)
+    assert recent_files() == (tmp_path / "one", tmp_path / "two")
+
+
+def test_lists_are_short() -> None:
+    for number in range(20):
+        note_color((number, 0, 0))
+        note_file(f"/scenes/{number}")
+    assert recent_colors() == tuple((19 - number, 0, 0) for number in range(MOST_COLORS))
+    assert [path.name for path in recent_files()] == [str(19 - number) for number in range(MOST_FILES)]
+
+
+def test_a_path_is_kept_whole_from_any_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    names = ["a b\n.toml", "\N{SNOWMAN}\udcff.obj", "x" * 200]
+    for name in names:
+        note_file(name)
+    monkeypatch.chdir("/")
+    assert recent_files() == tuple(tmp_path / name for name in reversed(names))
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"\xff\xfe",
+        b"{",
+        b"3",
+        b'{"a": 1}',
+        b"[" * 100_000,
+        b"[1e999, null, true, [], {}]",
+        b'["blue", "#12345", "#1234567", "#12345\xc3\xbc", "relative", "/a\\u0000b", ""]',
+        b"[" + b"9" * 5000 + b"]",
+        b" " * (1 << 20),
+    ],
+)
+def test_a_damaged_list_is_an_empty_one_and_heals(state: Path, data: bytes) -> None:
+    state.mkdir(parents=True)
+    for name in (COLORS, FILES):
+        (state / name).write_bytes(data)
+    assert recent_colors() == ()
+    assert recent_files() == ()
+    note_color((16, 32, 48))
+    note_file("/scene")
+    assert recent_colors() == ((16, 32, 48),)
+    assert recent_files() == (Path("/scene"),)
+
+
+@given(data=st.binary(max_size=40))
+def test_no_bytes_are_an_error(data: bytes) -> None:
+    folder = state_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in (COLORS, FILES):
+        (folder / name).write_bytes(data)
+    assert isinstance(recent_colors(), tuple)
+    assert isinstance(recent_files(), tuple)
+
+
+def test_right_entries_of_a_damaged_list_are_kept(state: Path) -> None:
+    state.mkdir(parents=True)
+    (state / COLORS).write_text('["#000001", 3, "#000002", "#000001", "red"]', "utf-8")
+    assert recent_colors() == ((0, 0, 1), (0, 0, 2))
+
+
+def test_where_nothing_can_be_written_nothing_is_kept(state: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    state.parent.mkdir(parents=True)
+    state.write_text("a file where the folder should be", "utf-8")
+    note_color((255, 0, 0))
+    assert recent_colors() == ()
+    state.unlink()
+
+    def full(path: Path, data: bytes, *, overwrite: bool) -> None:
+        raise WriteError("the disk is full")
+
+    note_color((255, 0, 0))
+    monkeypatch.setattr(recent, "write_atomically", full)
+    note_color((0, 0, 255))
+    assert recent_colors() == ((255, 0, 0),)
+    # A folder where a list should be.
+    (state / FILES).mkdir()
+    note_file("/scene")
+    assert recent_files() == ()
+
+
+def test_without_a_home_there_are_no_lists(monkeypatch: pytest.MonkeyPatch) -> None:
+    def home() -> Path:
+        raise RuntimeError
+
+    monkeypatch.delenv("XDG_STATE_HOME")
+    monkeypatch.setattr(Path, "home", home)
+    note_color((255, 0, 0))
+    assert recent_colors() == ()
+
+
+def test_what_no_list_can_hold_is_not_kept() -> None:
+    note_color((300, 0, 0))
+    note_file("a\0b")
+    note_file("/" + "a" * LONGEST_PATH)
+    assert recent_colors() == ()
+    assert recent_files() == ()
+
+
+def test_the_longest_paths_are_kept() -> None:
+    for number in range(MOST_FILES):
+        note_file("/" + "\N{SNOWMAN}" * (LONGEST_PATH - 2) + str(number))
+    assert len(recent_files()) == MOST_FILES
+
+
+def test_a_program_that_hangs_holds_no_other_up(state: Path) -> None:
+    state.mkdir(parents=True)
+    descriptor = lock_file(state / LOCK)
+    assert descriptor is not None
+    began = time.monotonic()
+    note_color((255, 0, 0))
+    assert time.monotonic() - began < 2
+    os.close(descriptor)
+    assert recent_colors() == ((255, 0, 0),)
+
+
+def test_two_programs_at_once_lose_nothing() -> None:
+    code = (
+        "import sys; from autocolor.files.state import note_color\n"
+        "for number in range(6): note_color((int(sys.argv[1]), number, 0))"
+    )
+    programs = [subprocess.Popen([sys.executable, "-c", code, each], cwd=ROOT) for each in ("1", "2")]
+    assert [program.wait(timeout=60) for program in programs] == [0, 0]
+    assert sorted(recent_colors()) == [(each, number, 0) for each in (1, 2) for number in range(6)]
+
+
+@pytest.mark.parametrize(
+    ("platform", "variables", "folder"),
+    [
+        ("linux", {}, "/home/ann/.local/state/autocolor"),
+        ("linux", {"XDG_STATE_HOME": "/var/state"}, "/var/state/autocolor"),
+        ("linux", {"XDG_STATE_HOME": "state"}, "/home/ann/.local/state/autocolor"),
+        ("darwin", {}, "/home/ann/Library/Application Support/autocolor"),
+        ("win32", {"LOCALAPPDATA": "/local", "XDG_STATE_HOME": "/var/state"}, "/local/autocolor"),
+        ("win32", {}, "/home/ann/AppData/Local/autocolor"),
+    ],
+)
+def test_each_system_has_its_place_for_state(
+    monkeypatch: pytest.MonkeyPatch, platform: str, variables: dict[str, str], folder: str
+) -> None:
+    for name in ("XDG_STATE_HOME", "LOCALAPPDATA"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in {"HOME": "/home/ann", **variables}.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setattr(sys, "platform", platform)
+    assert state_folder() == Path(folder)
+
+
+def test_without_a_home_the_variable_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def home() -> Path:
+        raise RuntimeError
+
+    monkeypatch.delenv("XDG_STATE_HOME")
+    monkeypatch.setattr(Path, "home", home)
+    with pytest.raises(OutputError) as refusal:
+        state_folder()
+    assert str(refusal.value) == (
+        "the state folder must be in a home folder, and there is none; set XDG_STATE_HOME"
+    )
+
+
+def test_one_has_the_lock_until_it_is_closed(tmp_path: Path) -> None:
+    first = lock_file(tmp_path / "lock")
+    assert first is not None
+    assert lock_file(tmp_path / "lock") is None
+    os.close(first)
+    second = lock_file(tmp_path / "lock")
+    assert second is not None
+    os.close(second)
+
+
+def test_a_program_that_is_killed_has_no_lock(tmp_path: Path) -> None:
+    code = (
+        "import sys; from pathlib import Path; from autocolor.files.state import lock_file;"
+        "lock_file(Path(sys.argv[1])); print('locked', flush=True); sys.stdin.read()"
+    )
+    path = tmp_path / "lock"
+    with subprocess.Popen(
+        [sys.executable, "-c", code, str(path)], cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline().strip() == b"locked"
+        assert lock_file(path) is None
+        process.kill()
+        process.wait()
+        descriptor = lock_file(path)
+        assert descriptor is not None
+        os.close(descriptor)
+
+
+def test_a_lock_in_no_folder_is_an_error(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        lock_file(tmp_path / "none" / "lock")

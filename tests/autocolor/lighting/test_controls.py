@@ -1,0 +1,728 @@
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Scene, View, render
+from autocolor.arrays import Booleans, Floats, Singles
+from autocolor.lighting import controls as light_controls
+from autocolor.lighting.controls import (
+    CONTROLS,
+    FARTHEST_PLANE,
+    Concentration,
+    Cone,
+    Falloff,
+    FlapSides,
+    HalfSpaces,
+    LightControl,
+    LinkedParts,
+    LitPoints,
+    SoftCone,
+    SoftSides,
+    controls_of,
+    flap_sides,
+    flaps_of,
+    half_space_sides,
+    is_inside,
+    side_of,
+)
+from autocolor.scene.following import light_frame
+from autocolor.scene.lights import Links
+from autocolor.visibility.visible_points import POINT, VisiblePoints
+from autocolor.visibility.visible_surfaces import visible_surfaces
+from tests.autocolor.lighting.lit_points import lit_at, wall_points
+from tests.autocolor.meshes import sphere, wall, wall_scene
+from tests.autocolor.reference import dot, soft, unit
+from tests.autocolor.strategies import Vector, directions, lights, numbers, scenes, some_of, vectors, views
+
+
+def test_a_point_source_without_flaps_has_no_controls() -> None:
+    for light in (Light("light", (0, -1, 0)), Light("light", (0, -1, 0), direction=(0, 1, 0))):
+        assert controls_of(light, wall_points()) == ()
+
+
+@given(lights())
+def test_a_light_has_the_controls_that_its_fields_ask_for(light: Light) -> None:
+    used = {type(control) for control in controls_of(light, wall_points())}
+    limits = [flap for flap in (light.flaps.x, light.flaps.y, light.flaps.z) if flap is not None and flap.on]
+    assert (FlapSides in used) == bool(limits)
+    planes = [half_space for half_space in light.half_spaces if half_space.on]
+    assert (HalfSpaces in used) == bool(planes)
+    widths = [flap.edge_width for flap in limits] + [plane.edge_width for plane in planes]
+    assert (SoftSides in used) == any(width > 0 for width in widths)
+    assert (Cone in used) == (light.cone_angle is not None)
+    is_soft = light.inner_angle is not None and light.inner_angle != light.cone_angle
+    assert (SoftCone in used) == is_soft
+    assert (Concentration in used) == (light.concentration > 0)
+
+
+def test_a_control_is_added_by_one_registered_class(monkeypatch: pytest.MonkeyPatch) -> None:
+
+    class Ramp(LightControl):
+        """Half the light left of the middle, and from cos(L) = 0.9 inward in proportion to it."""
+
+        directed = True
+        least_cosine = 0.9
+
+        def __init__(self, points: VisiblePoints) -> None:
+            self.points = points
+
+        @classmethod
+        def of(cls, light: Light, points: VisiblePoints) -> Ramp:
+            return cls(points)
+
+        def lit_points(self, rows: Singles, pixels: slice) -> Booleans:
+            return np.asarray(rows[POINT][0] > 0)
+
+        def factor(self, lit: LitPoints, out: Singles) -> Singles:
+            assert lit.cos_light is not None
+            return np.divide(lit.cos_light, 2, out=out)
+
+    monkeypatch.setattr(light_controls, "CONTROLS", [*CONTROLS, Ramp])
+
+    light = Light("light", (0.0, -1.0, 0.0), direction=(0, 1, 0), concentration=3)
+    controlled = render(wall_scene(lights=[light]), 40, 40)
+    monkeypatch.undo()
+    free = render(wall_scene(lights=[light.replace(concentration=0)]), 40, 40)
+    points = visible_surfaces(wall(), wall_scene().view, (1,), 40, 40)
+    x, _, z = points.world_points.T
+    cos_light = np.zeros(1600)
+    cos_light[points.pixels] = 1 / np.sqrt(1 + x * x + z * z)
+    right = np.zeros(1600, np.bool_)
+    right[points.pixels] = x > 0
+    left_of_it = np.where((cos_light >= 0.9) & right, cos_light**3 * cos_light / 2, 0)
+    assert controlled.intensity.ravel() == pytest.approx(left_of_it * free.intensity.ravel(), rel=1e-4)
+
+
+@pytest.mark.parametrize("is_aimed", [True, False])
+@pytest.mark.parametrize("few", [True, False])
+def test_a_factor_may_depend_on_distance_and_place_of_any_light(
+    monkeypatch: pytest.MonkeyPatch, is_aimed: bool, few: bool
+) -> None:
+
+    class Falloff(LightControl):
+        """Less with the distance, and less to the right."""
+
+        def __init__(self, points: VisiblePoints) -> None:
+            self.points = points
+
+        @classmethod
+        def of(cls, light: Light, points: VisiblePoints) -> Falloff:
+            return cls(points)
+
+        def lit_points(self, rows: Singles, pixels: slice) -> Booleans | None:
+            return np.asarray(rows[POINT][1] > 0.8 * rows[POINT][1].max()) if few else None
+
+        def factor(self, lit: LitPoints, out: Singles) -> Singles:
+            size = np.float32(self.points.radius)
+            out[:] = np.exp(-lit.distance() - lit.positions()[0] / size)
+            return out
+
+    monkeypatch.setattr(light_controls, "CONTROLS", [*CONTROLS, Falloff])
+
+    given = {"direction": (0, 1, 0), "concentration": 2.0} if is_aimed else {}
+    light = Light("light", (0.0, -1.0, 0.0), **given)  # type: ignore[arg-type]
+    scene = wall_scene(lights=[light])
+    controlled = render(scene, 40, 40)
+    monkeypatch.undo()
+    free = render(scene, 40, 40)
+    points = visible_surfaces(wall(), scene.view, (1,), 40, 40)
+    away = np.linalg.norm(points.world_points - np.array(light.position), axis=1) / points.unit
+    expected = np.exp(-away - points.rows[POINT][0] / points.radius) * free.intensity.ravel()[points.pixels]
+    is_lit = points.rows[POINT][1] > 0.8 * points.rows[POINT][1].max() if few else True
+    intensities = controlled.intensity.ravel()[points.pixels]
+    assert intensities == pytest.approx(np.where(is_lit, expected, 0), rel=1e-4)
+
+
+EPSILON = float(np.finfo(np.float32).eps)
+
+
+@given(directions, numbers(-2, 2))
+def test_the_row_of_a_side_gives_the_distance_from_its_plane(direction: Vector, least: float) -> None:
+    points = wall_points()
+    x, y, z = unit(direction)
+    side = side_of(points, (x, y, z), least, 0.5)
+    distance = (side.row[:3] @ points.rows[POINT] + side.row[3]) * points.unit
+    expected = [dot((x, y, z), point) - least for point in points.world_points.tolist()]
+    assert distance == pytest.approx(expected, abs=1e-6)
+    assert side.edge_width * points.unit == 0.5
+
+
+def test_a_sharp_side_has_room_for_the_rounding_of_points_and_a_soft_one_has_none() -> None:
+    points = wall_points()
+    sharp, soft = (side_of(points, (0.0, 1.0, 0.0), 0.0, width) for width in (0.0, 0.1))
+    assert sharp.row[3] - soft.row[3] == pytest.approx(4 * EPSILON * points.radius)
+    assert is_inside(sharp, points.rows).all()
+
+
+@pytest.mark.parametrize(("least", "inside"), [(1e300, False), (-1e300, True), (1e36, False)])
+def test_a_plane_may_be_farther_than_a_single_can_hold(least: float, inside: bool) -> None:
+    points = wall_points()
+    side = side_of(points, (1.0, 0.0, 0.0), least, 0.0)
+    assert abs(side.row[3]) == pytest.approx(FARTHEST_PLANE)
+    assert is_inside(side, points.rows).tolist() == [inside] * len(points.pixels)
+
+
+@given(views(), numbers(-1, 1), numbers(0, 1))
+def test_sharp_flaps_have_the_sides_they_always_had(view: View, least: float, extent: float) -> None:
+    points = visible_surfaces(wall(), view, (1,), 12, 12)
+    light = Light("light", (0, -1, 0), flaps=Flaps(*[Flap(least, least + extent)] * 3))
+    rows = []
+    for axis in range(3):
+        coordinate = points.world_coordinate(axis)
+        for sign, limit in ((1.0, least), (-1.0, least + extent)):
+            in_units = sign * limit / points.unit - 4 * EPSILON * points.radius
+            rows.append(sign * coordinate - np.array([0, 0, 0, in_units]))
+    control = FlapSides.of(light, points)
+    assert control is not None
+    assert np.array_equal(control.sides, np.array(rows, np.float32))
+    assert len(flap_sides(light, points)) == 6
+
+
+@given(lights(), st.lists(st.tuples(*[numbers(-1, 1)] * 3), min_size=1, max_size=20))
+def test_a_point_is_inside_a_side_of_a_flap_up_to_its_coordinate(
+    light: Light, world: list[tuple[float, float, float]]
+) -> None:
+    points = wall_points()
+    rows = np.array([points.camera_point(point) for point in world], np.float32).T
+    sides = flap_sides(light, points)
+    for number, (axis, flap) in enumerate(flaps_of(light).items()):
+        for end in ("minimum", "maximum"):
+            assert ((axis, end) in sides) == (flap is not None and flap.on)
+            if flap is None or not flap.on:
+                continue
+            inside = is_inside(sides[axis, end], rows)
+            for point, value in zip(world, inside.tolist(), strict=True):
+                beyond = point[number] - flap.minimum if end == "minimum" else flap.maximum - point[number]
+                assert value == (beyond >= 0) or abs(beyond) < 1e-5
+
+
+@given(numbers(-1, 1), numbers(0, 1), st.sampled_from("xz"))
+def test_a_point_is_within_a_flap_up_to_both_its_ends(least: float, extent: float, axis: str) -> None:
+    points = wall_points()
+    flap = Flap(least, least + extent)
+    (control,) = controls_of(Light("light", (0, -1, 0), flaps=Flaps(**{axis: flap})), points)
+    lit = control.lit_points(points.rows, slice(None))
+    assert lit is not None
+    coordinate = points.world_points[:, "xyz".index(axis)]
+    clear = np.minimum(np.abs(coordinate - flap.minimum), np.abs(coordinate - flap.maximum)) > 1e-5
+    expected = (flap.minimum <= coordinate) & (coordinate <= flap.maximum)
+    assert lit[clear].tolist() == expected[clear].tolist()
+
+
+def test_flaps_that_are_off_or_without_limits_are_no_control() -> None:
+    for flaps in (Flaps(x=Flap(0, 1, on=False)), Flaps(x=Flap(), y=Flap())):
+        assert controls_of(Light("light", (0, -1, 0), flaps=flaps), wall_points()) == ()
+
+
+VIEW = View((1.0, -4.0, 1.0), target=(0.0, 0.0, 0.0))
+
+
+def lit_of(light: Light) -> list[bool]:
+    points = wall_points()
+    (control,) = controls_of(light, points)
+    lit = control.lit_points(points.rows, slice(None))
+    assert lit is not None
+    return lit.tolist()  # type: ignore[no-any-return]
+
+
+@given(vectors(), directions)
+def test_a_point_is_lit_on_the_side_to_which_the_direction_leads(point: Vector, direction: Vector) -> None:
+    lit = np.array(lit_of(Light("light", (0, -1, 0), half_spaces=(HalfSpace("left", point, direction),))))
+    distance = (wall_points().world_points - point) @ direction / np.linalg.norm(direction)
+    clear = np.abs(distance) > 1e-5
+    assert lit[clear].tolist() == (distance[clear] > 0).tolist()
+
+
+@given(directions, numbers(1e-30, 1e30))
+def test_the_length_of_the_direction_does_not_matter(direction: Vector, length: float) -> None:
+    x, y, z = direction
+    longer = (x * length, y * length, z * length)
+    sides = [
+        half_space_sides(
+            Light("light", (0, 0, 0), half_spaces=(HalfSpace("left", (0.1, 0.2, 0), each),)), wall_points()
+        )["left"].row
+        for each in (direction, longer)
+    ]
+    assert sides[1] == pytest.approx(sides[0], rel=1e-12, abs=1e-12)
+
+
+@given(
+    views(), st.sampled_from("xyz"), st.booleans(), numbers(-1, 1), vectors(), st.just(0.0) | numbers(0, 1)
+)
+def test_a_half_space_along_an_axis_is_a_flap_bit_for_bit(
+    view: View, axis: str, is_minimum: bool, limit: float, point: Vector, edge_width: float
+) -> None:
+    number = "xyz".index(axis)
+    flap = Flap(edge_width=edge_width)
+    flap = flap.replace(minimum=limit) if is_minimum else flap.replace(maximum=limit)
+    with_flap = Light("light", (0.2, -1, 0.1), flaps=Flaps(**{axis: flap}))
+    x, y, z = (limit if row == number else other for row, other in enumerate(point))
+    direction = [0.0, 0.0, 0.0]
+    direction[number] = 3.0 if is_minimum else -3.0
+    plane = HalfSpace("end", (x, y, z), direction, edge_width=edge_width)  # type: ignore[arg-type]
+    half_space = Light("light", (0.2, -1, 0.1), half_spaces=(plane,))
+    one, other = (
+        render(wall_scene(sphere(12, 8), view=view, lights=[light]), 12, 16)
+        for light in (with_flap, half_space)
+    )
+    assert one.intensity.tobytes() == other.intensity.tobytes()
+
+
+@pytest.mark.parametrize("direction", [(0, -1, 0), (0, 1, 0)])
+def test_a_wall_that_lies_on_the_plane_is_lit_and_at_a_soft_edge_it_is_dark(direction: Vector) -> None:
+    view = View((1.0, -7.0, 2.0), target=(0.0, 0.0, 0.0))
+    free = Light("light", (0.3, -2.0, 0.1))
+    plane = HalfSpace("wall", (5.0, 0.0, 3.0), direction)
+    sharp, soft, whole = (
+        render(wall_scene(view=view, lights=[free.replace(half_spaces=planes)]), 30, 40).intensity
+        for planes in ([plane], [plane.replace(edge_width=1e-3)], [])
+    )
+    assert sharp.tobytes() == whole.tobytes()
+    assert soft.max() < 1e-5 * whole.max()
+
+
+def test_of_several_half_spaces_the_common_part_is_lit() -> None:
+    triangle = (
+        HalfSpace("a", (-0.5, 0, 0), (1, 0, 0.5)),
+        HalfSpace("b", (0.5, 0, 0), (-1, 0, 0.5)),
+        HalfSpace("c", (0, 0, 0.6), (0, 0, -1)),
+    )
+    light = Light("light", (0, -1, 0))
+    each = [np.array(lit_of(light.replace(half_spaces=(plane,)))) for plane in triangle]
+    together = lit_of(light.replace(half_spaces=triangle))
+    assert together == (each[0] & each[1] & each[2]).tolist()
+    assert 0 < sum(together) < min(some.sum() for some in each)
+
+
+def test_half_spaces_that_are_off_are_no_control() -> None:
+    off = (HalfSpace("left", (0, 0, 0), (1, 0, 0), edge_width=0.2, on=False),)
+    assert controls_of(Light("light", (0, -1, 0), half_spaces=off), wall_points()) == ()
+
+
+@given(vectors(), directions, vectors(numbers(-0.5, 0.5)), directions)
+def test_what_a_light_carries_is_in_its_own_frame(
+    position: Vector, toward: Vector, point: Vector, direction: Vector
+) -> None:
+    light = Light("light", position, direction=toward)
+    frame = light_frame(light)
+    carried = light.replace(half_spaces=(HalfSpace("door", point, direction, carried=True),))
+    placed = HalfSpace("door", frame.point_to_world(point), frame.direction_to_world(direction))
+    points = wall_points()
+    one, other = (
+        half_space_sides(each, points)["door"].row for each in (carried, light.replace(half_spaces=(placed,)))
+    )
+    assert one == pytest.approx(other, abs=1e-6)
+
+
+def test_barn_doors_turn_and_move_with_the_light() -> None:
+    # Two doors to the left and the right of the light leave a strip of the wall.
+    doors = (
+        HalfSpace("left", (-0.1, 0, 0), (1, 0, 0), carried=True),
+        HalfSpace("right", (0.1, 0, 0), (-1, 0, 0), carried=True),
+    )
+    points = visible_surfaces(wall(half=4.0), VIEW, (1,), 60, 60)
+    world = points.world_points
+    for across, aim in ((0.0, 0.0), (0.4, 0.4), (0.0, 0.7), (-0.5, 0.2)):
+        light = Light("light", (across, -2.0, 0.0), aim=(aim, 0.0, 0.0), half_spaces=doors)
+        (control,) = controls_of(light, points)
+        assert isinstance(control, HalfSpaces)
+        lit = control.lit_points(points.rows, slice(None))
+        # To the right of the light's direction is (y, -x) of it.
+        along = np.array([aim - across, 2.0]) / np.hypot(aim - across, 2.0)
+        to_right = (world[:, 0] - across) * along[1] - (world[:, 1] + 2.0) * along[0]
+        clear = np.abs(np.abs(to_right) - 0.1) > 1e-5
+        assert lit[clear].tolist() == (np.abs(to_right[clear]) < 0.1).tolist()
+        assert 0 < lit.sum() < len(lit) / 4
+
+
+@given(vectors(numbers(-1e30, 1e30)), directions, numbers(1e-30, 1e30) | st.just(0.0))
+def test_planes_however_far_and_edges_of_any_width_leave_finite_light(
+    point: Vector, direction: Vector, edge_width: float
+) -> None:
+    assume(any(point))
+    plane = HalfSpace("far", point, direction, edge_width=edge_width)
+    light = Light("light", (0.2, -1, 0.1), direction=(0, 1, 0), concentration=2, half_spaces=(plane,))
+    picture = render(wall_scene(lights=[light]), 12, 16)
+    assert np.isfinite(picture.intensity).all()
+    assert picture.intensity.min() >= 0
+
+
+def left_at(light: Light, points: VisiblePoints) -> list[float]:
+    """What soft edges leave at the points."""
+    control = SoftSides.of(light, points)
+    assert control is not None
+
+    def positions() -> Any:
+        return points.rows[POINT]
+
+    def nobody_asks() -> Any:
+        raise AssertionError
+
+    out = np.empty(len(points.pixels), np.float32)
+    assert control.factor(LitPoints(None, nobody_asks, positions), out) is out
+    return out.tolist()
+
+
+def ratio(light: Light) -> tuple[Floats, VisiblePoints]:
+    """What all controls leave of a light on a wall, and the points there."""
+    scene = wall_scene(wall(half=2.0), view=VIEW, lights=[light])
+    free = wall_scene(wall(half=2.0), view=VIEW, lights=[Light("light", light.position)])
+    points = visible_surfaces(scene.mesh, VIEW, (1,), 60, 80)
+    lit, whole = (render(each, 60, 80).intensity.ravel()[points.pixels] for each in (scene, free))
+    assert whole.min() > 0
+    return lit.astype(np.float64) / whole, points
+
+
+@given(vectors(numbers(-1, 1)), directions, numbers(0.05, 2))
+def test_a_soft_half_space_on_a_wall_is_the_closed_form(
+    point: Vector, direction: Vector, width: float
+) -> None:
+    light = Light("light", (0.3, -2.0, 0.2), half_spaces=(HalfSpace("left", point, direction, width),))
+    left, points = ratio(light)
+    distance = (points.world_points - point) @ direction / np.linalg.norm(direction)
+    assert left == pytest.approx([soft(each, width) for each in distance.tolist()], abs=1e-4)
+
+
+@given(numbers(-1, 0.5), numbers(0.1, 1.5), numbers(0.05, 2), st.sampled_from("xz"))
+def test_a_soft_flap_goes_from_nothing_at_its_ends_to_all_of_it_inside(
+    least: float, extent: float, width: float, axis: str
+) -> None:
+    flap = Flap(least, least + extent, edge_width=width)
+    left, points = ratio(Light("light", (0.3, -2.0, 0.2), flaps=Flaps(**{axis: flap})))
+    coordinates = points.world_points[:, "xyz".index(axis)].tolist()
+    expected = [soft(each - least, width) * soft(least + extent - each, width) for each in coordinates]
+    assert left == pytest.approx(expected, abs=1e-4)
+
+
+def test_a_soft_edge_is_smooth_at_both_ends_and_grows_between_them() -> None:
+    width, step = 0.5, 1e-3
+    light = Light("light", (0, -1, 0), half_spaces=(HalfSpace("left", (0, 0, 0), (1, 0, 0), width),))
+    at = np.arange(-0.2, 0.8, step)
+    rows = np.array([wall_points().camera_point((x, 0.0, 0.0)) for x in at.tolist()], np.float32).T
+    control = SoftSides.of(light, wall_points())
+    assert control is not None
+    left = control.factor(LitPoints(None, lambda: rows, lambda: rows), np.empty(len(at), np.float32))
+    slope = np.diff(left.astype(np.float64)) / step
+    assert left[0] == 0
+    assert left[-1] == 1
+    assert slope.min() > -1e-3
+    # Its slope is largest in the middle, and changes by no more than its second derivative, 6 / width^2.
+    assert slope.max() == pytest.approx(1.5 / width, rel=1e-3)
+    assert at[np.argmax(slope)] == pytest.approx(width / 2, abs=0.02)
+    assert np.abs(np.diff(slope)).max() <= 6 / width**2 * step + 2e-3
+    for end in (0.0, width):
+        assert abs(slope[np.argmin(np.abs(at - end))]) < 0.05
+
+
+def test_several_soft_edges_leave_the_product_of_what_each_leaves() -> None:
+    planes = (
+        HalfSpace("a", (-0.3, 0, 0), (1, 0, 0.4), 0.7),
+        HalfSpace("b", (0.4, 0, 0), (-1, 0, 0.2), 0.9),
+    )
+    flaps = Flaps(z=Flap(-0.6, 0.7, edge_width=0.5))
+    light, points = Light("light", (0, -1, 0)), wall_points()
+    each: list[Light] = [light.replace(half_spaces=(plane,)) for plane in planes]
+    expected = np.prod([left_at(one, points) for one in (*each, light.replace(flaps=flaps))], axis=0)
+    assert left_at(light.replace(half_spaces=planes, flaps=flaps), points) == pytest.approx(expected)
+    assert np.ptp(expected) > 0
+
+
+def test_edges_that_are_sharp_or_off_or_at_infinity_are_no_soft_ones() -> None:
+    plane = HalfSpace("left", (0, 0, 0), (1, 0, 0))
+    for light in (
+        Light("light", (0, -1, 0), flaps=Flaps(x=Flap(0, 1)), half_spaces=(plane,)),
+        Light(
+            "light", (0, -1, 0), flaps=Flaps(x=Flap(0, 1, on=False, edge_width=1.0), y=Flap(edge_width=1.0))
+        ),
+        Light("light", (0, -1, 0), half_spaces=(plane.replace(edge_width=0.5, on=False),)),
+    ):
+        assert SoftSides.of(light, wall_points()) is None
+
+
+def factor(cosines: list[float], concentration: float) -> Singles:
+    given_as = np.array(cosines, np.float32)
+    return Concentration(concentration).factor(lit_at(given_as), out=np.empty_like(given_as))
+
+
+@given(numbers(0, 60), numbers(1e-6, 1))
+def test_the_concentrated_light_is_the_cosine_to_the_power_of_the_concentration(
+    concentration: float, cosine: float
+) -> None:
+    value = factor([cosine], concentration)[0]
+    assert value == pytest.approx(float(np.float32(cosine)) ** concentration, rel=2e-5, abs=1e-30)
+
+
+@pytest.mark.parametrize(("concentration", "degrees"), [(1, 60.0), (10, 21.1), (40, 10.6)])
+def test_half_is_left_at_the_papers_angles(concentration: float, degrees: float) -> None:
+    assert factor([math.cos(math.radians(degrees))], concentration)[0] == pytest.approx(0.5, abs=0.005)
+
+
+@given(st.lists(numbers(-1, 1), min_size=2), st.sampled_from([0.5, 1, 2, 40, 1e6, 1e30, 1e300]))
+def test_the_factor_never_leaves_0_to_1(cosines: list[float], concentration: float) -> None:
+    values = factor([*cosines, 1.0000002], concentration)
+    assert ((values >= 0) & (values <= 1)).all()
+
+
+def test_a_factor_may_overwrite_the_cosines() -> None:
+    cosines = np.array([0.5, 1.0], np.float32)
+    assert Concentration(2.0).factor(lit_at(cosines), out=cosines) is cosines
+    assert cosines.tolist() == [0.25, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("cosine", "cone_angle", "concentration", "lit"),
+    [
+        (0.5, 60.0, 0.0, True),
+        (0.49999, 60.0, 0.0, False),
+        (-0.5, 121.0, 0.0, True),
+        (-0.5, 121.0, 1.0, False),
+        (0.0, 90.0, 0.0, True),
+        (0.0, 90.0, 1.0, False),
+        (0.0, None, 1.0, False),
+        (1e-6, None, 1.0, True),
+        (1e-45, None, 1.0, True),
+        (-1.0, 180.0, 0.0, True),
+        (1.0, 0.001, 40.0, True),
+    ],
+)
+def test_a_point_is_in_the_cone_up_to_its_rim_and_before_a_concentrated_light(
+    cosine: float, cone_angle: float | None, concentration: float, lit: bool
+) -> None:
+    light = Light(
+        "light", (0, -1, 0), direction=(0, 1, 0), cone_angle=cone_angle, concentration=concentration
+    )
+    controls = controls_of(light, wall_points())
+    assert all(control.directed for control in controls)
+    least = max(control.least_cosine for control in controls)
+    assert bool(np.float32(cosine) >= np.float32(least)) == lit
+
+
+@given(numbers(0.001, 180), numbers(-1, 1))
+def test_the_largest_least_cosine_is_the_cone_and_the_hemisphere(cone_angle: float, cosine: float) -> None:
+    light = Light("light", (0, -1, 0), direction=(0, 1, 0), cone_angle=cone_angle, concentration=1)
+    least = np.float32(max(control.least_cosine for control in controls_of(light, wall_points())))
+    rim = np.float32(math.cos(math.radians(cone_angle)) - np.finfo(np.float32).eps)
+    for each in (np.float32(cosine), rim, np.float32(0), np.nextafter(rim, np.float32(-2))):
+        assert (each >= least) == (each >= rim and each > 0)
+
+
+def cosine(degrees: float) -> float:
+    return math.cos(math.radians(degrees))
+
+
+def spot(cone_angle: float, inner_angle: float | None, **given: float) -> Light:
+    return Light(
+        "light",
+        (0.3, -2, 0.2),
+        aim=(0.1, 0, 0),
+        cone_angle=cone_angle,
+        inner_angle=inner_angle,
+        **given,  # type: ignore[arg-type]
+    )
+
+
+@given(numbers(4, 60), numbers(0, 1), st.sampled_from([0.0, 3.0]))
+def test_a_soft_cone_on_a_wall_is_the_closed_form(
+    cone_angle: float, fraction: float, concentration: float
+) -> None:
+    inner = fraction * (cone_angle - 2)
+    light = spot(cone_angle, inner, concentration=concentration)
+    scene = wall_scene(wall(half=2.0), view=VIEW, lights=[light])
+    free = scene.with_light("light", cone_angle=None, inner_angle=None, concentration=0)
+    points = visible_surfaces(scene.mesh, VIEW, (1,), 60, 80)
+    lit, whole = (render(each, 60, 80).intensity.ravel()[points.pixels] for each in (scene, free))
+    rays = points.world_points - light.position
+    assert light.axis is not None
+    cosines = rays @ light.axis / np.linalg.norm(rays, axis=1)
+    rim, width = cosine(cone_angle), cosine(inner) - cosine(cone_angle)
+    # Each rounding of a cosine counts as many times as the edge is steep.
+    rounding = 1e-4 + 1e-6 / width
+    expected = [soft(each - rim, width) * each**concentration for each in cosines.tolist()]
+    assert lit.astype(np.float64) / whole == pytest.approx(expected, abs=rounding)
+
+
+@given(numbers(1, 180), numbers(0, 1))
+def test_all_is_left_up_to_the_inner_angle_and_nothing_at_the_rim(cone_angle: float, share: float) -> None:
+    inner = share * (cone_angle - 1)
+    control = SoftCone.of(spot(cone_angle, inner), wall_points())
+    assert control is not None
+    cosines = np.array(
+        [1.0, cosine(inner / 2), cosine(inner) + 1e-6, cosine(cone_angle) - 1e-6, -1], np.float32
+    )
+    left = control.factor(lit_at(cosines), out=np.empty_like(cosines))
+    assert left[:3] == pytest.approx(1, abs=1e-6)
+    assert left[3:].tolist() == [0, 0]
+
+
+def test_a_soft_cone_is_smooth_at_both_angles_and_on_the_axis() -> None:
+    control = SoftCone.of(spot(40, 0), wall_points())
+    assert control is not None
+    degrees = np.arange(0, 50, 0.05)
+    cosines = np.cos(np.radians(degrees)).astype(np.float32)
+    left = control.factor(lit_at(cosines), out=np.empty_like(cosines)).astype(np.float64)
+    slope = np.diff(left) / 0.05
+    assert slope.max() < 1e-4
+    assert np.abs(slope[:10]).max() < 1e-3
+    assert np.abs(slope[np.abs(degrees[:-1] - 40) < 0.06]).max() < 1e-3
+    assert np.abs(np.diff(slope)).max() < 1e-3
+
+
+def test_a_cone_without_an_inner_angle_or_with_that_of_the_cone_is_sharp() -> None:
+    assert SoftCone.of(spot(30, None), wall_points()) is None
+    assert SoftCone.of(spot(30, 30), wall_points()) is None
+    sharp, soft_one, narrow = (
+        render(wall_scene(lights=[spot(15, inner)]), 30, 40).intensity for inner in (None, 15, 14)
+    )
+    assert sharp.tobytes() == soft_one.tobytes()
+    assert (narrow <= sharp).all()
+    assert narrow.tobytes() != sharp.tobytes()
+
+
+@pytest.mark.parametrize(("outer", "inner"), [(1e-6, 0.0), (180.0, math.nextafter(180.0, 0.0)), (30.0, 0.0)])
+def test_what_is_left_stays_within_0_and_1_however_narrow_the_edge(outer: float, inner: float) -> None:
+    control = SoftCone.of(spot(outer, inner), wall_points())
+    assert control is not None
+    cosines = np.linspace(-1.0000002, 1.0000002, 1001).astype(np.float32)
+    left = control.factor(lit_at(cosines), out=cosines)
+    assert left is cosines
+    assert ((left >= 0) & (left <= 1)).all()
+
+
+FALLING = st.sampled_from(["linear", "quadratic"])
+
+
+@pytest.mark.parametrize("falloff", ["linear", "quadratic"])
+@pytest.mark.parametrize("reach", [1.2, 1.7, 9.0])
+def test_on_a_wall_the_light_falls_with_the_distance_to_nothing_at_its_reach(
+    falloff: Any, reach: float
+) -> None:
+    light = Light("light", (0.25, -1.0, 0.125))
+    free = wall_scene(lights=[light])
+    falling = wall_scene(lights=[light.replace(falloff=falloff, reach=reach)])
+    points = visible_surfaces(wall(), free.view, (1,), 40, 40)
+    x, _, z = points.world_points.T
+    left = np.maximum(1 - np.sqrt(1 + (x - 0.25) ** 2 + (z - 0.125) ** 2) / reach, 0)
+    left = left if falloff == "linear" else left**2
+    intensities = [render(each, 40, 40).intensity.ravel()[points.pixels] for each in (free, falling)]
+    assert intensities[1] == pytest.approx(left * intensities[0], abs=1e-5)
+    assert (left.min() == 0) == (reach < 1.8)
+    assert left.max() > 0.02
+
+
+def test_a_light_falls_to_a_half_and_to_a_quarter_at_half_its_reach() -> None:
+    points = wall_points()
+    distances = np.array([0, 0.5, 1, 2, 4], np.float32)
+    at = LitPoints(None, lambda: distances / np.float32(points.unit), lambda: np.zeros((3, 5), np.float32))
+    for falloff, expected in (("linear", [1, 0.75, 0.5, 0, 0]), ("quadratic", [1, 0.5625, 0.25, 0, 0])):
+        (control,) = controls_of(Light("light", (0, -1, 0), falloff=falloff, reach=2), points)
+        assert control.factor(at, out=np.empty(5, np.float32)).tolist() == pytest.approx(expected, abs=1e-6)
+
+
+@given(vectors(numbers(-3, 3)), FALLING, numbers(0.01, 6) | st.sampled_from([1e-300, 1e-9, 1e30, 1e36]))
+def test_all_points_that_a_light_reaches_may_be_lit_and_the_factor_is_0_to_1_at_all(
+    position: Vector, falloff: str, reach: float
+) -> None:
+    points = wall_points()
+    (control,) = controls_of(Light("light", position, falloff=falloff, reach=reach), points)
+    may_be_lit = control.lit_points(points.rows, slice(None))
+    away = np.array([math.dist(point, position) for point in points.world_points.tolist()])
+    assert may_be_lit is not None
+    assert may_be_lit[away < reach].all()
+    assert not may_be_lit[away > reach + 1e-2].any()
+    lengths = np.maximum(away / points.unit, 1e-18).astype(np.float32)
+    at = LitPoints(None, lambda: lengths, lambda: points.rows[:3])
+    factor = control.factor(at, out=np.empty_like(lengths))
+    assert ((factor >= 0) & (factor <= 1)).all()
+
+
+@given(FALLING, st.sampled_from([1e12, 1e20, 1e36]))
+def test_a_light_beyond_all_that_falls_gives_nothing_here(falloff: str, distance: float) -> None:
+    light = Light("light", (0, -distance, 0), falloff=falloff, reach=3)
+    assert not render(wall_scene(lights=[light]), 4, 4).intensity.any()
+
+
+def test_a_light_without_a_falloff_is_left_as_it_is() -> None:
+    for light in (Light("light", (0, -1, 0)), Light("light", (0, -1, 0), reach=2)):
+        assert not any(isinstance(each, Falloff) for each in controls_of(light, wall_points()))
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        (
+            {"falloff": "linear"},
+            "light 'light': falloff must come with a reach, not 'linear' alone; add a reach",
+        ),
+        (
+            {"falloff": "linear", "reach": 2, "direction": (0, 1, 0), "at_infinity": True},
+            "light 'light': falloff must be 'none' for a light at infinity, not 'linear'; change one of them",
+        ),
+        ({"reach": 0}, "light 'light': reach must be a number above 0, not 0"),
+    ],
+)
+def test_a_falloff_without_a_reach_or_at_infinity_is_refused(
+    fields: dict[str, object], sentence: str
+) -> None:
+    with pytest.raises(InputError) as refusal:
+        Light("light", (0, -1, 0), **fields)  # type: ignore[arg-type]
+    assert str(refusal.value) == sentence
+
+
+PARTS = ["part 0", "part 1"]
+
+
+def test_only_a_light_that_is_linked_to_parts_has_the_control() -> None:
+    points = wall_points()
+    for links in (Links(), Links(only_surfaces=("wall",)), Links(except_surfaces=("wall",))):
+        assert controls_of(Light("light", (0, -1, 0), links=links), points) == ()
+    assert "numbers" not in vars(points.parts), "part numbers that nobody needs were worked out"
+    for links, lit in (
+        (Links(only_parts=("wall",)), True),
+        (Links(only_parts=()), False),
+        (Links(except_parts=("wall",)), False),
+        (Links(except_parts=()), True),
+    ):
+        (control,) = controls_of(Light("light", (0, -1, 0), links=links), points)
+        assert isinstance(control, LinkedParts)
+        for chunk in points.chunks:
+            rows = points.rows[:, chunk.pixels]
+            assert set(control.lit_points(rows, chunk.pixels).tolist()) == {lit}
+
+
+@given(scenes(), lights(), some_of(PARTS), st.booleans())
+def test_a_light_linked_to_parts_is_the_light_of_all_where_they_are_and_nothing_elsewhere(
+    scene: Scene, light: Light, names: tuple[str, ...], is_only: bool
+) -> None:
+    links = Links(only_parts=names) if is_only else Links(except_parts=names)
+    dark = scene.replace(ambient=0.0)
+    free = render(dark.replace(lights=(light,)), 12, 16)
+    linked = render(dark.replace(lights=(light.replace(links=links),)), 12, 16)
+    numbers = [number for number, name in enumerate(PARTS, 1) if (name in names) == is_only]
+    is_lit = np.isin(free.part_number, numbers)
+    assert not linked.intensity[~is_lit].any()
+    assert linked.intensity[is_lit] == pytest.approx(free.intensity[is_lit], rel=1e-5, abs=1e-30)
+
+
+def test_the_parts_may_be_asked_of_any_slice_and_the_answer_be_written_to() -> None:
+    points = wall_points()
+    (control,) = controls_of(Light("light", (0, -1, 0), links=Links(only_parts=("wall",))), points)
+    lit = control.lit_points(points.rows[:, 3:9], slice(3, 9))
+    assert lit is not None
+    lit[:] = False
+    again = control.lit_points(points.rows[:, 3:9], slice(3, 9))
+    assert again is not None
+    assert again.all()
+    assert again.shape == (6,)
+
+
+@given(scenes())
+def test_a_light_sees_the_same_parts_as_the_mesh_has(scene: Scene) -> None:
+    points = visible_surfaces(scene.mesh, scene.view, scene.surface_number_of_part, 9, 12)
+    assert points.parts.names == scene.mesh.part_names
+    assert (points.parts.numbers - 1 == scene.mesh.part_numbers[points.polygon_numbers]).all()

@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Paint
+from autocolor.checks import Color
+from autocolor.mapping.colors import blend_from, blend_level, entries_of, white_of, with_white
+from tests.autocolor.reference import entry_of
+from tests.autocolor.strategies import numbers, paints
+
+
+@given(paints, st.integers(2, 300), st.just(0.0) | numbers(0, 1))
+def test_every_entry_is_the_one_of_the_slow_twin(paint: Paint, levels: int, floor: float) -> None:
+    entries = entries_of(paint, levels, floor)
+    expected = [entry_of(paint, levels, level, floor) for level in range(levels)]
+    assert np.abs(entries.astype(int) - np.array(expected)).max() <= (0 if floor == 0 else 1)
+    assert entries.dtype == np.uint8
+
+
+@given(paints, st.integers(2, 300))
+def test_the_lowest_level_is_black_and_the_highest_the_light_color_at_100_percent(
+    paint: Paint, levels: int
+) -> None:
+    entries = entries_of(paint.__class__(paint.object_color, paint.light_color, paint.blend, 100.0), levels)
+    assert entries[0].tolist() == [0, 0, 0]
+    never = blend_level(paint.blend, levels) == levels - 1
+    assert tuple(entries[-1].tolist()) == (paint.object_color if never else paint.light_color)
+
+
+@given(st.integers(1, 1007), st.data())
+def test_the_blend_from_a_level_has_that_level_and_no_digit_more_than_it_takes(
+    levels: int, data: st.DataObject
+) -> None:
+    level = data.draw(st.integers(0, levels - 1))
+    blend = blend_from(level, levels)
+    assert 0 <= blend <= 1
+    assert blend_level(blend, levels) == level
+    digits = len(f"{blend!r}") - 2
+    assert digits <= 2 or blend_level(round(level / (levels - 1), digits - 1), levels) != level
+
+
+@given(paints, st.integers(2, 300))
+def test_below_the_blend_level_there_is_only_the_object_color(paint: Paint, levels: int) -> None:
+    plain = entries_of(Paint(paint.object_color, (0, 0, 0), 1.0), levels)
+    upto = blend_level(paint.blend, levels) + 1
+    assert entries_of(paint, levels)[:upto].tolist() == plain[:upto].tolist()
+
+
+def test_a_blend_at_the_maximum_never_shifts() -> None:
+    red = Paint((200, 10, 10), (255, 255, 255), 1.0)
+    assert entries_of(red, 101)[:, 0].tolist() == [2 * level for level in range(101)]
+    assert entries_of(red, 101)[-1].tolist() == [200, 10, 10]
+
+
+def test_the_color_shifts_in_equal_steps_above_the_blend_level() -> None:
+    # With floor 1 nothing is darkened: 4 levels of pure object color, then 5 steps of a fifth each.
+    entries = entries_of(Paint((0, 0, 0), (250, 100, 50), 3 / 8), 9, floor=1.0)
+    assert entries[:, 0].tolist() == [0, 0, 0, 0, 50, 100, 150, 200, 250]
+    assert entries[:, 2].tolist() == [0, 0, 0, 0, 10, 20, 30, 40, 50]
+
+
+@pytest.mark.parametrize(("percentage", "last"), [(100.0, 250), (50.0, 150), (0.0, 50)])
+def test_the_percentage_is_how_much_of_the_light_color_is_reached(percentage: float, last: int) -> None:
+    assert entries_of(Paint((50, 50, 50), (250, 250, 250), 0.5, percentage), 11)[-1].tolist() == [last] * 3
+
+
+@given(paints, st.integers(2, 300))
+def test_with_two_like_colors_a_blend_changes_nothing(paint: Paint, levels: int) -> None:
+    same = Paint(paint.object_color, paint.object_color, paint.blend, paint.light_percentage)
+    plain = Paint(paint.object_color, paint.object_color, 1.0)
+    assert entries_of(same, levels).tolist() == entries_of(plain, levels).tolist()
+
+
+@given(paints, st.integers(2, 300))
+def test_a_light_color_that_is_nowhere_darker_never_makes_a_level_darker(paint: Paint, levels: int) -> None:
+    light = tuple(max(pair) for pair in zip(paint.object_color, paint.light_color, strict=True))
+    brighter = Paint(paint.object_color, light, paint.blend, paint.light_percentage)  # type: ignore[arg-type]
+    assert (np.diff(entries_of(brighter, levels).astype(int), axis=0) >= 0).all()
+
+
+def test_the_floor_is_how_bright_the_lowest_level_is() -> None:
+    entries = entries_of(Paint((200, 100, 40), (200, 100, 40)), 11, floor=0.5)
+    assert entries[0].tolist() == [100, 50, 20]
+    assert entries[5].tolist() == [150, 75, 30]
+    assert entries[-1].tolist() == [200, 100, 40]
+
+
+COMPONENTS = st.integers(0, 255)
+COLORS = st.tuples(COMPONENTS, COMPONENTS, COMPONENTS)
+
+
+@given(color=COLORS, white=COMPONENTS)
+def test_the_same_amount_is_added_to_each_component_until_it_reaches_an_end(color: Color, white: int) -> None:
+    found = with_white(color, white)
+    added = {after - before for before, after in zip(color, found, strict=True) if 0 < after < 255}
+    assert len(added) <= 1
+    for amount in added:
+        assert found == tuple(np.clip(np.add(color, amount), 0, 255))
+
+
+@given(color=COLORS, white=COMPONENTS)
+def test_the_bar_stands_where_it_was_put(color: Color, white: int) -> None:
+    assert white_of(with_white(color, white)) == white
+
+
+@given(color=COLORS)
+def test_the_white_that_a_color_has_changes_it_by_no_more_than_one(color: Color) -> None:
+    assert np.abs(np.subtract(with_white(color, white_of(color)), color)).max() <= 1
+
+
+@given(color=COLORS)
+def test_the_ends_are_black_and_white_alone(color: Color) -> None:
+    assert with_white(color, 0) == (0, 0, 0)
+    assert with_white(color, 255) == (255, 255, 255)
+    assert (white_of(color) == 0) == (max(color) <= 1 and sum(color) <= 1)
+
+
+def test_a_full_red_has_tints_and_shades() -> None:
+    assert with_white((255, 0, 0), 170) == (255, 127, 127)
+    assert with_white((255, 0, 0), 50) == (150, 0, 0)

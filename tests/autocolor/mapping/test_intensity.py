@@ -1,0 +1,316 @@
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import InputError, LevelRange, Light, Picture, Scene, render
+from autocolor.lighting.picture import IntensityRange
+from autocolor.mapping.display_image import display_image
+from autocolor.mapping.intensity import (
+    dithered_levels,
+    fraction_of,
+    fractions_by_surface,
+    has_extent,
+    held_exposure,
+    levels_of,
+    mapped_ranges,
+    ordered_thresholds,
+    words_of,
+)
+from autocolor.mapping.ranges import level_ranges
+from autocolor.visibility.visible_points import SurfaceSlice
+from tests.autocolor.meshes import wall_scene
+from tests.autocolor.reference import level_of
+from tests.autocolor.strategies import MAPPINGS, scenes
+
+
+def picture_of(*intensities: list[float]) -> Picture:
+    """A picture of one line, with some intensities of each surface one after the other."""
+    flat = np.array([value for each in intensities for value in each], np.float32)
+    stops = np.cumsum([len(each) for each in intensities]).tolist()
+    slices = tuple(
+        SurfaceSlice(number + 1, stop - len(each), stop)
+        for number, (each, stop) in enumerate(zip(intensities, stops, strict=True))
+    )
+    names = tuple("abcdef"[: len(intensities)])
+    return Picture(1, len(flat) + 2, names, np.arange(1, len(flat) + 1), slices, flat, 1.0)
+
+
+RANGES = {"a": LevelRange(1, 11), "b": LevelRange(12, 101)}
+
+
+def shown_by(mapping: Any, fraction: float) -> float:
+    """How far along the range a fraction is shown, by the slow twin."""
+    if mapping == "gamma":
+        return float(fraction ** (1 / 2.2))
+    if mapping == "logarithm":
+        return math.log1p(15 * fraction) / math.log(16)
+    if mapping == "linear":
+        return fraction
+    for (x, y), (x_next, y_next) in itertools.pairwise(mapping):
+        if fraction <= x_next:
+            return float(y + (fraction - x) / (x_next - x) * (y_next - y))
+    raise AssertionError
+
+
+@given(
+    st.lists(st.integers(0, 1000), min_size=2, max_size=40),
+    st.sampled_from([mapping for mapping in MAPPINGS if mapping != "equalize"]),
+    st.integers(2, 1007),
+)
+def test_every_level_is_the_one_of_the_slow_twin(steps: list[int], mapping: Any, levels: int) -> None:
+    intensities = np.array(steps, np.float32) * np.float32(1.7)
+    least, most = float(intensities.min()), float(intensities.max())
+    extent = IntensityRange(least, most)
+    shown = fraction_of(extent, mapping, intensities, extent)(intensities)
+    for intensity, level in zip(intensities.tolist(), levels_of(shown, levels).tolist(), strict=True):
+        if least == most:
+            assert level == levels // 2
+            continue
+        exact = shown_by(mapping, (intensity - least) / (most - least)) * (levels - 1) + 0.5
+        if abs(exact - round(exact)) > 1e-3:
+            assert level == level_of((exact - 0.5) / (levels - 1), levels)
+
+
+def test_levels_are_written_to_out_which_may_be_the_fractions_themselves() -> None:
+    fractions = np.array([0.0, 0.25, 0.5, 1.0], np.float32)
+    assert levels_of(fractions, 11).tolist() == [0, 3, 5, 10]
+    assert fractions.tolist() == [0.0, 0.25, 0.5, 1.0]
+    assert levels_of(fractions, 11, out=fractions) is fractions
+    assert fractions.tolist() == [0, 3, 5, 10]
+
+
+def test_each_surface_has_its_own_minimum_and_maximum() -> None:
+    words = words_of(picture_of([1, 2, 3], [10, 20]), RANGES, "surface", "linear")
+    assert words.tolist() == [[0, 1, 6, 11, 12, 112, 0]]
+
+
+def test_the_whole_object_has_one_minimum_and_maximum() -> None:
+    words = words_of(picture_of([0, 5, 10], [5, 20]), RANGES, "object", "linear")
+    assert words.tolist() == [[0, 1, 4, 6, 37, 112, 0]]
+
+
+@pytest.mark.parametrize("scaling", ["surface", "object"])
+@pytest.mark.parametrize("mapping", MAPPINGS, ids=str)
+def test_where_nothing_has_an_extent_every_pixel_has_the_middle_level(scaling: str, mapping: Any) -> None:
+    words = words_of(picture_of([3.0, 3.0], [3.0]), RANGES, scaling, mapping)
+    assert words.tolist() == [[0, 6, 6, 62, 0]]
+
+
+def test_a_surface_without_extent_is_mapped_by_the_range_of_the_whole_object() -> None:
+    words = words_of(picture_of([1.0, 5.0], [2.0, 2.0]), RANGES, "surface")
+    assert words.tolist() == [[0, 1, 11, 12 + 25, 12 + 25, 0]]
+
+
+def test_an_extent_within_rounding_of_its_maximum_counts_as_none() -> None:
+    almost = float(np.nextafter(np.float32(2), np.float32(3)))
+    words = words_of(picture_of([1.0, 5.0], [2.0, almost]), RANGES, "surface")
+    assert words.tolist() == [[0, 1, 11, 12 + 25, 12 + 25, 0]]
+
+
+def test_intensities_beyond_a_held_range_have_its_lowest_and_highest_level() -> None:
+    picture = picture_of([1, 2, 3, 4, 5], [1, 9])
+    held = (("a", (2.0, 4.0)),)
+    words = words_of(picture, RANGES, "surface", "linear", held)
+    assert words.tolist() == [[0, 1, 1, 6, 11, 11, 12, 112, 0]]
+
+
+@pytest.mark.parametrize("mapping", MAPPINGS, ids=str)
+def test_a_held_range_of_the_object_maps_every_surface(mapping: Any) -> None:
+    picture = picture_of([0, 5, 10], [5, 20])
+    held = (("object", (5.0, 10.0)),)
+    words = words_of(picture, RANGES, "object", mapping, held).ravel().tolist()
+    assert 1 <= words[1] == words[2] < words[3] == 11
+    assert 12 <= words[4] < words[5] == 112
+
+
+def test_a_held_range_is_one_of_intensities_and_not_of_the_scale_of_the_picture() -> None:
+    relative = picture_of([1, 2, 3])
+    doubled = dataclasses.replace(relative, relative=relative.relative / np.float32(2), scale=2.0)
+    held = (("a", (0.0, 4.0)),)
+    words = words_of(relative, RANGES, exposure=held)
+    assert words.tolist() == words_of(doubled, RANGES, exposure=held).tolist() == [[0, 4, 6, 9, 0]]
+
+
+@given(scenes())
+def test_dithering_changes_a_word_by_one_level_at_most(scene: Scene) -> None:
+    picture = render(scene, 12, 16)
+    ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
+    plain, dithered = (
+        words_of(picture, ranges, scene.scaling, scene.mapping, scene.exposure, dither).astype(int)
+        for dither in ("off", "ordered")
+    )
+    assert np.abs(plain - dithered).max() <= 1
+    numbers = picture.surface_number
+    for number in np.unique(numbers[numbers > 0]):
+        first, levels = ranges[picture.surfaces[number - 1]]
+        assert first <= dithered[numbers == number].min()
+        assert dithered[numbers == number].max() < first + levels
+
+
+def test_dithering_keeps_the_mean_of_a_level_that_lies_between_two() -> None:
+    for tenths in range(11):
+        fraction = np.full(64, tenths / 10, np.float32)
+        levels = dithered_levels(fraction, 2, ordered_thresholds(8, 8))
+        assert abs(levels.mean() - tenths / 10) <= 1 / 128
+    assert sorted(ordered_thresholds(8, 8).tolist()) == [(place + 0.5) / 64 for place in range(64)]
+
+
+@given(scenes())
+def test_every_word_is_the_backgrounds_or_in_its_surfaces_range(scene: Scene) -> None:
+    picture = render(scene, 12, 16)
+    ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
+    words = words_of(picture, ranges, scene.scaling, scene.mapping)
+    assert words.max() <= 1023
+    assert (words[picture.surface_number == 0] == 0).all()
+    for number, name in enumerate(picture.surfaces, 1):
+        on_surface = words[picture.surface_number == number]
+        if len(on_surface):
+            assert on_surface.min() >= ranges[name].first
+            assert on_surface.max() <= ranges[name].last
+    assert not words.flags.writeable
+
+
+@given(scenes())
+def test_a_brighter_pixel_of_a_surface_never_has_a_lower_word(scene: Scene) -> None:
+    picture = render(scene, 12, 16)
+    ranges = level_ranges(scene.surfaces, {part.surface: 1 for part in scene.parts})
+    words = words_of(picture, ranges, scene.scaling, scene.mapping)
+    for number in np.unique(picture.surface_number[picture.surface_number > 0]):
+        of_surface = picture.surface_number == number
+        order = np.argsort(picture.intensity[of_surface], kind="stable")
+        assert (np.diff(words[of_surface][order].astype(int)) >= 0).all()
+
+
+@pytest.mark.parametrize("wrong", [math.nan, math.inf])
+def test_an_intensity_that_is_not_finite_is_refused_by_name(wrong: float) -> None:
+    with pytest.raises(InputError, match="surface 'b': an intensity must be finite, not "):
+        words_of(picture_of([1, 2], [1, wrong]), RANGES)
+
+
+@pytest.mark.parametrize("mapping", MAPPINGS, ids=str)
+def test_everything_above_a_held_range_has_the_highest_level_and_below_it_the_lowest(mapping: Any) -> None:
+    picture = picture_of([5, 6, 7], [5, 9])
+    bright = words_of(picture, RANGES, "object", mapping, (("object", (1.0, 4.0)),))
+    dark = words_of(picture, RANGES, "object", mapping, (("object", (10.0, 40.0)),))
+    assert bright.tolist() == [[0, 11, 11, 11, 112, 112, 0]]
+    lowest = words_of(picture_of([5, 6], [5, 9]), RANGES, "object", mapping).ravel()[1] - 1
+    assert dark.tolist() == [[0, *[1 + lowest] * 3, *dark.ravel()[4:6].tolist(), 0]]
+    assert dark.ravel()[4] == dark.ravel()[5]
+
+
+def test_a_held_range_too_narrow_for_float32_has_no_extent() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for limits in ((0.0, 1e-300), (1e-38, 1.1e-38), (3e38, 3.1e38), (1.0, 1.0000001)):
+            words = words_of(picture_of([1, 2, 3]), RANGES, exposure=(("a", limits),))
+            assert words.min() >= 0
+            assert words.max() <= 11
+
+
+def test_a_surface_named_object_has_no_held_range_of_its_own() -> None:
+    picture = dataclasses.replace(picture_of([1, 2, 3], [10, 20]), surfaces=("object", "b"))
+    ranges = {"object": LevelRange(1, 11), "b": LevelRange(12, 101)}
+    held = words_of(picture, ranges, exposure=(("b", (10.0, 20.0)),))
+    assert held.tolist() == words_of(picture, ranges).tolist()
+
+
+def test_dithering_leaves_what_has_no_extent_alone() -> None:
+    words = words_of(picture_of([3.0] * 30), {"a": LevelRange(1, 10)}, dither="ordered")
+    assert set(words.ravel().tolist()) == {0, 6}
+
+
+@pytest.mark.parametrize("mapping", MAPPINGS, ids=str)
+def test_surfaces_that_share_a_range_share_their_function(mapping: Any) -> None:
+    picture = picture_of([0.1, 0.4, 0.9], [0.2, 0.3, 1.5])
+    own = fractions_by_surface(picture, mapped_ranges(picture, "surface", "auto"), mapping)
+    shared = fractions_by_surface(picture, mapped_ranges(picture, "object", "auto"), mapping)
+    assert own.keys() == shared.keys() == {1, 2}
+    assert own[1] is not own[2]
+    assert fractions_by_surface(picture, mapped_ranges(picture, "surface", "auto"), mapping, 2).keys() == {2}
+    assert not fractions_by_surface(picture, mapped_ranges(picture, "surface", "auto"), mapping, 3)
+    assert shared[1] is shared[2]
+
+
+def test_a_function_of_a_surface_maps_its_range_to_0_and_1() -> None:
+    picture = picture_of([0.1, 0.4, 0.9], [0.2, 0.3, 1.5])
+    extents = mapped_ranges(picture, "surface", "auto")
+    for number, function in fractions_by_surface(picture, extents, "linear").items():
+        ends = np.array(extents[number], np.float32)
+        assert function(ends).tolist() == [0, 1]
+
+
+@given(scenes())
+def test_holding_the_exposure_of_a_picture_changes_no_word(scene: Scene) -> None:
+    picture = render(scene, 9, 12)
+    held = scene.replace(exposure=held_exposure(picture, scene.scaling, scene.exposure))
+    now, then = display_image(scene, picture), display_image(held, picture)
+    assert then.words.tolist() == now.words.tolist()
+    assert then.entries.tolist() == now.entries.tolist()
+
+
+@given(scenes())
+def test_every_range_that_is_mapped_is_held_or_found_in_the_picture(scene: Scene) -> None:
+    picture = render(scene, 9, 12)
+    ranges = mapped_ranges(picture, scene.scaling, scene.exposure)
+    held = {} if isinstance(scene.exposure, str) else dict(scene.exposure)
+    found = picture.relative_ranges
+
+    def in_scale(name: str) -> IntensityRange:
+        low, high = held[name]
+        return IntensityRange(low / picture.scale, high / picture.scale)
+
+    whole = in_scale("object") if "object" in held else found[0]
+    assert tuple(ranges[0]) == pytest.approx(whole)
+    for surface in picture.slices:
+        name = picture.surfaces[surface.surface_number - 1]
+        if name in held:
+            expected = in_scale(name)
+        elif "object" in held or scene.scaling == "object":
+            expected = whole
+        else:
+            expected = found[surface.surface_number]
+        if not has_extent(expected):
+            expected = whole
+        assert tuple(ranges[surface.surface_number]) == pytest.approx(expected)
+
+
+def test_half_the_light_is_half_as_bright_where_the_exposure_is_held() -> None:
+    scene = wall_scene(lights=[Light("key", (1.0, -3.0, 2.0))], scaling="object")
+    picture = render(scene, 24, 32)
+    held = scene.replace(exposure={"object": (0.0, picture.ranges.whole.maximum)})
+    dimmed = held.with_light("key", intensity=0.5)
+    bright = display_image(held, render(held, 24, 32)).words.astype(int) - 1
+    dark = display_image(dimmed, render(dimmed, 24, 32)).words.astype(int) - 1
+    seen = picture.surface_number > 0
+    assert bright[seen].max() == 1006
+    assert np.abs(dark[seen] * 2 - bright[seen]).max() <= 1
+
+
+def test_nothing_is_held_where_nothing_has_an_extent() -> None:
+    scene = wall_scene(lights=())
+    assert held_exposure(render(scene, 9, 12), scene.scaling) == "auto"
+
+
+def test_an_extent_of_a_few_units_in_the_last_place_is_none() -> None:
+    assert not has_extent(IntensityRange(0.0, 0.0))
+    assert not has_extent(IntensityRange(1.0, 1.0 + 4 * 2.0**-23))
+    assert has_extent(IntensityRange(1.0, 1.0 + 16 * 2.0**-23))
+    assert has_extent(IntensityRange(0.0, 1e-30))
+
+
+@given(scenes())
+def test_what_is_held_already_stays_held_as_it_is(scene: Scene) -> None:
+    exposure = held_exposure(render(scene, 9, 12), scene.scaling, scene.exposure)
+    if not isinstance(scene.exposure, str):
+        held = dict(scene.exposure)
+        assert not isinstance(exposure, str)
+        assert {name: limits for name, limits in exposure if name in held} == held

@@ -1,0 +1,354 @@
+from __future__ import annotations
+
+import itertools
+import math
+import tracemalloc
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Mesh
+from autocolor.arrays import Singles
+from autocolor.scene.geometry import normals as fans
+from autocolor.scene.geometry import normals as node_normals_2
+from autocolor.scene.geometry import normals as room
+from autocolor.scene.geometry import normals as union_find
+from autocolor.scene.geometry.normals import (
+    fans_of_corners,
+    group_numbers,
+    node_normals,
+    places_of_corners,
+    polygon_normals,
+    unite,
+    united_items,
+    used_bounds,
+    used_rows,
+)
+from tests.autocolor.meshes import cube, grid, sphere
+from tests.autocolor.strategies import meshes
+
+EPSILON = float(np.finfo(np.float32).eps)
+"""Normals are computed in float64 and rounded once."""
+
+
+def corner_normals(mesh: Mesh) -> Singles:
+    """The normal at each corner of each polygon, (polygons, 4, 3)."""
+    return mesh.normals.vectors[mesh.normals.numbers]
+
+
+def with_polygons(mesh: Mesh, quads: object, crease_angle: float = 40.0) -> Mesh:
+    quads = np.array(quads)
+    return Mesh(mesh.coordinates, quads, np.zeros(len(quads), np.intp), ("all",), crease_angle)
+
+
+def test_a_box_keeps_its_edges_sharp() -> None:
+    mesh = cube()
+    flat = polygon_normals(mesh.coordinates.T[:, mesh.node_numbers.T]).T
+    assert corner_normals(mesh) == pytest.approx(np.repeat(flat[:, None], 4, axis=1))
+    outward = mesh.coordinates[mesh.node_numbers].mean(axis=1) - 0.5
+    assert (outward * flat).sum(axis=1) == pytest.approx(np.full(6, 0.5))
+
+
+def test_a_box_is_smooth_where_the_crease_angle_allows_it() -> None:
+    mesh = with_polygons(cube(), cube().node_numbers, crease_angle=90.0)
+    corners = mesh.coordinates[mesh.node_numbers] - 0.5
+    assert corner_normals(mesh) == pytest.approx(corners / np.linalg.norm(corners, axis=2)[..., None])
+
+
+def test_a_sphere_is_smooth() -> None:
+    mesh = sphere(24, 12)
+    assert len(mesh.normals.vectors) == len(mesh.coordinates)
+    assert np.abs(corner_normals(mesh) - mesh.coordinates[mesh.node_numbers]).max() < 0.02
+
+
+def test_a_wall_has_one_normal_all_over() -> None:
+    mesh = grid(4, 3, (0, 0, 0), (1, 0, 0), (0, 0, 1))
+    assert corner_normals(mesh) == pytest.approx(np.broadcast_to((0, -1, 0), (12, 4, 3)))
+
+
+@given(st.integers(0, 1 << 32))
+def test_polygons_of_opposite_winding_are_as_smooth_each_with_its_own_sign(seed: int) -> None:
+    turned = np.random.default_rng(seed).integers(0, 2, 24 * 12).astype(bool).tolist()
+    whole = sphere(24, 12)
+    quads = [
+        (quad[1], quad[0], quad[2], quad[2]) if turn and quad[2] == quad[3]
+        else quad[::-1] if turn else quad
+        for quad, turn in zip(whole.node_numbers.tolist(), turned, strict=True)
+    ]  # fmt: skip
+    mixed = with_polygons(whole, quads)
+    outward = mixed.coordinates[mixed.node_numbers]
+    sign = np.where(turned, -1.0, 1.0)[:, None, None]
+    assert np.abs(corner_normals(mixed) * sign - outward).max() < 0.02
+
+
+@pytest.mark.parametrize(("fold", "smooth"), [(39.0, True), (40.0, True), (41.0, False), (120.0, False)])
+def test_an_edge_is_sharp_beyond_the_crease_angle(fold: float, smooth: bool) -> None:
+    turn = math.radians(fold)
+    roof = Mesh(
+        np.array(
+            [
+                (-1, 0, 0),
+                (-1, 1, 0),
+                (0, 0, 0),
+                (0, 1, 0),
+                (math.cos(turn), 0, -math.sin(turn)),
+                (math.cos(turn), 1, -math.sin(turn)),
+            ]
+        ),
+        np.array([(0, 2, 3, 1), (2, 4, 5, 3)]),
+        np.zeros(2, np.intp),
+        ("roof",),
+    )
+    at_ridge = corner_normals(roof)[0, 1]
+    expected = np.array((math.sin(turn / 2), 0, math.cos(turn / 2))) if smooth else np.array((0, 0, 1))
+    assert at_ridge == pytest.approx(expected, abs=EPSILON)
+
+
+def test_normals_are_not_shared_across_parts() -> None:
+    whole = sphere(24, 12)
+    halves = Mesh(
+        whole.coordinates, whole.node_numbers, np.arange(len(whole.node_numbers)) // 24 % 2, ("a", "b")
+    )
+    assert len(halves.normals.vectors) > len(whole.normals.vectors)
+
+
+def test_nodes_at_the_same_place_count_as_one() -> None:
+    whole = sphere(24, 12)
+    nodes = whole.node_numbers
+    torn = Mesh(
+        whole.coordinates[nodes.ravel()], np.arange(nodes.size).reshape(-1, 4), whole.part_numbers, ("all",)
+    )
+    # The triangles of the poles have two nodes in one place here.
+    assert corner_normals(torn)[24:-24] == pytest.approx(corner_normals(whole)[24:-24], abs=EPSILON)
+    assert np.abs(corner_normals(torn)[:, :3] - corner_normals(whole)[:, :3]).max() <= EPSILON
+
+
+def test_how_a_face_is_cut_to_polygons_does_not_turn_the_normals() -> None:
+    quads = with_polygons(cube(), cube().node_numbers, crease_angle=180.0)
+    triangles = with_polygons(
+        cube(),
+        [half for a, b, c, d in cube().node_numbers.tolist() for half in ((a, b, c, c), (a, c, d, d))],
+        crease_angle=180.0,
+    )
+    assert corner_normals(triangles)[0, 0] == pytest.approx(corner_normals(quads)[0, 0])
+
+
+def test_normals_that_cancel_leave_each_polygon_its_own() -> None:
+    # Three panels around one edge, 120 degrees apart: their sum is nothing.
+    panels = Mesh(
+        np.array(
+            [(0, 0, 0), (0, 0, 1)]
+            + [
+                (math.cos(turn), math.sin(turn), z)
+                for turn in (0, 2 * math.pi / 3, 4 * math.pi / 3)
+                for z in (0, 1)
+            ]
+        ),
+        np.array([(0, 2, 3, 1), (0, 4, 5, 1), (0, 6, 7, 1)]),
+        np.zeros(3, np.intp),
+        ("panels",),
+        crease_angle=180.0,
+    )
+    assert np.linalg.norm(panels.normals.vectors, axis=1) == pytest.approx(
+        np.ones(len(panels.normals.vectors))
+    )
+
+
+@given(meshes(), st.sampled_from([1e-200, 1e-20, 1.0, 1e20]))
+def test_every_normal_is_a_unit_vector_whatever_the_mesh(mesh: Mesh, size: float) -> None:
+    normals = node_normals(mesh.coordinates * size, mesh.node_numbers, mesh.part_numbers, mesh.crease_angle)
+    assert normals.numbers.shape == (len(mesh.node_numbers), 4)
+    assert normals.numbers.max(initial=-1) < len(normals.vectors)
+    assert np.linalg.norm(normals.vectors, axis=1) == pytest.approx(np.ones(len(normals.vectors)))
+
+
+@given(meshes())
+def test_a_flat_polygon_alone_has_its_own_normal(mesh: Mesh) -> None:
+    alone = mesh.coordinates[mesh.node_numbers[:1]]
+    own = polygon_normals(alone.transpose(2, 1, 0))[:, 0]
+    normals = node_normals(mesh.coordinates, mesh.node_numbers[:1], mesh.part_numbers[:1])
+    if own.any() and len({tuple(corner) for corner in alone[0].tolist()}) == 4:
+        assert normals.vectors[normals.numbers[0]] == pytest.approx(np.tile(own, (4, 1)), abs=EPSILON)
+
+
+def test_a_polygon_without_area_adds_nothing() -> None:
+    mesh = grid(1, 1, (0, 0, 0), (1, 0, 0), (0, 0, 1))
+    sliver = with_polygons(mesh, [*mesh.node_numbers.tolist(), (0, 1, 1, 0), (2, 2, 2, 2)])
+    assert corner_normals(sliver)[0] == pytest.approx(corner_normals(mesh)[0])
+
+
+Side = tuple[int, int, bool]
+"""A polygon, its corner, and whether the polygon shows its other side."""
+
+
+def fans_one_by_one(mesh: Mesh) -> list[set[Side]]:
+    """What shares a normal, found by comparing each polygon with each."""
+    polygons = [[tuple(mesh.coordinates[node].tolist()) for node in row] for row in mesh.node_numbers]
+    parts, normals = mesh.part_numbers.tolist(), polygon_normals(mesh.coordinates.T[:, mesh.node_numbers.T]).T
+    edges: dict[object, list[tuple[int, int]]] = {}
+    for number, places in enumerate(polygons):
+        for corner in range(4):
+            ends = frozenset([places[corner], places[(corner + 1) % 4]])
+            if len(ends) == 2:
+                edges.setdefault((ends, parts[number]), []).append((number, corner))
+    pairs: list[tuple[tuple[int, int], tuple[int, int], bool]] = [
+        ((number, 2), (number, 3), False) for number, places in enumerate(polygons) if places[2] == places[3]
+    ]
+    for users in edges.values():
+        for (one, here), (other, there) in itertools.pairwise(users):
+            opposite = polygons[one][here] == polygons[other][there]
+            cosine = float(normals[one] @ normals[other]) * (-1 if opposite else 1)
+            if cosine >= math.cos(math.radians(mesh.crease_angle)) - 1e-9:
+                next_here, next_there = (here + 1) % 4, (there + 1) % 4
+                ends_there = (there, next_there) if opposite else (next_there, there)
+                pairs.append(((one, here), (other, ends_there[0]), opposite))
+                pairs.append(((one, next_here), (other, ends_there[1]), opposite))
+    fan_of: dict[Side, set[Side]] = {
+        side: {side}
+        for side in itertools.product(range(len(polygons)), range(4), (False, True))
+    }  # fmt: skip
+    for one_corner, other_corner, opposite in pairs:
+        for turned in (False, True):
+            one_fan, other_fan = fan_of[*one_corner, turned], fan_of[*other_corner, turned != opposite]
+            if one_fan is not other_fan:
+                one_fan |= other_fan
+                fan_of.update(dict.fromkeys(other_fan, one_fan))
+    return [fan_of[polygon, corner, False] for polygon in range(len(polygons)) for corner in range(4)]
+
+
+@given(meshes())
+def test_the_corners_of_a_fan_are_those_found_one_by_one(mesh: Mesh) -> None:
+    slow = fans_one_by_one(mesh)
+    for one, other in itertools.combinations(range(len(slow)), 2):
+        assert (mesh.normals.numbers.flat[one] == mesh.normals.numbers.flat[other]) == (
+            slow[one] is slow[other]
+        )
+
+
+@given(meshes())
+def test_fans_are_numbered_by_their_first_corners_and_those_of_opposite_winding_come_in_pairs(
+    mesh: Mesh,
+) -> None:
+    places = places_of_corners(mesh.coordinates.T, mesh.node_numbers.T)
+    normals = polygon_normals(mesh.coordinates.T[:, mesh.node_numbers.T])
+    numbers, opposite_pairs = fans_of_corners(places, mesh.part_numbers, normals, mesh.crease_angle)
+    assert list(dict.fromkeys(numbers.tolist())) == list(range(numbers.max() + 1))
+    for one, other in opposite_pairs:
+        assert len(one) == len(other) > 0
+        assert set(one) | set(other) <= set(numbers)
+
+
+@given(meshes())
+def test_corners_share_a_place_where_their_coordinates_are_equal(mesh: Mesh) -> None:
+    corners = [tuple(place) for row in mesh.coordinates[mesh.node_numbers].tolist() for place in row]
+    places = places_of_corners(mesh.coordinates.T, mesh.node_numbers.T).T.ravel().tolist()
+    for one, other in itertools.combinations(range(len(corners)), 2):
+        assert (places[one] == places[other]) == (corners[one] == corners[other])
+
+
+def test_minus_zero_is_the_same_place_as_zero() -> None:
+    rows: npt.NDArray[np.float64] = np.array([[0.0, -0.0], [1.0, 1.0], [-0.0, 0.0]])
+    assert places_of_corners(rows, np.array([[0], [1], [0], [1]])).tolist() == [[0]] * 4
+
+
+@pytest.mark.parametrize("at_once", [1, 7, 100])
+def test_the_normals_do_not_depend_on_how_many_corners_are_worked_on_at_once(
+    at_once: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ball = sphere(24, 12)
+    turned = np.where((np.arange(24 * 12) % 3 == 0)[:, None], ball.node_numbers[:, ::-1], ball.node_numbers)
+
+    def normals() -> list[Singles]:
+        both = [
+            Mesh(ball.coordinates, nodes, ball.part_numbers, ("all",))
+            for nodes in (ball.node_numbers, turned)
+        ]
+        return [mesh.normals.vectors[mesh.normals.numbers] for mesh in both]
+
+    whole = normals()
+    monkeypatch.setattr(fans, "AT_ONCE", at_once)
+    monkeypatch.setattr(union_find, "AT_ONCE", at_once)
+    monkeypatch.setattr(node_normals_2, "POLYGONS_AT_ONCE", at_once)
+    for one, other in zip(whole, normals(), strict=True):
+        assert one == pytest.approx(other, abs=1.2e-7)
+
+
+def test_making_the_normals_needs_few_bytes_a_polygon() -> None:
+    mesh = grid(400, 400, (0, 0, 0), (1, 0, 0), (0, 0, 1))
+    tracemalloc.start()
+    try:
+        _ = mesh.normals
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < 250 * len(mesh.node_numbers)
+
+
+COUNT = 30
+
+items = st.integers(0, COUNT - 1)
+batches = st.lists(st.lists(st.tuples(items, items), max_size=20), max_size=4)
+
+
+def roots_one_by_one(pairs: list[tuple[int, int]]) -> list[int]:
+    """The lowest of each item's group, by passing it on until nothing changes."""
+    lowest = list(range(COUNT))
+    changed = True
+    while changed:
+        changed = False
+        for one, other in pairs:
+            if lowest[one] != lowest[other]:
+                lowest[one] = lowest[other] = min(lowest[one], lowest[other])
+                changed = True
+    return lowest
+
+
+@given(batches)
+def test_items_are_in_one_group_when_pairs_lead_from_one_to_the_other(
+    several: list[list[tuple[int, int]]],
+) -> None:
+    parents = np.arange(COUNT)
+    for pairs in several:
+        one, other = np.array(pairs, np.intp).reshape(-1, 2).T
+        unite(parents, one, other)
+    lowest = roots_one_by_one([pair for pairs in several for pair in pairs])
+    in_order = sorted(set(lowest))
+    assert group_numbers(parents).tolist() == [in_order.index(each) for each in lowest]
+
+
+def test_a_long_chain_in_any_order_is_one_group(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(union_find, "AT_ONCE", 100)
+    chain = np.random.default_rng(7).permutation(10_000)
+    parents = np.arange(len(chain))
+    links = np.random.default_rng(8).permutation(len(chain) - 1)
+    for some in np.array_split(links, 5):
+        unite(parents, chain[some], chain[some + 1])
+    assert not group_numbers(parents).any()
+
+
+def test_united_items_are_those_that_are_not_the_root_of_their_group() -> None:
+    parents = np.arange(9)
+    unite(parents, np.array([1, 4, 7]), np.array([5, 5, 2]))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(union_find, "AT_ONCE", 4)
+        assert united_items(parents).tolist() == [4, 5, 7]
+    assert united_items(np.arange(0)).tolist() == []
+
+
+@given(st.lists(st.tuples(*[st.integers(0, 9)] * 4), max_size=9), st.sampled_from([1, 2, 100]))
+def test_the_used_rows_are_those_that_appear(polygons: list[tuple[int, int, int, int]], at_once: int) -> None:
+    numbers = np.array(polygons, np.intp).reshape(-1, 4).T
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(room, "AT_ONCE", at_once)
+        assert np.flatnonzero(used_rows(numbers, 10)).tolist() == sorted({n for row in polygons for n in row})
+
+
+def test_bounds_leave_out_what_no_number_uses() -> None:
+    rows = np.array([[1.0, -9.0, 3.0], [5.0, 99.0, 4.0]])
+    low, high = used_bounds(rows, np.array([[0, 2, 0]]))
+    assert (low.tolist(), high.tolist()) == ([1.0, 4.0], [3.0, 5.0])
+    low, high = used_bounds(rows, np.empty((1, 0), np.intp))
+    assert (low.tolist(), high.tolist()) == ([np.inf] * 2, [-np.inf] * 2)

@@ -1,0 +1,310 @@
+from __future__ import annotations
+
+import dataclasses
+import pickle
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Flap, Light, Scene, Surface, View
+from autocolor.files.scenes.scene_meshes import MeshEntry
+from autocolor.scene.columns import (
+    REFUSED,
+    WORLD_UNITS,
+    Bar,
+    Column,
+    Problem,
+    Row,
+    RowError,
+    Tier,
+    bar_of,
+    bar_within,
+    changed,
+    cost,
+    difference,
+    fields_of,
+    keys_of,
+    made,
+    on_bar,
+    plain,
+)
+from autocolor.scene.kinds import Number, Whole
+from tests.autocolor.scene.spans import Span, sentences
+from tests.autocolor.strategies import lights, scenes, surfaces, views
+
+
+def test_a_row_holds_its_values_as_its_kinds_do() -> None:
+    span = Span("a", 1, 2)
+    assert (span.begin, type(span.begin)) == (1.0, float)
+    assert span.length is None
+
+
+def test_every_problem_of_a_row_is_told_with_its_noun_and_name() -> None:
+    assert sentences(lambda: Span("a", "x", "y")) == (  # type: ignore[arg-type]
+        "span 'a': begin must be a finite number, not 'x'",
+        "span 'a': end must be a finite number, not 'y'",
+    )
+    assert sentences(lambda: Span("", 0)) == (
+        "span: name must be a string of at least one character, not ''",
+    )
+
+
+def test_a_rule_between_columns_is_checked_beside_a_value_that_is_refused() -> None:
+    assert sentences(lambda: Span("a", "x", 3, 4)) == (  # type: ignore[arg-type]
+        "span 'a': begin must be a finite number, not 'x'",
+        "span 'a': it must have an end or a length, not both",
+    )
+    assert sentences(lambda: Span("a", 5, 3)) == ("span 'a': begin must not be above the end, not 5",)
+
+
+@pytest.mark.parametrize("cls", [Flap, Light, Surface, View, Scene])
+def test_every_column_has_a_line_of_help_that_is_a_sentence(cls: type[Row]) -> None:
+    columns = [field.column for field in fields_of(cls).values()]
+    for column in [*columns, *(key.column for key in keys_of(cls).values())]:
+        assert column.help[0].isupper()
+        assert column.help.endswith(".")
+        assert "\n" not in column.help
+
+
+NUMBERS = [
+    pytest.param(column, id=f"{cls.__name__}.{key}")
+    for cls in (Flap, Light, Surface, View, Scene, MeshEntry)
+    for key, (column, _, _) in keys_of(cls).items()
+    if isinstance(column.kind, (Number, Whole))
+]
+
+
+@pytest.mark.parametrize("column", NUMBERS)
+def test_every_number_has_a_bar_within_its_limits_or_is_measured_by_the_object(column: Column) -> None:
+    bar = bar_of(column)
+    assert (bar is None) == (column.unit == WORLD_UNITS)
+    if bar is None:
+        return
+    assert bar.low < bar.high
+    assert 10 <= (bar.high - bar.low) / bar.step <= 1000
+    problems: list[Problem] = []
+    for value in (bar.low, bar.high, bar.low + bar.step, bar.low - 1, 1e9, column.start or bar.high):
+        column.kind.held(on_bar(column, value), (), problems)
+    assert problems == []
+
+
+@pytest.mark.parametrize("cls", [Flap, Light, Surface, View, Scene])
+def test_a_number_that_may_be_absent_tells_what_it_starts_with(cls: type[Row]) -> None:
+    for column, is_optional, default in fields_of(cls).values():
+        bar = bar_of(column)
+        if bar is None:
+            assert column.start is None
+        elif is_optional:
+            assert column.start is not None
+            assert bar.rounded(column.start) == column.start
+        else:
+            assert column.start is None
+            assert default is not None
+            value = default()
+            assert isinstance(value, float)
+            assert bar.low <= value <= bar.high
+
+
+def test_a_value_on_a_bar_is_of_the_type_that_its_column_holds() -> None:
+    levels, cone = keys_of(Surface)["levels"].column, keys_of(Light)["cone_angle"].column
+    assert (on_bar(levels, 63.6), type(on_bar(levels, 63.6))) == (64, int)
+    assert (on_bar(cone, 29.6), type(on_bar(cone, 29.6))) == (30.0, float)
+    assert on_bar(Column(Number(), Tier.FRAME, "The place.", WORLD_UNITS), 1.234) == 1.234
+
+
+bars = st.tuples(
+    st.integers(-100, 100), st.integers(1, 400), st.sampled_from([0.001, 0.01, 0.02, 0.05, 0.1, 0.5, 1, 5])
+).map(lambda given: Bar(given[0] * given[2], (given[0] + given[1]) * given[2], given[2]))
+
+
+@given(bars, st.floats(-1e6, 1e6))
+def test_a_rounded_value_is_on_the_bar_and_the_nearest_step(bar: Bar, value: float) -> None:
+    rounded = bar.rounded(value)
+    assert bar.low <= rounded <= bar.high
+    within = min(max(value, bar.low), bar.high)
+    assert abs(rounded - within) <= bar.step * 0.5000001
+    assert bar.rounded(rounded) == rounded
+
+
+def test_values_are_multiples_of_the_step_or_the_ends() -> None:
+    bar = Bar(0.01, 1, 0.05)
+    assert [bar.rounded(value) for value in (0, 0.04, 0.31, 2)] == [0.01, 0.05, 0.3, 1.0]
+
+
+def test_halves_are_rounded_up_and_written_short() -> None:
+    bar = Bar(-1, 1, 0.1)
+    assert [bar.rounded(value) for value in (0.25, -0.25, 0.30000000000000004)] == [0.3, -0.2, 0.3]
+
+
+@given(bars, st.floats(0, 1))
+def test_the_value_at_a_fraction_has_that_fraction_but_for_a_step(bar: Bar, fraction: float) -> None:
+    assert abs(bar.fraction(bar.at(fraction)) - fraction) * (bar.high - bar.low) <= bar.step * 0.5000001
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "step"),
+    [(0, 1, 0.01), (0, 100, 1), (0, 180, 1), (-180, 180, 2), (3, 3.004, 2e-5), (0, 3e-9, 2e-11)],
+)
+def test_a_bar_has_round_steps_of_at_most_a_hundredth(low: float, high: float, step: float) -> None:
+    assert bar_within(low, high) == Bar(low, high, step)
+
+
+def test_a_refused_value_breaks_no_rule_again() -> None:
+    assert REFUSED != REFUSED
+    assert [REFUSED > 0, REFUSED < 0, REFUSED >= 0, REFUSED <= 0] == [False] * 4
+    assert REFUSED is not None
+
+
+def test_problems_say_where_they_are() -> None:
+    with pytest.raises(RowError) as caught:
+        Light("key", (0, 0, 0), flaps={"z": {"on": 3}})  # type: ignore[arg-type]
+    assert [problem.path for problem in caught.value.found] == [("flaps", "z", "on")]
+    assert caught.value.row == "light 'key'"
+
+
+@given(st.lists(st.sampled_from(["begin", "end", 0, 7]), max_size=4))
+def test_a_problem_under_another_place_has_the_path_from_there(path: list[Any]) -> None:
+    problem = Problem(("z",), "must be so").under(tuple(path))
+    assert problem.path == (*path, "z")
+    assert problem.sentence.endswith("z must be so")
+
+
+def test_an_error_can_be_sent_to_another_process() -> None:
+    with pytest.raises(RowError) as caught:
+        Light("key", (1, 2), intensity=-1)  # type: ignore[arg-type]
+    error = caught.value
+    copy = pickle.loads(pickle.dumps(error))
+    assert (copy.problems, copy.found, copy.row) == (error.problems, error.found, error.row)
+
+
+def test_a_change_checks_what_it_changes_and_the_rules() -> None:
+    span = Span("a", 1, 2)
+    assert changed(span, {"begin": 1.5}) == Span("a", 1.5, 2)
+    assert sentences(lambda: changed(span, {"begin": 3})) == (
+        "span 'a': begin must not be above the end, not 3",
+    )
+    assert span == Span("a", 1, 2)
+
+
+def test_giving_one_alternative_drops_the_others() -> None:
+    span = Span("a", 1, 2)
+    assert changed(span, {"length": 4}) == Span("a", 1, None, 4)
+    assert changed(changed(span, {"length": 4}), {"end": 9}) == Span("a", 1, 9)
+    assert changed(span, {"end": None}) == Span("a", 1)
+    with pytest.raises(RowError, match="not both"):
+        changed(span, {"end": 3, "length": 4})
+
+
+def test_an_unknown_key_is_told_with_the_nearest_right_one() -> None:
+    assert sentences(lambda: changed(Span("a"), {"beginn": 3, "x": 1})) == (
+        "span 'a': there is no 'beginn'; did you mean 'begin'?",
+        "span 'a': there is no 'x'; known are 'name', 'begin', 'end', 'length'",
+    )
+
+
+def test_a_change_keeps_nothing_that_was_computed_of_the_row() -> None:
+    view = View((0, -5, 0), target=(0, 0, 0))
+    forward = view.axes[2].tolist()
+    turned = view.replace(target=(5, -5, 0))
+    assert forward == [0, 1, 0]
+    assert turned.axes[2].tolist() == [1, 0, 0]
+
+
+def test_a_row_of_a_table_has_defaults_for_what_is_left_out() -> None:
+    assert made(Span, {"name": "a", "end": 2}) == Span("a", end=2)
+
+
+def test_what_is_missing_is_told_beside_what_is_wrong() -> None:
+    assert sentences(lambda: made(Span, {"begin": "x", "z": 1})) == (
+        "span: there is no 'z'; known are 'name', 'begin', 'end', 'length'",
+        "span: name must be a string of at least one character, not missing; add it",
+        "span: begin must be a finite number, not 'x'",
+    )
+
+
+@pytest.mark.parametrize("table", [None, 3, "x", [], [("name", "a")]])
+def test_what_is_no_table_makes_no_row(table: object) -> None:
+    assert sentences(lambda: made(Span, table)) == (
+        f"must be a table of name, begin, end and length, not {table!r}",
+    )
+
+
+def test_a_table_of_very_many_keys_is_refused_at_once() -> None:
+    assert sentences(lambda: made(Span, {f"key{number}": 0 for number in range(1000)})) == (
+        "span: it must be a table of at most 64 keys, not 1,000",
+    )
+
+
+@given(lights() | surfaces("body") | views())
+def test_a_row_comes_back_from_its_plain_values(row: Row) -> None:
+    assert made(type(row), plain(row)) == row
+
+
+@given(scenes())
+def test_plain_values_are_texts_numbers_switches_lists_and_tables(scene: Scene) -> None:
+    def check(value: object) -> None:
+        if isinstance(value, dict):
+            assert all(isinstance(key, str) for key in value)
+            for inner in value.values():
+                check(inner)
+        elif isinstance(value, (list, tuple)):
+            for inner in value:
+                check(inner)
+        else:
+            assert type(value) in (str, float, int, bool)
+            assert value == value, "not a number"
+
+    check(plain(scene))
+
+
+def test_an_edit_costs_the_most_of_what_it_changes() -> None:
+    span = Span("a", 1)
+    assert cost(span, Span("a", 1)) is None
+    assert cost(span, Span("b", 1)) == Tier.NOTHING
+    assert cost(span, Span("a", 1, length=3)) == Tier.MIX
+    assert cost(span, Span("b", 2, length=3)) == Tier.LIGHT
+    assert cost(span, Surface("a"), Tier.LEVELS) == Tier.LEVELS
+
+
+@pytest.mark.parametrize(
+    ("change", "tier"),
+    [
+        ({"name": "hood"}, Tier.MIX),
+        ({"exponent": 3}, Tier.LIGHT),
+        ({"diffuse": 0.1}, Tier.MIX),
+        ({"blend": 0.1}, Tier.ENTRIES),
+        ({"object_color": "#102030"}, Tier.ENTRIES),
+        ({"two_sided": False}, Tier.FRAME),
+        ({"levels": 7}, Tier.LEVELS),
+        ({"blend": 0.1, "diffuse": 0.1}, Tier.MIX),
+    ],
+)
+def test_a_change_of_a_surface_costs_the_tier_of_its_column(change: dict[str, Any], tier: Tier) -> None:
+    assert cost(Surface("body"), changed(Surface("body"), change)) == tier
+
+
+@given(surfaces("body"), surfaces("body"))
+def test_an_edit_costs_nothing_at_all_where_rows_are_equal(one: Surface, other: Surface) -> None:
+    assert (cost(one, other) is None) == (one == other)
+    assert cost(one, dataclasses.replace(one)) is None
+
+
+@given(scenes(), scenes())
+def test_a_difference_makes_of_one_row_the_other_and_of_equal_ones_is_empty(one: Scene, other: Scene) -> None:
+    rows: list[tuple[Row, Row]] = [
+        (one.view, other.view),
+        *zip(one.surfaces, other.surfaces, strict=True),
+        *zip(one.lights, other.lights, strict=False),
+    ]
+    for before, after in rows:
+        told = difference(before, after)
+        assert changed(before, told) == after
+        assert bool(told) == (before != after)
+        assert difference(after, changed(after, {})) == {}
+        assert "name" not in told or vars(before)["name"] != vars(after)["name"]
+
+
+def test_a_difference_tells_what_was_taken_away() -> None:
+    assert difference(Span("a", 1, 2), Span("b", 1)) == {"name": "b", "end": None}

@@ -1,0 +1,167 @@
+from __future__ import annotations
+
+import colorsys
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Surface, UsageError, image, render, scene_of
+from autocolor.arrays import Bytes, Floats
+from autocolor.mapping.colors import entries_of
+from autocolor.scene.swatches import (
+    CAR_PAINTS,
+    COLUMNS,
+    FINISHES,
+    FIRST_HUE,
+    GRAYS,
+    HUES,
+    ROWS,
+    SHADES,
+    finished,
+    mixed,
+    swatches,
+)
+from tests.autocolor.meshes import STRETCHED, sphere
+from tests.autocolor.strategies import colors, surfaces
+
+
+def field() -> Bytes:
+    found: Bytes = swatches().reshape(ROWS, COLUMNS, 3)
+    return found
+
+
+def luminance(colors: Bytes) -> Floats:
+    """The relative luminance of sRGB colors, from its definition."""
+    encoded = colors / 255
+    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    found: Floats = linear @ np.array([0.2126, 0.7152, 0.0722])
+    return found
+
+
+def test_the_field_has_two_hundred_swatches_to_read_only() -> None:
+    assert swatches().shape == (200, 3)
+    assert swatches().dtype == np.uint8
+    assert not swatches().flags.writeable
+    assert len(np.unique(swatches(), axis=0)) == 200
+
+
+def test_grays_go_from_white_to_black_and_car_paints_are_as_they_are() -> None:
+    grays = field()[:, 0]
+    assert (np.ptp(grays.astype(int), axis=1) == 0).all()
+    assert (np.diff(grays[:, 0].astype(int)) < 0).all()
+    assert grays[0].tolist() == [255] * 3
+    assert grays[-1].tolist() == [0] * 3
+    assert [tuple(color) for color in field()[:, -1].tolist()] == list(CAR_PAINTS)
+    assert len(GRAYS) == len(CAR_PAINTS) == ROWS
+
+
+def test_hues_get_darker_from_row_to_row_and_muted_rows_stand_last() -> None:
+    found = luminance(field()[:8, 1:-1])
+    assert (np.diff(found, axis=0) < 0).all()
+    spread = np.ptp(field()[:, 1:-1].astype(int), axis=2)
+    assert (spread[8:].max(axis=0) < spread[3:8].max(axis=0)).all()
+
+
+def test_a_row_is_about_equally_light_and_goes_once_around_the_hues() -> None:
+    for row in field()[:8, 1:-1]:
+        found = luminance(row)
+        assert found.max() / found.min() < 1.9
+        hues = np.array([colorsys.rgb_to_hsv(*color)[0] for color in (row / 255).tolist()])
+        steps = np.diff(np.append(hues, hues[0])) % 1
+        assert len(row) == HUES
+        assert (steps > 0).all()
+        assert round(steps.sum(), 6) == 1.0
+
+
+def test_rows_have_the_lightness_and_columns_the_hue_that_oklab_says() -> None:
+    # Ottosson's definition in its own direction, from sRGB to Oklab.
+    encoded = field()[:, 1:-1] / 255
+    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    cones = np.cbrt(
+        linear
+        @ np.array(
+            [
+                [0.4122214708, 0.2119034982, 0.0883024619],
+                [0.5363325363, 0.6806995451, 0.2817188376],
+                [0.0514459929, 0.1073969566, 0.6299787005],
+            ]
+        )
+    )
+    lightness, a, b = np.moveaxis(
+        cones
+        @ np.array(
+            [
+                [0.2104542553, 1.9779984951, 0.0259040371],
+                [0.7936177850, -2.4285922050, 0.7827717662],
+                [-0.0040720468, 0.4505937099, -0.8086757660],
+            ]
+        ),
+        2,
+        0,
+    )
+    wanted = np.array([shade.lightness for shade in SHADES])
+    assert np.abs(lightness - wanted[:, None]).max() < 0.004
+    turn = np.degrees(np.arctan2(b, a)) - FIRST_HUE - np.arange(HUES) * 360 / HUES
+    assert np.abs((turn + 180) % 360 - 180).max() < 3
+    for row, shade in enumerate(SHADES):
+        assert np.hypot(a, b)[row].max() < shade.most + 0.004
+
+
+names = st.sampled_from(list(FINISHES))
+
+
+@given(surfaces("body"), names, names)
+def test_a_finish_keeps_the_color_and_replaces_any_other_finish(
+    surface: Surface, first: str, last: str
+) -> None:
+    once = surface.replace(**finished(surface, last))
+    other = surface.replace(**finished(surface, first))
+    assert other.replace(**finished(other, last)) == once
+    assert once.paint.object_color == surface.paint.object_color
+    assert (once.name, once.levels, once.two_sided) == (surface.name, surface.levels, surface.two_sided)
+
+
+def test_the_finishes_of_a_menu_are_these() -> None:
+    assert list(FINISHES) == ["plastic", "paint", "metallic", "metal", "rubber", "glass"]
+    with pytest.raises(UsageError, match=r"^there is no finish 'metl'; did you mean 'metal'\?$"):
+        finished(Surface("body"), "metl")
+
+
+@given(colors, names)
+def test_more_light_is_never_clearly_darker(color: tuple[int, int, int], name: str) -> None:
+    surface = Surface("body").replace(object_color=color)
+    paint = surface.replace(**finished(surface, name)).paint
+    brightness = entries_of(paint, 128).astype(int).sum(axis=1)
+    assert (np.maximum.accumulate(brightness) - brightness).max() <= 45
+
+
+def test_each_finish_looks_different() -> None:
+    scene = scene_of(
+        sphere(24, 16), surfaces=[Surface("sphere").replace(object_color="#b01020")], **STRETCHED
+    )
+    images = {}
+    for name in FINISHES:
+        finish = scene.with_surface("sphere", **finished(scene.surface("sphere"), name))
+        images[name] = image(finish, render(finish, 60, 80)).astype(float)
+    for one, other in itertools.combinations(FINISHES, 2):
+        assert np.abs(images[one] - images[other]).mean() > 1, (one, other)
+    means = {name: found.mean() for name, found in images.items()}
+    assert min(means, key=lambda name: means[name]) == "glass"
+    # Glass and paint have a white highlight; that of metal has its color, and rubber has none.
+    whitest = {name: found.min(axis=2).max() for name, found in images.items()}
+    assert whitest["glass"] > 240
+    assert whitest["paint"] > 240
+    assert whitest["rubber"] < 100 < whitest["metal"] < 200
+
+
+@given(colors, colors, st.floats(0, 1))
+def test_a_mixed_color_lies_between_both(
+    one: tuple[int, int, int], other: tuple[int, int, int], share: float
+) -> None:
+    for a, b, c in zip(one, other, mixed(one, other, share), strict=True):
+        assert min(a, b) <= c <= max(a, b)
+    assert mixed(one, other, 0) == one
+    assert mixed(one, other, 1) == other

@@ -1,0 +1,158 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from autocolor import Scene
+from autocolor.mapping.colors import blend_level
+from autocolor.screens.viewer import Viewer
+from autocolor.widgets.bars import LevelBar
+from autocolor.widgets.items import Area
+from autocolor.widgets.menu import MENU
+from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.painting_hand import PaintingHand, boxes_scene
+
+
+def blending(scene: Scene, folder: Path) -> PaintingHand:
+    """A hand at the light blending screen of a scene, away from the menu."""
+    hand = PaintingHand(Viewer(scene, Ramtek9300(), folder))
+    hand.turn_to("light blending")
+    assert hand.viewer.page == "blending"
+    hand.move(20, 20)
+    hand.viewer.tell("")
+    return hand
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> PaintingHand:
+    return blending(boxes_scene(), tmp_path)
+
+
+def bar_of(hand: PaintingHand) -> LevelBar:
+    bar = hand.widget("blend level")
+    assert isinstance(bar, LevelBar)
+    return bar
+
+
+def bar_is_right(hand: PaintingHand) -> bool:
+    """Whether the bar has the entries of the chosen surface's levels, the highest on top."""
+    first, levels = hand.viewer.studio.level_ranges[hand.viewer.session.surface_name]
+    strip = bar_of(hand).strip
+    along = np.floor(np.arange(strip.height) * (levels - 1) / (strip.height - 1) + 0.5).astype(int)
+    wanted = np.broadcast_to((first + along)[::-1, None], (strip.height, strip.width))
+    entries = hand.viewer.studio.entries
+    return np.array_equal(hand.words(strip), wanted) and np.array_equal(hand.colors(strip), entries[wanted])
+
+
+def test_the_whole_picture_stands_beside_the_bar(hand: PaintingHand) -> None:
+    left = Area(0, 0, 520, 479)
+    assert np.array_equal(hand.words(left), hand.viewer.studio.words[:, :521])
+    assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
+    assert bar_of(hand).strip.width == 24
+    assert bar_is_right(hand)
+
+
+def test_a_pick_on_the_bar_blends_from_its_level_on_at_once(hand: PaintingHand) -> None:
+    levels = hand.viewer.studio.level_ranges["box 0"].levels
+    strip = bar_of(hand).strip
+    for line in (strip.bottom, 400, 123, strip.top):
+        hand.click(strip.left + 12, line)
+        wanted = int((strip.bottom - line) * (levels - 1) / (strip.height - 1) + 0.5)
+        assert blend_level(hand.paint.blend, levels) == wanted
+        assert np.array_equal(hand.display.entries, hand.viewer.studio.entries)
+        assert bar_is_right(hand)
+    assert hand.paint.blend == 1
+
+
+def test_only_entries_and_the_words_of_a_handle_are_sent(hand: PaintingHand) -> None:
+    bar = bar_of(hand)
+    picture = Area(0, 0, bar.area.left - 40, 479)
+    hand.spoil(picture)
+    hand.spoil(bar.strip)
+    line = bar.strip.top + 100
+    hand.move(bar.strip.left + 5, line)
+    hand.joystick.track = True
+    hand.viewer.poll()
+    for down in range(5, 100, 5):
+        before = hand.display.frame_buffer.written
+        entries = hand.display.lookup_table.written
+        hand.move(bar.strip.left + 5, line + down)
+        assert hand.display.frame_buffer.written - before < 1000
+        assert hand.display.lookup_table.written > entries
+    assert (hand.words(picture) == 5).all()
+    assert (hand.words(bar.strip) == 5).all()
+
+
+def test_the_other_handle_is_the_percentage_of_the_light_color(hand: PaintingHand) -> None:
+    area = hand.widget("light color at the maximum").area
+    hand.click(area.left + 10, area.bottom)
+    assert hand.paint.light_percentage == 0
+    first, levels = hand.viewer.studio.level_ranges["box 0"]
+    assert tuple(hand.display.entries[first + levels - 1]) == hand.paint.object_color
+    hand.drag((area.left + 10, area.bottom), (area.left + 10, 200), (area.left + 10, area.top))
+    assert hand.paint.light_percentage == 100
+    assert tuple(hand.display.entries[first + levels - 1]) == hand.paint.light_color
+    hand.click(area.left + 2, (area.top + area.bottom) // 2)
+    assert hand.paint.light_percentage == 50
+    assert hand.paint.blend == boxes_scene().surface("box 0").paint.blend
+
+
+@pytest.mark.parametrize("label", ["blend level", "light color at the maximum"])
+def test_a_drag_is_one_step_to_undo(hand: PaintingHand, label: str) -> None:
+    scene = hand.viewer.studio.scene
+    area = hand.widget(label).area
+    element = area.left + 12
+    hand.drag((element, 300), (element, 250), (element, 200), (element, 350))
+    assert hand.viewer.studio.scene is not scene
+    hand.viewer.undo()
+    assert hand.viewer.studio.scene is scene
+    hand.viewer.undo()
+    assert hand.viewer.message == "nothing to undo"
+
+
+def test_a_click_in_the_picture_chooses_the_surface_of_the_bar(hand: PaintingHand) -> None:
+    first, levels = hand.viewer.studio.level_ranges["box 1"]
+    words = hand.viewer.studio.words[:, :500]
+    line, element = np.argwhere((first <= words) & (words < first + levels))[0].tolist()
+    hand.click(element, line)
+    assert hand.viewer.session.surface_name == "box 1"
+    assert bar_is_right(hand)
+
+
+def test_the_bar_makes_room_for_the_menu(hand: PaintingHand) -> None:
+    assert bar_of(hand).area.right > MENU.left
+    hand.move(639, 200)
+    bar, percent = bar_of(hand), hand.widget("light color at the maximum")
+    assert bar.area.right < percent.area.left
+    assert percent.area.right < MENU.left
+    assert bar_is_right(hand)
+    hand.click(bar.strip.left + 3, 300)
+    assert hand.paint.blend != 0.4
+    hand.move(20, 20)
+    hand.viewer.tell("")
+    assert bar_of(hand).area.right > MENU.left
+    assert bar_is_right(hand)
+
+
+def test_the_number_of_the_menu_blends_too(hand: PaintingHand) -> None:
+    hand.move(639, 200)
+    area = hand.widget("light percent").area
+    hand.drag((area.left + 100, area.top + 4), (area.left + 20, area.top + 4), (area.left, area.top + 4))
+    assert hand.paint.light_percentage == 0
+
+
+@pytest.mark.parametrize("count", [1, 2, 60])
+def test_leaving_restores_words_and_entries_byte_for_byte(tmp_path: Path, count: int) -> None:
+    hand = blending(boxes_scene(count), tmp_path)
+    before = hand.viewer.studio.scene
+    hand.leave()
+    assert hand.is_as_sent(before)
+    hand.turn_to("light blending")
+    hand.move(20, 20)
+    assert bar_is_right(hand)
+    hand.click(bar_of(hand).strip.left + 3, 222)
+    assert hand.viewer.studio.scene is not before
+    hand.leave()
+    assert hand.is_as_sent(hand.viewer.studio.scene)

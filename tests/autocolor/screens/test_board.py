@@ -1,0 +1,671 @@
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor.errors import UsageError
+from autocolor.screens.board import (
+    MESSAGE,
+    MOST_CHARACTERS,
+    REACH,
+    Board,
+    Grip,
+    Layout,
+    TypingLine,
+    last_rows,
+    message_items,
+    page_of_menu,
+    rows_of_menu,
+    with_loads,
+)
+from autocolor.screens.input import Gesture
+from autocolor.screens.screen import Handle, Screen
+from autocolor.screens.session import MESSAGE_SECONDS
+from autocolor.screens.viewer import Viewer
+from autocolor.widgets.bars import Bar
+from autocolor.widgets.items import BLACK, GRAY, NIGHT, ORANGE, SCREEN, SLATE, WHITE, WIDTH, filled, text
+from autocolor.widgets.menu import MENU, WIDE_BAR, laid_out
+from autocolor.widgets.sheet import Sheet
+from autocolor.widgets.widget import Button, Entry, Place, Widget
+from ramtek_emu import PRINCETON_9300, Ramtek9300
+from tests.autocolor.screens.boards import Desk, desk_viewer, middle_of, point
+from tests.autocolor.sessions import car
+
+
+@pytest.fixture
+def viewer(tmp_path: Path) -> Viewer:
+    return desk_viewer(tmp_path)
+
+
+@pytest.fixture
+def board(viewer: Viewer) -> Board:
+    return viewer.board
+
+
+def display_of(viewer: Viewer) -> Ramtek9300:
+    assert isinstance(viewer.display, Ramtek9300)
+    return viewer.display
+
+
+def is_drawn_whole(viewer: Viewer) -> bool:
+    """Whether the display has what the page alone gives."""
+    fresh = Ramtek9300(display_of(viewer).configuration)
+    Sheet(fresh).show(viewer.board.page())
+    display = display_of(viewer)
+    return np.array_equal(display.words, fresh.words) and np.array_equal(display.entries, fresh.entries)
+
+
+def test_the_row_under_the_pointer_is_lit_and_few_words_are_written(viewer: Viewer, board: Board) -> None:
+    place = middle_of(board, "ambient")
+    written = display_of(viewer).frame_buffer.written
+    point(viewer, "hover", *place)
+    assert display_of(viewer).words[place[1] - 6, place[0]] == SLATE
+    # A row, and the hint in the message line.
+    assert display_of(viewer).frame_buffer.written - written < 3 * (136 * 16 + WIDTH * 16)
+    assert board.message[0] == "The light from everywhere."
+    point(viewer, "hover", 100, 100)
+    assert display_of(viewer).words[place[1] - 6, place[0]] != SLATE
+    assert is_drawn_whole(viewer)
+
+
+def test_a_gap_says_nothing_and_a_dim_row_says_why(viewer: Viewer, board: Board) -> None:
+    point(viewer, "hover", *middle_of(board, "a gap"))
+    assert board.message[0] == "the desk"
+    point(viewer, "hover", *middle_of(board, "do it"))
+    assert board.message[0] == "not today"
+    point(viewer, "pick", *middle_of(board, "do it"))
+    assert board.message == ("do it: not today", ORANGE)
+
+
+def test_of_two_rows_with_one_name_the_one_under_the_pointer_is_lit(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = Desk.rows
+    monkeypatch.setattr(Desk, "rows", lambda desk: [*rows(desk), *rows(desk)])
+    first, second = [each.area for each in board.widgets() if each.label == "ambient"]
+    point(viewer, "hover", second.left + 9, second.top + 1)
+    words = display_of(viewer).words
+    assert words[second.top, second.left] == SLATE
+    assert words[first.top, first.left] != SLATE
+
+
+def test_a_second_pick_places_what_the_first_one_took(viewer: Viewer, board: Board) -> None:
+    before = viewer.studio.scene
+    element, line = board.screen.handles()[0][1:3]
+    point(viewer, "pick", element + 5, line)
+    assert board.mark == (element, line)
+    assert viewer.message == "the eye: pick its new place"
+    # The menu's own ground, and a hover, let it be held.
+    point(viewer, "pick", MENU.left + 50, MENU.bottom - 3)
+    point(viewer, "pick", 250, 170)
+    assert viewer.studio.scene.view.eye[:2] == (5.0, -3.0)
+    assert board.held is None
+    viewer.on_key("z", control=True)
+    assert viewer.studio.scene is before
+
+
+def test_a_place_that_is_refused_is_told_and_the_handle_still_held(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from autocolor import UsageError
+
+    def refuse(*_: object) -> None:
+        raise UsageError("an eye must be elsewhere")
+
+    element, line = board.screen.handles()[0][1:3]
+    point(viewer, "pick", element, line)
+    monkeypatch.setattr(board.screen, "place", refuse)
+    point(viewer, "pick", 250, 170)
+    assert board.message == ("an eye must be elsewhere", ORANGE)
+    assert board.held is not None
+    assert viewer.on_key("escape")
+    assert board.held is None
+
+
+def test_a_drag_of_a_handle_is_one_step_and_escape_takes_it_back(viewer: Viewer, board: Board) -> None:
+    before = viewer.studio.scene
+    element, line = board.screen.handles()[0][1:3]
+    for end in ("drop", "escape"):
+        point(viewer, "grab", element, line)
+        for step in range(1, 5):
+            point(viewer, "drag", element + 3 * step, line)
+        assert viewer.studio.scene is not before
+        if end == "drop":
+            point(viewer, "drop", element + 12, line)
+            viewer.on_key("z", control=True)
+        else:
+            viewer.on_key("escape")
+            point(viewer, "drag", element + 40, line)
+        assert viewer.studio.scene is before
+        assert not board.is_dragging
+    assert not viewer.studio.undo()
+
+
+def test_a_handle_below_the_menu_cannot_be_reached(viewer: Viewer, board: Board) -> None:
+    assert board.handle_at(508, 300) is None
+    assert board.handle_at(502, 300) is None
+    before = viewer.studio.scene
+    # Nor can the screen be dragged by the ground of the menu.
+    point(viewer, "grab", 508, MENU.bottom - 3)
+    assert not board.is_dragging
+    point(viewer, "drag", 300, 300)
+    assert viewer.studio.scene is before
+
+
+def test_enter_during_a_drag_does_not_end_its_step(viewer: Viewer, board: Board) -> None:
+    before = viewer.studio.scene
+    element, line = board.screen.handles()[0][1:3]
+    point(viewer, "grab", element, line)
+    point(viewer, "drag", element + 10, line)
+    point(viewer, "pick", element + 10, line)
+    point(viewer, "drag", element + 20, line)
+    point(viewer, "drop", element + 20, line)
+    viewer.on_key("z", control=True)
+    assert viewer.studio.scene is before
+
+
+def test_undo_by_a_key_during_a_drag_lets_go(viewer: Viewer, board: Board) -> None:
+    before = viewer.studio.scene
+    place = middle_of(board, "ambient")
+    point(viewer, "grab", *place)
+    point(viewer, "drag", place[0] + 20, place[1])
+    assert viewer.studio.scene is not before
+    viewer.on_key("z", control=True)
+    assert viewer.studio.scene is before
+    point(viewer, "drag", place[0] + 30, place[1])
+    assert viewer.studio.scene is before
+
+
+def test_a_widget_that_is_gone_is_dragged_no_more(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = middle_of(board, "ambient")
+    point(viewer, "grab", *place)
+    monkeypatch.setattr(Desk, "rows", lambda desk: [])
+    before = viewer.studio.scene
+    point(viewer, "drag", place[0] + 20, place[1])
+    assert viewer.studio.scene is before
+    assert not board.is_dragging
+
+
+def test_a_bar_goes_on_where_it_was_grabbed_though_rows_move(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = middle_of(board, "ambient")
+    point(viewer, "grab", *place)
+    rows = Desk.rows
+    monkeypatch.setattr(Desk, "rows", lambda desk: list(reversed(rows(desk))))
+    point(viewer, "drag", MENU.right, place[1])
+    assert viewer.studio.scene.ambient == 1.0
+
+
+def test_a_drag_beyond_the_screen_stays_at_its_edge(viewer: Viewer, board: Board) -> None:
+    element, line = board.screen.handles()[0][1:3]
+    point(viewer, "grab", element, line)
+    point(viewer, "drag", -300, -5)
+    point(viewer, "drop", -300, -5)
+    point(viewer, "pick", 3, 3)
+    assert viewer.studio.scene.view.eye[:2] == (-50.0, -20.5)
+    assert is_drawn_whole(viewer)
+
+
+def test_a_click_opens_the_wide_bar_and_a_second_one_closes_it(viewer: Viewer, board: Board) -> None:
+    place = middle_of(board, "ambient")
+    point(viewer, "pick", *place)
+    assert board.widget_at(300, WIDE_BAR.top + 5) is not None
+    point(viewer, "pick", WIDE_BAR.left + 3, WIDE_BAR.top + 5)
+    assert viewer.studio.scene.ambient == 0.0
+    assert is_drawn_whole(viewer)
+    point(viewer, "pick", *place)
+    assert board.widget_at(300, WIDE_BAR.top + 5) is None
+    point(viewer, "pick", *place)
+    assert viewer.on_key("escape")
+    assert board.widget_at(300, WIDE_BAR.top + 5) is None
+
+
+def test_a_number_is_typed_over_its_bar(viewer: Viewer, board: Board) -> None:
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    for sign in "0.25":
+        viewer.on_key(sign, typed=sign)
+    assert board.message[0] == "ambient: 0.25_"
+    viewer.on_key("return", typed="\r")
+    assert viewer.studio.scene.ambient == 0.25
+    viewer.on_key("z", control=True)
+    assert viewer.studio.scene.ambient == 0.0
+
+
+def test_a_number_that_is_none_is_told_in_one_sentence_and_can_be_mended(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = viewer.studio.scene
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    for sign in "0.x":
+        viewer.on_key(sign, typed=sign)
+    viewer.on_key("return", typed="\r")
+    assert board.message == ("ambient must be a number, not '0.x'; type one, such as 1.5", ORANGE)
+    assert (display_of(viewer).words[MESSAGE.top :] == ORANGE).any()
+    assert viewer.studio.scene is before
+    now = time.monotonic()
+    monkeypatch.setattr("time.monotonic", lambda: now + MESSAGE_SECONDS + 1)
+    assert board.message[0] == "ambient: 0.x_"
+    for name, typed in (("backspace", "\b"), ("5", "5"), ("return", "\r")):
+        viewer.on_key(name, typed=typed)
+    assert viewer.studio.scene.ambient == 0.5
+    assert not board.typing.is_on
+
+
+def test_a_click_elsewhere_takes_what_was_typed_unless_it_is_refused(viewer: Viewer, board: Board) -> None:
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    viewer.on_key("1", typed="1")
+    point(viewer, "pick", 100, 100)
+    assert viewer.studio.scene.ambient == 1.0
+    point(viewer, "hover", *middle_of(board, "ambient"))
+    for sign in "-3":
+        viewer.on_key(sign, typed=sign)
+    point(viewer, "pick", 100, 100)
+    assert board.message[1] == ORANGE
+    assert board.typing.is_on
+    viewer.on_key("escape")
+    assert not board.typing.is_on
+    assert viewer.studio.scene.ambient == 1.0
+
+
+def test_an_entry_is_typed_after_a_pick_where_there_is_a_keyboard(viewer: Viewer, board: Board) -> None:
+    point(viewer, "pick", *middle_of(board, "name"))
+    assert board.message == ("name: typing needs a keyboard", ORANGE)
+    element, line = middle_of(board, "name")
+    viewer.on_pointer(element, line, "press", 1)
+    viewer.on_pointer(element, line, "release", 1)
+    for sign in "new":
+        viewer.on_key(sign, typed=sign)
+    viewer.on_key("return", typed="\r")
+    assert viewer.studio.scene.name == "new"
+
+
+def test_tab_and_arrows_and_return_do_what_a_pointer_does(viewer: Viewer, board: Board) -> None:
+    viewer.on_key("tab", typed="\t")
+    seen = [board.lit]
+    for _ in range(3):
+        viewer.on_key("down")
+        seen.append(board.lit)
+    assert seen == ["< picture", "ambient", "do it", "name"]
+    viewer.on_key("up")
+    viewer.on_key("up")
+    viewer.on_key("right")
+    assert viewer.studio.scene.ambient == 0.01
+    viewer.on_key("up")
+    viewer.on_key("return", typed="\r")
+    assert viewer.page == "picture"
+
+
+def test_the_edge_opens_the_menu_of_the_picture_and_leaving_closes_it(viewer: Viewer, board: Board) -> None:
+    viewer.session.turn_to("picture")
+    viewer.tell("")
+    assert not board.has_menu
+    point(viewer, "hover", 638, 100)
+    assert board.has_menu
+    point(viewer, "hover", MENU.left + 2, 100)
+    assert board.has_menu
+    point(viewer, "hover", MENU.left - 1, 100)
+    assert not board.has_menu
+    assert np.array_equal(display_of(viewer).words, viewer.studio.words)
+    point(viewer, "hover", 638, 100)
+    assert viewer.on_key("escape")
+    assert not board.has_menu
+
+
+def test_every_page_of_a_long_menu_is_reached_and_a_menu_that_shrinks_shows_its_last(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Desk, "rows_more", 70)
+    seen: set[str] = set()
+    for _ in range(3):
+        seen |= {each.label for each in board.widgets()}
+        point(viewer, "pick", *middle_of(board, "more"))
+    assert {f"row {number}" for number in range(70)} <= seen
+    # It is at the first page again.
+    assert "ambient" in {each.label for each in board.widgets()}
+    for _ in range(2):
+        point(viewer, "pick", *middle_of(board, "more"))
+    monkeypatch.setattr(Desk, "rows_more", 30)
+    assert {"row 29", "more"} <= {each.label for each in board.widgets()}
+    monkeypatch.setattr(Desk, "rows_more", 0)
+    assert "ambient" in {each.label for each in board.widgets()}
+
+
+def test_a_click_that_slips_along_the_undo_row_undoes_nothing(viewer: Viewer, board: Board) -> None:
+    viewer.on_key("c", typed="c")
+    viewer.session.turn_to("desk")
+    viewer.tell("")
+    scene = viewer.studio.scene
+    element, line = middle_of(board, " ")
+    point(viewer, "grab", element, line)
+    for step in range(10):
+        point(viewer, "drag", element - step, line)
+    point(viewer, "drop", element, line)
+    assert viewer.studio.scene is scene
+    point(viewer, "pick", element - 20, line)
+    assert viewer.studio.scene is not scene
+
+
+def test_without_a_pointer_the_hint_is_that_of_the_screen(viewer: Viewer, board: Board) -> None:
+    assert board.message[0] == "the desk"
+
+
+def test_the_whole_of_a_larger_display_shows_the_picture(tmp_path: Path) -> None:
+    viewer = desk_viewer(tmp_path, Ramtek9300(PRINCETON_9300))
+    point(viewer, "hover", *middle_of(viewer.board, "ambient"))
+    assert is_drawn_whole(viewer)
+    viewer.session.turn_to("picture")
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).words, viewer.studio.words)
+
+
+def test_entries_that_change_while_some_are_borrowed_are_there_afterwards(
+    viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    borrowed = np.full((64, 3), 77, np.uint8)
+    monkeypatch.setattr(board.screen, "loads", lambda: [(1, borrowed)])
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).entries[1:65], borrowed)
+    viewer.session.paint(object_color="red")
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).entries[1:65], borrowed)
+    assert np.array_equal(display_of(viewer).entries[65:], viewer.studio.entries[65:])
+    viewer.session.turn_to("picture")
+    viewer.tell("")
+    assert np.array_equal(display_of(viewer).entries, viewer.studio.entries)
+
+
+def test_the_mark_goes_when_the_pointer_is_exactly_on_it(tmp_path: Path) -> None:
+    viewer = Viewer(car(), Ramtek9300(), tmp_path)
+    viewer.session.turn_to("light and view")
+    viewer.on_tick()
+    handle = viewer.board.screen.handles()[-1]
+    viewer.on_pointer(handle.element + 3, handle.line + 3, "move")
+    assert viewer.board.mark is not None
+    viewer.on_pointer(*viewer.board.mark, "move")
+    assert viewer.board.mark is None
+
+
+# -------------------- test_layout
+# What a layout has is tried through the board, in test_board.py.
+
+places = st.tuples(st.integers(90, 110), st.integers(90, 110))
+
+
+class Handles(Screen):
+    """A screen with handles alone."""
+
+    def __init__(self, places: list[tuple[int, int]]) -> None:
+        self.places = places
+
+    def handles(self) -> list[Handle]:
+        return [Handle(number, *place, "") for number, place in enumerate(self.places)]
+
+
+@given(st.lists(places, max_size=5), places)
+def test_the_nearest_handle_within_reach_is_found_the_last_of_those_as_near(
+    handles: list[tuple[int, int]], place: tuple[int, int]
+) -> None:
+    distances = [max(abs(x - place[0]), abs(y - place[1])) for x, y in handles]
+    found = Layout(Handles(handles), [], "", []).handle_at(*place)
+    if not distances or min(distances) > REACH:
+        assert found is None
+    else:
+        assert found is not None
+        last = max(number for number, each in enumerate(distances) if each == min(distances))
+        assert found.key == last
+
+
+def test_the_wide_bar_covers_what_is_below_it(tmp_path: Path) -> None:
+    screen = desk_viewer(tmp_path).board.screen
+    rows = laid_out([Bar("ambient"), Button("go")])
+    closed, opened = (Layout(screen, rows, key, [MENU]) for key in ("", "ambient"))
+    place = (100, WIDE_BAR.top + 3)
+    assert not closed.is_covered(*place)
+    assert opened.is_covered(*place)
+    assert opened.widget_at(*place) is opened.wide
+    assert Layout(screen, rows, "gone", [MENU]).wide is None
+
+
+def test_a_widget_is_found_again_by_its_key_and_stays_where_it_was_grabbed() -> None:
+    before = laid_out([Bar("x", value=1.0), Button("x")])
+    after = laid_out([Button("new"), Bar("x", value=2.0)])
+    now = Layout(Handles([]), after, "", []).now(before[0])
+    assert isinstance(now, Bar)
+    assert (now.value, now.area) == (2.0, before[0].area)
+    assert Layout(Handles([]), after, "", []).now(before[1]) is None
+
+
+# -------------------- test_composition
+# What a page looks like is tried through the board, in test_board.py.
+
+
+def test_entries_without_loads_are_the_same_array() -> None:
+    entries = np.zeros((1024, 3), np.uint8)
+    assert with_loads(entries, []) is entries
+
+
+def test_loads_replace_runs_and_leave_the_entries_as_they_were() -> None:
+    entries = np.zeros((1024, 3), np.uint8)
+    table = with_loads(entries, [(5, np.full((3, 3), 9, np.uint8)), (7, np.full((2, 3), 4, np.uint8))])
+    assert table[4:10, 0].tolist() == [0, 9, 9, 4, 4, 0]
+    assert not entries.any()
+
+
+def test_a_message_stands_over_all_that_a_screen_draws(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    viewer: Viewer = desk_viewer(tmp_path)
+    viewer.tell("a message")
+    told = [item for item in viewer.board.page().items if MESSAGE.covers(item.area)]
+    monkeypatch.setattr(viewer.board.screen, "items", lambda: [filled(SCREEN, 3)])
+    items = list(viewer.board.page().items)
+    assert items.index(filled(SCREEN, 3)) < min(items.index(item) for item in told)
+
+
+# -------------------- test_grip
+# What is dragged on a board is tried in test_board.py; here, what is asked of the screen.
+
+
+class Told(Screen):
+    """A screen that notes what it is asked for."""
+
+    def __init__(self) -> None:
+        self.did: list[object] = []
+
+    def handles(self) -> list[Handle]:
+        return [Handle("a", 100, 100, "a")]
+
+    def hold(self, handle: Handle) -> None:
+        self.did.append(("hold", handle.key))
+
+    def place(self, handle: Handle, element: int, line: int) -> None:
+        self.did.append(("place", handle.key, element, line))
+
+    def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
+        self.did.append(("drag", start.element, last.element, now.element))
+
+
+def test_a_handle_is_held_and_placed_and_the_screen_dragged_step_by_step() -> None:
+    screen, grip = Told(), Grip()
+    layout = Layout(screen, [], "", [])
+    grip.grab(layout, Gesture("grab", 102, 100))
+    grip.drag(layout, Gesture("drag", 110, 90))
+    assert grip.is_on
+    grip.release()
+    grip.drag(layout, Gesture("drag", 120, 90))
+    assert screen.did == [("hold", "a"), ("place", "a", 110, 90)]
+    screen.did.clear()
+    grip.grab(layout, Gesture("grab", 200, 200))
+    for element in (210, 225):
+        grip.drag(layout, Gesture("drag", element, 200))
+    assert screen.did == [("drag", 200, 200, 210), ("drag", 200, 210, 225)]
+
+
+# -------------------- test_message_line
+# How long a message stands, and what it leaves, is tried through the viewer, in test_viewer.py.
+
+
+def test_a_message_fills_its_line_and_nothing_else() -> None:
+    display = Ramtek9300()
+    for item in message_items("x" * 200, WHITE):
+        assert MESSAGE.covers(item.area)
+        display.send(np.frombuffer(item.stream, np.uint16))
+    assert not display.words[: MESSAGE.top].any()
+    assert set(np.unique(display.words[MESSAGE.top :])) == {BLACK, WHITE}
+
+
+def test_a_message_that_is_too_long_is_cut() -> None:
+    assert message_items("x" * 200, WHITE) == message_items("x" * (MOST_CHARACTERS - 2) + "..", WHITE)
+
+
+def test_of_a_long_text_that_is_typed_the_end_is_seen() -> None:
+    line = "name: " + "a" * MOST_CHARACTERS + "the end_"
+    shown = ".." + line[-(MOST_CHARACTERS - 2) :]
+    assert message_items(line, WHITE, ends=True) == message_items(shown, WHITE)
+    assert message_items("short", WHITE, ends=True) == message_items("short", WHITE)
+
+
+def test_an_empty_message_is_an_empty_line() -> None:
+    assert message_items("", WHITE) == [filled(MESSAGE, BLACK)]
+    assert text("a", 8, MESSAGE.top + 3, WHITE, BLACK) in message_items("a", WHITE)
+
+
+@pytest.fixture
+def typing(tmp_path: Path) -> TypingLine:
+    session = desk_viewer(tmp_path).session
+    session.has_keyboard = True
+    return TypingLine(session)
+
+
+def typed(typing: TypingLine, signs: str) -> None:
+    for sign in signs:
+        typing.key(sign, sign)
+
+
+def test_the_first_character_replaces_the_text_and_an_arrowless_edit_keeps_it(typing: TypingLine) -> None:
+    taken: list[str] = []
+    entry = Entry("name", value="key", take=taken.append)
+    typing.begin(entry)
+    assert typing.shown == "name: key_"
+    typed(typing, "ab")
+    typing.key("backspace", "\b")
+    typing.key("return", "\r")
+    assert taken == ["a"]
+    assert not typing.is_on
+
+
+def test_a_text_that_was_not_changed_and_one_that_is_given_up_are_not_taken(typing: TypingLine) -> None:
+    taken: list[str] = []
+    for key in ("return", "escape"):
+        typing.begin(Entry("name", value="key", take=taken.append))
+        if key == "escape":
+            typed(typing, "x")
+        typing.key(key, "")
+        assert not typing.is_on
+    assert taken == []
+
+
+def test_a_text_that_is_refused_stays(typing: TypingLine) -> None:
+    typing.begin(Bar("ambient"), "-")
+    typed(typing, "z")
+    with pytest.raises(UsageError):
+        typing.key("return", "\r")
+    assert typing.shown == "ambient: -z_"
+
+
+def test_numbers_begin_over_bars_that_can_be_used_alone(typing: TypingLine) -> None:
+    assert typing.would_begin(Bar("ambient"), "7")
+    assert not typing.would_begin(Bar("ambient"), "s")
+    assert not typing.would_begin(Bar("ambient"), "")
+    assert not typing.would_begin(Bar("ambient", why_not="no"), "7")
+    assert not typing.would_begin(Entry("name"), "7")
+
+
+def rows(viewer: Viewer, name: str) -> list[Widget]:
+    return rows_of_menu(viewer.session, viewer.screens[name], viewer.screens.values())
+
+
+def test_the_picture_leads_to_every_screen_and_every_screen_back(tmp_path: Path) -> None:
+    viewer = desk_viewer(tmp_path)
+    labels = [row.label for row in rows(viewer, "picture")]
+    for name, screen in viewer.screens.items():
+        if name == "picture":
+            continue
+        assert (screen.title in labels) is screen.is_in_menu
+        back = next(row for row in rows(viewer, name) if row.label == "< picture")
+        viewer.session.turn_to(name)
+        back.pick(Place(0, 0))
+        assert viewer.session.screen == "picture"
+
+
+def test_each_menu_undoes_and_redoes(tmp_path: Path) -> None:
+    viewer = desk_viewer(tmp_path)
+    session, before = viewer.session, viewer.studio.scene
+    for screen in viewer.screens.values():
+        session.edit(before.replace(ambient=0.7))
+        after = session.scene
+        undo = next(row for row in last_rows(session, screen) if row.help.startswith("Undo"))
+        undo.nudge(-1)
+        assert session.scene is before
+        undo.nudge(1)
+        assert session.scene is after
+        session.undo()
+
+
+def test_the_last_row_of_a_page_turns_to_the_next_and_around() -> None:
+    rows: list[Widget] = [Button(str(number)) for number in range(60)]
+    seen: list[int] = []
+    number = 0
+    for _ in range(3):
+        page = page_of_menu(rows, (), number, seen.append)
+        page[-1].pick(Place(0, 0))
+        number = seen[-1]
+    assert seen == [1, 2, 0]
+    assert [row.label for row in page_of_menu(rows, (), 9, seen.append)] == [
+        row.label for row in page_of_menu(rows, (), 2, seen.append)
+    ]
+
+
+def test_every_page_of_a_long_menu_ends_with_undo(tmp_path: Path) -> None:
+    viewer = desk_viewer(tmp_path)
+    rows: list[Widget] = [Button(str(number)) for number in range(60)]
+    last = last_rows(viewer.session, viewer.screens["picture"])
+    labels = []
+    for number in range(3):
+        page = page_of_menu(rows, last, number, lambda _: None)
+        assert [row.label for row in page[-3:]] == [row.label for row in last]
+        assert all(MENU.covers(row.area) for row in page)
+        labels += [row.label for row in page[:-4]]
+    assert labels == [row.label for row in rows]
+
+
+def test_undo_and_redo_are_dim_while_there_is_no_step_for_them(tmp_path: Path) -> None:
+    viewer = desk_viewer(tmp_path)
+    session = viewer.session
+
+    def inks() -> list[int]:
+        undo = last_rows(session, viewer.screens["desk"])[1].at(MENU)
+        return [
+            next(
+                word
+                for word in (WHITE, GRAY)
+                if text(label, item.area.left, item.area.top, word, NIGHT) == item
+            )
+            for label, item in zip(("undo", "redo"), undo.items(lit=False)[1:], strict=True)
+        ]
+
+    undo = last_rows(session, viewer.screens["desk"])[1]
+    assert (inks(), undo.why_not) == ([GRAY, GRAY], "there is no step to undo")
+    session.edit(session.scene.replace(ambient=0.7))
+    assert inks() == [WHITE, GRAY]
+    session.undo()
+    assert inks() == [GRAY, WHITE]
+    assert not last_rows(session, viewer.screens["desk"])[1].why_not

@@ -1,0 +1,183 @@
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from autocolor import Light, Scene, scene_of
+from autocolor.screens.light_parameters import (
+    AIM,
+    DIRECTION,
+    NEEDS_AXIS,
+    POINT,
+    aim_of,
+    choose_kind,
+    kind_of,
+    parameter_rows,
+    put_light,
+)
+from autocolor.screens.session import Session
+from autocolor.studio import Studio
+from autocolor.widgets.widget import Choice
+from ramtek_emu import Ramtek9300
+from tests.autocolor.meshes import cube
+
+AIMED = Light("key", (2.0, -3.0, 4.0), aim=(0.5, 0.5, 1.0), concentration=2.0, cone_angle=30.0)
+
+
+def session_of(light: Light) -> Session:
+    display = Ramtek9300()
+    scene: Scene = scene_of(cube(), lights=[light])
+    return Session(Studio(scene, display), display, Path())
+
+
+def row_of(session: Session, label: str, name: str = "key") -> Choice:
+    """A choice among the rows of a light."""
+    rows = parameter_rows(session, session.scene.light(name))
+    (row,) = [row for row in rows if isinstance(row, Choice) and row.label == label]
+    return row
+
+
+def test_the_kind_of_a_light_is_told_by_what_it_has() -> None:
+    assert kind_of(AIMED) == AIM
+    assert kind_of(AIMED.replace(direction=(0, 0, -1))) == DIRECTION
+    assert kind_of(Light("key", (0.0, 0.0, 0.0))) == POINT
+
+
+def test_the_row_of_the_kind_stands_before_what_only_some_kinds_have() -> None:
+    session = session_of(AIMED)
+    for leave_out in ([], ["name", "position"]):
+        labels = [row.label for row in parameter_rows(session, AIMED, leave_out)]
+        assert labels[labels.index("kind") - 1 : labels.index("kind") + 2] == ["on", "kind", "aim x"]
+    without = parameter_rows(session, AIMED, ["aim", "concentration", "cone_angle", "flaps"])
+    assert [row.label for row in without][-1] == "kind"
+
+
+def test_every_kind_can_be_chosen_from_every_other() -> None:
+    for kind in (POINT, AIM, DIRECTION):
+        for light in (AIMED, AIMED.replace(direction=(1, 0, -1)), Light("key", (2.0, -3.0, 4.0))):
+            session = session_of(light)
+            choose_kind(session, light, kind)
+            assert kind_of(session.scene.light("key")) == kind
+            assert session.scene.light("key").position == light.position
+
+
+def test_a_light_that_gets_an_aim_is_aimed_at_the_middle_of_the_object() -> None:
+    session = session_of(Light("key", (2.0, -3.0, 4.0)))
+    choose_kind(session, session.scene.light("key"), AIM)
+    assert session.scene.light("key").aim == (0.5, 0.5, 0.5)
+
+
+def test_a_light_that_gets_a_direction_shines_where_it_did() -> None:
+    session = session_of(AIMED)
+    choose_kind(session, AIMED, DIRECTION)
+    light = session.scene.light("key")
+    assert light.axis == pytest.approx(AIMED.axis)
+    assert (light.concentration, light.cone_angle) == (2.0, 30.0)
+
+
+def test_a_point_source_has_no_concentration_and_no_cone() -> None:
+    session = session_of(AIMED)
+    choose_kind(session, AIMED, POINT)
+    light = session.scene.light("key")
+    assert (light.concentration, light.cone_angle) == (0.0, None)
+    dim = {row.label for row in parameter_rows(session, light) if row.why_not == NEEDS_AXIS}
+    assert dim == {"concentration", "cone angle", "inner angle", "at infinity"}
+    assert not any(row.why_not for row in parameter_rows(session, AIMED))
+
+
+def test_the_row_of_the_kind_goes_on_to_the_next() -> None:
+    session = session_of(AIMED)
+    row_of(session, "kind").nudge(1)
+    assert kind_of(session.scene.light("key")) == DIRECTION
+
+
+def test_a_light_that_gets_another_name_stays_chosen() -> None:
+    session = session_of(AIMED)
+    put_light(session, "key", {"name": "sun"})
+    assert session.light_name == "sun"
+
+
+def test_a_directed_light_is_aimed_ahead() -> None:
+    ahead = aim_of(Light("a", (0, 0, 4), direction=(0, 0, -2)), (-1, -1, -1), (1, 1, 1))
+    assert ahead == pytest.approx((0, 0, 0))
+    aside = aim_of(Light("a", (0, 0, 4), direction=(1, 0, 0)), (-1, -1, -1), (1, 1, 1))
+    assert aside == pytest.approx((4, 0, 4))
+    assert aim_of(Light("a", (0, 0, 4)), (-1, -1, -1), (3, 1, 1)) == (1, 0, 0)
+
+
+def test_a_light_in_the_middle_of_the_object_is_aimed_down() -> None:
+    assert aim_of(Light("a", (0, 0, 0)), (-1, -1, -1), (1, 1, 1)) == (0, 0, -1)
+
+
+def followed() -> Session:
+    """A session with the aimed light and one beside it, in a view from the front and turned."""
+    scene = scene_of(cube(), lights=[AIMED, Light("fill", (1.0, -2.0, 2.0), direction=(0, 1, -1))])
+    display = Ramtek9300()
+    return Session(Studio(scene.with_view(eye=(3, -5, 2), angle=20), display), display, Path())
+
+
+def test_a_light_can_follow_the_eye_and_each_light_with_an_aim_and_stays_where_it_is() -> None:
+    session = followed()
+    assert row_of(session, "follows").names == ("world", "eye")
+    row = row_of(session, "follows", "fill")
+    assert (row.names, row.present) == (("world", "eye", "key"), "world")
+    before, picture = session.scene.light_in_world("fill"), session.studio.picture.intensity
+    for follows in ("eye", "key", "eye", "world"):
+        row_of(session, "follows", "fill").choose(follows)
+        light = session.scene.light_in_world("fill")
+        assert session.scene.light("fill").follows == (None if follows == "world" else follows)
+        assert light.position == pytest.approx(before.position)
+        assert light.direction == pytest.approx(before.direction)
+        assert row_of(session, "follows", "fill").present == follows
+        assert session.studio.picture.intensity == pytest.approx(picture, abs=1e-5)
+    assert session.scene.light("fill").position == pytest.approx(before.position)
+
+
+def test_no_light_is_offered_that_follows_this_one() -> None:
+    session = followed()
+    row_of(session, "follows", "fill").choose("key")
+    choose_kind(session, session.scene.light("fill"), AIM)
+    assert row_of(session, "follows").names == ("world", "eye")
+
+
+def test_a_light_that_follows_the_eye_gets_an_aim_where_it_shines_and_a_direction_from_there() -> None:
+    session = followed()
+    row_of(session, "follows", "fill").choose("eye")
+    axis = session.scene.light_in_world("fill").axis
+    for kind in (AIM, DIRECTION):
+        choose_kind(session, session.scene.light("fill"), kind)
+        assert kind_of(session.scene.light("fill")) == kind
+        assert session.scene.light_in_world("fill").axis == pytest.approx(axis)
+    choose_kind(session, session.scene.light("fill"), POINT)
+    choose_kind(session, session.scene.light("fill"), AIM)
+    assert session.scene.light_in_world("fill").aim == pytest.approx((0.5, 0.5, 0.5))
+
+
+def test_a_light_at_infinity_with_a_soft_cone_becomes_a_point_source() -> None:
+    light = AIMED.replace(inner_angle=10, at_infinity=True)
+    session = session_of(light)
+    choose_kind(session, light, POINT)
+    now = session.scene.light("key")
+    assert (now.inner_angle, now.at_infinity, now.axis) == (None, False, None)
+
+
+def test_choosing_a_falloff_gives_a_light_a_reach_and_keeps_one_that_it_has() -> None:
+    session = session_of(AIMED)
+    row_of(session, "falloff").choose("quadratic")
+    assert session.scene.light("key").reach == pytest.approx(math.sqrt(3))
+    put_light(session, "key", {"reach": 7})
+    row_of(session, "falloff").choose("linear")
+    assert session.scene.light("key").reach == 7
+    assert session.scene.light("key").falloff == "linear"
+
+
+def test_names_that_a_light_shines_on_only_take_the_place_of_those_that_it_excepts() -> None:
+    session = session_of(AIMED)
+    for what in ("surfaces", "parts"):
+        for chosen, other in ((f"only_{what}", f"except_{what}"), (f"except_{what}", f"only_{what}")):
+            put_light(session, "key", {other: ()})
+            put_light(session, "key", {chosen: ()})
+            links = vars(session.scene.light("key").links)
+            assert (links[chosen], links[other]) == ((), None)

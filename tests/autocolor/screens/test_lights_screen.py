@@ -1,0 +1,513 @@
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from autocolor import HalfSpace, Light, View, read_rig
+from autocolor.scene.columns import keys_of
+from autocolor.scene.following import set_down
+from autocolor.scene.lights import Links
+from autocolor.screens.light_parameters import AIM, DIRECTION, POINT
+from autocolor.screens.lights_screen import is_lit_side, places_of, turned
+from autocolor.widgets.bars import Bar
+from autocolor.widgets.items import SCREEN
+from tests.autocolor.screens.boxes import (
+    KEY,
+    boxes,
+    hand_at,
+    hint_of,
+    told,
+    undo,
+    words_are_those_of_the_scene,
+)
+from tests.autocolor.screens.hand import Hand
+
+NUMBERS: dict[str, Callable[[Light], object]] = {
+    **{f"position {axis}": lambda light, n=n: light.position[n] for n, axis in enumerate("xyz")},  # type: ignore[misc]
+    **{f"aim {axis}": lambda light, n=n: light.aim and light.aim[n] for n, axis in enumerate("xyz")},  # type: ignore[misc]
+    "intensity": lambda light: light.intensity,
+    "concentration": lambda light: light.concentration,
+    "cone angle": lambda light: light.cone_angle,
+    "x minimum": lambda light: light.flaps.x and light.flaps.x.minimum,
+    "x maximum": lambda light: light.flaps.x and light.flaps.x.maximum,
+    "z maximum": lambda light: light.flaps.z and light.flaps.z.maximum,
+}
+
+BOX = 0.95
+"""Where the box of a row is, as a share of its width."""
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Hand:
+    return hand_at(tmp_path, "lights")
+
+
+def light_of(hand: Hand, name: str = "key") -> Light:
+    return hand.viewer.studio.scene.light(name)
+
+
+@pytest.mark.parametrize("label", NUMBERS)
+def test_a_drag_along_a_number_sets_it_alone_and_is_one_step(hand: Hand, label: str) -> None:
+    before = hand.viewer.studio.scene
+    hand.pull(label, 0.3, 0.6)
+    row = hand.widget(label)
+    assert isinstance(row, Bar)
+    value = NUMBERS[label](light_of(hand))
+    assert value == row.value
+    assert 0 < row.share < 1
+    assert value != NUMBERS[label](KEY)
+    changed = [name for name, get in NUMBERS.items() if get(light_of(hand)) != get(KEY)]
+    assert changed == [label]
+    assert words_are_those_of_the_scene(hand)
+    undo(hand)
+    assert hand.viewer.studio.scene is before
+
+
+def test_every_parameter_of_a_light_has_a_row(hand: Hand) -> None:
+    session = hand.viewer.session
+    session.change_light("key", half_spaces={"left": {"point": (0, 0, 0), "direction": (0, 0, 1)}})
+    labels = [row.label for row in hand.viewer.board.screen.rows()]
+    # Long words are shortened.
+    names = {key.replace("_", " ").replace("surfaces", "surfac") for key in keys_of(Light)} - {"direction"}
+    for name in names:
+        assert any(label.replace("surfaces", "surfac").startswith(name) for label in labels), name
+    assert {"left", "left width"} <= set(labels)
+    hand.pick("kind")
+    labels = [row.label for row in hand.viewer.board.screen.rows()]
+    assert {"direction x", "direction y", "direction z"} <= set(labels)
+
+
+def test_a_wide_bar_sets_a_number_too(hand: Hand) -> None:
+    hand.pick("intensity")
+    hand.click(300, 450)
+    assert 0 < light_of(hand).intensity < 2
+    assert light_of(hand).intensity != 1
+
+
+def test_a_switch_turns_the_light_off_and_on(hand: Hand) -> None:
+    hand.pick("on")
+    assert not light_of(hand).on
+    hand.pick("on")
+    assert light_of(hand).on
+
+
+def test_the_cone_is_switched_off_and_on_again(hand: Hand) -> None:
+    hand.pick("cone angle", BOX)
+    assert light_of(hand).cone_angle is None
+    hand.pick("cone angle", BOX)
+    assert light_of(hand).cone_angle == 30
+
+
+def test_the_inner_angle_goes_with_a_cone_that_becomes_narrower_and_when_it_is_switched_off(
+    hand: Hand,
+) -> None:
+    hand.pick("inner angle", BOX)
+    hand.pull("inner angle", 0.2, 0.5)
+    assert light_of(hand).inner_angle == pytest.approx(45, abs=3)
+    hand.pull("cone angle", 0.6, 0.2)
+    narrow = light_of(hand)
+    assert narrow.cone_angle is not None
+    assert narrow.inner_angle == narrow.cone_angle < 30
+    hand.pick("cone angle", BOX)
+    assert (light_of(hand).cone_angle, light_of(hand).inner_angle) == (None, None)
+
+
+def test_flaps_are_made_and_switched_and_keep_their_values(hand: Hand) -> None:
+    hand.pick("flaps x", BOX)
+    flap = light_of(hand).flaps.x
+    assert flap is not None
+    assert (flap.minimum, flap.maximum, flap.on) == (-0.5, 1.5, False)
+    hand.pick("flaps y", BOX)
+    flap = light_of(hand).flaps.y
+    assert flap is not None
+    assert (flap.minimum, flap.maximum, flap.on) == (-math.inf, math.inf, True)
+
+
+def test_the_ends_of_a_flap_are_endless_or_begin_at_the_object(hand: Hand) -> None:
+    hand.pick("x minimum", BOX)
+    assert light_of(hand).flaps.x.minimum == -math.inf  # type: ignore[union-attr]
+    assert hand.widget("x minimum").number == ""  # type: ignore[attr-defined]
+    hand.pick("x minimum", BOX)
+    assert light_of(hand).flaps.x.minimum == 0  # type: ignore[union-attr]
+    hand.pick("x maximum", BOX)
+    hand.pick("x maximum", BOX)
+    assert light_of(hand).flaps.x.maximum == 1  # type: ignore[union-attr]
+
+
+def test_a_point_source_has_neither_cone_nor_concentration_and_says_why(hand: Hand) -> None:
+    hand.pick("kind")
+    assert light_of(hand).direction == pytest.approx(KEY.axis)
+    hand.pick("kind")
+    light = light_of(hand)
+    assert (light.aim, light.direction, light.cone_angle, light.concentration) == (None, None, None, 0)
+    before = hand.viewer.studio.scene
+    for label in ("cone angle", "concentration"):
+        assert hint_of(hand, label) == "a point source has none; choose the kind aim first"
+        hand.pick(label, BOX)
+        assert told(hand) == (f"{label}: a point source has none; choose the kind aim first", True)
+        hand.pull(label, 0.2, 0.8)
+    assert hand.viewer.studio.scene is before
+    hand.pick("kind")
+    assert light_of(hand).aim == (0.5, 0.5, 0.5)
+    assert hand.widget("kind").present == AIM  # type: ignore[attr-defined]
+
+
+def test_the_kind_goes_back_at_the_left_end_of_its_row(hand: Hand) -> None:
+    hand.pick("kind", 0.05)
+    assert hand.widget("kind").present == POINT  # type: ignore[attr-defined]
+    hand.pick("kind", 0.05)
+    assert hand.widget("kind").present == DIRECTION  # type: ignore[attr-defined]
+
+
+def test_one_light_alone_and_all(hand: Hand) -> None:
+    hand.pick("alone")
+    assert [light.on for light in hand.viewer.studio.scene.lights] == [True, False]
+    assert told(hand) == ("light key alone", False)
+    hand.pick("alone", 0.75)
+    assert all(light.on for light in hand.viewer.studio.scene.lights)
+
+
+def test_one_light_alone_from_the_menu_of_the_picture(hand: Hand) -> None:
+    hand.pick("< picture")
+    hand.open_menu()
+    hand.pick("alone")
+    assert [light.on for light in hand.viewer.studio.scene.lights] == [True, False]
+
+
+def test_another_light_is_chosen(hand: Hand) -> None:
+    hand.pick("light")
+    hand.pull("intensity", 0.2, 0.4)
+    assert light_of(hand, "fill").intensity != 0.5
+    assert light_of(hand) == KEY
+
+
+@pytest.mark.parametrize(
+    ("label", "share", "name", "message"),
+    [
+        ("add", 0.25, "light", "light added: light"),
+        ("add", 0.75, "key 2", "light key copied: key 2"),
+        ("mirror", 0.25, "key mirrored", "light key mirrored along x: key mirrored"),
+    ],
+)
+def test_a_light_is_added_and_chosen(hand: Hand, label: str, share: float, name: str, message: str) -> None:
+    before = hand.viewer.studio.scene
+    hand.pick(label, share)
+    assert [light.name for light in hand.viewer.studio.scene.lights] == ["key", "fill", name]
+    assert hand.viewer.session.light_name == name
+    assert told(hand) == (message, False)
+    undo(hand)
+    assert hand.viewer.studio.scene is before
+
+
+def test_a_light_is_mirrored_to_the_other_side_of_the_object(hand: Hand) -> None:
+    hand.pick("mirror")
+    assert light_of(hand, "key mirrored").position == (-1, -3, 4)
+
+
+def test_lights_are_removed_to_the_last_and_added_again(hand: Hand) -> None:
+    hand.pick("mirror", 0.75)
+    assert told(hand) == ("light key removed; undo brings it back", False)
+    hand.pick("mirror", 0.75)
+    assert not hand.viewer.studio.scene.lights
+    assert [row.label for row in hand.viewer.board.screen.rows()] == ["add a light"]
+    hand.pick("add a light")
+    assert [light.name for light in hand.viewer.studio.scene.lights] == ["light"]
+
+
+def test_a_light_is_renamed_where_there_is_a_keyboard(hand: Hand) -> None:
+    hand.pick("name")
+    assert told(hand) == ("name: typing needs a keyboard", True)
+    hand.viewer.session.has_keyboard = True
+    hand.pick("name")
+    for letter in "sun":
+        hand.viewer.on_key(letter, typed=letter)
+    hand.viewer.on_key("return")
+    assert [light.name for light in hand.viewer.studio.scene.lights] == ["sun", "fill"]
+    assert hand.viewer.session.light_name == "sun"
+
+
+def test_a_name_that_is_taken_is_refused(hand: Hand) -> None:
+    hand.viewer.session.has_keyboard = True
+    hand.pick("name")
+    for letter in "fill":
+        hand.viewer.on_key(letter, typed=letter)
+    hand.viewer.on_key("return")
+    message, is_warning = told(hand)
+    assert is_warning
+    assert "must be unique" in message
+    assert light_of(hand) == KEY
+
+
+def test_a_rig_is_saved_beside_the_one_before(hand: Hand, tmp_path: Path) -> None:
+    hand.pick("save the rig")
+    assert told(hand) == ("saved boxes-rig.toml", False)
+    hand.pick("save the rig")
+    assert told(hand) == ("saved boxes-rig-2.toml", False)
+    assert read_rig(tmp_path / "boxes-rig.toml").lights == boxes().lights
+
+
+def test_sixteen_lights_with_long_names_are_all_reached(tmp_path: Path) -> None:
+    lights = [KEY.replace(name=f"studio light above the roof, number {each}") for each in range(16)]
+    hand = hand_at(tmp_path, "lights", boxes().replace(lights=lights))
+    seen = []
+    for _ in range(len(lights)):
+        seen.append(hand.viewer.session.light_name)
+        hand.pick("light")
+    assert seen == [light.name for light in lights]
+    assert hand.viewer.session.light_name == lights[0].name
+    hand.pull("light", 0.0, 1.0)
+    assert hand.viewer.session.light_name == lights[-1].name
+    hand.pull("light", 1.0, 0.45)
+    assert hand.viewer.session.light_name == lights[7].name
+
+
+def test_a_light_is_linked_to_surfaces_by_pointing(hand: Hand) -> None:
+    before = hand.viewer.studio.scene
+    hand.pick("only surfaces", BOX)
+    assert light_of(hand).links == Links(only_surfaces=())
+    hand.pick("  high", BOX)
+    assert light_of(hand).links == Links(only_surfaces=("high",))
+    assert words_are_those_of_the_scene(hand)
+    # One list takes the place of the other.
+    hand.pick("except surfac.", BOX)
+    assert light_of(hand).links == Links(except_surfaces=())
+    undo(hand)
+    assert light_of(hand).links == Links(only_surfaces=("high",))
+    hand.pick("only surfaces", BOX)
+    assert light_of(hand) == before.light("key")
+    assert words_are_those_of_the_scene(hand)
+
+
+def test_a_light_is_kept_off_a_part_by_pointing(hand: Hand) -> None:
+    hand.pick("except parts", BOX)
+    hand.pick("  low", BOX)
+    assert light_of(hand).links == Links(except_parts=("low",))
+    assert words_are_those_of_the_scene(hand)
+    undo(hand)
+    undo(hand)
+    assert light_of(hand) == KEY
+
+
+LEFT = HalfSpace("left", (0.3, 0.0, 0.0), (1.0, 0.0, 0.2))
+
+TOP = HalfSpace("top", (0.0, 0.0, 0.8), (0.0, 0.0, -1.0), edge_width=0.2)
+
+
+@pytest.fixture
+def hand_2(tmp_path: Path) -> Hand:
+    return hand_at(tmp_path, "lights", boxes().with_light("key", half_spaces=(LEFT, TOP)))
+
+
+def plane(hand_2: Hand, name: str = "left") -> HalfSpace:
+    (found,) = (each for each in hand_2.viewer.studio.scene.light("key").half_spaces if each.name == name)
+    return found
+
+
+def test_each_half_space_has_a_switch_of_its_own(hand_2: Hand) -> None:
+    hand_2.pick("left", BOX)
+    assert plane(hand_2) == LEFT.replace(on=False)
+    assert plane(hand_2, "top") == TOP
+    assert words_are_those_of_the_scene(hand_2)
+    hand_2.pick("left", BOX)
+    assert plane(hand_2) == LEFT
+
+
+def test_the_width_of_the_edge_is_set_along_a_bar(hand_2: Hand) -> None:
+    before = hand_2.viewer.studio.scene
+    hand_2.pull("left width", 0.0, 0.3)
+    assert 0 < plane(hand_2).edge_width < 1
+    assert plane(hand_2) == LEFT.replace(edge_width=plane(hand_2).edge_width)
+    assert words_are_those_of_the_scene(hand_2)
+    undo(hand_2)
+    assert hand_2.viewer.studio.scene is before
+
+
+def test_a_half_space_that_is_carried_from_now_on_stays_where_it_is(hand_2: Hand) -> None:
+    words = hand_2.viewer.studio.words.copy()
+    hand_2.pick("left carried", BOX)
+    assert plane(hand_2).carried
+    placed = set_down(plane(hand_2), hand_2.viewer.studio.scene.light("key"))
+    assert placed.point == pytest.approx(LEFT.point)
+    assert placed.direction == pytest.approx(LEFT.direction)
+    assert (hand_2.viewer.studio.words != words).mean() < 1e-3
+    hand_2.pick("left carried", BOX)
+    assert not plane(hand_2).carried
+    assert plane(hand_2).point == pytest.approx(LEFT.point)
+
+
+def test_turn_lights_the_other_side(hand_2: Hand) -> None:
+    hand_2.pick("turn")
+    assert plane(hand_2) == LEFT.replace(direction=(-1.0, 0.0, -0.2))
+    assert words_are_those_of_the_scene(hand_2)
+
+
+def test_remove_takes_one_away_and_says_so(hand_2: Hand) -> None:
+    before = hand_2.viewer.studio.scene
+    hand_2.pick("turn", 0.75)
+    assert hand_2.viewer.studio.scene.light("key").half_spaces == (TOP,)
+    assert told(hand_2) == ("half-space left removed; undo brings it back", False)
+    undo(hand_2)
+    assert hand_2.viewer.studio.scene is before
+
+
+def test_the_verbs_of_two_half_spaces_are_told_apart(hand_2: Hand) -> None:
+    hand_2.widget("turn")
+    keys = [each.key for each in hand_2.viewer.board.widgets()]
+    assert {"turn left", "turn top"} <= set(keys)
+    assert len(set(keys)) == len(keys)
+
+
+def test_the_message_line_says_what_a_row_does(hand_2: Hand) -> None:
+    assert hint_of(hand_2, "left carried") == "Whether it moves and turns with the light, as barn doors do."
+    assert hint_of(hand_2, "turn") == "The other side of left is lit; or take it away."
+
+
+def test_the_edge_of_a_half_space_is_dragged_in_the_picture(hand_2: Hand) -> None:
+    element, line = hand_2.handle("end of the half-space left of key")
+    seen = hand_2.viewer.studio.seen_at(line, element + 30)
+    assert seen is not None
+    hand_2.drag((element, line), (element + 15, line), (element + 30, line))
+    moved = plane(hand_2)
+    assert moved.direction == LEFT.direction
+    away = [a - b for a, b in zip(seen.point, moved.point, strict=True)]
+    assert sum(a * b for a, b in zip(away, moved.direction, strict=True)) == pytest.approx(0, abs=1e-6)
+    assert told(hand_2)[0].startswith("left: x ")
+
+
+PLACES = [(300, 300), (340, 330), (320, 200)]
+"""Elements and lines at which the cube is seen, not in one line."""
+
+
+def planes_of(hand: Hand) -> tuple[HalfSpace, ...]:
+    return hand.viewer.studio.scene.light("key").half_spaces
+
+
+def pick_points(hand: Hand, places: list[tuple[int, int]] = PLACES) -> None:
+    hand.pick("half spaces")
+    for place in places:
+        hand.click(*place)
+
+
+def test_three_points_of_the_object_make_a_half_space_in_one_step(hand: Hand) -> None:
+    before = hand.viewer.studio.scene
+    seen = [hand.viewer.studio.seen_at(line, element) for element, line in PLACES]
+    hand.pick("half spaces")
+    assert told(hand) == ("pick the first point of the plane on the object; Esc ends", False)
+    hand.click(*PLACES[0])
+    assert told(hand) == ("pick the second point of the plane on the object; Esc ends", False)
+    hand.click(*PLACES[1])
+    assert told(hand) == ("pick the third point of the plane on the object; Esc ends", False)
+    assert hand.viewer.studio.scene is before
+    hand.click(*PLACES[2])
+    assert told(hand) == ("half-space added to key: plane", False)
+    (plane,) = planes_of(hand)
+    for each in seen:
+        assert each is not None
+        away = np.array(each.point) - plane.point
+        assert away @ plane.direction == pytest.approx(0, abs=1e-6)
+    assert (plane.on, plane.carried, plane.edge_width) == (True, False, 0)
+    assert words_are_those_of_the_scene(hand)
+    undo(hand)
+    assert hand.viewer.studio.scene is before
+
+
+@pytest.mark.parametrize("places", [PLACES, PLACES[::-1]])
+def test_the_side_of_the_light_is_lit_in_whatever_order_the_points_are_picked(
+    hand: Hand, places: list[tuple[int, int]]
+) -> None:
+    pick_points(hand, places)
+    (plane,) = planes_of(hand)
+    light = hand.viewer.studio.scene.light("key")
+    assert (np.array(light.position) - plane.point) @ plane.direction > 0
+
+
+def test_a_second_one_gets_another_name(hand: Hand) -> None:
+    pick_points(hand)
+    pick_points(hand)
+    assert [plane.name for plane in planes_of(hand)] == ["plane", "plane 2"]
+
+
+def test_the_background_is_no_point_and_the_next_one_is_asked_for_again(hand: Hand) -> None:
+    hand.pick("half spaces")
+    hand.click(5, 5)
+    message = "no point is seen there; pick the first point of the plane on the object; Esc ends"
+    assert told(hand) == (message, True)
+    hand.click(*PLACES[0])
+    assert told(hand) == ("pick the second point of the plane on the object; Esc ends", False)
+
+
+def test_a_third_point_in_one_line_is_refused_and_picked_again(hand: Hand) -> None:
+    pick_points(hand, [PLACES[0], PLACES[1], PLACES[0]])
+    message, is_warning = told(hand)
+    assert message.startswith("half-space 'plane': its three points must not be in one line")
+    assert is_warning
+    assert planes_of(hand) == ()
+    hand.click(*PLACES[2])
+    assert [plane.name for plane in planes_of(hand)] == ["plane"]
+
+
+def test_escape_ends_the_picking_and_then_the_screen(hand: Hand) -> None:
+    pick_points(hand, PLACES[:2])
+    assert hand.viewer.escape()
+    assert hand.viewer.session.screen == "lights"
+    hand.click(*PLACES[2])
+    assert planes_of(hand) == ()
+    assert hand.viewer.escape()
+    assert hand.viewer.session.screen == "picture"
+
+
+def test_the_row_itself_ends_the_picking_without_a_keyboard(hand: Hand) -> None:
+    pick_points(hand, PLACES[:2])
+    row = hand.widget("half spaces")
+    assert (row.value, row.is_chosen) == ("2/3", True)  # type: ignore[attr-defined]
+    hand.pick("half spaces")
+    row = hand.widget("half spaces")
+    assert (row.value, row.is_chosen) == ("add", False)  # type: ignore[attr-defined]
+
+
+def test_another_screen_ends_the_picking(hand: Hand) -> None:
+    pick_points(hand, PLACES[:2])
+    for number, screen in enumerate(("picture", "lights")):
+        hand.viewer.session.turn_to(screen)
+        hand.move(20 + number, 20)
+    assert hand.widget("half spaces").value == "add"  # type: ignore[attr-defined]
+
+
+def test_nothing_else_is_grabbed_while_points_are_picked(hand: Hand) -> None:
+    assert hand.viewer.board.screen.handles()
+    hand.pick("half spaces")
+    assert hand.viewer.board.screen.handles() == ()
+
+
+def test_a_point_of_the_picture_is_marked_where_it_is_seen(hand: Hand) -> None:
+    studio = hand.viewer.studio
+    for element, line in PLACES:
+        seen = studio.seen_at(line, element)
+        assert seen is not None
+        assert places_of(np.array([seen.point]), boxes().view)[0] == pytest.approx((element, line), abs=0.01)
+
+
+def test_points_behind_the_eye_have_no_place() -> None:
+    view = View((0.0, -4.0, 0.0), direction=(0.0, 1.0, 0.0))
+    points = np.array([(0.0, -9.0, 0.0), (0.0, 0.0, 0.0)])
+    assert places_of(points, view).tolist() == [[SCREEN.width / 2 - 0.5, SCREEN.height / 2 - 0.5]]
+
+
+def test_the_lit_side_is_that_of_the_light_else_that_of_the_eye() -> None:
+    view = View((0.0, -4.0, 0.0), direction=(0.0, 1.0, 0.0))
+    plane = HalfSpace("plane", (0.0, 0.0, 0.0), (0.0, -1.0, 0.0))
+    for light, lit in (
+        (Light("light", (0.0, -1.0, 0.0)), True),
+        (Light("light", (0.0, 1.0, 0.0)), False),
+        (Light("light", (3.0, 0.0, 0.0)), True),
+        (Light("light", (0.0, 1.0, 0.0), direction=(0.0, 1.0, 0.0), at_infinity=True), True),
+    ):
+        assert is_lit_side(plane, light, view) == lit
+        # A light on the plane leaves it to the eye.
+        assert is_lit_side(turned(plane), light, view) != lit
+    on_both = view.replace(eye=(3.0, 0.0, 0.0))
+    assert is_lit_side(plane, Light("light", (3.0, 0.0, 0.0)), on_both)

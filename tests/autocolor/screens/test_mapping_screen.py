@@ -1,0 +1,402 @@
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import Scene
+from autocolor.scene.columns import fields_of
+from autocolor.scene.curves import CURVES, CurvePoints
+from autocolor.screens.mapping_screen import (
+    ACROSS,
+    CURVE,
+    LEAST_APART,
+    MOST_COUNTED,
+    PANEL,
+    STRAIGHT,
+    Curve,
+    added,
+    curve_of,
+    fractions_of,
+    held_name,
+    moved,
+    panel_items,
+    place_of,
+    removed,
+    shares_of,
+)
+from autocolor.widgets.items import YELLOW
+from autocolor.widgets.menu import WORK
+from ramtek_emu import Ramtek9300
+from tests.autocolor.screens.boxes import boxes, hand_at, hint_of, told, undo, words_are_those_of_the_scene
+from tests.autocolor.screens.hand import Hand
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Hand:
+    return hand_at(tmp_path, "mapping")
+
+
+def scene_of(hand: Hand) -> Scene:
+    return hand.viewer.studio.scene
+
+
+def points_of(hand: Hand) -> CurvePoints:
+    mapping = scene_of(hand).mapping
+    assert not isinstance(mapping, str)
+    return mapping
+
+
+def test_every_parameter_of_the_mapping_has_a_row(hand: Hand) -> None:
+    labels = {row.label for row in hand.viewer.board.screen.rows()}
+    tables = {"mesh", "parts", "surfaces", "lights", "view", "scalar", "name", "background"}
+    assert labels >= set(fields_of(Scene)) - tables
+
+
+@pytest.mark.parametrize("label", ["scaling", "contrast", "dither", "division"])
+def test_a_choice_goes_to_the_other_and_back(hand: Hand, label: str) -> None:
+    before = vars(scene_of(hand))[label]
+    hand.pick(label)
+    assert vars(scene_of(hand))[label] != before
+    assert words_are_those_of_the_scene(hand)
+    hand.pick(label)
+    assert vars(scene_of(hand))[label] == before
+
+
+def test_ambient_light_is_set_along_its_bar_in_one_step(hand: Hand) -> None:
+    before = scene_of(hand)
+    hand.pull("ambient", 0.3, 0.6)
+    assert scene_of(hand).ambient == hand.widget("ambient").value  # type: ignore[attr-defined]
+    assert scene_of(hand).ambient != before.ambient
+    undo(hand)
+    assert scene_of(hand) is before
+
+
+def test_every_curve_is_reached_by_clicks(hand: Hand) -> None:
+    seen = []
+    for _ in range(len(CURVES) + 1):
+        hand.pick("mapping")
+        mapping = scene_of(hand).mapping
+        seen.append(mapping if isinstance(mapping, str) else "points")
+    assert sorted(seen) == sorted([*CURVES, "points"])
+
+
+def test_the_points_of_a_named_curve_lie_on_it(hand: Hand) -> None:
+    hand.viewer.session.edit(scene_of(hand).replace(mapping="gamma"))
+    for _ in range(3):
+        hand.pick("mapping")
+    for x, y in points_of(hand):
+        # The last curve before the points is equalize, which depends on the picture.
+        assert 0 <= x <= 1
+        assert 0 <= y <= 1
+    curve = curve_of(
+        hand.viewer.studio.picture, "surface", "equalize", "auto", hand.viewer.session.surface_name
+    )
+    assert curve is not None
+    xs, ys = zip(*points_of(hand), strict=True)
+    assert ys == pytest.approx(np.interp(xs, ACROSS, curve[0]), abs=1e-4)
+
+
+def test_a_dragged_point_changes_the_words_in_one_step(hand: Hand) -> None:
+    hand.pick("straight")
+    before, words = scene_of(hand), hand.viewer.studio.words
+    hand.drag(place_of(0.5, 0.5), place_of(0.5, 0.6), place_of(0.4, 0.7))
+    assert points_of(hand)[2] == pytest.approx((0.4, 0.7), abs=0.01)
+    assert [*points_of(hand)[:2], *points_of(hand)[3:]] == [*STRAIGHT[:2], *STRAIGHT[3:]]
+    assert told(hand) == ("intensity 0.40, level 0.70", False)
+    assert (hand.viewer.studio.words != words).any()
+    assert words_are_those_of_the_scene(hand)
+    undo(hand)
+    assert scene_of(hand) is before
+
+
+def test_a_point_is_picked_and_placed(hand: Hand) -> None:
+    hand.pick("straight")
+    hand.click(*place_of(0.75, 0.75))
+    assert told(hand) == ("intensity 0.75, level 0.75: pick its new place", False)
+    hand.click(*place_of(0.8, 0.95))
+    assert points_of(hand)[3] == pytest.approx((0.8, 0.95), abs=0.01)
+
+
+def test_a_curve_that_is_dragged_anywhere_stays_a_rising_one(hand: Hand) -> None:
+    hand.pick("straight")
+    for start in STRAIGHT:
+        hand.drag(place_of(*start), (CURVE.right, CURVE.bottom), (0, 0), (CURVE.left, 479), (639, 0))
+        xs, ys = zip(*points_of(hand), strict=True)
+        assert all(a < b for a, b in pairwise(xs))
+        assert all(a <= b for a, b in pairwise(ys))
+
+
+def test_a_click_in_the_panel_adds_a_point(hand: Hand) -> None:
+    hand.pick("straight")
+    surface = hand.viewer.session.surface_name
+    hand.click(*place_of(0.6, 0.7))
+    assert len(points_of(hand)) == 6
+    assert points_of(hand)[3] == pytest.approx((0.6, 0.7), abs=0.01)
+    assert hand.viewer.session.surface_name == surface
+
+
+@pytest.mark.parametrize("mapping", CURVES)
+def test_a_click_in_the_panel_makes_points_of_a_named_curve(hand: Hand, mapping: str) -> None:
+    hand.viewer.session.edit(scene_of(hand).replace(mapping=mapping))
+    hand.click(*place_of(0.6, 0.97))
+    assert len(points_of(hand)) == 6
+    undo(hand)
+    assert scene_of(hand).mapping == mapping
+
+
+def test_the_point_that_was_touched_last_is_removed(hand: Hand) -> None:
+    hand.pick("straight")
+    assert hint_of(hand, "remove point") == "click at a point of the curve first"
+    hand.drag(place_of(0.5, 0.5), place_of(0.5, 0.6))
+    hand.pick("remove point")
+    assert points_of(hand) == (*STRAIGHT[:2], *STRAIGHT[3:])
+    before = scene_of(hand)
+    hand.pick("remove point")
+    assert scene_of(hand) is before
+
+
+def test_ends_and_named_curves_have_nothing_to_remove(hand: Hand) -> None:
+    hand.pick("remove point")
+    assert told(hand) == (
+        "remove point: a curve with a name has no points; click in it to make some",
+        True,
+    )
+    hand.pick("straight")
+    hand.drag(place_of(0, 0), place_of(0, 0.1))
+    hand.pick("remove point")
+    assert told(hand) == ("remove point: the ends of the curve stay; click at another point first", True)
+    assert len(points_of(hand)) == 5
+
+
+def test_the_panel_does_not_turn_the_object_behind_it(hand: Hand) -> None:
+    before = scene_of(hand)
+    hand.drag((PANEL.left + 2, PANEL.top + 2), (PANEL.left + 90, PANEL.top + 60))
+    assert scene_of(hand) is before
+    hand.drag((400, 100), (430, 90))
+    assert scene_of(hand).view != before.view
+
+
+def test_the_exposure_is_held_and_released_and_the_row_shows_which(hand: Hand) -> None:
+    words = hand.viewer.studio.words
+    assert hand.widget("exposure").present == "auto"  # type: ignore[attr-defined]
+    hand.pick("exposure")
+    assert hand.widget("exposure").present == "held"  # type: ignore[attr-defined]
+    assert told(hand) == ("exposure held: less light is darker", False)
+    assert np.array_equal(hand.viewer.studio.words, words)
+    hand.pull("ambient", 0.2, 0.0)
+    assert not (hand.viewer.studio.words > words).any()
+    hand.pick("exposure")
+    assert scene_of(hand).exposure == "auto"
+    assert told(hand) == ("the exposure follows the picture", False)
+
+
+def test_a_picture_without_light_has_no_exposure_to_hold(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "mapping", boxes().replace(lights=(), ambient=0.2))
+    hand.pick("exposure")
+    message, is_warning = told(hand)
+    assert is_warning
+    assert message.startswith("to hold the exposure, a surface must have different intensities")
+    assert scene_of(hand).exposure == "auto"
+    for mapping in CURVES:
+        hand.viewer.session.edit(scene_of(hand).replace(mapping=mapping))
+        hand.click(*place_of(0.6, 0.9))
+
+
+def test_a_surface_that_is_not_visible_has_no_curve_of_its_own(hand: Hand) -> None:
+    assert curve_of(hand.viewer.studio.picture, "surface", "linear", "auto", "nowhere") is None
+
+
+@pytest.mark.parametrize("mapping", CURVES)
+@pytest.mark.parametrize("scaling", ["surface", "object"])
+def test_the_levels_of_a_curve_rise_from_end_to_end(hand: Hand, mapping: str, scaling: str) -> None:
+    curve = curve_of(hand.viewer.studio.picture, scaling, mapping, "auto", "low")
+    assert curve is not None
+    levels, shares = curve
+    assert all(a <= b for a, b in pairwise(levels))
+    assert levels[0] >= 0
+    assert levels[-1] == pytest.approx(1)
+    assert shares.max() == 1
+
+
+@given(st.floats(0, 1), st.floats(0, 1))
+def test_a_place_is_that_of_its_fractions(x: float, y: float) -> None:
+    element, line = place_of(x, y)
+    assert CURVE.has(element, line)
+    assert fractions_of(element, line) == pytest.approx((x, y), abs=0.003)
+
+
+def test_places_beyond_the_curve_have_its_ends() -> None:
+    assert fractions_of(0, 479) == (0, 0)
+    assert fractions_of(639, 0) == (1, 1)
+
+
+def drawn(curve: Curve) -> np.ndarray[tuple[int, ...], np.dtype[np.uint16]]:
+    display = Ramtek9300()
+    for item in panel_items(curve):
+        assert PANEL.covers(item.area)
+        display.send(np.frombuffer(item.stream, np.uint16))
+    return display.words
+
+
+def test_the_panel_stays_within_its_area_however_long_the_name() -> None:
+    zeros = np.zeros_like(ACROSS)
+    words = drawn(Curve("fender of the left front door", ACROSS, zeros, STRAIGHT, 0)).copy()
+    words[PANEL.top : PANEL.bottom + 1, PANEL.left : PANEL.right + 1] = 0
+    assert not words.any()
+    assert WORK.covers(PANEL)
+
+
+def test_the_curve_goes_through_its_points_and_the_touched_one_is_yellow() -> None:
+    ys = np.interp(ACROSS, *np.transpose(STRAIGHT)).astype(np.float32)
+    words = drawn(Curve("low", ys, np.zeros_like(ACROSS), STRAIGHT, 2))
+    for number, (x, y) in enumerate(STRAIGHT[1:-1], 1):
+        element, line = place_of(x, y)
+        square = words[line - 2 : line + 3, element - 2 : element + 3]
+        assert (square == YELLOW).all() == (number == 2)
+    element, line = place_of(0.4, 0.4)
+    assert (words[line - 1 : line + 2, element] == YELLOW).any()
+
+
+def test_shares_tell_how_often_intensities_are_seen() -> None:
+    values = np.repeat(np.array([0.0, 0.5, 1.0], np.float32), [100, 25, 4])
+    shares = shares_of(values, 0.0, 1.0)
+    assert shares.shape == ACROSS.shape
+    assert (shares[0], shares[len(shares) // 2], shares[-1]) == pytest.approx((1, 0.5, 0.2))
+    assert np.count_nonzero(shares) == 3
+
+
+def test_shares_of_a_range_without_extent_and_of_many_intensities_are_finite() -> None:
+    assert shares_of(np.full(3 * MOST_COUNTED, 0.5, np.float32), 0.5, 0.5).max() == 1
+    assert not shares_of(np.zeros(0, np.float32), 0.0, 1.0).any()
+
+
+FRACTIONS = st.floats(0, 1)
+
+
+def is_a_curve(points: CurvePoints) -> bool:
+    xs, ys = zip(*points, strict=True)
+    return (
+        xs[0] == 0
+        and xs[-1] == 1
+        and all(a < b for a, b in pairwise(xs))
+        and all(a <= b for a, b in pairwise(ys))
+        and min(ys) >= 0
+        and max(ys) <= 1
+    )
+
+
+@given(
+    st.lists(st.tuples(st.sampled_from(["move", "add", "remove"]), st.integers(0, 30), FRACTIONS, FRACTIONS))
+)
+def test_whatever_is_done_the_curve_rises_from_end_to_end(acts: list[tuple[str, int, float, float]]) -> None:
+    points = STRAIGHT
+    for act, number, x, y in acts:
+        if act == "move":
+            points = moved(points, number % len(points), x, y)
+        elif act == "add":
+            points, number = added(points, x, y)
+            assert abs(points[number][0] - x) <= LEAST_APART
+        else:
+            points = removed(points, number % len(points))
+        assert is_a_curve(points)
+
+
+def test_a_point_goes_where_it_is_put_between_its_neighbors() -> None:
+    assert moved(STRAIGHT, 1, 0.3, 0.4)[1] == (0.3, 0.4)
+    assert moved(STRAIGHT, 1, 0.9, 0.9)[1] == (0.49, 0.5)
+    assert moved(STRAIGHT, 2, 0.0, 0.0)[2] == (0.26, 0.25)
+
+
+def test_the_ends_move_up_and_down_alone() -> None:
+    assert moved(STRAIGHT, 0, 0.5, 0.2)[0] == (0, 0.2)
+    assert moved(STRAIGHT, 4, 0.5, 0.8)[4] == (1, 0.8)
+
+
+def test_a_point_between_close_neighbors_moves_up_and_down_alone() -> None:
+    close = ((0.0, 0.0), (0.5, 0.2), (0.505, 0.4), (0.51, 0.6), (1.0, 1.0))
+    assert moved(close, 2, 0.9, 0.5)[2] == (0.505, 0.5)
+
+
+def test_a_new_point_has_a_level_between_its_neighbors() -> None:
+    points, number = added(STRAIGHT, 0.3, 0.9)
+    assert (points[number], number, len(points)) == ((0.3, 0.5), 2, 6)
+
+
+def test_a_point_too_close_to_another_is_that_one() -> None:
+    assert added(STRAIGHT, 0.252, 0.9) == (STRAIGHT, 1)
+
+
+def test_ends_are_not_removed() -> None:
+    assert removed(STRAIGHT, 0) == removed(STRAIGHT, 4) == STRAIGHT
+    assert removed(STRAIGHT, 2) == (*STRAIGHT[:2], *STRAIGHT[3:])
+
+
+HELD = (("low", (0.1, 0.5)), ("object", (0.0, 2.0)))
+
+
+def labels_of(hand: Hand) -> list[str]:
+    return [row.label for row in hand.viewer.board.screen.rows()]
+
+
+def limits_of(hand: Hand, name: str) -> tuple[float, float]:
+    return dict(hand.viewer.studio.scene.exposure)[name]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("surface", "name"), [("low", "low"), ("high", "object"), ("object", "object"), ("", "object")]
+)
+def test_a_surface_has_its_own_range_or_that_of_the_object(surface: str, name: str) -> None:
+    assert held_name(HELD, surface) == name
+
+
+def test_what_is_not_held_has_no_name() -> None:
+    assert held_name("auto", "low") == held_name(HELD[:1], "high") == ""
+
+
+def test_nothing_is_held_of_an_exposure_that_follows_the_picture(tmp_path: Path) -> None:
+    assert "maximum" not in labels_of(hand_at(tmp_path, "mapping"))
+
+
+def test_a_drag_sets_one_end_of_what_is_held_as_one_step(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "mapping", boxes().replace(exposure=HELD))
+    before, words = hand.viewer.studio.scene, hand.viewer.studio.words
+    hand.pull("maximum", 0.2, 0.4)
+    low, high = limits_of(hand, "low")
+    assert low == 0.1
+    assert high != 0.5
+    assert high == hand.widget("maximum").value  # type: ignore[attr-defined]
+    assert limits_of(hand, "object") == (0, 2)
+    assert (hand.viewer.studio.words != words).any()
+    assert words_are_those_of_the_scene(hand)
+    undo(hand)
+    assert hand.viewer.studio.scene is before
+
+
+def test_a_minimum_is_below_its_maximum_however_far_it_is_dragged(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "mapping", boxes().replace(exposure=HELD))
+    hand.pull("minimum", 0.0, 1.0)
+    low, high = limits_of(hand, "low")
+    assert 0.4 < low < high == 0.5
+    hand.pull("maximum", 0.9, 0.0)
+    low, high = limits_of(hand, "low")
+    assert low < high < 0.6
+
+
+def test_all_surfaces_without_a_range_of_their_own_share_one(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "mapping", boxes().replace(exposure=HELD))
+    hand.viewer.session.choose_surface("high")
+    hand.pull("minimum", 0.1, 0.2)
+    assert limits_of(hand, "object")[0] > 0
+    assert limits_of(hand, "low") == (0.1, 0.5)
+
+
+def test_a_dark_scene_can_hold_a_range_too(tmp_path: Path) -> None:
+    dark = boxes().replace(exposure=HELD, ambient=0.0, lights=())
+    hand = hand_at(tmp_path, "mapping", dark)
+    hand.pull("maximum", 0.2, 0.4)
+    assert limits_of(hand, "low")[1] != 0.5

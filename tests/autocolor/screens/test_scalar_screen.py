@@ -1,0 +1,214 @@
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from autocolor import Mesh, Scene, scene_of
+from autocolor.checks import Color
+from autocolor.scene.color_scales import COLOR_SCALES
+from autocolor.scene.columns import fields_of
+from autocolor.scene.scalar import MeshScalar, Scalar
+from autocolor.screens.scalar_screen import NAMED, color_choice
+from tests.autocolor.screens.boxes import boxes, hand_at, undo, words_are_those_of_the_scene
+from tests.autocolor.screens.hand import Hand
+
+
+def boxes_with_stress() -> Scene:
+    scene = boxes()
+    stress = MeshScalar("stress", np.arange(len(scene.mesh.coordinates), dtype=float))
+    return scene.replace(mesh=scene.mesh.with_scalars(stress))
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Hand:
+    return hand_at(tmp_path, "scalar", boxes_with_stress().with_scalar(name="stress", legend=False))
+
+
+def scalar_of(hand: Hand) -> Scalar:
+    scalar = hand.viewer.studio.scene.scalar
+    assert scalar is not None
+    return scalar
+
+
+def labels_of(hand: Hand) -> set[str]:
+    return {row.label for row in hand.viewer.board.screen.rows()}
+
+
+def test_without_a_scalar_there_is_the_choice_of_one_alone(tmp_path: Path) -> None:
+    hand = hand_at(tmp_path, "scalar", boxes_with_stress())
+    assert labels_of(hand) == {"scalar"}
+    hand.pick("scalar")
+    assert scalar_of(hand).name == "stress"
+    hand.pick("scalar", 0.05)
+    assert hand.viewer.studio.scene.scalar is None
+
+
+def test_every_scalar_of_the_mesh_and_every_computed_one_is_reached_by_clicks(hand: Hand) -> None:
+    names = hand.viewer.studio.scene.scalar_names
+    seen = []
+    for _ in names:
+        seen.append(scalar_of(hand).name)
+        if len(seen) < len(names):
+            hand.pick("scalar")
+    assert seen == list(names)
+
+
+def test_every_column_of_the_scalar_has_a_row(hand: Hand) -> None:
+    hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(name="zebra"))
+    rows = {"name": "scalar", "limits": "own range", "surfaces": "colored", "direction": "direction x"}
+    assert {rows.get(name, name) for name in fields_of(Scalar)} <= labels_of(hand)
+
+
+def test_only_scalars_that_are_computed_with_them_have_a_direction_and_stripes(hand: Hand) -> None:
+    assert not {"direction x", "stripes"} & labels_of(hand)
+    hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(name="slope"))
+    assert {"direction x", "stripes"} & labels_of(hand) == {"direction x"}
+
+
+def test_another_scale_sends_no_word_and_is_one_step(hand: Hand) -> None:
+    before, words = hand.viewer.studio.scene, hand.viewer.studio.words
+    hand.pick("scale")
+    assert scalar_of(hand).scale != "viridis"
+    assert scalar_of(hand).scale in COLOR_SCALES
+    assert hand.viewer.studio.words is words
+    undo(hand)
+    assert hand.viewer.studio.scene is before
+
+
+def test_a_scale_is_reversed_and_stays_so_when_another_is_chosen(hand: Hand) -> None:
+    hand.pick("reversed")
+    assert scalar_of(hand).scale == "viridis_r"
+    hand.pick("scale")
+    assert str(scalar_of(hand).scale).endswith("_r")
+    hand.pick("reversed")
+    assert not str(scalar_of(hand).scale).endswith("_r")
+
+
+def test_a_list_of_colors_has_no_name_to_reverse(hand: Hand) -> None:
+    hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(scale=["red", "blue"]))
+    assert hand.widget("reversed").why_not
+    hand.pick("reversed")
+    assert scalar_of(hand).scale == ((255, 0, 0), (0, 0, 255))
+    hand.pick("scale")
+    assert scalar_of(hand).scale in COLOR_SCALES
+
+
+@pytest.mark.parametrize("label", ["bands", "shades"])
+def test_bands_and_shades_are_set_along_their_bars(hand: Hand, label: str) -> None:
+    if label == "shades":
+        hand.pick(label, 0.95)
+        assert scalar_of(hand).shades == 8
+    before = vars(scalar_of(hand))[label]
+    hand.pull(label, 0.2, 0.4)
+    assert vars(scalar_of(hand))[label] != before
+    assert words_are_those_of_the_scene(hand)
+
+
+@pytest.mark.parametrize("label", ["below", "above", "missing"])
+def test_the_other_colors_are_chosen_by_clicks(hand: Hand, label: str) -> None:
+    before: Any = vars(scalar_of(hand))[label]
+    hand.pick(label)
+    assert vars(scalar_of(hand))[label] != before
+
+
+def test_the_legend_is_switched(hand: Hand) -> None:
+    assert not hand.viewer.board.screen.items()
+    hand.pick("legend")
+    assert scalar_of(hand).legend
+    assert hand.viewer.board.screen.items()
+
+
+def test_a_surface_gets_its_own_colors_and_those_of_the_scalar_again(hand: Hand) -> None:
+    assert hand.viewer.session.surface_name == "low"
+    hand.pick("colored")
+    assert scalar_of(hand).surfaces == ("high",)
+    hand.pick("colored")
+    assert scalar_of(hand).surfaces == ("low", "high")
+
+
+def test_another_scalar_comes_in_its_own_range_and_stripes_in_black_and_white(hand: Hand) -> None:
+    screen: Any = hand.viewer.board.screen
+    hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(limits=[1, 2], scale="turbo"))
+    screen._choose("z")
+    assert (scalar_of(hand).limits, scalar_of(hand).scale) == (None, "turbo")
+    screen._choose("zebra")
+    assert (scalar_of(hand).scale, scalar_of(hand).bands) == ("zebra", 2)
+    screen._choose("stress")
+    assert (scalar_of(hand).scale, scalar_of(hand).bands) == ("viridis", 16)
+
+
+def test_a_click_tells_the_value_that_is_seen_there(hand: Hand) -> None:
+    hand.click(250, 240)
+    value = hand.viewer.studio.picture.scalar
+    assert value is not None
+    assert f"stress {value[240, 250]:.5g}, shade " in hand.viewer.message
+
+
+def test_the_row_tells_a_color_by_its_name_or_in_digits() -> None:
+    def present(color: Color | None) -> str:
+        return color_choice("below", "", color, lambda _: None, has_none=True).present
+
+    assert [present((255, 0, 255)), present((1, 2, 3)), present(None)] == ["magenta", "#010203", "none"]
+
+
+def test_all_colors_and_none_are_reached_by_clicks() -> None:
+    taken: list[Color | None] = []
+    row = color_choice("below", "", None, taken.append, has_none=True)
+    for name in row.names:
+        row.choose(name)
+    assert taken == [None, *NAMED.values()]
+    assert "none" not in color_choice("missing", "", (0, 0, 0), taken.append, has_none=False).names
+
+
+@pytest.fixture
+def hand_2(tmp_path: Path) -> Hand:
+    return hand_at(tmp_path, "scalar", boxes().with_scalar(name="z", legend=False))
+
+
+def test_a_limit_is_set_along_the_own_range_in_one_step_without_rendering(hand_2: Hand) -> None:
+    before, picture = hand_2.viewer.studio.scene, hand_2.viewer.studio.picture
+    hand_2.pull("high limit", 0.9, 0.5)
+    limits = scalar_of(hand_2).limits
+    assert limits is not None
+    assert limits[0] == 0.0
+    assert limits[1] == pytest.approx(0.5, abs=0.02)
+    assert hand_2.viewer.studio.picture is picture
+    assert words_are_those_of_the_scene(hand_2)
+    undo(hand_2)
+    assert hand_2.viewer.studio.scene is before
+
+
+def test_the_limits_do_not_cross(hand_2: Hand) -> None:
+    hand_2.pull("high limit", 0.9, 0.3)
+    hand_2.pull("low limit", 0.1, 0.9)
+    low, high = scalar_of(hand_2).limits or (0, 0)
+    assert low < high < low + 0.01
+    hand_2.pull("high limit", 0.5, 0.0)
+    low, high = scalar_of(hand_2).limits or (0, 0)
+    assert low < high
+
+
+def test_the_own_range_is_held_and_followed_again(hand_2: Hand) -> None:
+    hand_2.pick("own range")
+    assert scalar_of(hand_2).limits == (0.0, 1.0)
+    hand_2.pull("low limit", 0.1, 0.5)
+    hand_2.pick("own range")
+    assert scalar_of(hand_2).limits is None
+
+
+def test_limits_around_zero_are_as_far_as_the_farther_one(hand_2: Hand) -> None:
+    hand_2.pick("around zero")
+    assert scalar_of(hand_2).limits == (-1.0, 1.0)
+
+
+def test_a_held_range_has_the_fewest_digits(tmp_path: Path) -> None:
+    mesh = boxes().mesh
+    tenths = Mesh(mesh.coordinates * 0.1, mesh.node_numbers)
+    hand_2 = hand_at(tmp_path, "scalar", scene_of(tenths).with_scalar(name="z", legend=False))
+    assert hand_2.viewer.studio.picture.scalar_limits == (0.0, float(np.float32(0.1)))
+    hand_2.pick("own range")
+    assert scalar_of(hand_2).limits == (0.0, 0.1)
+    assert words_are_those_of_the_scene(hand_2)

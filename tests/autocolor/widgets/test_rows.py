@@ -1,0 +1,436 @@
+"""A row of a made-up table, with a column of each kind: whatever is added to a table appears by itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Annotated, Any, ClassVar
+
+import pytest
+
+from autocolor.checks import Color, Vector
+from autocolor.scene.columns import WORLD_UNITS, Column, Row, Tier, changed, fields_of
+from autocolor.scene.columns import Bar as Range
+from autocolor.scene.kinds import (
+    AngleCurve,
+    AngleCurveKind,
+    ColorKind,
+    CurveKind,
+    Number,
+    Text,
+    VectorKind,
+    Whole,
+)
+from autocolor.scene.kinds import Choice as ChoiceKind
+from autocolor.scene.kinds import Switch as SwitchKind
+from autocolor.scene.row_kinds import NamedRows, Nested, Reference, References, Referring, Variant, WordOrName
+from autocolor.widgets.bars import Bar
+from autocolor.widgets.items import Area
+from autocolor.widgets.rows import NAMES_A_PAGE, KnownNames, World, reference_rows, rows_of
+from autocolor.widgets.widget import Choice, Entry, Heading, Place, Switch, Widget
+
+MIX = Tier.MIX
+WORLD = World((-1.0, -2.0, 0.0), (1.0, 2.0, 1.0))
+SIZE = math.sqrt(4 + 16 + 1)
+AREA = Area(505, 0, 639, 15)
+
+
+@dataclass(frozen=True)
+class Shutter(Row):
+    low: Annotated[float, Column(Number(endless=-math.inf), MIX, "Low.", WORLD_UNITS)] = -math.inf
+    high: Annotated[float, Column(Number(endless=math.inf), MIX, "High.", WORLD_UNITS)] = math.inf
+    on: Annotated[bool, Column(SwitchKind(), MIX, "Whether it is used.")] = True
+
+
+@dataclass(frozen=True)
+class Shutters(Row):
+    x: Annotated[Shutter | None, Column(Nested(Shutter), MIX, "Across.")] = None
+    z: Annotated[Shutter | None, Column(Nested(Shutter), MIX, "Upward.")] = None
+
+
+@dataclass(frozen=True)
+class Haze(Row):
+    density: Annotated[float, Column(Number(0, 1), MIX, "How dense.")] = 0.25
+
+
+@dataclass(frozen=True)
+class Smooth(Row):
+    grain: Annotated[float, Column(Number(0, 1), MIX, "How fine.")] = 0.5
+
+
+@dataclass(frozen=True)
+class Coarse(Row):
+    size: Annotated[int, Column(Whole(1, 9), MIX, "How coarse.")] = 3
+
+
+@dataclass(frozen=True)
+class Hood(Row):
+    """One of any number, by name."""
+
+    noun: ClassVar[str] = "hood"
+
+    name: Annotated[str, Column(Text(), MIX, "Its name.")]
+    point: Annotated[Vector, Column(VectorKind(), MIX, "Where it is.", WORLD_UNITS)] = (0.0, 0.0, 0.0)
+    width: Annotated[float, Column(Number(at_least=0), MIX, "How wide.", WORLD_UNITS)] = 0.0
+    length: Annotated[float | None, Column(Number(at_least=0, above=True), MIX, "How long.", WORLD_UNITS)] = (
+        None
+    )
+    on: Annotated[bool, Column(SwitchKind(), MIX, "Whether it is used.")] = True
+
+
+@dataclass(frozen=True)
+class Lamp(Row):
+    """One column of each kind."""
+
+    name: Annotated[str, Column(Text(), MIX, "Its name.")] = "lamp"
+    share: Annotated[float, Column(Number(0, 1), MIX, "A share.")] = 0.5
+    tilt_angle: Annotated[
+        float | None, Column(Number(0, 180), MIX, "A tilt.", "degrees", bar=Range(0, 90, 1), start=30.0)
+    ] = None
+    blades: Annotated[int, Column(Whole(2, 12), MIX, "Blades.")] = 6
+    count: Annotated[int | None, Column(Whole(1, 100), MIX, "A count.")] = None
+    reach: Annotated[float, Column(Number(), MIX, "How far.", WORLD_UNITS)] = 1.0
+    on: Annotated[bool, Column(SwitchKind(), MIX, "Whether it is on.")] = True
+    mode: Annotated[str, Column(ChoiceKind(("wide", "narrow")), MIX, "Its mode.")] = "wide"
+    tint: Annotated[Color, Column(ColorKind(), MIX, "Its tint.")] = (255, 0, 0)
+    place: Annotated[Vector, Column(VectorKind(), MIX, "Where it is.", WORLD_UNITS)] = (0.0, 0.0, 0.0)
+    facing: Annotated[Vector | None, Column(VectorKind(has_length=True), MIX, "Where it faces.")] = None
+    finish: Annotated[Row, Column(Variant({"smooth": Smooth, "coarse": Coarse}), MIX, "Its finish.")] = field(
+        default_factory=Smooth
+    )
+    haze: Annotated[Haze, Column(Nested(Haze, inline=True), MIX, "Its haze.")] = field(default_factory=Haze)
+    shutters: Annotated[Shutters, Column(Nested(Shutters), MIX, "Its shutters.")] = field(
+        default_factory=Shutters
+    )
+    sheen: Annotated[
+        AngleCurve | None,
+        Column(AngleCurveKind(0.1, ((0.0, 0.2), (40.0, 0.4), (90.0, 1.0))), MIX, "Its sheen."),
+    ] = None
+    curve: Annotated[str, Column(CurveKind({"linear": 1}), MIX, "Its curve.")] = "linear"
+    hoods: Annotated[tuple[Hood, ...], Column(NamedRows(Hood), MIX, "Its hoods.")] = ()
+    follows: Annotated[str | None, Column(WordOrName("lamps", "sun"), MIX, "What it follows.")] = None
+    walls: Annotated[tuple[str, ...] | None, Column(References("walls"), MIX, "Its walls.")] = None
+
+
+class Table:
+    """A lamp whose rows change it."""
+
+    def __init__(self, lamp: Lamp | None = None) -> None:
+        self.lamp = Lamp() if lamp is None else lamp
+
+    def put(self, changes: Mapping[str, Any]) -> None:
+        self.lamp = changed(self.lamp, changes)
+
+    def rows(self, **options: Any) -> dict[str, Widget]:
+        return {row.label: row.at(AREA) for row in rows_of(self.lamp, self.put, WORLD, **options)}
+
+    def bar(self, label: str) -> Bar:
+        row = self.rows()[label]
+        assert isinstance(row, Bar)
+        return row
+
+
+@pytest.fixture
+def table() -> Table:
+    return Table()
+
+
+def test_each_kind_of_column_has_its_rows_in_their_order(table: Table) -> None:
+    kinds = {
+        "name": Entry, "share": Bar, "tilt angle": Bar, "blades": Bar, "count": Bar, "reach": Bar,
+        "on": Switch, "mode": Choice, "tint": Entry, "place x": Bar, "place y": Bar, "place z": Bar,
+        "finish": Choice, "grain": Bar, "density": Bar, "shutters x": Switch, "shutters z": Switch,
+        "sheen": Switch, "follows": Choice, "walls": Switch,
+    }  # fmt: skip
+    assert {label: type(row) for label, row in table.rows().items()} == kinds
+    assert list(table.rows()) == list(kinds)
+
+
+def test_what_is_left_out_has_no_row(table: Table) -> None:
+    assert not {"name", "place x"} & set(table.rows(leave_out=("name", "place")))
+
+
+def test_the_unit_is_told_with_the_help(table: Table) -> None:
+    rows = table.rows()
+    assert rows["tilt angle"].help == "A tilt. In degrees."
+    assert rows["place y"].help == "Where it is. In world units."
+    assert rows["share"].help == "A share."
+    assert table.bar("tilt angle").unit == "degrees"
+
+
+@pytest.mark.parametrize(
+    "label", ["share", "blades", "reach", "place x", "place y", "place z", "grain", "density"]
+)
+def test_pointing_along_a_bar_puts_the_number_at_that_place(table: Table, label: str) -> None:
+    before = table.bar(label).value
+    table.bar(label).drag(Place(520, 8), Place(520, 8), Place(620, 8))
+    after = table.bar(label)
+    assert after.value is not None
+    assert after.value != before
+    assert after.low < after.value < after.high
+    others = [key for key in vars(Lamp()) if vars(table.lamp)[key] != vars(Lamp())[key]]
+    assert len(others) == 1
+
+
+def test_coordinates_reach_the_whole_size_around_the_object(table: Table) -> None:
+    bar = table.bar("place y")
+    assert (bar.low, bar.high) == pytest.approx((-2 - SIZE, 2 + SIZE))
+    assert (table.bar("reach").low, table.bar("reach").high) == pytest.approx((-2 - SIZE, 2 + SIZE))
+
+
+def test_whole_numbers_stay_whole(table: Table) -> None:
+    table.bar("blades").put(7.0)
+    assert table.lamp.blades == 7
+    assert type(table.lamp.blades) is int
+
+
+def test_an_absent_number_begins_at_its_start_or_the_lowest_of_its_range(table: Table) -> None:
+    for label, start in (("tilt angle", 30.0), ("count", 1)):
+        assert table.bar(label).value is None
+        table.bar(label).pick(Place(632, 8))
+        assert table.bar(label).value == start
+        table.bar(label).pick(Place(632, 8))
+        assert table.bar(label).value is None
+
+
+def test_switches_choices_and_texts_put_their_values(table: Table) -> None:
+    table.rows()["on"].pick(Place(632, 8))
+    table.rows()["mode"].pick(Place(600, 8))
+    for label, typed in (("name", "sun"), ("tint", "#00f")):
+        entry = table.rows()[label]
+        assert isinstance(entry, Entry)
+        entry.typed.take(typed)
+    lamp = table.lamp
+    assert (lamp.on, lamp.mode, lamp.name, lamp.tint) == (False, "narrow", "sun", (0, 0, 255))
+
+
+def test_a_vector_that_is_given_has_three_bars(table: Table) -> None:
+    given = Table(Lamp(facing=(0.0, 0.0, -1.0)))
+    assert "facing x" not in table.rows()
+    given.bar("facing x").put(0.5)
+    assert given.lamp.facing == (0.5, 0, -1)
+    assert (given.bar("facing x").low, given.bar("facing x").high) == (-1, 1)
+
+
+def test_a_row_of_one_of_several_classes_has_the_parameters_of_that_class(table: Table) -> None:
+    table.bar("grain").put(0.75)
+    assert table.lamp.finish == Smooth(0.75)
+    table.rows()["finish"].pick(Place(600, 8))
+    assert repr(table.lamp.finish) == repr(Coarse())
+    assert "grain" not in table.rows()
+    table.bar("size").put(5.0)
+    assert repr(table.lamp.finish) == repr(Coarse(5))
+
+
+def test_a_row_within_the_row_changes_in_its_place(table: Table) -> None:
+    table.bar("density").put(0.5)
+    assert table.lamp.haze == Haze(0.5)
+
+
+def test_a_curve_over_angles_is_switched_and_has_a_bar_for_each_of_its_points(table: Table) -> None:
+    table.rows()["sheen"].pick(Place(632, 8))
+    assert table.lamp.sheen == ((0, 0.2), (40, 0.4), (90, 1))
+    bars = [table.bar(f"at {angle} degrees") for angle in (0, 40, 90)]
+    assert [(bar.value, bar.low, bar.high) for bar in bars] == [(0.2, 0.1, 1), (0.4, 0, 1), (1, 0, 1)]
+    bars[1].put(0.75)
+    assert table.lamp.sheen == ((0, 0.2), (40, 0.75), (90, 1))
+    table.bar("at 0 degrees").put(0.125)
+    assert table.lamp.sheen == ((0, 0.125), (40, 0.75), (90, 1))
+    table.rows()["sheen"].pick(Place(632, 8))
+    assert table.lamp.sheen is None
+    assert "at 40 degrees" not in table.rows()
+
+
+def test_an_absent_row_is_made_by_its_switch_and_then_switched(table: Table) -> None:
+    table.rows()["shutters x"].pick(Place(632, 8))
+    assert table.lamp.shutters == Shutters(x=Shutter())
+    assert {"x low", "x high"} <= set(table.rows())
+    assert "x on" not in table.rows()
+    table.rows()["shutters x"].pick(Place(632, 8))
+    assert table.lamp.shutters.x == Shutter(on=False)
+
+
+def test_a_number_without_limit_begins_at_the_bound_of_the_object_on_that_side(table: Table) -> None:
+    lamp = Lamp(shutters=Shutters(z=Shutter()))
+    table = Table(lamp)
+    for label, bound in (("z low", 0.0), ("z high", 1.0)):
+        assert table.bar(label).value is None
+        table.bar(label).pick(Place(632, 8))
+        assert table.bar(label).value == bound
+    assert table.lamp.shutters.z == Shutter(0.0, 1.0)
+    table.bar("z low").pick(Place(632, 8))
+    assert table.lamp.shutters.z == Shutter(-math.inf, 1.0)
+
+
+def test_a_point_without_size_has_a_range_too() -> None:
+    nowhere = World((3.0, 3.0, 3.0), (3.0, 3.0, 3.0))
+    usual = nowhere.range_of("x")
+    assert (usual.low, usual.high) == (2, 4)
+
+
+def test_a_length_reaches_from_nothing_to_the_size_of_the_object() -> None:
+    table = Table(Lamp(hoods=(Hood("left"),)))
+    assert (table.bar("  width").low, table.bar("  width").high) == pytest.approx((0, SIZE))
+    # One that must be above 0 begins with a step.
+    table.bar("  length").pick(Place(632, 8))
+    assert table.lamp.hoods[0].length == table.bar("  length").step == table.bar("  length").low
+
+
+def test_each_row_by_name_has_a_box_and_below_it_its_rows() -> None:
+    table = Table(Lamp(hoods=(Hood("left"), Hood("x", on=False))))
+    rows = rows_of(
+        table.lamp, table.put, WORLD, leave_out=[name for name in vars(table.lamp) if name != "hoods"]
+    )
+    inside = ["  point x", "  point y", "  point z", "  width", "  length"]
+    assert [row.label for row in rows] == ["hoods", "left", *inside, "x", *inside]
+    assert isinstance(rows[0], Heading)
+    assert len({row.key for row in rows}) == len(rows)
+    assert rows[8].help == "x: Where it is. In world units."
+    first, second = rows[1].at(AREA), rows[7].at(AREA)
+    assert isinstance(first, Switch)
+    assert isinstance(second, Switch)
+    assert (first.is_on, second.is_on) == (True, False)
+    second.pick(Place(632, 8))
+    assert table.lamp.hoods == (Hood("left"), Hood("x"))
+    point = rows[2]
+    assert isinstance(point, Bar)
+    point.put(0.5)
+    assert table.lamp.hoods == (Hood("left", point=(0.5, 0.0, 0.0)), Hood("x"))
+    # Its name is that of an axis, but its coordinates are of all three.
+    width = rows[11]
+    assert isinstance(width, Bar)
+    assert width.high == pytest.approx(SIZE)
+
+
+def test_names_of_other_tables_are_chosen_among_those_that_the_world_knows() -> None:
+    tables = {"lamps": ("lamp", "sky"), "walls": ("north", "south")}
+    world = World(WORLD.low, WORLD.high, KnownNames(tables.__getitem__, {}))
+    table = Table()
+    for label in ("follows", "walls", "  south"):
+        rows = {row.label: row.at(AREA) for row in rows_of(table.lamp, table.put, world)}
+        rows[label].pick(Place(632, 8))
+    assert (table.lamp.follows, table.lamp.walls) == ("sun", ("south",))
+
+
+# -------------------- test_name_rows
+# Names of rows of other tables are chosen by pointing: one of them, or a list.
+
+NEXT = Place(600, 8)
+
+
+@dataclass(frozen=True)
+class Rope(Row):
+    """A column of each kind of reference."""
+
+    post: Annotated[str, Column(Reference("posts"), Tier.MIX, "Its post.")] = "a"
+    hook: Annotated[str | None, Column(Reference("posts"), Tier.MIX, "Its hook.")] = None
+    end: Annotated[str | None, Column(WordOrName("posts", "ground"), Tier.MIX, "Its end.")] = None
+    only_posts: Annotated[tuple[str, ...] | None, Column(References("posts"), Tier.MIX, "Posts.")] = None
+
+
+class Menu:
+    """The rows of one column, which change its value."""
+
+    def __init__(self, name: str, value: Any = None, posts: Sequence[str] = ("a", "b", "c")) -> None:
+        self.field = fields_of(Rope)[name]
+        self.value, self.posts = value, posts
+        self.pages: dict[str, int] = {}
+
+    def take(self, value: Any) -> None:
+        self.value = value
+
+    def _posts(self, table: str) -> Sequence[str]:
+        assert table == "posts"
+        return self.posts
+
+    @property
+    def rows(self) -> list[Widget]:
+        kind = self.field.column.kind
+        assert isinstance(kind, Referring)
+        known = KnownNames(self._posts, self.pages)
+        found = reference_rows("its posts", self.field, kind, self.value, self.take, known)
+        return [row.at(AREA) for row in found]
+
+    @property
+    def ticked(self) -> dict[str, bool]:
+        return {row.label: row.is_on for row in self.rows if isinstance(row, Switch)}
+
+
+def test_one_name_is_chosen_among_those_of_its_table() -> None:
+    menu = Menu("post", "a")
+    (row,) = menu.rows
+    assert isinstance(row, Choice)
+    assert list(row.names) == ["a", "b", "c"]
+    row.pick(NEXT)
+    assert menu.value == "b"
+
+
+def test_a_name_that_may_be_absent_can_be_none() -> None:
+    menu = Menu("hook", "c")
+    menu.rows[0].pick(NEXT)
+    assert menu.value is None
+    assert isinstance(menu.rows[0], Choice)
+    assert menu.rows[0].present == "none"
+
+
+def test_a_word_is_among_the_names() -> None:
+    menu = Menu("end", posts=("a", "ground", "none"))
+    (row,) = menu.rows
+    assert isinstance(row, Choice)
+    assert list(row.names) == ["none", "ground", "a"]
+    taken = []
+    for _ in row.names:
+        menu.rows[0].pick(NEXT)
+        taken.append(menu.value)
+    assert taken == ["ground", "a", None]
+
+
+def test_a_list_that_is_absent_is_one_box_that_makes_it_without_a_name() -> None:
+    menu = Menu("only_posts")
+    assert menu.ticked == {"its posts": False}
+    menu.rows[0].pick(NEXT)
+    assert menu.value == ()
+    assert menu.ticked == {"its posts": True, "  a": False, "  b": False, "  c": False}
+    menu.rows[0].pick(NEXT)
+    assert menu.value is None
+
+
+def test_names_are_put_into_a_list_and_taken_out_in_the_order_of_their_table() -> None:
+    menu = Menu("only_posts", ("b",))
+    assert menu.ticked["  b"]
+    for row in (3, 1, 2):
+        menu.rows[row].pick(NEXT)
+    assert menu.value == ("a", "c")
+    assert menu.rows[1].help == "Take a from the list: its posts."
+    assert menu.rows[2].help == "Take b into the list: its posts."
+
+
+def test_the_same_name_in_two_lists_is_told_apart() -> None:
+    (*_, row) = Menu("only_posts", ()).rows
+    assert row.key == "its posts.  c"
+
+
+def test_many_names_come_in_pages() -> None:
+    posts = [f"post {number}" for number in range(2 * NAMES_A_PAGE + 1)]
+    menu = Menu("only_posts", ("post 24",), posts)
+    seen = []
+    for title in ("1 to 12", "13 to 24", "25 to 25"):
+        _, page, *boxes = menu.rows
+        assert isinstance(page, Choice)
+        assert (page.label, page.present) == ("posts", title)
+        assert page.help == "Which of the 25 posts are shown below; 1 are in the list."
+        assert len(boxes) <= NAMES_A_PAGE
+        seen += [box.label.strip() for box in boxes]
+        page.pick(NEXT)
+    assert seen == posts
+    assert menu.value == ("post 24",)
+    assert menu.rows[2].label == "  post 0"
+
+
+@pytest.mark.parametrize("count", [0, 1, 12, 13])
+def test_a_page_that_is_no_more_there_gives_way_to_the_last(count: int) -> None:
+    menu = Menu("only_posts", (), [f"post {number}" for number in range(count)])
+    menu.pages["posts"] = 5
+    last = [row.label for row in menu.rows][-1]
+    assert last == (f"  post {count - 1}" if count else "its posts")

@@ -1,0 +1,320 @@
+from __future__ import annotations
+
+import json
+import random
+import struct
+import tracemalloc
+import zlib
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+from PIL import Image
+
+from ramtek_emu import (
+    GMR_9300,
+    PRINCETON_9300,
+    MissingInputError,
+    OutputExistsError,
+    Ramtek9300,
+    RamtekError,
+    SnapshotError,
+    instructions,
+    read_snapshot,
+    write_snapshot,
+)
+from ramtek_emu.arrays import Words
+from ramtek_emu.configuration import CONFIGURATIONS
+from ramtek_emu.memory.parameters import Parameters
+from ramtek_emu.monitor.pattern import pattern
+from ramtek_emu.snapshot import (
+    MOST_TEXT,
+    display_of,
+    listed,
+    packed,
+    picture_bytes,
+    picture_of,
+    plain,
+    restored,
+    snapshot_bytes,
+    unpacked,
+    whole_number,
+)
+from ramtek_emu.timing import Timing
+from tests.ramtek_emu.recorded_streams import BYTE_IMAGE, DECODED, OUTLINE, words
+from tests.ramtek_emu.snapshots import CURSORS, SNAPSHOT, texts_of, with_text
+from tests.ramtek_emu.strategies import SMALL, quick, streams, thorough
+
+
+def same(one: Ramtek9300, other: Ramtek9300) -> None:
+    assert (one.words == other.words).all()
+    assert (one.entries == other.entries).all()
+    assert (one.field() == other.field()).all()
+    assert one.configuration == other.configuration
+    assert one.status == other.status
+    assert one.processor.parameters == other.processor.parameters
+    assert snapshot_bytes(one) == snapshot_bytes(other)
+
+
+@pytest.mark.parametrize("name", sorted(CONFIGURATIONS))
+def test_a_snapshot_read_back_is_the_same_display(name: str) -> None:
+    configuration = CONFIGURATIONS[name]
+    display = Ramtek9300(configuration)
+    for stream in (pattern(configuration), OUTLINE, DECODED, BYTE_IMAGE, CURSORS, words("0001 1300 13FF")):
+        display.send(stream)
+    display.decoder.clear()
+    again = display_of(snapshot_bytes(display))
+    same(display, again)
+    for one in (display, again):
+        one.send(words("1400 0C01 0002 4142 0E01 0004 0005 0005 0500"))
+        one.send(OUTLINE)
+    same(display, again)
+
+
+@thorough
+@given(streams(), streams())
+def test_after_any_words_a_snapshot_goes_on_as_the_display_does(before: list[int], after: list[int]) -> None:
+    display = Ramtek9300(SMALL)
+    display.send(np.array(before, np.uint16))
+    again = display_of(snapshot_bytes(display))
+    # What a host left unfinished is in no snapshot.
+    display.decoder.clear()
+    same(display, again)
+    display.receive(display.processor.waiting)
+    for one in (display, again):
+        one.send(np.array(after, np.uint16))
+    same(display, again)
+    count = display.processor.waiting
+    assert display.receive(count).tolist() == again.receive(count).tolist()
+
+
+def test_time_goes_on_where_it_was() -> None:
+    configuration = replace(GMR_9300, timing=Timing(pixel=900))
+    display = Ramtek9300(configuration)
+    display.send(instructions.load_entries(0, [[200, 0, 0]] * 1024))
+    # One image after another until the beam is in the middle of a field.
+    dot, half = instructions.write_image([[5] * 100]), 240
+    assert display.beam is not None
+    while not half < display.beam.line < 300:
+        display.send(dot)
+    display.send(instructions.load_entries(0, [[0, 0, 200]] * 1024))
+    assert display.field()[[0, 479], 300].tolist() == [[200, 0, 0], [0, 0, 200]]
+    again = display_of(snapshot_bytes(display))
+    same(display, again)
+    for one in (display, again):
+        one.send(OUTLINE)
+    same(display, again)
+
+
+def test_a_snapshot_is_a_picture_that_others_read(tmp_path: Path) -> None:
+    display = Ramtek9300(PRINCETON_9300)
+    display.send(OUTLINE)
+    write_snapshot(display, tmp_path / "snapshot.png")
+    with Image.open(tmp_path / "snapshot.png") as picture:
+        assert picture.size == (640, 512)
+        assert (np.asarray(picture) == display.words).all()
+        assert picture.info["Software"] == "ramtek_emu snapshot 1"
+    same(display, read_snapshot(tmp_path / "snapshot.png"))
+    with pytest.raises(OutputExistsError):
+        write_snapshot(display, tmp_path / "snapshot.png", overwrite=False)
+
+
+def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    for path in (tmp_path / "none.png", tmp_path):
+        with pytest.raises(MissingInputError):
+            read_snapshot(path)
+
+
+@pytest.mark.parametrize("text", ["", "null", "[" * 100_000, "{}", "9" * 5000, '{"now":1,"now":2}', "NaN"])
+@pytest.mark.parametrize("keyword", ["configuration", "lookup table", "parameters", "processor", "cursors"])
+def test_a_text_that_is_no_state_is_refused(keyword: str, text: str) -> None:
+    with pytest.raises(SnapshotError):
+        display_of(with_text(keyword, text))
+
+
+def test_mutated_snapshots_are_read_or_refused() -> None:
+    draw = random.Random(9300)
+    picture, texts = picture_of(SNAPSHOT)
+    accepted = 0
+    for _ in range(600):
+        keyword = draw.choice(sorted(texts))
+        text = bytearray(texts[keyword].encode())
+        for _ in range(draw.randint(1, 3)):
+            text[draw.randrange(len(text))] = draw.choice(b'0123456789",:[]{}-eE.nt')
+        try:
+            display = display_of(picture_bytes(picture, texts | {keyword: text.decode()}))
+        except SnapshotError:
+            continue
+        # What is taken works.
+        accepted += 1
+        display.send(OUTLINE)
+        display.field()
+        display_of(snapshot_bytes(display))
+    assert accepted > 50
+    for _ in range(600):
+        data = bytearray(SNAPSHOT)
+        for _ in range(draw.randint(1, 4)):
+            data[draw.randrange(len(data))] = draw.randrange(256)
+        with pytest.raises(RamtekError):
+            display_of(bytes(data[: draw.choice((len(data), draw.randrange(len(data))))]))
+
+
+def test_a_snapshot_shows_itself_to_pillow_with_its_texts() -> None:
+    with Image.open(BytesIO(SNAPSHOT)) as picture:
+        picture.load()
+        assert sorted(picture.info) == sorted(texts_of(SNAPSHOT))
+
+
+def test_a_snapshot_of_no_display_is_refused_before_a_file_is_made(tmp_path: Path) -> None:
+    path = tmp_path / "display.png"
+    with pytest.raises(SnapshotError) as refusal:
+        write_snapshot(str(path), Ramtek9300())  # type: ignore[arg-type]
+    assert str(refusal.value) == (
+        "a snapshot must be of a Ramtek9300, not of a str; give the display first, then the path"
+    )
+    assert not path.exists()
+
+
+@pytest.mark.parametrize(
+    ("keyword", "old", "new", "part"),
+    [
+        ("Software", "snapshot 1", "snapshot 9", "of the format 'ramtek_emu snapshot 1'"),
+        ("configuration", '"elements":13', '"elements":14', "must have 14 x 9 words"),
+        ("configuration", '"elements":13', '"elements":99999999', "from -32768 to 65535, not 99999999"),
+        ("configuration", '"elements":13', '"elements":-1', "elements must be a whole number from 1"),
+        ("configuration", '"planes":10', '"planes":1', "a word of a snapshot must be 0 to 1"),
+        ("configuration", '"PAIR_24"', '"PAIR_99"', "must be one of PAIR_24, WORD_12"),
+        ("configuration", '"name"', '"nome"', "must be an object of name"),
+        ("parameters", '"scan_order":0', '"scan_order":"0"', "parameters.scan_order of a snapshot"),
+        ("parameters", '"scan_order":0', '"scan_order":1e9', "parameters.scan_order of a snapshot"),
+        ("parameters", '"zoom":[1,1]', '"zoom":[0,1]', "parameters.zoom[0] of a snapshot must be a whole"),
+        ("parameters", '"zoom":[1,1]', '"zoom":[1]', "must be 2 items"),
+        ("parameters", '"zoom":[1,1]', '"zoom":true', "must be 2 items"),
+        ("cursors", '"track":false', '"track":0', "track of a snapshot must be true or false, not 0"),
+        ("cursors", '"shape":"', '"shape":"!', "bytes in base64"),
+        ("lookup table", '"address":0', '"address":5000', "address of a snapshot"),
+        ("processor", '"illegal":false', '"illegal":null', "illegal of a snapshot must be true or false"),
+    ],
+)
+def test_a_value_that_does_not_fit_is_refused_by_name(keyword: str, old: str, new: str, part: str) -> None:
+    text = texts_of(SNAPSHOT)[keyword]
+    assert old in text
+    with pytest.raises(SnapshotError) as refusal:
+        display_of(with_text(keyword, text.replace(old, new, 1)))
+    assert part in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 700
+
+
+@quick
+@given(
+    st.lists(st.integers(0, 0xFFFF), min_size=6, max_size=6),
+    st.lists(st.booleans(), min_size=11, max_size=11),
+)
+def test_what_was_made_plain_is_restored_through_json(words: list[int], dots: list[bool]) -> None:
+    parameters = Parameters.at_reset(SMALL)
+    parameters.conic = tuple(words)
+    parameters.background = words[0]
+    state = {
+        "parameters": parameters,
+        "words": np.array(words, np.uint16).reshape(2, 3),
+        "dots": np.array(dots),
+        "configuration": GMR_9300,
+    }
+    for name, value in state.items():
+        pattern = value if name != "parameters" else Parameters.at_reset(SMALL)
+        again = restored(pattern, json.loads(json.dumps(plain(value))), name)
+        assert np.array_equal(again, value) if isinstance(value, np.ndarray) else again == value
+
+
+@quick
+@given(st.binary(max_size=200), st.integers(0, 3))
+def test_packed_bytes_are_unpacked_when_they_are_as_many_as_expected(data: bytes, more: int) -> None:
+    text = packed(data)
+    if not more:
+        assert unpacked(text, len(data), "pixels") == data
+        return
+    with pytest.raises(SnapshotError) as refusal:
+        unpacked(text, len(data) + more, "pixels")
+    assert str(refusal.value).startswith(
+        f"pixels of a snapshot must be {len(data) + more} packed bytes, not "
+    )
+
+
+@pytest.mark.parametrize("value", [True, 1.0, "1", None, -1, 11])
+def test_a_number_is_whole_and_within_its_limits(value: object) -> None:
+    with pytest.raises(SnapshotError) as refusal:
+        whole_number(value, (0, 10), "lines")
+    assert str(refusal.value) == (
+        f"lines of a snapshot must be a whole number from 0 to 10, not {value!r}; "
+        "take a new one with --snapshot"
+    )
+
+
+def test_a_list_is_no_longer_than_it_may_be() -> None:
+    assert listed((0, 0), [[1, 2], [3, 4]], "driven", 2) == [(1, 2), (3, 4)]
+    with pytest.raises(SnapshotError, match="driven of a snapshot must be a list of at most 1, not"):
+        listed((0, 0), [[1, 2], [3, 4]], "driven", 1)
+
+
+def chunk(kind: bytes, content: bytes) -> bytes:
+    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+
+def hostile(*chunks: bytes, header: bytes = struct.pack(">IIBBBBB", 13, 9, 16, 0, 0, 0, 0)) -> bytes:
+    return b"\x89PNG\r\n\x1a\n" + b"".join((chunk(b"IHDR", header), *chunks, chunk(b"IEND", b"")))
+
+
+@pytest.mark.parametrize(
+    ("data", "part"),
+    [
+        (b"", "begin as a PNG file does"),
+        (b"GIF89a", "begin as a PNG file does"),
+        (SNAPSHOT[:-5], "have whole chunks"),
+        (SNAPSHOT[:40], "have whole chunks"),
+        (SNAPSHOT[:20] + b"\x99" + SNAPSHOT[21:], "right checksum"),
+        (hostile(header=struct.pack(">IIBBBBB", 1 << 31, 1, 16, 0, 0, 0, 0)), "1 to 4096 elements and lines"),
+        (hostile(header=struct.pack(">IIBBBBB", 13, 9, 8, 2, 0, 0, 0)), "16 bits gray"),
+        (hostile(header=struct.pack(">IIBBBBB", 13, 9, 16, 0, 0, 0, 1)), "not interlaced"),
+        (hostile(), "have pixels|9 lines of 13 words"),
+        (hostile(chunk(b"IDAT", b"nonsense")), "have pixels that can be unpacked"),
+        (hostile(chunk(b"IDAT", zlib.compress(bytes(10)))), "9 lines of 13 words"),
+        (hostile(chunk(b"IDAT", zlib.compress(bytes(50_000_000)))), "9 lines of 13 words"),
+        (hostile(chunk(b"IDAT", zlib.compress(b"\2" * 9 * 27))), "unfiltered lines"),
+        (hostile(chunk(b"PLTE", b"")), "chunks that are known"),
+        (hostile(chunk(b"tEXt", b"no zero")), "texts with a keyword"),
+        (hostile(chunk(b"tEXt", b"a\0\xff")), "in ASCII"),
+        (hostile(*[chunk(b"tEXt", b"a\0b")] * 2), "each text once"),
+        (hostile(*[chunk(b"tEXt", b"%d\0" % n + b"a" * 900_000) for n in range(10)]), f"at most {MOST_TEXT}"),
+        (hostile(*[chunk(b"tIME", b"")] * 70_000), "end within 65536 chunks"),
+    ],
+)
+def test_a_hostile_file_is_refused_by_one_sentence(data: bytes, part: str) -> None:
+    tracemalloc.start()
+    with pytest.raises(SnapshotError) as refusal:
+        display_of(data)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert any(piece in str(refusal.value) for piece in part.split("|"))
+    assert str(refusal.value).endswith("take a new one with --snapshot")
+    assert most < 3 * len(data) + (8 << 20)
+
+
+names = st.text(st.characters(min_codepoint=32, max_codepoint=126), min_size=1, max_size=20)
+
+
+@quick
+@given(
+    arrays.arrays(np.uint16, st.tuples(st.integers(1, 6), st.integers(1, 6))),
+    st.dictionaries(names, names, max_size=3),
+)
+def test_words_and_texts_come_back_as_they_were_written(words: Words, texts: dict[str, str]) -> None:
+    read, read_texts = picture_of(picture_bytes(words, texts))
+    assert read.dtype == np.uint16
+    assert read.tolist() == words.tolist()
+    assert read_texts == texts
