@@ -73,5 +73,5 @@ def play(
             show(display, PolledPipe(session, read).serve_for)
         else:
             serve_pipe(session, read, None)
-            tell_the_end(display, session.held_words, session.odd_byte)
+            tell_the_end(session)
     write_outputs(display, output, snapshot, force)

@@ -143,7 +143,7 @@ def serve_stdio(session: HostSession, window: bool, lines: JoystickLines | None 
                 lines.obey()
                 if pipe.ended or not pipe.step():
                     time.sleep(PIPE_SECONDS)
-    tell_the_end(session.display, session.held_words, session.odd_byte)
+    tell_the_end(session)
 
 
 def obeying(lines: JoystickLines | None, serve_for: Callable[[float], None]) -> Callable[[float], None]:

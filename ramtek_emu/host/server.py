@@ -80,14 +80,9 @@ class HostSession:
         self.leave()
 
     @property
-    def held_words(self) -> int:
-        """How many words of an incomplete instruction are held."""
-        return self.display.decoder.held_words
-
-    @property
     def unfinished(self) -> bool:
         """Whether a word or an instruction is incomplete."""
-        return bool(self.odd_byte) or self.held_words > 0
+        return bool(self.odd_byte) or self.display.decoder.held_words > 0
 
     def feed(self, data: bytes) -> Iterator[bytes]:
         """Pass bytes of the host to the display, piece by piece, and yield the replies to each piece.
@@ -119,7 +114,7 @@ class HostSession:
     def _recorded(self, record: Record, piece: Words) -> Words:
         """Record the instructions that are complete now, and return the words of the incomplete one."""
         words = np.concatenate((self._unrecorded, piece))
-        whole = len(words) - self.held_words
+        whole = len(words) - self.display.decoder.held_words
         record(words[:whole].astype("<u2", copy=False).tobytes())
         return words[whole:]
 
