@@ -4,7 +4,7 @@ Words are 16 bits and go low byte first, in files and on wires (Hardware: PRG, J
 words of their memory to the interface as they are).
 
 A `Wire` is what a host and a display in another process have between them: a TCP connection or a Unix socket.
-TCP carries one stream of bytes. A Unix socket carries packets, each of which is one write of the host.
+TCP carries one stream of bytes. A Unix socket carries packets; a packet is one write of the host.
 
 Between the words of a wire there may be marks. A host sends a mark to ask for a hard reset, and the display
 sends one back when the reset is done: the replies that arrive before it belong to the time before. On TCP, a
@@ -86,7 +86,7 @@ MARKS_WORK: Final = hasattr(select, "epoll")
 
 
 class Sign(Enum):
-    """What a wire gives when it gives no words."""
+    """A result of reading a wire other than bytes."""
 
     NOTHING = "nothing has arrived"
     MARK = "a mark"
@@ -178,8 +178,8 @@ Self = TypeVar("Self", bound="SocketPort")
 class SocketPort:
     """A host port over a connected socket; `timeout` is how long it waits for the display, in seconds.
 
-    While `send` is sending, it also takes what the display replies; otherwise both sides could wait for each
-    other forever.
+    While `send` is sending, it also takes the replies of the display. Otherwise both sides could wait for
+    each other forever.
     """
 
     at_once: int

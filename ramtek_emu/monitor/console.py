@@ -49,7 +49,7 @@ class Console(ABC):
         self.display = display
         self.full_screen = False
         self.overlay = Overlay()
-        """What is shown over the field."""
+        """The page and the message over the field."""
         self.screenshots = Path(screenshots)
         self.screenshot_name = screenshot_name
         self.on_key = on_key
@@ -150,7 +150,7 @@ class Console(ABC):
                 self.ask_to_close()
 
     def handle_release(self, release: Release) -> None:
-        """Tell the name of a key that was let go; a modifier is told neither then nor when it is pressed."""
+        """Call `on_release` with the name of the key, unless it is a modifier."""
         if self.on_release is not None and release.name not in MODIFIERS:
             self.on_release(release.name)
 

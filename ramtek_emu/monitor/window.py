@@ -1,6 +1,6 @@
 """Monitor: the window that shows the field of a display, with the mouse as its joystick.
 
-The window shows fields: what programs draw is words in the frame buffer, and cursors. Keys, the mouse,
+The window shows fields: programs draw words in the frame buffer, and cursors. Keys, the mouse,
 dropped files and ticks are passed as plain values to the program that uses the display. A field is shown
 after every input that changed it, before the next input is handled, so that input never outruns the picture.
 """

@@ -19,9 +19,9 @@ from ramtek_emu import Ramtek9300, TcpPort, UnixPort, instructions, read_snapsho
 from ramtek_emu.commands.displays import show
 from ramtek_emu.host.server import TcpServer
 from ramtek_emu.monitor.window import Monitor
+from tests.ramtek_emu.displays import shown
 from tests.ramtek_emu.processes import ROOT, PipedHost, environment, field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import BARS, OUTLINE, words
-from tests.ramtek_emu.screens import shown
 from tests.ramtek_emu.serving import until
 
 pygame = pytest.importorskip("pygame")
@@ -324,7 +324,7 @@ def test_a_host_that_polls_the_joystick_of_a_window_does_not_wait_for_its_ticks(
     on_screen: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     polls = 100
-    waits = set()
+    waits: set[int] = set()
     step = Monitor.step
 
     def observed(monitor: Monitor, wait: int = 0) -> bool:

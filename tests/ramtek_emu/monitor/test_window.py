@@ -15,7 +15,7 @@ from ramtek_emu import NoScreenError, Ramtek9300, instructions
 from ramtek_emu.monitor.glass import viewport
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
-from tests.ramtek_emu.screens import shown
+from tests.ramtek_emu.displays import shown
 
 pygame = pytest.importorskip("pygame")
 
