@@ -42,7 +42,7 @@ STEP_SECONDS: Final = 0.25
 JOYSTICK_SECONDS: Final = 0.02
 """How long a line for the joystick may wait while nothing else happens."""
 HOST_SECONDS: Final = 0.005
-"""How long the input of a window may wait while a connected host sends nothing. Words of a host never wait."""
+"""How long the input of a window may wait while a connected host sends nothing. Its words never wait."""
 PIPE_SECONDS: Final = 0.002
 """How long words on a pipe may wait while there are lines for the joystick, too."""
 

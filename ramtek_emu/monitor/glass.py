@@ -60,7 +60,7 @@ def open_screen() -> None:
     if driver in ("offscreen", "dummy") and driver not in asked.split(","):
         pygame.display.quit()
         raise NoScreenError(
-            f"a window must have a screen, and DISPLAY or WAYLAND_DISPLAY names one that is dead; {advice}"
+            f"a window must have a screen, and DISPLAY or WAYLAND_DISPLAY does not answer; {advice}"
         )
 
 
