@@ -25,38 +25,6 @@ def test_the_names_of_configurations_are_completed(command: list[str]) -> None:
     assert [item.value for item in found] == ["PRINCETON_9300"]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code"),
-    [
-        (["serve"], 2),
-        (["serve", "--stdio", "--port", "1"], 2),
-        (["serve", "--port", "70000"], 2),
-        (["serve", "--stdio", "--configuration", "gmr_9301"], 2),
-        (["serve", "--stdio", "-o", "/none/at/all.png"], 73),
-        (["serve", "--stdio", "-o", "-"], 2),
-        (["-o", "-"], 2),
-        (["-o", ""], 2),
-        (["--configuration", "gmr_9301", "-o", "x.png"], 2),
-        (["play"], 2),
-        (["play", "none.ramtek"], 66),
-        (["play", "."], 66),
-        (["play", ""], 2),
-        (["list", ""], 2),
-        (["list", "none.ramtek", "--configuration", "gmr_9301"], 2),
-        (["assemble", "none.txt", "-o", ""], 2),
-        (["list", "none.ramtek"], 66),
-        (["assemble", "none.txt", "-o", "/none/at/all"], 73),
-        (["plai"], 2),
-    ],
-)
-def test_what_cannot_be_done_is_refused_in_words(arguments: list[str], code: int) -> None:
-    refused = run(*arguments)
-    assert refused.returncode == code
-    assert refused.stdout == b""
-    assert refused.stderr
-    assert b"Traceback" not in refused.stderr
-
-
 @pytest.mark.parametrize("command", ["play", "list", "assemble", "serve"])
 def test_help_has_examples_and_loads_nothing_heavy(command: str) -> None:
     script = (
@@ -108,13 +76,6 @@ def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
         b"ramtek: a snapshot must begin as a PNG file does, not as something else; "
         b"take a new one with --snapshot\n"
     )
-
-
-def test_a_configuration_that_is_not_known_is_told_the_nearest() -> None:
-    refused = run("play", "-", "-o", "x.png", "--configuration", "gmr")
-    assert refused.returncode == 2
-    assert b"must be one of GMR_9300, " in refused.stderr
-    assert b"not 'gmr'; did you mean GMR_9300?" in refused.stderr
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
