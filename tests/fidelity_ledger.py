@@ -1,9 +1,8 @@
 """The fidelity ledger: every line of the sources that says where a formula or a number comes from.
 
 `Paper:` Warn's paper; `Hardware:` a source about the RAMTEK by its key; `Assumed:` our choice where sources
-are silent; `Departs:` where the program knowingly differs; `Limit:` a bound that no source asks for, such as the
-largest file that is read. `python -m tests.fidelity_ledger >
-docs/FIDELITY.md` writes the document.
+are silent; `Departs:` where the program knowingly differs; `Limit:` a bound that no source asks for, such as
+the largest file that is read. `python -m tests.fidelity_ledger > docs/FIDELITY.md` writes the document.
 """
 
 from __future__ import annotations
