@@ -265,7 +265,7 @@ def test_nonlinear_mappings_are_tried_without_rendering_again() -> None:
     assert (studio.words > linear).any()
 
 
-# Light controls: Figures 3 and 4, flaps and cones.
+# Light Controls: Figures 3 and 4, flaps and cones.
 
 
 @pytest.mark.parametrize("concentration", [1.0, 10.0, 40.0])
@@ -392,7 +392,7 @@ def test_all_controls_can_be_used_together() -> None:
     assert intensity(lit_wall(every)) == pytest.approx(expected, rel=1e-3)
 
 
-# Light color: Figures 9 to 12, and 15.
+# Light Source Color Blending: Figures 11, 12 and 15.
 
 
 def test_the_display_has_words_of_ten_bits_and_one_table_of_1024_entries_of_24_bits() -> None:
