@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, InputError, Light, Scene, Surface, View, render, scene_of
 from autocolor.arrays import Singles
 from autocolor.checks import Vector
+from autocolor.images import display_image
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.normal_words import (
     BINS,
+    NormalImage,
     cells_of,
     far_light,
     light_at_normals,
@@ -34,9 +35,11 @@ from tests.autocolor.strategies import scenes
 LINES, ELEMENTS = 24, 32
 
 
-def image_of(scene: Scene, lines: int = LINES, elements: int = ELEMENTS) -> DisplayImage:
+def image_of(scene: Scene, lines: int = LINES, elements: int = ELEMENTS) -> NormalImage:
     scene = scene.replace(words="normals")
-    return display_image(scene, render(scene, lines, elements))
+    image = display_image(scene, render(scene, lines, elements))
+    assert isinstance(image, NormalImage)
+    return image
 
 
 def in_world(scene: Scene, normals: Singles) -> list[Vector]:
@@ -78,9 +81,8 @@ def fraction(scene: Scene, intensity: float, low: float, high: float) -> float:
     return float(np.interp(along, xs, ys))
 
 
-def entries(image: DisplayImage) -> dict[int, tuple[int, ...]]:
+def entries(image: NormalImage) -> dict[int, tuple[int, ...]]:
     """The entry of each word in use."""
-    assert image.normals is not None
     scene, words = image.scene, image.normals.words.tolist()
     normals, samples = (in_world(scene, each) for each in (image.normals.normals, image.normals.samples))
     found = {}
@@ -134,7 +136,6 @@ def test_each_entry_is_the_closed_form_at_the_normal_of_its_word(scene: Scene, i
 def test_where_words_are_in_use_they_are_those_of_the_pixels_and_each_surface_has_its_range() -> None:
     scene = ball_scene(20)
     image = image_of(scene, 48, 64)
-    assert image.normals is not None
     seen = np.unique(image.words)
     assert seen.tolist() == [0, *image.normals.words.tolist()]
     first, levels = image.ranges["shell"]
@@ -145,7 +146,6 @@ def test_where_words_are_in_use_they_are_those_of_the_pixels_and_each_surface_ha
 
 def test_the_normal_of_a_word_is_near_that_of_each_of_its_pixels() -> None:
     image = image_of(ball_scene(20), 240, 320)
-    assert image.normals is not None
     assert image.picture.normals is not None
     normals = np.zeros((1024, 3), np.float32)
     normals[image.normals.words] = image.normals.normals.T
@@ -211,7 +211,7 @@ def test_the_levels_of_a_ball_rise_from_its_darkest_to_its_brightest_color() -> 
     image = image_of(ball_scene(20), 240, 320)
     colors = image.entries[image.words_at_levels("shell")].astype(int).sum(axis=1)
     assert (np.diff(colors) >= 0).all()
-    own = image.entries[image.normals.words] if image.normals is not None else image.entries
+    own = image.entries[image.normals.words]
     assert colors[-1] == own.astype(int).sum(axis=1).max()
 
 
