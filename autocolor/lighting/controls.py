@@ -29,7 +29,7 @@ import numpy as np
 from autocolor.arrays import Booleans, Floats, PartNumbers, Singles, power
 from autocolor.checks import Vector
 from autocolor.lighting.rays import FARTHEST, camera_light
-from autocolor.scene.following import set_down
+from autocolor.scene.following import detached
 from autocolor.scene.lights import Flap, Light, unit_vector
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints
 
@@ -234,7 +234,7 @@ def half_space_sides(light: Light, points: VisiblePoints) -> dict[str, Side]:
     sides: dict[str, Side] = {}
     for half_space in light.half_spaces:
         if half_space.on:
-            placed = set_down(half_space, light)
+            placed = detached(half_space, light)
             direction = unit_vector(placed.direction)
             least = sum(a * b for a, b in zip(direction, placed.point, strict=True))
             sides[half_space.name] = side_of(points, direction, least, half_space.edge_width)
