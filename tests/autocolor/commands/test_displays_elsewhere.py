@@ -51,7 +51,7 @@ def server() -> Iterator[Served]:
 
 def place_of(viewer: Viewer, label: str, share: float = 0.5) -> tuple[int, int]:
     """Where a row of the menu is, at a share of its width."""
-    area = next(each.area for each in viewer.board.menu_rows() if each.label == label)
+    area = next(each.area for each in viewer.board.layout.rows if each.label == label)
     return round(area.left + share * area.width), (area.top + area.bottom) // 2
 
 
