@@ -25,14 +25,16 @@ The legend of a scalar is drawn over the words, after them and again whenever it
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from os import fspath
+from pathlib import Path
 from time import perf_counter
-from typing import NoReturn, Unpack
+from typing import TYPE_CHECKING, NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.journal.history import History
-from autocolor.journal.studio_session import StudioSession
+from autocolor.journal.places import PICTURE_SUFFIX, Source, file_of, opened, opened_again
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
 from autocolor.mapping.display_image import DisplayImage, display_image, words_by_line
@@ -47,8 +49,16 @@ from autocolor.sending import configuration_of, send_image, shown_colors
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
 from ramtek_emu import HostPort
 
+if TYPE_CHECKING:
+    from os import PathLike
 
-class Studio(StudioSession):
+    from autocolor.journal.history import Variants
+    from autocolor.journal.saving import SavedFiles
+    from autocolor.scene.changes import SceneChanges
+    from autocolor.scene.creation import SurfaceSource
+
+
+class Studio:
     """A scene shown on a display, which can be edited step by step, with undo and redo.
 
     `display` is a host port: a `Ramtek9300`, a `TcpPort` to one, or a `Recorder`. It is reset and sent the
@@ -75,6 +85,11 @@ class Studio(StudioSession):
     def scene(self) -> Scene:
         """The current scene."""
         return self._shown.scene
+
+    @property
+    def history(self) -> History:
+        """The steps of the session, with the scenes to undo and to redo."""
+        return self._history
 
     @property
     def picture(self) -> Picture:
@@ -243,6 +258,142 @@ class Studio(StudioSession):
     def redo(self) -> bool:
         """Redo the last undone step; returns False if there is none."""
         return self._step(self._history.to_redo, self._history.redo)
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether the scene differs from the one that was opened or saved last.
+
+        `history.left_unsaved` names other scenes of the session with unsaved changes.
+        """
+        return self._history.is_changed
+
+    @property
+    def variants(self) -> Variants:
+        """The variants by name, each a scene and its place."""
+        return self._history.variants
+
+    def keep_variant(self, name: str | None = None) -> str:
+        """Make the current scene a variant; returns its name, a free letter if None is given.
+
+        Undo and redo leave the variants alone. Raises UsageError if the name is in use.
+        """
+        name = self.variants.free_name() if name is None else name
+        self._history.keep(name)
+        return name
+
+    def show_variant(self, name: str) -> None:
+        """Make a variant the current scene, by one step to undo; nothing happens if they are equal."""
+        scene = self.variants[name].scene
+        if not scene.equals(self.scene):
+            self._show_scene(scene)
+            self._history.show(name)
+
+    def drop_variant(self, name: str) -> None:
+        """Drop a variant. Raises UsageError if there is none of that name."""
+        self._history.drop(name)
+
+    def open(
+        self,
+        path: str | PathLike[str],
+        *,
+        up: str = "z",
+        scale: float = 1.0,
+        surfaces: SurfaceSource = "materials",
+        tables: SceneChanges | None = None,
+        checksum: str | None = None,
+    ) -> None:
+        """Read a scene (see `read_scene`) and make it the current one, by one step to undo.
+
+        Undo also brings back the files to which `save_session` saves. The script of a session gives the
+        `tables` that the scene had, because the file may have been saved over since, and the `checksum` of
+        the scene. Raises InputError if the scene has another checksum.
+        """
+        source = Source(fspath(path), up, surfaces, scale)
+        scene = opened(source, tables, checksum)
+        self._show_scene(scene.scene)
+        self._history.open(scene, source)
+
+    @property
+    def file(self) -> Path | None:
+        """The scene file or the store that the scene is saved to; None if there is none yet."""
+        saved = [Path(path) for path in self._history.saved.files]
+        place = self._history.place
+        if not saved and place.source is not None and place.stamp is not None:
+            saved = [path for path in (file_of(place.source),) if path is not None]
+        return next((path for path in saved if path.suffix.lower() != PICTURE_SUFFIX), None)
+
+    def reopen(self) -> bool:
+        """Read the scene's file again, by one step to undo; returns False if the scene is still the same.
+
+        Raises UsageError if there is no such file, InputError if it cannot be read.
+        """
+        path, source = self.file, self._history.place.source
+        if path is None:
+            raise UsageError("the scene must be in a file to be read again, and it is in none; save it")
+        source = Source(str(path), surfaces="materials" if source is None else source.surfaces)
+        again = opened_again(source, self.scene)
+        if again.scene.equals(self.scene):
+            return False
+        self._show_scene(again.scene)
+        self._history.open(again, source)
+        return True
+
+    def save(self, path: str | PathLike[str], overwrite: bool = False) -> None:
+        """Write the picture with its scene to a picture file, and mark the scene as saved."""
+        from autocolor.files.picture_file import write_picture
+
+        self.refine()
+        write_picture(path, self.picture, self.scene, overwrite=overwrite)
+        self.mark_saved()
+
+    def save_scene(self, path: str | PathLike[str], overwrite: bool = False) -> None:
+        """Write the scene to a scene file (see `write_scene`), and mark it as saved."""
+        from autocolor.files.scene_writing import write_scene
+
+        write_scene(path, self.scene, overwrite=overwrite)
+        self.mark_saved()
+
+    def save_session(self, folder: str | PathLike[str] = ".") -> SavedFiles:
+        """Save scene and picture to their files, or to new files in the folder; returns the files.
+
+        No file of others is lost (see `journal.saving`).
+        """
+        from autocolor.journal.saving import save_session
+
+        self.refine()
+        return save_session(self._history, self.picture, Path(folder))
+
+    def mark_saved(self, files: Mapping[str, str] | None = None) -> None:
+        """Mark the current scene as saved.
+
+        `files` are the files to which `save_session` saves again, with the SHA-256 of their bytes.
+        """
+        self._history.mark_saved(files)
+
+    def journal(
+        self,
+        path: str | PathLike[str] | None = None,
+        *,
+        up: str = "z",
+        scale: float = 1.0,
+        surfaces: SurfaceSource = "materials",
+        beside: str | PathLike[str] | None = None,
+    ) -> str:
+        """The session as a Python script, one line a step, which gives the same scenes when it is run.
+
+        `path` is the file that the first scene was read from; `up`, `scale` and `surfaces` are the keywords
+        with which it was read. A session that was recovered or opened by a command knows them. A mesh that an
+        edit changed is saved in a folder in the folder `beside`; without `beside`, InputError is raised.
+        """
+        from autocolor.journal.journal import MeshesBeside
+        from autocolor.journal.script import script_of
+
+        source = (
+            self._history.first_place.source if path is None else Source(fspath(path), up, surfaces, scale)
+        )
+        if source is None:
+            raise UsageError("a journal must name what its first scene was read from; give its path")
+        return script_of(self._history, source, MeshesBeside(None if beside is None else Path(beside)))
 
     def watch(self) -> Iterator[tuple[int, Words]]:
         """The lines of the picture from the top, each computed when it is asked for (see `words_by_line`).

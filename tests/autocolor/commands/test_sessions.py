@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from autocolor import MissingInputError, UsageError, read_journal, read_scene
-from autocolor.commands.sessions import NEWEST, chosen_session, forget_session, kept_session
+from autocolor.commands.sessions import NEWEST, autosaved_session, chosen_session, forget_session
 from autocolor.journal.autosave import JOURNAL
 from autocolor.journal.history import History
 from autocolor.journal.places import Source
@@ -163,7 +163,7 @@ def test_a_journal_that_cannot_be_written_is_told_once_and_the_session_goes_on(s
     state.parent.mkdir(parents=True)
     state.write_text("no folder")
     viewer = Viewer(car(), Ramtek9300(SMALL))
-    with kept_session(viewer) as update:
+    with autosaved_session(viewer) as update:
         viewer.on_key("c", typed="c")
         update()
         assert viewer.message.startswith("the journal of the session must be kept in the state folder, and")
@@ -180,7 +180,7 @@ def test_an_error_leaves_the_journal(state: Path) -> None:
     before = signal.getsignal(signal.SIGTERM)
 
     def fail() -> None:
-        with kept_session(viewer):
+        with autosaved_session(viewer):
             viewer.on_key("c", typed="c")
             raise ZeroDivisionError
 
