@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 from tempfile import mkdtemp
@@ -95,14 +96,15 @@ def test_a_journal_that_is_cut_at_any_byte_gives_the_session_up_to_a_step(
 ) -> None:
     history = History(*opened(box))
     summaries = [summary(history)]
-    for step in (
+    steps: list[Callable[[], None]] = [
         lambda: history.take(history.scene.replace(ambient=0.5)),
         lambda: history.take(history.scene.replace(ambient=0.75), same_step=True),
         lambda: history.keep("A"),
         history.undo,
         history.redo,
         lambda: history.mark_saved({"/a\udcff.npz": "9f"}),
-    ):
+    ]
+    for step in steps:
         step()
         summaries.append(summary(history))
     path = journal_of(history, tmp_path)
@@ -221,7 +223,14 @@ def test_a_mesh_that_was_changed_since_or_is_gone_is_refused(tmp_path: Path) -> 
         read_journal(tmp_path / "none" / JOURNAL)
 
 
-EDIT = {"step": "edit", "change": "replace", "row": None, "columns": {}, "mesh": None, "joins": False}
+EDIT: dict[str, object] = {
+    "step": "edit",
+    "change": "replace",
+    "row": None,
+    "columns": {},
+    "mesh": None,
+    "joins": False,
+}
 UNKNOWN = "it must be a step that this version of autocolor writes, not "
 REFUSED_LINES: dict[str, object] = {
     "another kind": {"step": "paint"},
