@@ -18,14 +18,14 @@ from autocolor.journal.journal import read_journal
 from autocolor.screens.viewer import Viewer
 
 if TYPE_CHECKING:
-    from autocolor.journal.journal import Session
+    from autocolor.journal.journal import JournalSession
 
 NEWEST: Final = "newest"
 """The choice of the newest session that can be read."""
 
 OLD: Final = (
-    "the session was left by an older version of autocolor, and cannot be recovered; `autocolor view --forget`"
-    " removes it"
+    "the session was left by an older version of autocolor, and cannot be recovered; `autocolor view"
+    " --forget` removes it"
 )
 
 ENDING: Final = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
@@ -110,7 +110,7 @@ def forget_session(name: str) -> None:
     click.echo(f"autocolor: {folder.name} is removed", err=True)
 
 
-def chosen_session(name: str) -> tuple[Path, Session]:
+def chosen_session(name: str) -> tuple[Path, JournalSession]:
     """A left session and its folder, by the beginning of its name; NEWEST is the newest that can be read.
 
     Raises UsageError if none or several have the name, InputError if the session cannot be read,
@@ -130,7 +130,7 @@ def chosen_session(name: str) -> tuple[Path, Session]:
     )
 
 
-def _session_in(folder: Path) -> Session:
+def _session_in(folder: Path) -> JournalSession:
     """The session in a folder. Raises InputError if an older version left it, and as `read_journal`."""
     journal = journal_in(folder)
     if journal.name == OLD_SCRIPT:

@@ -13,7 +13,7 @@ from typing import Final, Literal, NamedTuple
 
 from autocolor.checks import nearest, shown
 from autocolor.errors import UsageError
-from autocolor.journal.places import Opened, Place, Source
+from autocolor.journal.places import Opened, ScenePlace, Source
 from autocolor.scene.scene import Scene
 
 MOST_VARIANTS: Final = 1000
@@ -69,9 +69,9 @@ class History:
     `steps` has every step, also those that were undone. `first_place` is the place of the first scene.
     """
 
-    def __init__(self, start: Scene, place: Place | None = None) -> None:
+    def __init__(self, start: Scene, place: ScenePlace | None = None) -> None:
         self.start = start
-        self.first_place = Place() if place is None else place
+        self.first_place = ScenePlace() if place is None else place
         self.steps: list[Step] = []
         self.variants = Variants()
         self._present = Opened(start, self.first_place)
@@ -85,7 +85,7 @@ class History:
         return self._present.scene
 
     @property
-    def place(self) -> Place:
+    def place(self) -> ScenePlace:
         """The place that the current scene belongs to."""
         return self._present.place
 

@@ -52,14 +52,14 @@ LONGEST_LINE: Final = 16 << 20
 LONGEST_PROBLEM: Final = 400
 
 
-class Session(NamedTuple):
+class JournalSession(NamedTuple):
     """The history of a session and the source of its first scene."""
 
     history: History
     source: Source
 
 
-def read_journal(path: str | os.PathLike[str]) -> Session:
+def read_journal(path: str | os.PathLike[str]) -> JournalSession:
     """The session of a journal: `Studio(read_journal(path).history, display)` goes on with it.
 
     Meshes are read from their files. Raises InputError if a line is no step of this version, if a step is
@@ -83,7 +83,7 @@ def read_journal(path: str | os.PathLike[str]) -> Session:
     for number, line in enumerate(lines[1:], 2):
         with _in_line(path.name, number):
             _take(_record_of(line), history, meshes, path.parent)
-    return Session(history, source)
+    return JournalSession(history, source)
 
 
 # Writing lines.
@@ -131,7 +131,7 @@ def _edit_record(edit: Edit, start: Scene, meshes: MeshesBeside) -> dict[str, ob
 
 
 class Change(NamedTuple):
-    """A method of a scene that makes another scene, the row that it changes, and its keywords."""
+    """A call that makes another scene: the method of a scene, the row that it changes, and its keywords."""
 
     change: str
     row: str | None
@@ -146,7 +146,7 @@ CHANGES: Final = CHANGES_OF_A_ROW | {"replace", "with_view", "with_scalar", "wit
 
 
 def change_between(before: Scene, after: Scene) -> Change:
-    """The narrowest change that makes one scene another. It leaves the mesh out."""
+    """The narrowest change that makes one scene equal to another, except for its mesh."""
     tables = [name for name in fields_of(Scene) if vars(before)[name] is not vars(after)[name]]
     if tables == ["view"]:
         return Change("with_view", None, difference(before.view, after.view))
@@ -289,31 +289,22 @@ def _is_known(record: Record) -> bool:
         return False
     if not all(type(record[name]) in types for name, types in fields.items()):
         return False
-    match kind:
-        case "begin":
-            return bool(record["version"] == VERSION)
-        case "edit":
-            change, has_row, has_mesh = (
-                record["change"],
-                record["row"] is not None,
-                record["mesh"] is not None,
-            )
-            return (
-                change in CHANGES
-                and has_row == (change in CHANGES_OF_A_ROW)
-                and not (has_mesh and change != "replace")
-                and not (change.startswith("without") and record["columns"])
-            )
-        case "saved":
-            files = record["files"]
-            return all(isinstance(stamp, str) and "\0" not in path for path, stamp in files.items())
+    if kind == "begin":
+        return bool(record["version"] == VERSION)
+    if kind == "saved":
+        return all(isinstance(stamp, str) and "\0" not in path for path, stamp in record["files"].items())
+    if kind == "edit":
+        change, has_row = record["change"], record["row"] is not None
+        has_right_row = change in CHANGES and has_row == (change in CHANGES_OF_A_ROW)
+        has_right_mesh = record["mesh"] is None or change == "replace"
+        return has_right_row and has_right_mesh and not (change.startswith("without") and record["columns"])
     return True
 
 
 def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Path) -> None:
-    """Take a step in a history; `meshes` are the meshes by their folders in a folder, each read once.
+    """Take a step in a history. `meshes` has the meshes that were read from beside the journal, by folder.
 
-    Raises AutocolorError if the step is refused.
+    `folder` is the folder of the journal. Raises AutocolorError if the step is refused.
     """
     kind = record["step"]
     match kind:
@@ -333,9 +324,11 @@ def _take(record: Record, history: History, meshes: dict[str, Mesh], folder: Pat
         case "saved":
             history.mark_saved(record["files"])
         case "undo" | "redo":
-            if not (history.to_undo if kind == "undo" else history.to_redo):
-                raise InputError(f"there must be a step to {kind}, and there is none; remove the line")
-            getattr(history, kind)()
+            try:
+                getattr(history, kind)()
+            except IndexError:
+                problem = f"there must be a step to {kind}, and there is none; remove the line"
+                raise InputError(problem) from None
         case _:
             raise InputError("a journal must begin once; remove the line")
 

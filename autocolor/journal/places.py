@@ -40,7 +40,7 @@ class Source(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class ScenePlace:
     """The source of a scene; None for a scene that was made in memory.
 
     `stamp` is the stamp of the file when the scene was opened (see `stamp_of`). It is None if the scene is
@@ -55,7 +55,7 @@ class Opened(NamedTuple):
     """A scene with the place that it belongs to."""
 
     scene: Scene
-    place: Place
+    place: ScenePlace
 
 
 def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: str | None = None) -> Opened:
@@ -73,7 +73,7 @@ def opened(source: Source, tables: Mapping[str, Any] | None = None, checksum: st
             f"{source.path} must hold the mesh that it held when it was opened, and it was changed since;"
             " bring the old file back"
         )
-    return Opened(scene, place if scene.equals(present) else Place(source))
+    return Opened(scene, place if scene.equals(present) else ScenePlace(source))
 
 
 def opened_again(source: Source, present: Scene) -> Opened:
@@ -88,12 +88,12 @@ def opened_again(source: Source, present: Scene) -> Opened:
     return again
 
 
-def place_of(source: Source) -> Place:
+def place_of(source: Source) -> ScenePlace:
     """The place of a source as it is now. Files of this package, and mesh files, are never saved to."""
     path = file_of(source)
     if path is None or path.resolve().is_relative_to(PACKAGE):
-        return Place(source)
-    return Place(source, stamp_of(path))
+        return ScenePlace(source)
+    return ScenePlace(source, stamp_of(path))
 
 
 def file_of(source: Source) -> Path | None:

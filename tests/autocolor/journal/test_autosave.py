@@ -24,7 +24,7 @@ from autocolor.journal.autosave import (
     left_sessions,
 )
 from autocolor.journal.history import History
-from autocolor.journal.places import Place, Source
+from autocolor.journal.places import ScenePlace, Source
 from tests.autocolor.journal.random_steps import journal_of, summary
 from tests.autocolor.sessions import car
 
@@ -39,7 +39,7 @@ def source(tmp_path: Path) -> Source:
 
 @pytest.fixture
 def history(source: Source) -> History:
-    return History(read_scene(source.path), Place(source))
+    return History(read_scene(source.path), ScenePlace(source))
 
 
 @pytest.fixture

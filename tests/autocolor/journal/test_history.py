@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from autocolor import UsageError
 from autocolor.journal import history as history_module
 from autocolor.journal.history import Edit, History, Variants
-from autocolor.journal.places import Opened, Place, Source
+from autocolor.journal.places import Opened, ScenePlace, Source
 from tests.autocolor.sessions import car
 
 CAR = car()
@@ -83,7 +83,7 @@ def test_each_place_knows_what_was_saved_of_it() -> None:
     first = history.place
     history.take(SCENES[1])
     source = Source("other.obj")
-    history.open(Opened(SCENES[2], Place(source)), source)
+    history.open(Opened(SCENES[2], ScenePlace(source)), source)
     assert (history.place.source, history.is_changed, history.left_unsaved) == (source, False, ("scene",))
     history.mark_saved({"other.npz": "9f"})
     history.undo()
@@ -115,7 +115,7 @@ def test_there_is_nothing_to_undo_at_the_beginning() -> None:
     assert (history.to_undo, history.to_redo, history.steps) == ((), (), [])
 
 
-ONE = Opened(car(), Place())
+ONE = Opened(car(), ScenePlace())
 
 
 def test_variants_keep_their_order_and_are_values() -> None:
@@ -124,7 +124,7 @@ def test_variants_keep_their_order_and_are_values() -> None:
     assert list(both) == ["B", "A"]
     assert both["A"] is ONE
     assert len(none) == 0
-    assert list(Variants({"A": ONE, "B": Opened(car(), Place())}).without("A")) == ["B"]
+    assert list(Variants({"A": ONE, "B": Opened(car(), ScenePlace())}).without("A")) == ["B"]
 
 
 def test_dropping_one_of_two_equal_variants_leaves_the_other() -> None:
@@ -134,7 +134,7 @@ def test_dropping_one_of_two_equal_variants_leaves_the_other() -> None:
 def test_a_name_in_use_is_never_given_to_another_scene() -> None:
     variants = Variants().with_variant("A", ONE)
     with pytest.raises(UsageError) as refusal:
-        variants.with_variant("A", Opened(car(), Place()))
+        variants.with_variant("A", Opened(car(), ScenePlace()))
     assert str(refusal.value) == (
         "a variant must have a name of its own, and 'A' is in use; choose another, or drop that one"
     )

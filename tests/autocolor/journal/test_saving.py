@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import autocolor
 from autocolor import OutputError, Studio, read_picture, read_scene, write_picture
 from autocolor.journal.history import History
-from autocolor.journal.places import PACKAGE, Place, Source, opened
+from autocolor.journal.places import PACKAGE, ScenePlace, Source, opened
 from autocolor.journal.saving import SavedFiles
 from ramtek_emu import Ramtek9300
 from tests.autocolor.sessions import SMALL, car
@@ -164,7 +164,7 @@ def test_a_save_that_fails_changes_no_file(scene_file: Path, tmp_path: Path) -> 
 
 
 def test_a_place_without_a_stamp_is_not_saved_to(scene_file: Path, work: Path) -> None:
-    history = History(read_scene(scene_file), Place(Source(str(scene_file))))
+    history = History(read_scene(scene_file), ScenePlace(Source(str(scene_file))))
     saved = Studio(history, Ramtek9300(SMALL)).save_session(work)
     assert saved.scene == work / "car" / "scene.toml"
 
