@@ -87,7 +87,7 @@ def held_by_a_fresh_display(history: History | Scene) -> tuple[bytes, bytes]:
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_session_shows_what_it_says_is_undone_to_its_beginning_and_is_told_by_its_journal(
+def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
     name: str, tmp_path: Path, state: Path
 ) -> None:
     display, autosave = Ramtek9300(), Autosave()

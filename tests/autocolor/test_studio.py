@@ -1003,7 +1003,7 @@ def test_a_file_that_cannot_be_opened_changes_nothing(mesh_file: Path) -> None:
     assert (held(display), repr(studio), len(studio.history.steps)) == before
 
 
-def test_what_is_changed_is_known_for_each_opened_scene(mesh_file: Path) -> None:
+def test_every_opened_scene_knows_its_unsaved_changes(mesh_file: Path) -> None:
     studio, _ = opened()
     studio.recolor("body", blend=0.25)
     assert studio.is_changed
@@ -1020,7 +1020,7 @@ def test_what_is_changed_is_known_for_each_opened_scene(mesh_file: Path) -> None
     assert not studio.is_changed
 
 
-def test_a_variant_is_come_back_to_by_one_step() -> None:
+def test_a_variant_is_shown_by_one_step() -> None:
     studio, display = opened()
     assert studio.keep_variant() == "A"
     first = held(display)
@@ -1040,7 +1040,7 @@ def test_a_variant_is_come_back_to_by_one_step() -> None:
         studio.show_variant("A")
 
 
-def test_keeping_a_variant_leaves_what_can_be_redone() -> None:
+def test_a_new_variant_leaves_the_steps_to_redo() -> None:
     studio, _ = opened()
     studio.recolor("body", blend=0.25)
     studio.undo()
@@ -1059,13 +1059,13 @@ def test_a_variant_brings_back_the_files_of_its_scene(mesh_file: Path, tmp_path:
     assert studio.save_session(tmp_path) == first
 
 
-def test_a_journal_needs_the_path_of_its_first_scene() -> None:
+def test_a_script_needs_the_path_of_its_first_scene() -> None:
     with pytest.raises(UsageError) as refusal:
         opened()[0].journal()
     assert str(refusal.value) == "a journal must name what its first scene was read from; give its path"
 
 
-def test_ranges_that_are_given_are_held() -> None:
+def test_given_exposure_ranges_are_held() -> None:
     studio, _ = opened()
     studio.hold_exposure({"object": (0.0, 2.0)})
     assert studio.scene.exposure == (("object", (0.0, 2.0)),)
