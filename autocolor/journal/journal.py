@@ -292,7 +292,7 @@ def _is_known(record: Record) -> bool:
     if kind == "begin":
         return bool(record["version"] == VERSION)
     if kind == "saved":
-        return all(isinstance(stamp, str) and "\0" not in path for path, stamp in record["files"].items())
+        return all(isinstance(stamp, str) for stamp in record["files"].values())
     if kind == "edit":
         change, has_row = record["change"], record["row"] is not None
         has_right_row = change in CHANGES and has_row == (change in CHANGES_OF_A_ROW)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -91,15 +92,17 @@ def opened_again(source: Source, present: Scene) -> Opened:
 def place_of(source: Source) -> ScenePlace:
     """The place of a source as it is now. Files of this package, and mesh files, are never saved to."""
     path = file_of(source)
-    if path is None or path.resolve().is_relative_to(PACKAGE):
+    stamp = None if path is None else stamp_of(path)
+    if path is None or stamp is None or Path(os.path.realpath(path)).is_relative_to(PACKAGE):
         return ScenePlace(source)
-    return ScenePlace(source, stamp_of(path))
+    return ScenePlace(source, stamp)
 
 
 def file_of(source: Source) -> Path | None:
     """The scene file, the store or the picture file of a source; None for a mesh."""
     path = Path(source.path)
-    path = path / SCENE_FILE if path.is_dir() else path
+    # Unlike Path.is_dir, this raises no error for a name that cannot be one.
+    path = path / SCENE_FILE if os.path.isdir(path) else path
     return path if path.suffix.lower() in (".toml", PICTURE_SUFFIX, *STORE_SUFFIXES) else None
 
 
@@ -114,7 +117,7 @@ def stamp_of(path: Path) -> str | None:
         log = Path(f"{path}-wal")
         if path.suffix.lower() in STORE_SUFFIXES and log.exists():
             digest.update(log.read_bytes())
-    except OSError:
+    except (OSError, ValueError):
         return None
     return digest.hexdigest()
 

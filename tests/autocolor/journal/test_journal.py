@@ -254,7 +254,6 @@ REFUSED_LINES: dict[str, object] = {
         "step": "open", **Source("a")._asdict(), "scale": True, "tables": {}, "checksum": "",
     },
     "files that are no stamps": {"step": "saved", "files": {"/car.npz": 5}},
-    "a path with NUL": {"step": "saved", "files": {"/car\0.npz": "9f"}},
     "no JSON": "undo",
     "half an object": b'{"step": "undo"',
     "an empty line": b"",
@@ -315,6 +314,43 @@ def test_a_step_that_is_refused_is_named_by_its_line(
     text = refusal(tmp_path, begin, line)
     assert text.startswith(f"{JOURNAL}, line 2: ")
     assert problem in text
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "problem"),
+    [
+        ("surfaces", "x", "surfaces must be 'materials' or 'parts', not 'x'"),
+        ("up", "w", "up must be 'x', 'y' or 'z', not 'w'"),
+        ("scale", 0, "scale must be a number above 0 and at most 1e+30, not 0"),
+        ("scale", 10**400, "scale must be a number above 0 and at most 1e+30"),
+        ("path", "a\0.toml", "a file name must be valid on this system, not 'a\\x00.toml'"),
+        ("path", "\ud800.npz", "a file name must be valid on this system, not '\\ud800.npz'"),
+        ("path", f"{'x' * 5000}.toml", "xxx"),
+        ("path", "/none.obj", "/none.obj: there is no such file or folder; check the name"),
+        ("tables", {"mesh": 3}, "mesh must be a Mesh, not 3"),
+        ("checksum", "9f", "must hold the mesh that it held when it was opened"),
+    ],
+)
+@pytest.mark.parametrize("step", ["begin", "open"])
+def test_a_scene_that_cannot_be_opened_is_refused(
+    tmp_path: Path, begin: str, step: str, field: str, value: object, problem: str
+) -> None:
+    record = {**json.loads(begin), "step": step, field: value}
+    if step == "begin":
+        text = refusal(tmp_path, json.dumps(record))
+    else:
+        record.pop("version")
+        text = refusal(tmp_path, begin, record)
+    assert text.startswith(f"{JOURNAL}, line {1 if step == 'begin' else 2}: ")
+    assert problem in text
+
+
+def test_saved_files_of_any_name_are_left_alone(tmp_path: Path, box: Source) -> None:
+    history = History(*opened(box))
+    history.mark_saved({"/a\0.toml": "9f", "/\ud800.npz": "9f", f"/{'x' * 5000}.npz": "9f"})
+    again = Studio(read_journal(journal_of(history, tmp_path)).history, Ramtek9300(SMALL))
+    assert again.history.saved.files == history.saved.files
+    assert again.save_session(tmp_path).scene == tmp_path / "box" / "scene.toml"
 
 
 @pytest.mark.parametrize(

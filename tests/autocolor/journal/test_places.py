@@ -124,3 +124,9 @@ def test_the_stamp_of_a_store_is_also_that_of_what_was_written_beside_it(tmp_pat
     assert stamp_of(path) != before
     Path(f"{path}-wal").unlink()
     assert stamp_of(path) == before
+
+
+def test_a_path_that_cannot_be_read_has_no_stamp(tmp_path: Path) -> None:
+    (tmp_path / "loop.toml").symlink_to(tmp_path / "loop.toml")
+    for path in (str(tmp_path / "loop.toml"), "a\0.toml", "\ud800.toml", f"{'x' * 5000}.toml"):
+        assert place_of(Source(path)).stamp is None
