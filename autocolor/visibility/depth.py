@@ -24,7 +24,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Numbers, chunks_of_runs, most_of_four
+from autocolor.arrays import AnyArray, Floats, Indices, Numbers, chunks_of_runs, most_of_four
 from autocolor.visibility.projection import PlanesInView, Projection
 from autocolor.visibility.scan_lines import extents_of_polygons
 
@@ -73,7 +73,7 @@ class DepthScale:
         most = 2.0**KEY_BITS / self.number_limit
         return np.clip(whole, -most, most, out=whole).astype(np.int64) * self.number_limit
 
-    def depths_of_planes(self, planes: Indices, x: Floats, y: Floats) -> Floats:
+    def depths_of_planes(self, planes: Indices, x: AnyArray, y: AnyArray) -> Floats:
         """The inverse depths of shared planes at some places."""
         a, b, c = np.take(self.linear, planes, axis=1)
         inverse_depths: Floats = a * x + b * y + c
@@ -127,7 +127,7 @@ def plane_keys(
     a segment begins. A sum that overflows on the way comes back, because int64 wraps around.
     """
     middle = projected.elements // 2
-    at_middle = scale.depths_of_planes(planes, np.array(middle + 0.5), lines + 0.5)
+    at_middle = scale.depths_of_planes(planes, np.full(len(lines), middle + 0.5), lines + 0.5)
     start = np.rint(at_middle * scale.factor).astype(np.int64)
     step = np.rint(scale.linear[0].take(planes) * scale.factor).astype(np.int64)
     start += (elements - middle) * step
