@@ -13,10 +13,9 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Singles, chunks, lengths
+from autocolor.arrays import Floats, Indices, Singles, chunks, lengths, used_rows
 from autocolor.scalars.interpolation import interpolated, weighted_points
 from autocolor.scene.geometry.curvature import Curvatures
-from autocolor.scene.geometry.normals import used_rows
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import LARGEST_SCALAR, Scalar
 from autocolor.visibility.visible_points import PIXELS_AT_ONCE, POINT, REFLECTED_VIEW, VisiblePoints

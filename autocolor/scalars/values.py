@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices
+from autocolor.arrays import Floats, Indices, used_rows
 from autocolor.immutable import read_only
 from autocolor.scalars.computed import (
     COMPUTING,
@@ -18,7 +18,6 @@ from autocolor.scalars.computed import (
     within,
 )
 from autocolor.scalars.interpolation import interpolated
-from autocolor.scene.geometry.normals import used_rows
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import POLYGON, MeshScalar, Scalar
 from autocolor.visibility.visible_points import VisiblePoints

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices, chunks
+from autocolor.arrays import AnyArray, Floats, Indices, chunks, used_bounds, used_rows
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
@@ -23,7 +23,7 @@ from autocolor.logs import logger_of, timed
 from autocolor.scene.columns import Problem
 from autocolor.scene.geometry.curvature import Curvatures, curvatures
 from autocolor.scene.geometry.foreign_meshes import foreign_tables
-from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, node_normals, used_bounds, used_rows
+from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, node_normals
 from autocolor.scene.geometry.planes import SharedPlanes, shared_planes
 from autocolor.scene.kinds import Number
 from autocolor.scene.scalar import MeshScalar, joined_scalars, scalar_problems

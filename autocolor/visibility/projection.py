@@ -23,8 +23,8 @@ from autocolor.arrays import (
     chunks,
     least_of_four,
     most_of_four,
+    used_rows,
 )
-from autocolor.scene.geometry.normals import used_rows
 from autocolor.scene.geometry.planes import SharedPlanes
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View

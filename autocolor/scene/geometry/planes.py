@@ -30,7 +30,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, LowBits, chunks, cross, dot, lengths
+from autocolor.arrays import Booleans, Floats, Indices, LowBits, chunks, cross, dot, lengths, used_bounds
 from autocolor.immutable import Immutable
 from autocolor.scene.geometry.normals import (
     group_numbers,
@@ -38,7 +38,6 @@ from autocolor.scene.geometry.normals import (
     roots_of,
     unite,
     united_items,
-    used_bounds,
 )
 
 TOLERANCE: Final = 2e-6
