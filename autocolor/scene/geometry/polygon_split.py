@@ -67,7 +67,7 @@ def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> tu
 
 
 def _in_their_planes(points: Floats) -> tuple[Floats, Booleans]:
-    """Polygons, (n, corners, 3), projected to (n, corners, 2), counterclockwise, and whether they are convex."""
+    """Polygons, (n, corners, 3), projected to (n, corners, 2), counterclockwise; whether each is convex."""
     size = np.ptp(points, axis=1).max(axis=1)
     size[size == 0] = 1.0
     points = (points - points[:, :1]) / size[:, None, None]
