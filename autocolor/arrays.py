@@ -32,10 +32,10 @@ Bytes = NDArray[np.uint8]
 """Surface numbers, components of colors, bytes of files."""
 
 RasterPlaces = NDArray[np.int16]
-"""Lines and elements of a raster, which has at most 16,384 of each, for each of many nodes."""
+"""Lines and elements of a raster, which has at most 16,384 of both."""
 
 PartNumbers = NDArray[np.int32]
-"""Numbers of parts, of which a mesh may have any count, at each of many points."""
+"""Numbers of parts, of which a mesh may have any count."""
 
 LowBits = NDArray[np.uint32]
 """The low bits of hashes."""

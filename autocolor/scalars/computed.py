@@ -78,7 +78,7 @@ def widened(low: float, high: float, least: float = 0.0) -> Limits:
 
 
 def range_of(values: Floats, cut: float = 0, least: float = 0.0) -> Limits:
-    """The least and the largest value, `widened`; missing values do not count, and if all are, it is UNIT.
+    """The least and the largest value, `widened`; UNIT if all values are missing.
 
     `cut` percent of the values are beyond either end.
     """
@@ -111,7 +111,7 @@ LEAST_SIZE: Final = 1e-6
 
 
 def coordinate(axis: int, mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
-    """A world coordinate; the range is that of the nodes that polygons use."""
+    """A world coordinate, and its range over the nodes that polygons use."""
     low, high = mesh.bounds
     limits = widened(float(low[axis]), float(high[axis]), LEAST_SIZE * size_of(mesh))
     return within(_along(np.eye(3)[axis], points), limits)

@@ -166,7 +166,7 @@ class Mesh(Immutable):
             start = self.node_numbers.T[:, chunk]
             end = np.roll(start, -1, axis=0)
             keys[:, chunk] = np.minimum(start, end) * len(self.coordinates) + np.maximum(start, end)
-            # A triangle repeats a node: give that edge a key of its own, which is not counted.
+            # The edge from a node to itself in a triangle does not count.
             keys[:, chunk][start == end] = -1
         in_order = keys.ravel()
         in_order.sort()

@@ -288,7 +288,7 @@ def _shapes(corners: Floats, is_quad: Booleans) -> tuple[Booleans, Booleans, Boo
 def repeated_polygons(node_numbers: Indices) -> Indices:
     """The rows of polygons that have the same nodes as another polygon, in any order; ascending."""
     nodes = np.array(node_numbers)
-    # A triangle repeats its last node, whichever that is.
+    # A triangle repeats its last node: leave it out.
     nodes[nodes[:, 2] == nodes[:, 3], 3] = -1
     nodes.sort(axis=1)
     return repeated_rows(nodes)

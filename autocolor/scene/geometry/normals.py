@@ -283,7 +283,7 @@ def _edges(places: Indices, scratch: Scratch) -> Iterator[tuple[Numbers, Indices
     """The edges in divisions: a key that does not depend on their direction, and their first corners.
 
     Edges without length have the key -1. The corners of a division are in order, and no key is in two
-    divisions. If all edges are in one division, its corners are None: key k is that of corner k.
+    divisions. A single division has None for its corners: key k belongs to corner k.
     """
     place_count = int(places.max(initial=-1)) + 1
     count = min(-(-places.size // EDGES_AT_ONCE), MOST_DIVISIONS)
@@ -335,7 +335,7 @@ def _next_corner(corners: Indices) -> Indices:
 def unite(parents: Indices, one: Indices, other: Indices) -> None:
     """Unite the groups of each pair of items; `parents` is changed in place."""
     while len(one):
-        # Drop the pairs that are in one group by now.
+        # Drop the pairs that are already in one group.
         one, other = roots_of(parents, np.concatenate([one, other])).reshape(2, -1)
         apart = np.flatnonzero(one != other)
         one, other = np.take(one, apart), np.take(other, apart)

@@ -8,7 +8,7 @@ wins wherever they overlap. The planes are found in five steps:
 2. Fit a plane to each group of polygons. Unite the groups, and the polygons that are still alone, that lie in
    the fitted plane of a wider group.
 3. Drop the groups that are one simple patch: its polygons adjoin, and none can overlap another.
-4. Divide groups into levels: a patch that is really in front of the others has a plane of its own.
+4. Divide groups into levels: a patch that is really in front of the other patches has a plane of its own.
 5. Drop polygons that are too far from the plane of their group, and groups whose patches lie side by side.
 
 Assumed: polygons lie in one plane if no corner is farther from it than two millionths of the mesh's size.
@@ -197,15 +197,15 @@ class ScaledPolygons(NamedTuple):
 
 # -------------------- cells
 # Three numbers characterize a plane, the same whichever way its normal points. Polygons whose numbers lie in
-# one cell are compared with the largest of them, corner by corner, and the others with the largest that is
-# left. So polygons are never united over a chain of small differences, such as around a cylinder.
+# one cell are compared with the largest polygon there, corner by corner; the rest of them with the largest of
+# the rest, and so on. So a chain of small differences, such as around a cylinder, unites no polygons.
 
 CELL: Final = 1 / 256
 """The size of a cell; measured: with a fourth of it, and with four times as much, random scenes have the same
 planes."""
 
 SHIFTS: Final = (0.0, 0.37, 0.71)
-"""Offsets of several grids of cells, so that no plane is at a boundary in all of them."""
+"""Offsets of three grids of cells: no plane is at a boundary in all grids."""
 
 MOST_PLANES: Final = 8
 """The most planes that are found in a cell."""
@@ -292,7 +292,7 @@ def coplanar_groups(mesh: ScaledPolygons, cells: PlaneCells, tolerance: float) -
 
 
 def _in_cells(hashes: LowBits, cells: LowBits, candidates: Booleans) -> Indices:
-    """The candidates whose hashes are among those of some cells, and a few others.
+    """The candidates that lie in some cells, and a few other candidates.
 
     For many polygons and few cells, a table of low bits is far faster than a search.
     """
@@ -318,7 +318,7 @@ def _in_plane_of_largest(facets: Facets, cells: Indices, tolerance: float) -> tu
         rows, seed = rows[several], rows[first[cell[several]]]
         if not len(rows):
             break
-        # The plane of the seed is as inexact as its corners, and more so beside it.
+        # The plane of the seed is as inexact as its corners, and more so beside them.
         away = facets.corners[:, :, rows] - facets.centers[:, None, seed]
         off = np.abs(np.einsum("in,ijn->jn", facets.normals[:, seed], away)).max(axis=0)
         reach = np.sqrt(np.einsum("ijn,ijn->jn", away, away).max(axis=0))
@@ -570,15 +570,14 @@ def _lie_apart(patches: Indices, groups: Indices, corners: Floats, normals: Floa
 
 
 # -------------------- levels
-# Corners that were rounded are scattered to both sides of their plane. A patch all of whose corners are on
-# one side, by more than they are scattered, lies in front of the others or behind them. It has a level of its
-# own.
+# Rounding scatters corners to both sides of their plane. If all corners of a patch are on one side, by more
+# than their scatter, the patch lies in front of the others or behind them and has a level of its own.
 
 MOST_LEVELS: Final = 8
 """The most levels of a plane that are found; all other patches are one more."""
 
 PASSES: Final = 3
-"""How often a plane is fitted to a level: to its largest patch, and then to all that are near it."""
+"""How often a plane is fitted to a level: first to its largest patch, then to all patches near the plane."""
 
 FACTOR: Final = 4.0
 """Assumed: the distance of a patch is real if it is so many times its scatter and a corner's rounding."""
@@ -596,9 +595,8 @@ EXACT: Final = 2.0**-46
 class Rounding(NamedTuple):
     """The most by which a coordinate may be rounded, and the same as a fraction of each coordinate.
 
-    Decimals that were equal before they were rounded are equal afterwards; the fraction is then that of
-    64-bit numbers. If nothing is `known`, as of coordinates that were turned after they were rounded, both
-    are those of 64-bit numbers.
+    Rounding to decimals leaves equal coordinates equal, so that the fraction is that of 64-bit numbers. If no
+    rounding is `known`, as of a mesh that was turned after it was rounded, both are those of 64-bit numbers.
     """
 
     most: float
@@ -609,8 +607,8 @@ class Rounding(NamedTuple):
 def levels(facets: Facets, groups: Indices, patches: Indices, rounding: Rounding, middle: Floats) -> Indices:
     """The level of each polygon in its group, 0 for that of the largest patch.
 
-    `groups` are sorted; `patches` are numbers of patches, none in two groups. `rounding` is that of the
-    coordinates of `facets` plus `middle`, (3,).
+    `groups` are sorted; `patches` are numbers of patches, none in two groups. The coordinates of `facets` plus
+    `middle`, (3,), have this `rounding`.
     """
     result = np.full(len(groups), MOST_LEVELS, np.intp)
     left = np.arange(len(groups))
@@ -645,7 +643,7 @@ def _near_largest(
         scattered = scatter + np.sqrt(square / np.bincount(groups[core]) / 4)[group]
         away = facets.centers - fits.points[:, groups]
         reach = np.sqrt(np.bincount(patches, (away**2).sum(axis=0)) * 4 / corners)
-        # The plane is as inexact as its corners, and more so beside it.
+        # The plane is as inexact as its corners, and more so beside them.
         beside = 1 + 2 * reach / np.where(fits.widths > 0, fits.widths, np.inf)[group]
         least = np.full(len(group), rounding.most)
         # Along an axis all corners of a plane are rounded alike.
@@ -669,7 +667,7 @@ HALF_SINGLE: Final = 2.0**-24
 """Half a unit in the last place of a 32-bit number, as a fraction of the number, at most."""
 
 LAST_BITS: Final = np.uint32(15)
-"""The last bits of a 32-bit number; where they are not all 0 it has at least 20 bits."""
+"""The last four bits of a 32-bit number. If one of them is 1, the number has at least 20 bits."""
 
 MOST_DECIMALS: Final = 9
 
@@ -677,9 +675,9 @@ FIRST_TESTED: Final = 64
 
 
 def coordinate_rounding(coordinate_rows: Floats) -> Rounding:
-    """How coordinates, (3, n), were rounded: some to 32-bit numbers, all to at most nine decimals, or none.
+    """How coordinates, (3, n), were rounded: to 32-bit numbers, to at most nine decimals, or not at all.
 
-    A mesh that was moved after its coordinates were rounded to decimals still shows it.
+    Decimals are recognized even if the mesh was moved after its coordinates were rounded.
 
     >>> coordinate_rounding(np.array([[0.123, 4.567], [0.1, 2.0], [0.0, 0.0]])).most
     0.0005
@@ -689,7 +687,7 @@ def coordinate_rounding(coordinate_rows: Floats) -> Rounding:
     with np.errstate(over="ignore", under="ignore"):
         singles = coordinate_rows.astype(np.float32)
     same = singles == coordinate_rows
-    # Some may have been rounded and others not. A number of few bits says nothing.
+    # Perhaps only some were rounded. A number of few bits proves nothing.
     if same.all() or (same & ((singles.view(np.uint32) & LAST_BITS) > 0)).any():
         return Rounding(HALF_SINGLE * largest, HALF_SINGLE)
     moved = coordinate_rows - coordinate_rows[:, :1]
@@ -702,7 +700,7 @@ def coordinate_rounding(coordinate_rows: Floats) -> Rounding:
 def _have_decimals(coordinates: Floats, decimals: int, largest: float) -> bool:
     """Whether all coordinates have so many decimals, but for the rounding of 64-bit numbers."""
     within = 4 * float(np.spacing(largest))
-    # Of random numbers one in sixteen, at most, seems to have them.
+    # At most one random number in sixteen passes the test below by chance.
     if not 64 * within < 10.0**-decimals < np.inf:
         return False
     few = coordinates.ravel()[:FIRST_TESTED]
