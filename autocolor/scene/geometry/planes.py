@@ -607,8 +607,8 @@ class Rounding(NamedTuple):
 def levels(facets: Facets, groups: Indices, patches: Indices, rounding: Rounding, middle: Floats) -> Indices:
     """The level of each polygon in its group, 0 for that of the largest patch.
 
-    `groups` are sorted; `patches` are numbers of patches, none in two groups. The coordinates of `facets` plus
-    `middle`, (3,), have this `rounding`.
+    `groups` are sorted; `patches` are numbers of patches, none in two groups. The coordinates of `facets`
+    plus `middle`, (3,), have this `rounding`.
     """
     result = np.full(len(groups), MOST_LEVELS, np.intp)
     left = np.arange(len(groups))
