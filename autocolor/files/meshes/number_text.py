@@ -11,18 +11,22 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Numbers, chunks
+from autocolor.arrays import AnyArray, Floats, Indices, Numbers, chunks
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.reading import shown
 
 BLOCK: Final = 1 << 17
-"""Numbers to convert at once, so that their Python values are few."""
+"""Numbers to convert at once, so that there are few Python values at a time."""
 
 IN_DECIMALS: Final = b"0123456789+-.eE \t\n\r\f\v"
 IN_WHOLES: Final = b"0123456789+- \t\n\r\f\v"
-IN_VALUES: Final = IN_DECIMALS + b"nNaAiIfF"
-"""With the letters of nan and inf; no other word of these letters is a number."""
+IN_VALUES: Final = IN_DECIMALS + b"nNaAiIfFtTyY"
+"""With the letters of nan, inf and infinity; no other word of these letters is a number."""
+
+DIGITS: Final = b"0123456789 \t\n"
+MOST_DIGITS: Final = 18
+"""The digits of a whole number that surely has 64 bits."""
 
 COORDINATE: Final = "a coordinate must be a decimal number of at most 1e30 in size"
 
@@ -56,6 +60,14 @@ class NumberText:
             f"{self.place}, line {self.line(at)}: {rule}, not {shown(self.word(at))}; correct it"
         )
 
+    def lines(self) -> tuple[Indices, int]:
+        """The first word of each line that has words, and the bytes of the longest line."""
+        ends = np.flatnonzero(np.frombuffer(self.data, np.uint8) == ord("\n"))
+        longest = int(np.diff(ends, prepend=-1, append=len(self.data)).max())
+        # Two words are on different lines if a line ends between them.
+        firsts: Indices = np.searchsorted(self.starts, np.append(0, ends))
+        return firsts[(np.diff(firsts, prepend=-1) > 0) & (firsts < len(self))], longest
+
     def require(self, end: int, what: str) -> None:
         """Raise InputError unless there are `end` words, of which the last are `what`."""
         if end > len(self):
@@ -86,7 +98,14 @@ class NumberText:
         """Some words as float64 or int64. Raises InputError for other letters, and for no number."""
         values = np.empty(count, np.float64 if convert is float else np.int64)
         for chunk in chunks(first + count, BLOCK, first):
-            text = self._text(chunk)
+            end = int(self.starts[chunk.stop]) if chunk.stop < len(self) else len(self.data)
+            text = self.data[int(self.starts[chunk.start]) : end]
+            longest = int(np.diff(self.starts[chunk], append=end).max())
+            if longest <= MOST_DIGITS and not text.translate(None, DIGITS):
+                # Measured: a tenth of the time of converting word by word. With digits alone, parsing cannot
+                # stop.
+                values[chunk.start - first : chunk.stop - first] = np.fromstring(text, np.int64, sep=" ")
+                continue
             try:
                 if text.translate(None, letters):
                     raise ValueError
@@ -97,11 +116,6 @@ class NumberText:
             except (ValueError, OverflowError):
                 raise self.wrong(self._first_wrong(chunk, letters), rule) from None
         return values
-
-    def _text(self, chunk: slice) -> bytes:
-        """The text from the first word of a chunk to the end of its last."""
-        end = int(self.starts[chunk.stop]) if chunk.stop < len(self) else len(self.data)
-        return self.data[int(self.starts[chunk.start]) : end]
 
     def _first_wrong(self, chunk: slice, letters: bytes) -> int:
         """The first word of a chunk that is no number of these letters."""

@@ -54,7 +54,7 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     for at, count in enumerate((nodes, polygons)):
         if not 1 <= count <= len(text):
             raise text.wrong(at, f"a count must be from 1 to that of the words in the file, {len(text):,}")
-    lines = _lines(text)
+    lines, _ = text.lines()
     coordinates, first = _coordinates(text, lines, nodes)
     corners, counts, end = _polygons(text, lines, first, polygons, nodes)
     left = len(text) - end
@@ -79,13 +79,6 @@ def _coordinates(text: NumberText, lines: Indices, nodes: int) -> tuple[Floats, 
         if len(wrong):
             text.coordinates(first + int(wrong[0]) * width + at, 1)
     return np.ascontiguousarray(table[:, :3]), end
-
-
-def _lines(text: NumberText) -> Indices:
-    """The first word of each line that has any."""
-    ends = np.flatnonzero(np.frombuffer(text.data, np.uint8) == ord("\n"))
-    firsts: Indices = np.searchsorted(text.starts, np.append(0, ends))
-    return firsts[(np.diff(firsts, prepend=-1) > 0) & (firsts < len(text))]
 
 
 def _polygons(
