@@ -1,8 +1,8 @@
 """The surface of cells: polygons as they are, and the outer faces of volume cells.
 
 A face of a volume cell is outer if no other cell has it. Faces are turned outward by the volume of their
-cell, since programs number the corners of wedges either way round. A polygon that is a face of a volume cell,
-as boundaries are often written besides the volume, is left out: the face itself is there if it is outer.
+cell, since programs number the corners of wedges either way round. A polygon that repeats a face of a volume
+cell is left out: programs often write boundaries besides the volume.
 """
 
 from __future__ import annotations
@@ -82,48 +82,43 @@ class CellSurface(NamedTuple):
     sentences: tuple[str, ...]
 
 
-def cell_surface(coordinates: Floats, flats: Flats, volumes: Sequence[Volumes]) -> CellSurface:
+def cell_surface(
+    coordinates: Floats, flats: Flats, volumes: Sequence[Volumes], *, used_only: bool = False
+) -> CellSurface:
     """The surface of polygons and volume cells.
 
-    With volume cells, nodes that the surface does not use are left out, and its corners are rows of those
-    that are kept.
+    With volume cells or with `used_only`, nodes that the surface does not use are left out, and its corners
+    are rows of the others.
     """
     volumes = [each for each in volumes if len(each.cells)]
-    every = np.arange(len(coordinates))
-    if not volumes:
-        return CellSurface(flats, every, ())
-    faces, owners = _faces(coordinates, volumes)
-    keys = _keys(faces, len(coordinates))
-    order = np.lexsort(keys)
-    differs = (np.diff(keys[0][order]) != 0) | (np.diff(keys[1][order]) != 0)
-    is_outer = np.concatenate([[True], differs]) & np.concatenate([differs, [True]])
-    outer = np.sort(order[is_outer])
     count = sum(len(each.cells) for each in volumes)
-    sentences = [f"took the outer surface of {count:,} volume {'cell' if count == 1 else 'cells'}"]
-
-    # Leave out polygons that are faces, and then the nodes within.
-    is_face = _are_among(flats, keys, len(coordinates))
-    if is_face.any():
-        number = int(is_face.sum())
-        sentences.append(f"left out {number:,} polygon{'s' * (number > 1)} that are faces of volume cells")
-        flats = _chosen(flats, ~is_face)
-    surface = Flats.joined([flats, Flats.of(faces[outer], owners[outer])])
-    kept, sentence = used_nodes(len(coordinates), surface.corners)
-    row_of = np.zeros(len(coordinates), np.intp)
-    row_of[kept] = np.arange(len(kept))
-    surface = Flats(row_of[surface.corners], surface.corner_counts, surface.cells)
-    return CellSurface(surface, kept, (*sentences, *sentence))
-
-
-def used_nodes(count: int, corners: Indices) -> tuple[Indices, tuple[str, ...]]:
-    """The rows of those of `count` nodes that are corners, and a sentence if others are left out."""
-    is_used = np.zeros(count, np.bool_)
-    is_used[corners] = True
-    kept = np.flatnonzero(is_used)
-    left = count - len(kept)
-    return kept, (
-        (f"left out {left:,} node{'s' * (left > 1)} that the surface does not use",) if left else ()
-    )
+    sentences = []
+    if count:
+        faces, owners = _faces(coordinates, volumes)
+        keys = _keys(faces, len(coordinates))
+        order = np.lexsort(keys)
+        differs = (np.diff(keys[0][order]) != 0) | (np.diff(keys[1][order]) != 0)
+        is_outer = np.concatenate([[True], differs]) & np.concatenate([differs, [True]])
+        outer = np.sort(order[is_outer])
+        sentences.append(f"took the outer surface of {count:,} volume {'cell' if count == 1 else 'cells'}")
+        # Leave out polygons that are faces.
+        is_face = _are_among(flats, keys, len(coordinates))
+        if number := int(is_face.sum()):
+            sentences.append(
+                f"left out {number:,} polygon{'s' * (number > 1)} that are faces of volume cells"
+            )
+            flats = _chosen(flats, ~is_face)
+        flats = Flats.joined([flats, Flats.of(faces[outer], owners[outer])])
+    if not count and not used_only:
+        return CellSurface(flats, np.arange(len(coordinates)), ())
+    # Leave out the nodes within.
+    is_used = np.zeros(len(coordinates), np.bool_)
+    is_used[flats.corners] = True
+    if left := int((~is_used).sum()):
+        sentences.append(f"left out {left:,} node{'s' * (left > 1)} that the surface does not use")
+    row_of = np.cumsum(is_used) - 1
+    surface = Flats(row_of[flats.corners], flats.corner_counts, flats.cells)
+    return CellSurface(surface, np.flatnonzero(is_used), tuple(sentences))
 
 
 def _faces(coordinates: Floats, volumes: Sequence[Volumes]) -> tuple[Indices, Indices]:

@@ -1232,12 +1232,12 @@ def row_of(nodes: int, before: int, number: int) -> int:
     return -1
 
 
-numbers_3 = st.integers(-8, 8) | st.integers(-(1 << 63), (1 << 63) - 1)
+file_numbers = st.integers(-8, 8) | st.integers(-(1 << 63), (1 << 63) - 1)
 
 
 @given(st.integers(0, 6), st.data())
 def test_every_corner_has_the_row_of_the_slow_twin(nodes: int, data: st.DataObject) -> None:
-    polygon = st.tuples(st.integers(0, nodes), st.lists(numbers, max_size=5))
+    polygon = st.tuples(st.integers(0, nodes), st.lists(file_numbers, max_size=5))
     polygons = data.draw(st.lists(polygon, max_size=5))
     tables = tables_of(nodes, *polygons)
     assert tables.rows.tolist() == [
