@@ -34,6 +34,7 @@ from autocolor.arrays import AnyArray, Floats, Indices, Numbers, chunks
 from autocolor.checks import LARGEST_COORDINATE, nearest, printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.found_scalars import FoundScalars
+from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, Polygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
 from autocolor.scene.mesh import Mesh
@@ -45,12 +46,9 @@ from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
 # A block in which a column cannot be converted at once is gone through cell by cell, so that every problem
 # is told with its row. Rows are counted from 1, the header, as in a spreadsheet.
 
-MOST_PROBLEMS: Final = 20
-
 ROWS_AT_ONCE: Final = 1 << 14
 """Measured: with more, the cells of a block fall out of the processor's cache."""
 
-NUMBER: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 WHOLE_NUMBER: Final = re.compile(r"[+-]?[0-9]{1,18}")
 
 LONGEST_WHOLE: Final = 19
@@ -60,28 +58,6 @@ IN_WHOLES: Final = b"0123456789+- ,"
 
 NOTHING: Final = -(1 << 63)
 """What stands for an empty or a wrong cell among whole numbers, which have at most 18 digits."""
-
-
-class Problems:
-    """Collects the problems of several tables, up to MOST_PROBLEMS, in the order of their rows."""
-
-    def __init__(self) -> None:
-        self._found: list[tuple[int, int, str]] = []
-        self._places: list[str] = []
-
-    def note(self, place: str, row: int, sentence: str) -> None:
-        """Add a problem; raise InputError once there are MOST_PROBLEMS."""
-        if place not in self._places:
-            self._places.append(place)
-        self._found.append((self._places.index(place), row, f"{place}, row {row}: {sentence}"))
-        if len(self._found) >= MOST_PROBLEMS:
-            self.raise_any()
-
-    def raise_any(self) -> None:
-        """Raise InputError with the problems found so far, if any."""
-        if self._found:
-            in_order = sorted(self._found, key=lambda each: each[:2])
-            raise InputError([sentence for _, _, sentence in in_order])
 
 
 class Cells(Protocol):
@@ -115,7 +91,7 @@ class NumberCells:
         """The number, 0 if it is wrong."""
         if not cell and self.may_be_empty:
             return np.nan
-        number = float(cell) if NUMBER.fullmatch(cell) else np.inf
+        number = float(cell) if NUMBER.fullmatch(cell.encode()) else np.inf
         if abs(number) <= LARGEST_COORDINATE:
             return number
         note(f"{self.rule}, not {shown(cell)}; correct it")
@@ -321,7 +297,7 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
 
     Raises InputError with every problem of both tables, each with its file and row.
     """
-    problems = Problems()
+    problems = Problems("row")
     node_table = Table(
         problems,
         nodes,
@@ -447,7 +423,7 @@ def _is_mistake(cell: str, columns: tuple[str, ...], missing: list[str]) -> bool
 # -------------------- csv_writing
 # Writing a mesh as two tables in CSV, as `csv_tables` reads them.
 
-ROWS_AT_ONCE_2: Final = 1 << 16
+ROWS_IN_TEXT: Final = 1 << 16
 """Rows that are made text at once, so that their Python values are few."""
 
 
@@ -466,7 +442,7 @@ def csv_tables_bytes(mesh: Mesh) -> tuple[bytes, bytes]:
 def _node_lines(mesh: Mesh) -> Iterator[str]:
     yield _header(mesh, NODE_COLUMNS, NODE)
     values = [each.values for each in mesh.scalars if each.of == NODE]
-    for chunk in chunks(len(mesh.coordinates), ROWS_AT_ONCE_2):
+    for chunk in chunks(len(mesh.coordinates), ROWS_IN_TEXT):
         columns: list[Iterator[str]] = [
             map(repr, mesh.coordinates[chunk, axis].tolist()) for axis in range(3)
         ]
@@ -479,7 +455,7 @@ def _polygon_lines(mesh: Mesh) -> Iterator[str]:
     yield _header(mesh, POLYGON_COLUMNS, POLYGON)
     values = [each.values for each in mesh.scalars if each.of == POLYGON]
     names = np.array([_row([name]) for name in mesh.part_names], object)
-    for chunk in chunks(len(mesh.node_numbers), ROWS_AT_ONCE_2):
+    for chunk in chunks(len(mesh.node_numbers), ROWS_IN_TEXT):
         corners = mesh.node_numbers[chunk] + 1
         is_triangle = corners[:, 2] == corners[:, 3]
         columns: list[Iterator[str]] = [map(str, corners[:, at].tolist()) for at in range(3)]

@@ -45,6 +45,7 @@ from autocolor.files.array_file import (
     scalar_rows,
     scalars_of,
 )
+from autocolor.files.meshes.number_text import MOST_PROBLEMS
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes
@@ -64,8 +65,6 @@ MOST_VALUES: Final = 2_000_000
 MOST_MEMBERS: Final = 10_000
 LARGEST_GROWTH: Final = 200
 """Limit: how many times larger than a 3MF file its unpacked content may be. XML packs to a tenth."""
-
-MOST_PROBLEMS: Final = 20
 
 
 def size_of_file(path: Path) -> int:

@@ -1,12 +1,14 @@
-"""Numbers in text, separated by white space, which several formats of meshes consist of.
+"""Numbers in the text of mesh files, and the problems of their lines.
 
-Where each number begins is found at once, so that any run of them can be converted, counts can be checked
-before anything is made of them, and a wrong one is told with its line.
+`NumberText` is for formats that are numbers separated by white space. It finds at once where each number
+begins. So any run of numbers can be converted, counts are compared with the file before memory is allocated,
+and a wrong number is refused with its line.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from typing import Final
 
 import numpy as np
@@ -15,6 +17,12 @@ from autocolor.arrays import AnyArray, Floats, Indices, Numbers, chunks
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.reading import shown
+
+MOST_PROBLEMS: Final = 20
+"""Limit: problems reported for one mesh file; a file with more usually repeats the same one."""
+
+NUMBER: Final = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+"""A decimal number; `float` takes more, such as digits of other scripts."""
 
 BLOCK: Final = 1 << 17
 """Numbers to convert at once, so that there are few Python values at a time."""
@@ -29,6 +37,32 @@ MOST_DIGITS: Final = 18
 """The digits of a whole number that surely has 64 bits."""
 
 COORDINATE: Final = "a coordinate must be a decimal number of at most 1e30 in size"
+
+
+class Problems:
+    """Collects the problems of files, up to MOST_PROBLEMS, in the order of files and lines.
+
+    `unit` is what messages call a line: "line" or "row".
+    """
+
+    def __init__(self, unit: str) -> None:
+        self._unit = unit
+        self._sentences: list[tuple[int, int, str]] = []
+        self._places: list[str] = []
+
+    def note(self, place: str, line: int, sentence: str) -> None:
+        """Add a problem; raise InputError once there are MOST_PROBLEMS."""
+        if place not in self._places:
+            self._places.append(place)
+        self._sentences.append((self._places.index(place), line, f"{place}, {self._unit} {line}: {sentence}"))
+        if len(self._sentences) >= MOST_PROBLEMS:
+            self.raise_any()
+
+    def raise_any(self) -> None:
+        """Raise InputError with the problems, if any."""
+        if self._sentences:
+            in_order = sorted(self._sentences, key=lambda each: each[:2])
+            raise InputError([sentence for _, _, sentence in in_order])
 
 
 class NumberText:

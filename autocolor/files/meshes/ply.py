@@ -24,6 +24,7 @@ from autocolor.arrays import AnyArray, Floats, Indices, chunks
 from autocolor.checks import LARGEST_COORDINATE, listed, printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.found_scalars import FoundScalars
+from autocolor.files.meshes.number_text import MOST_PROBLEMS
 from autocolor.files.meshes.ply_elements import (
     FACE,
     STRIPS,
@@ -125,8 +126,6 @@ def _read(path: Path) -> tuple[Polygons, list[str]]:
     polygons, messages = ply_polygons(elements, comments, path.name, path.stem)
     return polygons, [*messages, *skipped]
 
-
-MOST_PROBLEMS: Final = 20
 
 LARGEST_INDEX: Final = 1 << 53
 """A number from here on is that of no node, and may not be exact."""

@@ -19,7 +19,7 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, Singles
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.obj import NUMBER
+from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, different, name_of, repaired
 from autocolor.files.reading import (
     LARGEST_BINARY_MESH_FILE,
@@ -35,8 +35,6 @@ from autocolor.files.reading import (
 
 BEFORE_TRIANGLES: Final = 84
 TRIANGLE: Final = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-
-MOST_PROBLEMS: Final = 20
 
 
 def has_binary_size(data: bytes) -> bool:

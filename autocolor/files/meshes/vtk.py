@@ -509,7 +509,8 @@ def _add_shaped(
         cells.flats.append(Flats.of(table, rows))
 
 
-# Grids of nodes in rows. A grid of one layer is a surface of quads that turn from the first axis to the second.
+# Grids of nodes in rows. A grid of one layer is a surface of quads that turn from the first axis to the
+# second.
 
 LAYERS: Final = (b"STRUCTURED_GRID", b"RECTILINEAR_GRID", b"STRUCTURED_POINTS")
 
@@ -613,8 +614,8 @@ def _points(
     return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
 
 
-# The data of nodes and cells. Scalars, vectors, tensors and the arrays of fields are scalars of the mesh. Normals,
-# texture coordinates, colors, numbers for identification, bits and texts are skipped and counted.
+# The data of nodes and cells. Scalars, vectors, tensors and the arrays of fields are scalars of the mesh.
+# Normals, texture coordinates, colors, numbers for identification, bits and texts are skipped and counted.
 
 TABLES: Final = {b"POINT_DATA": NODE, b"CELL_DATA": POLYGON}
 
