@@ -22,7 +22,7 @@ import numpy as np
 from autocolor.arrays import Indices, Numbers
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import NumberText
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
 
 TOUCHING: Final = re.compile(rb"(?<=[0-9.])(?=[+-])")
@@ -59,7 +59,7 @@ def read_byu(path: Path, placement: Placement = PLAIN) -> MeshReport:
     corners, corner_counts = _corners(text, first_corner, connectivity, polygons, nodes)
     left = len(text) - end
     skipped = (f"skipped words after the connectivity: {left:,}",) if left else ()
-    table = Polygons(coordinates, corners, corner_counts, part_numbers, names)
+    table = RawPolygons(coordinates, corners, corner_counts, part_numbers, names)
     return repaired(table, path.name, placement, skipped=skipped)
 
 

@@ -35,23 +35,18 @@ from autocolor.checks import LARGEST_COORDINATE, nearest, printable
 from autocolor.errors import InputError
 from autocolor.files.meshes.found_scalars import FoundScalars
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
-from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, Polygons, repaired
+from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
 
-# -------------------- csv_rows
-# The rows of a table in CSV, in blocks whose columns are converted at once.
-#
-# A block in which a column cannot be converted at once is gone through cell by cell, so that every problem
-# is told with its row. Rows are counted from 1, the header, as in a spreadsheet.
+# The rows of a table, in blocks whose columns are converted at once. A block in which a column cannot be
+# converted at once is read cell by cell, so that every problem is reported with its row.
 
 ROWS_AT_ONCE: Final = 1 << 14
 """Measured: with more, the cells of a block fall out of the processor's cache."""
 
 WHOLE_NUMBER: Final = re.compile(r"[+-]?[0-9]{1,18}")
-
-LONGEST_WHOLE: Final = 19
 
 IN_NUMBERS: Final = b"0123456789+-.eE ,"
 IN_WHOLES: Final = b"0123456789+- ,"
@@ -60,7 +55,7 @@ NOTHING: Final = -(1 << 63)
 """What stands for an empty or a wrong cell among whole numbers, which have at most 18 digits."""
 
 
-class Cells(Protocol):
+class CellKind(Protocol):
     """How the cells of one column are converted."""
 
     def at_once(self, cells: Sequence[str]) -> AnyArray:
@@ -108,7 +103,8 @@ class WholeCells:
     def at_once(self, cells: Sequence[str]) -> Numbers:
         """The numbers, int64. Raises ValueError if any might be wrong."""
         _require_letters(cells, IN_WHOLES)
-        if max(map(len, cells)) > LONGEST_WHOLE:
+        # A number of 18 digits and a sign is converted alone.
+        if max(map(len, cells)) > 18:
             raise ValueError
         if self.may_be_empty and "" in cells:
             return np.array([int(cell) if cell else NOTHING for cell in cells], np.int64)
@@ -190,7 +186,7 @@ class CsvRows:
         self.row += len(rows)
         return rows
 
-    def converted(self, problems: Problems, columns: Sequence[Cells]) -> tuple[list[AnyArray], Numbers]:
+    def converted(self, problems: Problems, columns: Sequence[CellKind]) -> tuple[list[AnyArray], Numbers]:
         """The values of each column, and the row numbers of the file.
 
         Empty rows are skipped, and shorter ones filled with empty cells. Problems are noted.
@@ -208,7 +204,7 @@ class CsvRows:
 
 
 def _block(
-    problems: Problems, place: str, block: list[list[str]], first: int, columns: Sequence[Cells]
+    problems: Problems, place: str, block: list[list[str]], first: int, columns: Sequence[CellKind]
 ) -> tuple[list[AnyArray], Numbers]:
     """The values of each column in some rows, and the numbers of these in the file."""
     width = len(columns)
@@ -252,7 +248,7 @@ SCALAR: Final = "scalar "
 CORNER: Final = re.compile(r"node[0-9]+")
 
 ALIKE: Final = 0.8
-"""Assumed: a name that is spelled so much like a missing column is a mistake, and no scalar."""
+"""Limit: a name that is spelled so much like a missing column is a mistake, and no scalar."""
 
 COORDINATES: Final = NumberCells("a coordinate must be a decimal number of at most 1e30 in size")
 VALUES: Final = NumberCells(
@@ -267,7 +263,7 @@ class Table:
         self,
         problems: Problems,
         path: Path,
-        columns: Mapping[str, Cells],
+        columns: Mapping[str, CellKind],
         required: tuple[str, ...],
     ) -> None:
         self.problems = problems
@@ -335,7 +331,7 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
     for of, table in ((NODE, node_table), (POLYGON, polygon_table)):
         for name, values in table.scalars.items():
             scalars.add(name, values, of)
-    mesh = Polygons(
+    mesh = RawPolygons(
         coordinates,
         rows[is_corner],
         is_corner.sum(axis=1),
@@ -420,11 +416,8 @@ def _is_mistake(cell: str, columns: tuple[str, ...], missing: list[str]) -> bool
     return bool(difflib.get_close_matches(cell[:60], missing, n=1, cutoff=ALIKE))
 
 
-# -------------------- csv_writing
-# Writing a mesh as two tables in CSV, as `csv_tables` reads them.
-
 ROWS_IN_TEXT: Final = 1 << 16
-"""Rows that are made text at once, so that their Python values are few."""
+"""Rows that become text at once, so that there are few Python values at a time."""
 
 
 def csv_tables_bytes(mesh: Mesh) -> tuple[bytes, bytes]:

@@ -15,7 +15,6 @@ from __future__ import annotations
 import dataclasses
 import importlib.util
 import io
-import json
 import os
 import signal
 import struct
@@ -26,7 +25,7 @@ import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final, NoReturn
+from typing import Any, Final
 from urllib.parse import unquote
 
 import numpy as np
@@ -46,9 +45,9 @@ from autocolor.files.array_file import (
     scalars_of,
 )
 from autocolor.files.meshes.number_text import MOST_PROBLEMS
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.paths import path_within
-from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes
+from autocolor.files.reading import LARGEST_MESH_FILE, bounded_json, read_bytes
 from autocolor.scene.columns import changed
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.scalar import NODE
@@ -124,21 +123,14 @@ def _gltf_json(place: str, data: bytes) -> dict[str, Any]:
             )
         data = data[20 : 20 + size]
 
-    def refuse(constant: str) -> NoReturn:
-        raise ValueError(f"the number {constant}")
-
     try:
-        if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
-            raise ValueError(f"more than {MOST_VALUES:,} values")
-        described = json.loads(data.decode("utf-8"), parse_constant=refuse)
+        described = bounded_json(data, MOST_VALUES)
         if not isinstance(described, dict):
             raise ValueError(f"a {type(described).__name__}")
-    except (ValueError, RecursionError) as error:
-        found = " ".join(str(error).split())[:100]
-        if isinstance(error, json.JSONDecodeError):
-            found = f"as at line {error.lineno}, column {error.colno}"
+    except ValueError as error:
+        reason = " ".join(str(error).split())[:100]
         raise InputError(
-            f"{place}: a glTF file must describe its scene in JSON, not {found}; write it again"
+            f"{place}: a glTF file must describe its scene in JSON, not {reason}; write it again"
         ) from None
     return described
 
@@ -182,7 +174,7 @@ class ForeignMesh:
     color, and `sentences` say what was left out.
     """
 
-    polygons: Polygons
+    polygons: RawPolygons
     sentences: tuple[str, ...] = ()
     material_of_part: Mapping[str, str] = field(default_factory=dict)
     colors: Mapping[str, Color] = field(default_factory=dict)
@@ -242,7 +234,7 @@ def read_foreign_mesh(path: Path, largest: int, place: str, library: str) -> For
             raise InputError(
                 f"{place}: {library} gave a scalar without a value for each {scalar.of}; {REMEDY}"
             )
-    polygons = Polygons(
+    polygons = RawPolygons(
         arrays["coordinates"].copy(),
         arrays["corners"].astype(np.intp),
         arrays["corner_counts"].astype(np.intp),

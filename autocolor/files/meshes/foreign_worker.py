@@ -34,7 +34,7 @@ from autocolor.files.meshes.foreign import (
     most_seconds,
 )
 from autocolor.files.meshes.found_scalars import FoundScalars
-from autocolor.files.meshes.repair import Polygons, different, printable_name
+from autocolor.files.meshes.repair import RawPolygons, different, printable_name
 from autocolor.scene.scalar import LARGEST_SCALAR, NODE, POLYGON
 
 FORBIDDEN: Final = (
@@ -179,7 +179,7 @@ def polygons_of_trimesh(scene: Any, stem: str) -> ForeignMesh:
         scalars.add(key, np.concatenate(of_parts), NODE)
     corners = np.concatenate(triangles)
     counts = [len(each) for each in triangles]
-    polygons = Polygons(
+    polygons = RawPolygons(
         np.concatenate(coordinates),
         corners.ravel(),
         np.full(len(corners), 3, np.intp),
@@ -300,7 +300,7 @@ def polygons_of_meshio(mesh: Any, stem: str) -> ForeignMesh:
     part_of_cell, part_names = _parts(mesh, count, stem)
     scalars = _scalars(mesh, surface.nodes, surface.flats.cells)
     used, part_numbers = np.unique(part_of_cell[surface.flats.cells], return_inverse=True)
-    polygons = Polygons(
+    polygons = RawPolygons(
         coordinates[surface.nodes],
         surface.flats.corners,
         surface.flats.corner_counts,

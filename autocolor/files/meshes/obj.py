@@ -32,7 +32,7 @@ from autocolor.arrays import Booleans, Bytes, Floats, Indices, Numbers, chunks, 
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, name_of, repaired
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, name_of, repaired
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
 from autocolor.scene.columns import changed
@@ -63,7 +63,7 @@ def read_obj(path: Path, placement: Placement = PLAIN) -> MeshReport:
         tables = read_obj_lines(data, path.name, statements)
     del data
     parts = statements.parts()
-    polygons = Polygons(
+    polygons = RawPolygons(
         tables.coordinates,
         tables.rows,
         tables.corner_counts,

@@ -22,7 +22,7 @@ from autocolor.arrays import Floats, Indices
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import NumberText
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 
@@ -58,7 +58,7 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     coordinates, first = _coordinates(text, lines, nodes)
     corners, counts, end = _polygons(text, lines, first, polygons, nodes)
     left = len(text) - end
-    table = Polygons(coordinates, corners, counts, np.zeros(polygons, np.intp), (path.stem,))
+    table = RawPolygons(coordinates, corners, counts, np.zeros(polygons, np.intp), (path.stem,))
     skipped = (f"skipped words that are neither nodes nor polygons: {left:,}",) if left else ()
     return repaired(table, path.name, placement, skipped=skipped)
 

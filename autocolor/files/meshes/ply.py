@@ -29,13 +29,21 @@ from autocolor.files.meshes.ply_elements import (
     FACE,
     STRIPS,
     VERTEX,
+    ElementRows,
     Lists,
-    Rows,
     parsed_header,
     read_binary,
     read_text,
 )
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, different, name_of, repaired
+from autocolor.files.meshes.repair import (
+    PLAIN,
+    MeshReport,
+    Placement,
+    RawPolygons,
+    different,
+    name_of,
+    repaired,
+)
 from autocolor.files.reading import LARGEST_BINARY_MESH_FILE, LARGEST_MESH_FILE, read_bytes, read_head
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 from autocolor.scene.mesh import Mesh
@@ -111,7 +119,7 @@ def read_ply(path: Path, placement: Placement = PLAIN) -> MeshReport:
     return repaired(polygons, path.name, placement, skipped=tuple(skipped))
 
 
-def _read(path: Path) -> tuple[Polygons, list[str]]:
+def _read(path: Path) -> tuple[RawPolygons, list[str]]:
     """The polygons of a file, and what was skipped; its bytes are given up before the mesh is made."""
     is_text = b"format ascii" in read_head(path)
     data = read_bytes(path, LARGEST_MESH_FILE if is_text else LARGEST_BINARY_MESH_FILE)
@@ -132,8 +140,8 @@ LARGEST_INDEX: Final = 1 << 53
 
 
 def ply_polygons(
-    elements: dict[str, Rows], comments: Comments, place: str, stem: str
-) -> tuple[Polygons, list[str]]:
+    elements: dict[str, ElementRows], comments: Comments, place: str, stem: str
+) -> tuple[RawPolygons, list[str]]:
     """The polygons of the elements of a file, and messages about elements and values that are skipped.
 
     `place` is the file's name in messages, `stem` the name of a single part. Raises InputError with the first
@@ -162,11 +170,11 @@ def ply_polygons(
             is_part = of == POLYGON and name == part
             if not isinstance(column, Lists) and not is_part and is_scalar(name, comments):
                 scalars.add(comments.scalars.get(name, name), column, of)
-    polygons = Polygons(coordinates, corners, counts, part_numbers, names, scalars.scalars)
+    polygons = RawPolygons(coordinates, corners, counts, part_numbers, names, scalars.scalars)
     return polygons, [*messages, *scalars.messages]
 
 
-def _coordinates(vertices: Rows | None, place: str) -> Floats:
+def _coordinates(vertices: ElementRows | None, place: str) -> Floats:
     """The coordinates of the nodes, (nodes, 3)."""
     columns = {} if vertices is None else vertices.columns
     axes = [columns.get(axis) for axis in AXES]
@@ -194,7 +202,7 @@ def _coordinates(vertices: Rows | None, place: str) -> Floats:
     return coordinates
 
 
-def _corners(rows: Rows | None, nodes: int, place: str, name: str) -> tuple[Indices, Indices]:
+def _corners(rows: ElementRows | None, nodes: int, place: str, name: str) -> tuple[Indices, Indices]:
     """The rows in the node table of all corners, and how many corners each row of an element has."""
     if rows is None or not rows.count:
         return np.empty(0, np.intp), np.empty(0, np.intp)
@@ -221,7 +229,7 @@ def _are_whole(values: AnyArray) -> bool:
     return values.dtype.kind != "f" or bool((values == np.floor(values)).all())
 
 
-def _refuse_corners(rows: Rows, values: AnyArray, counts: Indices, nodes: int, least: int) -> None:
+def _refuse_corners(rows: ElementRows, values: AnyArray, counts: Indices, nodes: int, least: int) -> None:
     """Raise InputError about the first polygons with corners that are no nodes."""
     is_node = (values >= least) & (values < nodes)
     if values.dtype.kind == "f":
@@ -235,7 +243,7 @@ def _refuse_corners(rows: Rows, values: AnyArray, counts: Indices, nodes: int, l
     )
 
 
-def _part_property(faces: Rows | None, comments: Comments) -> str | None:
+def _part_property(faces: ElementRows | None, comments: Comments) -> str | None:
     """The property of faces that divides them into parts; None if there is none."""
     for name in PARTS:
         column = None if faces is None else faces.columns.get(name)
@@ -252,7 +260,7 @@ def _part_property(faces: Rows | None, comments: Comments) -> str | None:
 
 
 def _parts(
-    faces: Rows | None, part: str | None, comments: Comments, stem: str, polygons: int
+    faces: ElementRows | None, part: str | None, comments: Comments, stem: str, polygons: int
 ) -> tuple[Indices, tuple[str, ...]]:
     """The part number of each polygon, and the names of the parts."""
     if faces is None or part is None:

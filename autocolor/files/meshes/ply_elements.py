@@ -85,7 +85,7 @@ class Element:
         return self.count if self.name == FACE and any(each.count_type for each in self.properties) else 0
 
 
-class Header(NamedTuple):
+class PlyHeader(NamedTuple):
     """What a header says: the byte order, empty for text; the elements; the comments; its length in bytes."""
 
     order: str
@@ -100,7 +100,7 @@ def begins_as_ply(head: bytes) -> bool:
     return FIRST_LINE.match(head) is not None
 
 
-def parsed_header(data: bytes, place: str) -> Header:
+def parsed_header(data: bytes, place: str) -> PlyHeader:
     """The header at the start of a file; `place` is its name in messages. Raises InputError."""
     if problem := text_problem(data[:2]):
         raise InputError(f"{place}: a PLY file {problem}")
@@ -143,7 +143,7 @@ def parsed_header(data: bytes, place: str) -> Header:
     elements = tuple(
         Element(name, count, tuple(of_it)) for (name, count), of_it in zip(names, properties, strict=True)
     )
-    return Header(order, elements, tuple(comments), length, number)
+    return PlyHeader(order, elements, tuple(comments), length, number)
 
 
 def _lines(data: bytes, place: str) -> Iterator[tuple[bytes, int]]:
@@ -234,7 +234,7 @@ Column = AnyArray | Lists
 
 
 @dataclass(frozen=True)
-class Rows:
+class ElementRows:
     """The columns of an element by the names of its properties; `place_of` tells where a row is."""
 
     count: int
@@ -246,7 +246,7 @@ class Rows:
 # counts, as in a mesh of triangles and quads, does each row tell where the next begins.
 
 ROWS_AT_ONCE: Final = 1 << 16
-"""Rows whose places are Python values at once."""
+"""Rows that are walked at once, so that there are few Python values at a time."""
 
 LONGEST_ROW: Final = 1 << 20
 """Bytes of a row that numpy is given as one type."""
@@ -258,13 +258,13 @@ Step = tuple[int, str, int]
 """Of a list in a row: the bytes before its count, the type of the count, and the bytes of a value."""
 
 
-def read_binary(data: bytes, header: Header, place: str) -> tuple[dict[str, Rows], tuple[str, ...]]:
+def read_binary(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, ElementRows], tuple[str, ...]]:
     """The elements of a file by name, and a message if bytes follow the last element.
 
     `place` is the file's name in messages. Raises InputError if the file is cut short.
     """
     at = header.length
-    elements: dict[str, Rows] = {}
+    elements: dict[str, ElementRows] = {}
     for element in header.elements:
         least = element.count * sum(each.size for each in element.properties) + element.least_corners
         if least > len(data) - at:
@@ -274,7 +274,7 @@ def read_binary(data: bytes, header: Header, place: str) -> tuple[dict[str, Rows
         def place_of(row: int, name: str = element.name) -> str:
             return f"{place}, {name} {row}"
 
-        elements[element.name] = Rows(element.count, columns, place_of)
+        elements[element.name] = ElementRows(element.count, columns, place_of)
     left = len(data) - at
     return elements, (f"skipped bytes after the last element: {left:,}",) if left else ()
 
@@ -439,7 +439,7 @@ LONGEST_TEXT_LINE: Final = 1 << 20
 """Limit: bytes of a row in text; a polygon of a thousand corners with many scalars has a tenth of it."""
 
 
-def read_text(data: bytes, header: Header, place: str) -> tuple[dict[str, Rows], tuple[str, ...]]:
+def read_text(data: bytes, header: PlyHeader, place: str) -> tuple[dict[str, ElementRows], tuple[str, ...]]:
     """The elements of a file by name, and a message if lines follow the last element.
 
     `place` is the file's name in messages. Raises InputError.
@@ -456,7 +456,7 @@ def read_text(data: bytes, header: Header, place: str) -> tuple[dict[str, Rows],
         raise InputError(f"{place}: a line must have at most {LONGEST_TEXT_LINE:,} bytes, not more; split it")
     numbers = text.values(0, len(text))
     ends = np.append(firsts[1:], len(text))
-    elements: dict[str, Rows] = {}
+    elements: dict[str, ElementRows] = {}
     row = 0
     for element in header.elements:
         if not element.properties:
@@ -480,7 +480,7 @@ def read_text(data: bytes, header: Header, place: str) -> tuple[dict[str, Rows],
         def place_of(at: int, begins: Indices = begins) -> str:
             return f"{place}, line {text.line(int(begins[at]))}"
 
-        elements[element.name] = Rows(element.count, columns, place_of)
+        elements[element.name] = ElementRows(element.count, columns, place_of)
         row += element.count
     more = len(firsts) - row
     return elements, (f"skipped lines after the last element: {more:,}",) if more else ()

@@ -4,7 +4,7 @@
 - A polygon with fewer than three corners left, or without area, is dropped.
 - A polygon with more than four corners is split into quads and triangles.
 - Warped, concave and crossed quads (bow-ties) are kept, since the renderer fills them scan line by scan line;
-  `geometry/faults` finds them. Unused nodes are kept.
+  `scene.geometry.faults` finds them. Unused nodes are kept.
 """
 
 from __future__ import annotations
@@ -26,9 +26,6 @@ from autocolor.scene.kinds import Number
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 from autocolor.scene.surfaces import Surface
-
-# -------------------- placement
-# How the mesh of a file is placed in the world: its up axis, its scale, and where its edges stay sharp.
 
 UPS: Final = ("x", "y", "z")
 
@@ -63,13 +60,9 @@ def placed(coordinates: Floats, placement: Placement) -> Floats:
     return coordinates if placement.scale == 1 else coordinates * placement.scale
 
 
-# -------------------- polygons
-# Polygons as they were in a file, before repair: with any number of corners, possibly repeated.
-
-
 @dataclass(frozen=True, eq=False)
-class Polygons:
-    """Nodes, and polygons with any number of corners.
+class RawPolygons:
+    """Nodes and polygons of a file before repair: with any number of corners, possibly repeated.
 
     `coordinates` is (nodes, 3) float64. `corners` holds the rows in `coordinates` of all corners, polygon
     after polygon; they must be valid. `corner_counts` and `part_numbers`, indices of `part_names`, have one
@@ -89,7 +82,7 @@ class MeshReport:
     """A mesh that was read, with messages about what was repaired or skipped.
 
     `material_of_part` has the names of materials by part name, where the file gives any; `materials` are the
-    surfaces of those that it describes.
+    surfaces of the materials that the file describes.
     """
 
     mesh: Mesh
@@ -113,7 +106,7 @@ LEAST_SQUARE: Final = 1e-250
 
 
 def repaired(
-    polygons: Polygons,
+    polygons: RawPolygons,
     place: str,
     placement: Placement = PLAIN,
     *,
@@ -242,11 +235,8 @@ def _are_flat(corners: Floats) -> Booleans:
     return are_flat
 
 
-# -------------------- names
-# Names of parts, materials and scalars as files have them, made printable, not too long, and different.
-
 LONGEST_NAME: Final = 200
-"""Assumed: letters of a name; the rest of a longer one is left out."""
+"""Limit: letters of a name of a part, a material or a scalar; further letters are left out."""
 
 
 def name_of(data: bytes) -> str:

@@ -20,7 +20,15 @@ from autocolor.arrays import AnyArray, Floats, Indices, Singles
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, different, name_of, repaired
+from autocolor.files.meshes.repair import (
+    PLAIN,
+    MeshReport,
+    Placement,
+    RawPolygons,
+    different,
+    name_of,
+    repaired,
+)
 from autocolor.files.reading import (
     LARGEST_BINARY_MESH_FILE,
     LARGEST_MESH_FILE,
@@ -30,8 +38,7 @@ from autocolor.files.reading import (
     text_problem,
 )
 
-# -------------------- binary
-# The triangles of a binary STL file: 80 bytes of any text, their count, and 50 bytes for each.
+# A binary file has 80 bytes of any text, the count of triangles, and 50 bytes for each triangle.
 
 BEFORE_TRIANGLES: Final = 84
 TRIANGLE: Final = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -80,8 +87,7 @@ def _count(data: bytes) -> int:
     return int.from_bytes(data[BEFORE_TRIANGLES - 4 : BEFORE_TRIANGLES], "little")
 
 
-# -------------------- text
-# The triangles of an STL file in text, whose solids are parts.
+# In text, solids are parts:
 #
 #     solid hood
 #       facet normal 0 0 1
@@ -99,7 +105,7 @@ BLOCK: Final = 1 << 21
 """Bytes converted at a time."""
 
 LONGEST_FACET: Final = 1 << 16
-"""Assumed: in bytes; a facet seldom has more than three hundred."""
+"""Limit: in bytes; a facet seldom has more than three hundred."""
 
 SOLID: Final = re.compile(rb"^[ \t]*(end)?solid\b([^\n]*)$", re.MULTILINE | re.IGNORECASE)
 
@@ -226,7 +232,6 @@ def _refuse(data: bytes, at: int, place: str, sentence: str) -> NoReturn:
     raise InputError(f"{place}, line {line}: {sentence}")
 
 
-# -------------------- weld
 # Welding: corners at exactly the same place become one node.
 #
 # Assumed: corners are at one place if their coordinates are equal as numbers, so that -0 is 0. Nothing is
@@ -310,7 +315,7 @@ def read_stl(path: Path, placement: Placement = PLAIN) -> MeshReport:
     corners, part_numbers, names, skipped = _triangles(path)
     points, rows = welded(corners)
     del corners
-    polygons = Polygons(
+    polygons = RawPolygons(
         points.astype(np.float64, copy=False),
         rows,
         np.full(len(rows) // 3, 3, np.intp),

@@ -25,7 +25,7 @@ from autocolor.errors import InputError
 from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
 from autocolor.files.meshes.found_scalars import FoundScalars
 from autocolor.files.meshes.number_text import NumberText
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import HEAD, LARGEST_MESH_FILE, read_bytes, shown
 from autocolor.scene.scalar import NODE, POLYGON
 
@@ -47,7 +47,7 @@ def read_vtk(path: Path, placement: Placement = PLAIN) -> MeshReport:
     counts = {NODE: len(coordinates), POLYGON: cells.count}
     attributes = Attributes(cursor, counts, {NODE: nodes, POLYGON: flats.cells})
     attributes.read()
-    table = Polygons(
+    table = RawPolygons(
         coordinates[nodes],
         flats.corners,
         flats.corner_counts,
@@ -82,13 +82,13 @@ def _dataset(cursor: VtkCursor) -> bytes:
     return words[1].upper()
 
 
-def _read_cells(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, Cells]:
+def _read_cells(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
     """The nodes and cells of POLYDATA or an UNSTRUCTURED_GRID. Raises InputError."""
     if dataset not in (b"POLYDATA", b"UNSTRUCTURED_GRID"):
         known = ", ".join(["POLYDATA", "UNSTRUCTURED_GRID", *(each.decode() for each in LAYERS)])
         raise cursor.error(f"the DATASET must be one of {known}, not {shown(dataset)}; take its surface")
     coordinates: Floats | None = None
-    cells, lists = Cells(), None
+    cells, lists = VtkCells(), None
     while (keyword := cursor.peek()) and keyword not in TABLES:
         words = cursor.words()
         if keyword == b"METADATA":
@@ -340,7 +340,7 @@ class CellLists(NamedTuple):
 
 
 @dataclass
-class Cells:
+class VtkCells:
     """Polygons and volume cells of a file, sentences about cells, and how many cells there are."""
 
     flats: list[Flats] = field(default_factory=list)
@@ -435,7 +435,7 @@ def _counted_lists(cursor: VtkCursor, cells: int, size: int, what: str) -> CellL
     return CellLists(numbers[~is_count], np.concatenate([[0], np.cumsum(sizes)]))
 
 
-def add_polygons(cells: Cells, lists: CellLists) -> None:
+def add_polygons(cells: VtkCells, lists: CellLists) -> None:
     """Add polygons of any number of corners."""
     sizes = lists.sizes
     rows = cells.count + np.arange(len(sizes))
@@ -444,7 +444,7 @@ def add_polygons(cells: Cells, lists: CellLists) -> None:
     cells.count += len(sizes)
 
 
-def add_strips(cells: Cells, lists: CellLists) -> None:
+def add_strips(cells: VtkCells, lists: CellLists) -> None:
     """Add triangle strips: each node from the third on makes a triangle with the two before it."""
     rows = cells.count + np.arange(len(lists.sizes))
     cells.flats.append(_triangles(lists, np.arange(len(rows)), rows))
@@ -463,7 +463,7 @@ def _triangles(lists: CellLists, chosen: Indices, rows: Indices) -> Flats:
     return Flats.of(lists.numbers[table].astype(np.intp), np.repeat(rows, count))
 
 
-def add_typed(cells: Cells, cursor: VtkCursor, lists: CellLists, types: Numbers) -> None:
+def add_typed(cells: VtkCells, cursor: VtkCursor, lists: CellLists, types: Numbers) -> None:
     """Add the cells of an unstructured grid, each of its type. Raises InputError."""
     sizes = lists.sizes
     if len(types) != len(sizes):
@@ -487,7 +487,7 @@ def add_typed(cells: Cells, cursor: VtkCursor, lists: CellLists, types: Numbers)
 
 
 def _add_shaped(
-    cells: Cells, cursor: VtkCursor, lists: CellLists, rows: Indices, kind: int, shape: str
+    cells: VtkCells, cursor: VtkCursor, lists: CellLists, rows: Indices, kind: int, shape: str
 ) -> None:
     corners = {"triangle": 3, "quad": 4, **CORNERS}[shape]
     sizes = lists.sizes[rows]
@@ -521,7 +521,7 @@ MOST_NODES: Final = 4_000_000
 VECTORS: Final = (b"ORIGIN", b"SPACING", b"ASPECT_RATIO")
 
 
-def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, Cells]:
+def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
     """The nodes and the quads of a grid of one layer. Raises InputError."""
     dimensions: tuple[int, ...] | None = None
     points: Floats | None = None
@@ -568,7 +568,7 @@ def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, Cells]:
     wide, high = (size for size in (*(each for each in dimensions if each > 1), 1, 1)[:2])
     first = (np.arange(wide - 1) + wide * np.arange(high - 1)[:, None]).ravel()
     table: Indices = first[:, None] + np.array([0, 1, wide + 1, wide])
-    return points, Cells([Flats.of(table, np.arange(len(table)))], count=len(table))
+    return points, VtkCells([Flats.of(table, np.arange(len(table)))], count=len(table))
 
 
 def _dimensions(cursor: VtkCursor, words: list[bytes], dataset: bytes) -> tuple[int, ...]:

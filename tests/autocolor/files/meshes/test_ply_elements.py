@@ -14,10 +14,10 @@ from autocolor.files.meshes.ply_elements import (
     CODES,
     TYPES,
     Element,
-    Header,
+    ElementRows,
     Lists,
+    PlyHeader,
     Property,
-    Rows,
     parsed_header,
     read_binary,
     read_text,
@@ -184,8 +184,8 @@ INTEGERS = ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8")
 Row = list[float | list[float]]
 
 
-def table(element: Element, data: bytes, order: str = "<") -> tuple[dict[str, Rows], tuple[str, ...]]:
-    return read_binary(b"HEAD" * 4 + data, Header(order, (element,), (), 16, 1), "a.ply")
+def table(element: Element, data: bytes, order: str = "<") -> tuple[dict[str, ElementRows], tuple[str, ...]]:
+    return read_binary(b"HEAD" * 4 + data, PlyHeader(order, (element,), (), 16, 1), "a.ply")
 
 
 def values(column: Any) -> Any:
@@ -249,7 +249,7 @@ def test_rows_of_several_elements_follow_each_other() -> None:
     nothing = Element("nothing", 5, ())
     face = Element("face", 1, (Property("of_it", "i2", "u1"),))
     data = np.array([1, 2], "<f4").tobytes() + b"\2\7\0\10\0"
-    found = read_binary(data, Header("<", (vertex, nothing, face), (), 0, 1), "a.ply")
+    found = read_binary(data, PlyHeader("<", (vertex, nothing, face), (), 0, 1), "a.ply")
     assert values(found[0]["vertex"].columns["x"]) == [1, 2]
     assert found[0]["nothing"].columns == {}
     assert values(found[0]["face"].columns["of_it"]) == [[7, 8], [2]]
@@ -302,7 +302,7 @@ def test_lists_of_an_element_that_is_not_used_are_passed_over(monkeypatch: pytes
     other = Element("other", 5, (Property("of_it", "u1", "u1"),))
     vertex = Element("vertex", 1, (Property("x", "u1"),))
     data = b"\1\0\2\0\0\0\0\1\0\7"
-    found = read_binary(data, Header("<", (other, vertex), (), 0, 1), "a.ply")
+    found = read_binary(data, PlyHeader("<", (other, vertex), (), 0, 1), "a.ply")
     assert found[0]["other"].columns == {}
     assert values(found[0]["vertex"].columns["x"]) == [7]
     assert found[1] == ()
@@ -321,7 +321,7 @@ BOTH = HEAD + "element face 1\nproperty list uchar int vertex_indices\nproperty 
 HEAD += "end_header\n"
 
 
-def tables(text: str | bytes) -> tuple[dict[str, Rows], tuple[str, ...]]:
+def tables(text: str | bytes) -> tuple[dict[str, ElementRows], tuple[str, ...]]:
     data = text if isinstance(text, bytes) else text.encode()
     return read_text(data, parsed_header(data, "a.ply"), "a.ply")
 
