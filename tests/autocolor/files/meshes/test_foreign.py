@@ -518,9 +518,7 @@ def test_a_library_that_eats_memory_is_refused_it(tmp_path: Path) -> None:
 
 
 def test_a_result_that_is_too_large_is_no_result(tmp_path: Path) -> None:
-    body = (
-        "polygons = RawPolygons(np.zeros((1000000, 3)), np.arange(3), np.array([3]), np.array([0]), ('p',))\n"
-    )
+    table = "RawPolygons(np.zeros((1000000, 3)), np.arange(3), np.array([3]), np.array([0]), ('p',))"
     assert "a.glb: fake " in refusal_in_process(tmp_path, f"mesh = ForeignMesh({table})")
 
 
