@@ -1,8 +1,7 @@
 """Mesh files that trimesh and meshio read for us, each in a process of its own: the extra `meshes`.
 
-- glTF (.glb, .gltf) and 3MF: trimesh. glTF is y up by its specification: it is turned so unless it is read
-  with x up, so that such a file stands as it does elsewhere. 3MF is z up. Neither is scaled: glTF is in
-  meters, 3MF in its own unit.
+- glTF (.glb, .gltf) and 3MF: trimesh. glTF is y up by its specification: the reader turns it so unless it
+  is read with x up. 3MF is z up. Neither is scaled: glTF is in meters, 3MF in its own unit.
 - VTU, Abaqus (.inp), Gmsh (.msh), Nastran (.bdf, .nas, .fem), Medit (.mesh), SU2 and binary UGRID (as in
   .b8.ugrid): meshio, of which these formats need no further package.
 
@@ -333,7 +332,7 @@ def _exit_code(command: Sequence[str], seconds: float) -> int | None:
     environment = {
         **os.environ,
         "PYTHONPATH": os.pathsep.join([root, inherited] if inherited else [root]),
-        # Threads reserve memory each, of which there is a limit.
+        # Each thread reserves memory, which is limited.
         "OPENBLAS_NUM_THREADS": "1",
         "OMP_NUM_THREADS": "1",
     }

@@ -203,7 +203,7 @@ def part_names_of(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def _scalars_of(mesh: Any) -> dict[str, Floats]:
-    """The attributes of the nodes that are one number each; too large ones become missing."""
+    """The attributes with one number for each node; a number that is too large becomes missing."""
     found = {}
     for name, values in (getattr(mesh, "vertex_attributes", None) or {}).items():
         numbers = np.asarray(values)

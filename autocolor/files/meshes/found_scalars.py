@@ -1,10 +1,10 @@
-"""Scalars as they are found in files: arrays of one or several components, with any values.
+"""Scalars of a mesh from the arrays of a file: of one or several components, with any values.
 
 - An array of one component is a scalar of its name.
-- Of a vector (two or three components) its length is taken, as in "velocity magnitude".
-- Of a tensor (six components in the order xx, yy, zz, xy, yz, xz, or nine) von Mises' stress is taken, as in
+- A vector (two or three components) becomes its length, as in "velocity magnitude".
+- A tensor (six components in the order xx, yy, zz, xy, yz, xz, or nine) becomes von Mises' stress, as in
   "stress von Mises".
-- Arrays of other sizes are skipped and told.
+- An array of another size is skipped, and a message says so.
 - A value that is infinite or above 1e30 in size becomes missing, and is counted.
 """
 

@@ -17,8 +17,8 @@ All are stored by columns (Fortran order), so that `.T` is contiguous, in the by
 the first two are needed. Tables of other types, orders and shapes that numpy saves are read, too: triangles
 alone as (polygons, 3), float32, int32, rows; these are copied, and the log says so. Nodes that are turned
 (`up`) or scaled are copied. Normals and planes are used where the nodes are as in the file and the crease
-angle is the file's; else, and where they are absent, they are computed. Whoever changes nodes or polygons
-must delete the files of normals and planes, or convert the folder again. Nothing is ever repaired.
+angle is the file's; otherwise they are computed. If you change nodes or polygons, delete the files of normals
+and planes, or convert the folder again. Nothing is ever repaired.
 
 All numbers are checked once when the tables are opened, a few pages at a time.
 """
@@ -234,8 +234,8 @@ KEYS: Final = frozenset(("format", "part_names", "crease_angle", "scalars", "pla
 class TableNotes:
     """What `tables.json` says.
 
-    `scalars` are names, each with "node" or "polygon", in the order of their files. `planes` tells whether
-    the planes that polygons share are known: True where files hold them, False where there are none.
+    `scalars` are pairs of a name and "node" or "polygon", in the order of their files. `planes` is True if
+    files have the planes that polygons share, False if no polygons share a plane, None if that is not known.
     """
 
     part_names: tuple[str, ...]
@@ -427,8 +427,7 @@ def _normals(folder: Path, polygons: int) -> NodeNormals | None:
         return None
     if len(there) == 1:
         raise InputError(
-            f"{there[0]}: {NORMALS} and {NORMAL_NUMBERS} must both be there or neither, not one alone;"
-            " delete it"
+            f"{there[0]}: {NORMALS} and {NORMAL_NUMBERS} must be in the folder together; delete it"
         )
     vectors, numbers = mapped(folder / NORMALS), mapped(folder / NORMAL_NUMBERS)
     is_shaped(NORMALS, vectors, "normals", None, (3,))
@@ -497,7 +496,7 @@ LARGE: Final = 1 << 21
 
 
 def write_npy_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> None:
-    """Write a mesh as tables to a folder, with its normals and planes, so that they are mapped as they are.
+    """Write a mesh as tables to a folder, with its normals and planes, in the order that rendering reads.
 
     Raises OutputError if a file is there already and `overwrite` is false, WriteError if writing fails.
     """

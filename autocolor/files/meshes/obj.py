@@ -244,9 +244,9 @@ def _part_numbers(
     polygons: Numbers,
     statements: Statements,
 ) -> Numbers | None:
-    """The part number of each polygon, from the names before it in the other lines.
+    """The part number of each polygon, from the names in the lines before it.
 
-    None if one of these is itself a node or a polygon, such as an indented one.
+    None if another line is a node or a polygon, such as an indented one.
     """
     numbers = np.empty(len(polygons), np.int64)
     done = 0
@@ -674,10 +674,9 @@ def obj_text(mesh: Mesh, materials: Sequence[str] = (), library: str = "") -> by
 
 
 def mtl_text(surfaces: Iterable[tuple[str, Surface]]) -> bytes:
-    """Surfaces, each with the name of its material, as a material library that `materials` reads back.
+    """Surfaces, each with the name of its material, as a material library that `read_obj` reads back.
 
-    Its diffuse reflectance, its light color and what else a material does not have is left out; so is the
-    exponent of a reflection model that has none.
+    Diffuse reflectance, light color and other properties that a material does not have are left out.
     """
     lines = []
     for name, surface in surfaces:

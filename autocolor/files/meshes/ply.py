@@ -278,10 +278,10 @@ def _parts(
 def triangles_of_strips(numbers: Indices, counts: Indices) -> tuple[Indices, Indices]:
     """The corners and the corner counts of the triangles of strips, as scanned models of the nineties have.
 
-    `numbers` are the corners of all strips, with -1 where a strip ends; `counts` are the lengths of the lists
-    that they stood in, at whose ends strips end, too. Every corner from the third of a strip on makes a
-    triangle with the two before it; every second one is turned, so that all wind alike. Triangles with equal
-    corners are left out: they only lead on to the next.
+    `numbers` are the corners of all strips, with -1 where a strip ends. `counts` are the lengths of the lists
+    in the file; a strip ends with its list, too. Every corner from the third of a strip on makes a triangle
+    with the two before it. Every second triangle is turned, so that all wind alike. Triangles with equal
+    corners are left out: they only lead to the next triangle.
 
     >>> triangles_of_strips(np.array([0, 1, 2, 3, -1, 4, 5, 6]), np.array([8]))[0].reshape(-1, 3).tolist()
     [[0, 1, 2], [2, 1, 3], [4, 5, 6]]

@@ -51,7 +51,7 @@ COUNT: Final = re.compile(rb"[0-9]{1,18}")
 
 
 class Property(NamedTuple):
-    """A property: its name, and its type as numpy has it; for a list also the type of its count."""
+    """A property: its name, its type in numpy's words, and, for a list, the type of its count."""
 
     name: str
     type: str

@@ -154,7 +154,7 @@ TYPES: Final = {
     b"unsigned_long": ">u8",
     b"float": ">f4",
     b"double": ">f8",
-    # Written as 32 bits by all versions that write this name.
+    # All versions that write this name write 32 bits.
     b"vtkidtype": ">i4",
     b"vtktypeint8": "i1",
     b"vtktypeuint8": "u1",
@@ -328,7 +328,7 @@ ORDERS: Final = {PIXEL: (0, 1, 3, 2), VOXEL: (0, 1, 3, 2, 4, 5, 7, 6)}
 
 
 class CellLists(NamedTuple):
-    """The node numbers of all cells, and where those of each begin; the last element is their end."""
+    """The node numbers of all cells, and the offset of each cell in them; the last offset is their end."""
 
     numbers: Numbers
     offsets: Numbers

@@ -190,7 +190,7 @@ def test_any_bytes_are_read_or_refused(data: bytes, tmp_path_factory: pytest.Tem
 CORNERS = np.arange(18, dtype=np.float32).reshape(2, 3, 3)
 
 
-def binary_2(corners: object = CORNERS, count: int | None = None, begin: bytes = b"") -> bytes:
+def two_triangles(corners: object = CORNERS, count: int | None = None, begin: bytes = b"") -> bytes:
     table = np.zeros(len(np.asarray(corners)), TRIANGLE)
     table["normal"] = np.nan
     table["corners"] = corners
@@ -198,38 +198,38 @@ def binary_2(corners: object = CORNERS, count: int | None = None, begin: bytes =
     return begin.ljust(80) + (len(table) if count is None else count).to_bytes(4, "little") + table.tobytes()
 
 
-def refusal_2(data: bytes) -> str:
+def refusal_of_binary(data: bytes) -> str:
     with pytest.raises(InputError) as caught:
         read_binary(data, "a.stl")
     return str(caught.value)
 
 
 def test_corners_are_read_and_normals_and_attributes_are_not() -> None:
-    corners, skipped = read_binary(binary_2(), "a.stl")
+    corners, skipped = read_binary(two_triangles(), "a.stl")
     assert np.array_equal(corners, CORNERS.reshape(6, 3))
     assert corners.dtype == np.float32
     assert skipped == ()
 
 
 def test_a_binary_file_is_told_by_its_size() -> None:
-    assert has_binary_size(binary_2(begin=b"solid"))
-    assert has_binary_size(binary_2(np.empty((0, 3, 3))))
-    assert not has_binary_size(binary_2() + b"x")
-    assert not has_binary_size(binary_2()[:-1])
+    assert has_binary_size(two_triangles(begin=b"solid"))
+    assert has_binary_size(two_triangles(np.empty((0, 3, 3))))
+    assert not has_binary_size(two_triangles() + b"x")
+    assert not has_binary_size(two_triangles()[:-1])
     assert not has_binary_size(b"")
 
 
 def test_bytes_after_the_last_triangle_are_counted() -> None:
-    corners, skipped = read_binary(binary_2(count=1), "a.stl")
+    corners, skipped = read_binary(two_triangles(count=1), "a.stl")
     assert len(corners) == 3
     assert skipped == ("skipped bytes after the last triangle: 50",)
 
 
 def test_a_file_cut_short_is_refused_before_anything_is_made() -> None:
-    assert refusal_2(binary_2()[:80]) == (
+    assert refusal_of_binary(two_triangles()[:80]) == (
         "a.stl: a binary STL file must have at least 84 bytes, not 80; it is cut short, export it again"
     )
-    assert refusal_2(binary_2(count=2**32 - 1)) == (
+    assert refusal_of_binary(two_triangles(count=2**32 - 1)) == (
         "a.stl: a binary STL file of 4,294,967,295 triangles must have 214,748,364,834 bytes, not 184; it is"
         " cut short or of another format, export it again"
     )
@@ -239,21 +239,21 @@ def test_a_file_cut_short_is_refused_before_anything_is_made() -> None:
 def test_coordinates_that_are_no_numbers_are_refused(number: float, shown: str) -> None:
     corners = CORNERS.copy()
     corners[1, 2, 0] = number
-    assert refusal_2(binary_2(corners)) == (
+    assert refusal_of_binary(two_triangles(corners)) == (
         f"a.stl, facet 2: a coordinate must be a finite number of at most 1e30 in size, not {shown};"
         " correct it"
     )
 
 
 def test_not_more_than_twenty_are_told() -> None:
-    assert refusal_2(binary_2(np.full((30, 3, 3), np.nan))).count("\n") == 19
+    assert refusal_of_binary(two_triangles(np.full((30, 3, 3), np.nan))).count("\n") == 19
 
 
 A = "facet normal nan 0 x\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\nendloop\nendfacet\n"
 B = A.replace("vertex 0 0 0", "vertex -5 .5 +5.")
 
 
-def refusal_3(text: str) -> str:
+def refusal_of_text(text: str) -> str:
     with pytest.raises(InputError) as caught:
         read_text(text.encode(), "a.stl")
     return str(caught.value)
@@ -332,13 +332,13 @@ def test_a_wrong_text_is_refused(
     text: str, sentence: str, block: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(stl, "BLOCK", block)
-    assert refusal_3(text) == f"a.stl, {sentence}"
+    assert refusal_of_text(text) == f"a.stl, {sentence}"
 
 
 def test_an_endless_facet_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stl, "BLOCK", 1)
     monkeypatch.setattr(stl, "LONGEST_FACET", 200)
-    assert refusal_3(f"solid a\n{A}" + "vertex " * 100) == (
+    assert refusal_of_text(f"solid a\n{A}" + "vertex " * 100) == (
         "a.stl, line 9: a facet must have at most 200 bytes, not more; correct it"
     )
 

@@ -552,7 +552,7 @@ def test_there_are_as_many_types_as_cells() -> None:
     )
 
 
-def read_3(writer: VtkWriter) -> Attributes:
+def read_data(writer: VtkWriter) -> Attributes:
     """What is read of two nodes, in turned order, and three cells, of which the last is a polygon."""
     cursor = VtkCursor(writer.data, "a.vtk")
     if not writer.binary:
@@ -608,7 +608,7 @@ def test_every_kind_of_data_is_read_or_skipped_and_told(binary: bool) -> None:
         .line("GLOBAL_IDS ids vtkIdType")
         .numbers([1, 2, 3], "vtkIdType")
     )
-    attributes = read_3(writer)
+    attributes = read_data(writer)
     assert shown(attributes) == {
         "Nodal Stress": "node [2.5, 1.5]",
         "pair magnitude": "node [10.0, 5.0]",
@@ -631,12 +631,12 @@ def test_every_kind_of_data_is_read_or_skipped_and_told(binary: bool) -> None:
 @pytest.mark.parametrize("binary", [False, True])
 def test_scalars_may_have_any_type(binary: bool, kind: str) -> None:
     writer = VtkWriter("POLYDATA", binary=binary).line("POINT_DATA 2").line(f"SCALARS s {kind}")
-    assert shown(read_3(writer.numbers([7, 9], kind))) == {"s": "node [9.0, 7.0]"}
+    assert shown(read_data(writer.numbers([7, 9], kind))) == {"s": "node [9.0, 7.0]"}
 
 
 def test_missing_values_are_nan() -> None:
     writer = VtkWriter("POLYDATA").line("POINT_DATA 2\nSCALARS s float\nLOOKUP_TABLE default\nnan 1")
-    assert shown(read_3(writer)) == {"s": "node [1.0, nan]"}
+    assert shown(read_data(writer)) == {"s": "node [1.0, nan]"}
 
 
 def test_texts_and_bits_are_skipped() -> None:
@@ -646,13 +646,13 @@ def test_texts_and_bits_are_skipped() -> None:
     binary = VtkWriter("POLYDATA", binary=True).line("POINT_DATA 2\nFIELD f 2\nnames 1 2 string")
     binary.data += bytes([0xC3]) + b"one" + bytes([0x80, 0x46]) + b"x" * 70 + b"\nb 1 2 bit\n\x40\n"
     for writer in (text, binary):
-        attributes = read_3(writer.line("SCALARS s int\nLOOKUP_TABLE default").numbers([1, 2], "int"))
+        attributes = read_data(writer.line("SCALARS s int\nLOOKUP_TABLE default").numbers([1, 2], "int"))
         assert shown(attributes) == {"s": "node [2.0, 1.0]"}
         assert attributes.messages == ("skipped arrays of texts: 1", "skipped arrays of bits: 1")
 
 
 def test_what_follows_an_unknown_keyword_is_skipped_and_told() -> None:
-    attributes = read_3(VtkWriter("POLYDATA").line("POINT_DATA 2\nSPLINES s 2\n1 2"))
+    attributes = read_data(VtkWriter("POLYDATA").line("POINT_DATA 2\nSPLINES s 2\n1 2"))
     assert attributes.messages == ("skipped all from the unknown keyword 'SPLINES' on",)
 
 
@@ -687,5 +687,5 @@ def test_what_follows_an_unknown_keyword_is_skipped_and_told() -> None:
 )  # fmt: skip
 def test_wrong_data_are_refused_with_their_place(lines: str, sentence: str) -> None:
     with pytest.raises(InputError) as caught:
-        read_3(VtkWriter("POLYDATA").line(lines))
+        read_data(VtkWriter("POLYDATA").line(lines))
     assert str(caught.value) == sentence
