@@ -128,19 +128,19 @@ def read_array_file(kind: ArrayFileKind, source: Path) -> ArrayFile:
         raise _damaged(kind, source, f"damaged ({error})") from None
 
 
-def _damaged(kind: ArrayFileKind, source: Path, found: str) -> InputError:
+def _damaged(kind: ArrayFileKind, source: Path, reason: str) -> InputError:
     # Names in the file may be anything.
-    told = printable(found[:LONGEST_REASON])
+    reason = printable(reason[:LONGEST_REASON])
     return InputError(
-        f"{source.name}: a {kind.noun} must be whole and as autocolor wrote it, not {told}; {kind.advice}"
+        f"{source.name}: a {kind.noun} must be whole and as autocolor wrote it, not {reason}; {kind.advice}"
     )
 
 
 def _read(kind: ArrayFileKind, source: Path, archive: zipfile.ZipFile) -> ArrayFile:
     """The header and the arrays that it describes. Raises InputError if there are other members."""
-    found = [member.filename for member in archive.infolist()]
-    listed = ", ".join(map(shown, found[:3])) or "none"
-    if "header.npy" not in found:
+    names = [member.filename for member in archive.infolist()]
+    listed = ", ".join(map(shown, names[:3])) or "none"
+    if "header.npy" not in names:
         raise _damaged(kind, source, f"with members like {listed}")
     if any(member.compress_type != zipfile.ZIP_STORED for member in archive.infolist()):
         raise _damaged(kind, source, "compressed")
@@ -150,7 +150,7 @@ def _read(kind: ArrayFileKind, source: Path, archive: zipfile.ZipFile) -> ArrayF
 
     header = _header(kind, source, array("header", HEADER_TYPE))
     types = kind.types(header)
-    if sorted(found) != sorted(f"{name}.npy" for name in ("header", *types)):
+    if sorted(names) != sorted(f"{name}.npy" for name in ("header", *types)):
         raise _damaged(kind, source, f"with members like {listed}")
     return ArrayFile(header, {name: array(name, wanted) for name, wanted in types.items()})
 

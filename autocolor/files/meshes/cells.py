@@ -128,12 +128,14 @@ def _faces(coordinates: Floats, volumes: Sequence[Volumes]) -> tuple[Indices, In
         template = np.array(FACES[each.shape])
         table = np.empty((len(each.corners), len(template), 4), np.intp)
         for chunk in chunks(len(each.corners), AT_A_TIME):
-            found = each.corners[chunk][:, template]
+            faces_of_cells = each.corners[chunk][:, template]
             inward = _volumes(coordinates[each.corners[chunk]], template) < 0
             # A triangle's last two corners are the same: turning the first two turns it, too.
             triangles = template[:, 2] == template[:, 3]
-            turned = np.where(triangles[:, None], found[..., [1, 0, 2, 3]], found[..., ::-1])
-            table[chunk] = np.where(inward[:, None, None], turned, found)
+            turned = np.where(
+                triangles[:, None], faces_of_cells[..., [1, 0, 2, 3]], faces_of_cells[..., ::-1]
+            )
+            table[chunk] = np.where(inward[:, None, None], turned, faces_of_cells)
         faces.append(table.reshape(-1, 4))
         owners.append(np.repeat(each.cells, len(template)))
     return np.concatenate(faces), np.concatenate(owners)
@@ -161,11 +163,11 @@ def _keys(faces: Indices, nodes: int) -> tuple[Numbers, Numbers]:
 
 def _are_among(flats: Flats, keys: tuple[Numbers, Numbers], nodes: int) -> Booleans:
     """Which polygons have the corners of a face."""
-    found = np.zeros(len(flats.cells), np.bool_)
+    are_among = np.zeros(len(flats.cells), np.bool_)
     starts = np.cumsum(flats.corner_counts) - flats.corner_counts
     small = np.flatnonzero((flats.corner_counts == 3) | (flats.corner_counts == 4))
     if not len(small):
-        return found
+        return are_among
     table = flats.corners[
         starts[small, None] + np.minimum(np.arange(4), flats.corner_counts[small, None] - 1)
     ]
@@ -178,8 +180,8 @@ def _are_among(flats: Flats, keys: tuple[Numbers, Numbers], nodes: int) -> Boole
     firsts = np.maximum.accumulate(np.where(same, 0, np.arange(len(order))))
     is_known = order[firsts] < len(keys[0])
     mine = order >= len(keys[0])
-    found[small[order[mine] - len(keys[0])]] = is_known[mine]
-    return found
+    are_among[small[order[mine] - len(keys[0])]] = is_known[mine]
+    return are_among
 
 
 def _chosen(flats: Flats, chosen: Booleans) -> Flats:

@@ -33,7 +33,7 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, Numbers, chunks
 from autocolor.checks import LARGEST_COORDINATE, nearest, printable
 from autocolor.errors import InputError
-from autocolor.files.meshes.found_scalars import FoundScalars
+from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
@@ -191,16 +191,16 @@ class CsvRows:
 
         Empty rows are skipped, and shorter ones filled with empty cells. Problems are noted.
         """
-        found: list[list[AnyArray]] = [[] for _ in columns]
+        in_blocks: list[list[AnyArray]] = [[] for _ in columns]
         numbers: list[Numbers] = []
         first = self.row + 1
         while (block := self._next(ROWS_AT_ONCE)) or not numbers:
             values, in_file = _block(problems, self.place, block, first, columns)
-            for column, each in zip(found, values, strict=True):
+            for column, each in zip(in_blocks, values, strict=True):
                 column.append(each)
             numbers.append(in_file)
             first += len(block)
-        return [np.concatenate(column) for column in found], np.concatenate(numbers)
+        return [np.concatenate(column) for column in in_blocks], np.concatenate(numbers)
 
 
 def _block(
@@ -327,7 +327,7 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
     problems.raise_any()
 
     is_corner = corners != NOTHING
-    scalars = FoundScalars()
+    scalars = FileScalars()
     for of, table in ((NODE, node_table), (POLYGON, polygon_table)):
         for name, values in table.scalars.items():
             scalars.add(name, values, of)
@@ -370,11 +370,11 @@ def _rows_of(table: Table, corners: Numbers, numbers: Numbers) -> Indices:
 
 def _known(numbers: Numbers) -> str:
     """The range of the node numbers, for a message; it says if there are gaps."""
-    known = np.unique(numbers[numbers != NOTHING])
-    if not len(known):
+    different_numbers = np.unique(numbers[numbers != NOTHING])
+    if not len(different_numbers):
         return "it is empty"
-    gaps = "" if known[-1] - known[0] + 1 == len(known) else ", with gaps"
-    return f"{known[0]} to {known[-1]}{gaps}"
+    gaps = "" if different_numbers[-1] - different_numbers[0] + 1 == len(different_numbers) else ", with gaps"
+    return f"{different_numbers[0]} to {different_numbers[-1]}{gaps}"
 
 
 def _check_header(place: str, cells: list[str], columns: tuple[str, ...], required: tuple[str, ...]) -> None:
@@ -463,15 +463,15 @@ def _polygon_lines(mesh: Mesh) -> Iterator[str]:
 
 
 def _header(mesh: Mesh, columns: tuple[str, ...], of: str) -> str:
-    """The names of the columns; a scalar named like a column of the mesh is told from it."""
+    """The names of the columns; a scalar named like a column of the mesh has a prefix."""
     names = [each.name for each in mesh.scalars if each.of == of]
-    told = [
+    headings = [
         f"{SCALAR}{name}"
         if name.casefold() in columns or CORNER.fullmatch(name) or name.startswith(SCALAR)
         else name
         for name in names
     ]
-    return _row([*columns, *told])
+    return _row([*columns, *headings])
 
 
 def _row(cells: list[str]) -> str:

@@ -24,6 +24,7 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import Color
 from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
+from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign import (
     FAILED,
     LONGEST_SENTENCE,
@@ -33,7 +34,6 @@ from autocolor.files.meshes.foreign import (
     most_memory,
     most_seconds,
 )
-from autocolor.files.meshes.found_scalars import FoundScalars
 from autocolor.files.meshes.repair import RawPolygons, different, printable_name
 from autocolor.scene.scalar import LARGEST_SCALAR, NODE, POLYGON
 
@@ -170,7 +170,7 @@ def polygons_of_trimesh(scene: Any, stem: str) -> ForeignMesh:
     if not names:
         raise ValueError("no triangles")
     part_names = part_names_of(names)
-    scalars = FoundScalars()
+    scalars = FileScalars()
     for key in dict.fromkeys(key for each in values for key in each):
         of_parts = [
             each.get(key, np.full(len(places), np.nan))
@@ -204,14 +204,16 @@ def part_names_of(names: Sequence[str]) -> tuple[str, ...]:
 
 def _scalars_of(mesh: Any) -> dict[str, Floats]:
     """The attributes with one number for each node; a number that is too large becomes missing."""
-    found = {}
+    attributes = {}
     for name, values in (getattr(mesh, "vertex_attributes", None) or {}).items():
         numbers = np.asarray(values)
         numbers = numbers[:, 0] if numbers.ndim == 2 and numbers.shape[1] == 1 else numbers
         if numbers.shape == (len(mesh.vertices),) and numbers.dtype.kind in "iuf":
             numbers = numbers.astype(np.float64)
-            found[str(name).removeprefix("_")] = np.where(np.abs(numbers) <= LARGEST_SCALAR, numbers, np.nan)
-    return found
+            attributes[str(name).removeprefix("_")] = np.where(
+                np.abs(numbers) <= LARGEST_SCALAR, numbers, np.nan
+            )
+    return attributes
 
 
 def _welded(places: Floats, scalars: dict[str, Floats]) -> tuple[Floats, tuple[Indices, Indices]]:
@@ -222,8 +224,8 @@ def _welded(places: Floats, scalars: dict[str, Floats]) -> tuple[Floats, tuple[I
     order = np.argsort(first)
     rank = np.empty(len(order), np.intp)
     rank[order] = np.arange(len(order))
-    kept = first[order]
-    return places[kept], (kept, rank[rows.reshape(-1)])
+    leaders = first[order]
+    return places[leaders], (leaders, rank[rows.reshape(-1)])
 
 
 def _material_of(mesh: Any) -> tuple[tuple[str, Color | None], bool]:
@@ -361,9 +363,9 @@ def _joined(blocks: Any, count: int) -> AnyArray | None:
     return joined if len(joined) == count else None
 
 
-def _scalars(mesh: Any, nodes: Indices, cells: Indices) -> FoundScalars:
+def _scalars(mesh: Any, nodes: Indices, cells: Indices) -> FileScalars:
     """The scalars of nodes and cells, at the rows that are kept."""
-    found = FoundScalars()
+    scalars = FileScalars()
     count = sum(len(block.data) for block in mesh.cells)
     of_nodes = {name: np.asarray(each) for name, each in (mesh.point_data or {}).items()}
     of_cells = {name: _joined(each, count) for name, each in (mesh.cell_data or {}).items()}
@@ -375,10 +377,12 @@ def _scalars(mesh: Any, nodes: Indices, cells: Indices) -> FoundScalars:
             if INTERNAL.match(str(name)) or name in GROUPS:
                 continue
             if values is None or len(values) != length or values.dtype.kind not in "iufb":
-                found.sentences.append(f"skipped the {of} array {name!r}, which has no number for each {of}")
+                scalars.sentences.append(
+                    f"skipped the {of} array {name!r}, which has no number for each {of}"
+                )
             else:
-                found.add(str(name), values, of, rows)
-    return found
+                scalars.add(str(name), values, of, rows)
+    return scalars
 
 
 def meshio_reader(kind: str) -> Callable[[str], ForeignMesh]:

@@ -76,8 +76,8 @@ def checked(name: str, table: AnyArray, thing: str, rule: Rule, remedy: str) -> 
         right = rule(rows[:, chunk])
         if not right.all():
             row = chunk.start + int(np.argmin(right))
-            found = table[row].tolist()
-            raise InputError(f"{name}: {thing}, not {found} (row {row}, counted from 0); {remedy}")
+            numbers = table[row].tolist()
+            raise InputError(f"{name}: {thing}, not {numbers} (row {row}, counted from 0); {remedy}")
 
 
 def is_shaped(name: str, table: AnyArray, what: str, rows: int | None, widths: tuple[int, ...]) -> None:
@@ -269,10 +269,10 @@ def read_notes(path: Path) -> TableNotes:
         _refuse(path, "part_names must be strings, one for each part, not others")
     if len(set(names)) != len(names):
         _refuse(path, "part_names must differ, not repeat")
-    found: list[Problem] = []
-    angle = CREASE_ANGLES.held(content["crease_angle"], ("crease_angle",), found)
+    problems: list[Problem] = []
+    angle = CREASE_ANGLES.held(content["crease_angle"], ("crease_angle",), problems)
     if not isinstance(angle, float):
-        _refuse(path, found[0].sentence.partition(";")[0])
+        _refuse(path, problems[0].sentence.partition(";")[0])
     if not isinstance(scalars, list) or len(scalars) > MOST_SCALARS or not all(map(_is_scalar, scalars)):
         _refuse(
             path, f"scalars must be at most {MOST_SCALARS} names, each of 'node' or 'polygon', not others"
@@ -348,7 +348,10 @@ def read_npy_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
     part_numbers, names = _parts(folder, tables.polygon_count, notes)
     is_plain = placement.up == "z" and placement.scale == 1
     normals = _normals(folder, tables.polygon_count) if is_plain and wanted == angle else None
-    known = None if notes is None or not is_plain else notes.planes
+    has_planes = None if notes is None or not is_plain else notes.planes
+    planes: Any = ...
+    if has_planes is not None:
+        planes = _planes(folder, tables.polygon_count) if has_planes else None
     mesh = Mesh.of_tables(
         *_placed(tables, placement),
         part_numbers,
@@ -356,7 +359,7 @@ def read_npy_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
         wanted,
         () if notes is None else _scalars(folder, notes, tables),
         normals=normals,
-        shared_planes=... if known is None else _planes(folder, tables.polygon_count) if known else None,
+        shared_planes=planes,
     )
     return MeshReport(mesh)
 
@@ -463,7 +466,7 @@ def _planes(folder: Path, polygons: int) -> SharedPlanes:
 
 def _scalars(folder: Path, notes: TableNotes, tables: MappedTables) -> tuple[MeshScalar, ...]:
     """The scalars that the notes name."""
-    found = []
+    scalars = []
     for number, (name, of) in enumerate(notes.scalars, 1):
         path = folder / SCALARS / f"{number}.npy"
         place, values = f"{SCALARS}/{path.name}", mapped(path)
@@ -482,8 +485,8 @@ def _scalars(folder: Path, notes: TableNotes, tables: MappedTables) -> tuple[Mes
             lambda row: (np.isnan(row) | (np.abs(row) <= LARGEST_SCALAR))[0],
             CORRECT,
         )
-        found.append(MeshScalar(name, as_read(place, values, np.float64), of))
-    return tuple(found)
+        scalars.append(MeshScalar(name, as_read(place, values, np.float64), of))
+    return tuple(scalars)
 
 
 # Writing goes in chunks: no table is copied whole. Each file is written beside its place, synced and renamed.

@@ -521,18 +521,18 @@ def read_materials(
 ) -> tuple[tuple[Surface, ...], tuple[str, ...]]:
     """The surfaces of the materials in `wanted`, and messages about what was left out or wrong.
 
-    `libraries` are the arguments of its `mtllib` statements. Where none of them is found, a file beside it
-    with the same name and the suffix .mtl is read. Where a material is defined twice, the first one counts.
+    `libraries` are the arguments of its `mtllib` statements. If there is no such file, a file beside it with
+    the same name and the suffix .mtl is read. If a material is defined twice, the first definition counts.
     """
     if not wanted:
         return (), ()
     missing: list[bytes] = []
     paths = _paths(obj, libraries, missing)
     sentences: list[str] = []
-    found: dict[str, Surface] = {}
+    surface_of: dict[str, Surface] = {}
     left = LARGEST_LIBRARIES
     for path in paths:
-        if len(found) == len(wanted):
+        if len(surface_of) == len(wanted):
             break
         try:
             data = read_bytes(path, left)
@@ -543,39 +543,39 @@ def read_materials(
             sentences.append(f"the materials have default colors: {error}")
             continue
         surfaces, notes = materials_of(data, path.name, set(wanted))
-        found = {**surfaces, **found}
+        surface_of = {**surfaces, **surface_of}
         sentences.extend(notes)
     sentences.extend(
         f"the materials have default colors: there is no library {shown(name)} in the folder of {obj.name};"
         " copy it there"
         for name in missing[:MOST_LIBRARY_PROBLEMS]
     )
-    undefined = [name for name in wanted if name not in found]
-    if found and undefined:
+    undefined = [name for name in wanted if name not in surface_of]
+    if surface_of and undefined:
         more = f" and {len(undefined) - 3:,} more" if len(undefined) > 3 else ""
         names = ", ".join(shown(name) for name in undefined[:3])
         sentences.append(f"no library defines material {names}{more}; default colors are used")
-    return tuple(found[name] for name in wanted if name in found), tuple(sentences)
+    return tuple(surface_of[name] for name in wanted if name in surface_of), tuple(sentences)
 
 
 def _paths(obj: Path, libraries: Sequence[bytes], missing: list[bytes]) -> list[Path]:
-    """The paths of the libraries, at most MOST_LIBRARIES; the arguments of those not found are collected."""
+    """The paths of the libraries, at most MOST_LIBRARIES; arguments without a file are added to `missing`."""
     folder = obj.parent
-    found: dict[str, Path] = {}
+    paths: dict[str, Path] = {}
     for library in dict.fromkeys(libraries[:MOST_LIBRARIES]):
         # The argument is one name with spaces, or several names.
         path = _path(folder, library)
         several = [path] if path else [_path(folder, name) for name in library.split()[:MOST_LIBRARIES]]
         if not any(several):
             missing.append(library)
-        found.update({os.path.realpath(path): path for path in several if path is not None})
-    if not found:
+        paths.update({os.path.realpath(path): path for path in several if path is not None})
+    if not paths:
         beside = _path(folder, os.fsencode(f"{obj.stem}.mtl"))
-        found = {} if beside is None else {"": beside}
+        paths = {} if beside is None else {"": beside}
         # What is named may have been renamed together with the OBJ file.
         if beside is not None:
             missing.clear()
-    return list(found.values())[:MOST_LIBRARIES]
+    return list(paths.values())[:MOST_LIBRARIES]
 
 
 def _path(folder: Path, name: bytes) -> Path | None:

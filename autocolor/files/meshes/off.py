@@ -117,17 +117,18 @@ def _polygons(
         owner = np.repeat(np.arange(len(sizes)), limits[rows] - begins[rows])
         place = np.arange(end - at) - starts[owner]
         chosen = np.flatnonzero((place >= 1) & (place <= sizes[owner]))
-        found = numbers[chosen]
-        wrong = np.flatnonzero(~((found >= 0) & (found < nodes) & (np.floor(found) == found)))
+        of_corners = numbers[chosen]
+        is_node = (of_corners >= 0) & (of_corners < nodes) & (np.floor(of_corners) == of_corners)
+        wrong = np.flatnonzero(~is_node)
         if len(wrong):
             raise text.wrong(
                 at + int(chosen[wrong[0]]), f"a corner must be a node number from 0 to {nodes - 1:,}"
             )
-        corners.append(found.astype(np.intp))
+        corners.append(of_corners.astype(np.intp))
     return np.concatenate(corners), counts, int(limits[-1])
 
 
 def begins_as_off(head: bytes) -> bool:
     """Whether a file begins with the keyword of an OFF file."""
-    found = KEYWORD.match(head)
-    return found is not None and KNOWN.fullmatch(found[1]) is not None
+    keyword = KEYWORD.match(head)
+    return keyword is not None and KNOWN.fullmatch(keyword[1]) is not None

@@ -23,7 +23,7 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, chunks
 from autocolor.checks import LARGEST_COORDINATE, listed, printable
 from autocolor.errors import InputError
-from autocolor.files.meshes.found_scalars import FoundScalars
+from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import MOST_PROBLEMS
 from autocolor.files.meshes.ply_elements import (
     FACE,
@@ -164,7 +164,7 @@ def ply_polygons(
     ]
     part = _part_property(faces, comments)
     part_numbers, names = _parts(faces, part, comments, stem, len(counts))
-    scalars = FoundScalars()
+    scalars = FileScalars()
     for rows, of in ((vertices, NODE), (faces, POLYGON)):
         for name, column in rows.columns.items() if rows is not None else ():
             is_part = of == POLYGON and name == part
@@ -251,9 +251,9 @@ def _part_property(faces: ElementRows | None, comments: Comments) -> str | None:
             continue
         if not (np.abs(column) < LARGEST_INDEX).all() or not _are_whole(column):
             continue
-        found = np.unique(column)
-        if len(found) <= MOST_UNNAMED_PARTS or (
-            name == PART and all(number in comments.parts for number in found.tolist())
+        different_numbers = np.unique(column)
+        if len(different_numbers) <= MOST_UNNAMED_PARTS or (
+            name == PART and all(number in comments.parts for number in different_numbers.tolist())
         ):
             return name
     return None
@@ -268,9 +268,9 @@ def _parts(
         return np.zeros(polygons, np.intp), different(names)
     column = faces.columns[part]
     assert not isinstance(column, Lists)
-    found = np.unique(column.astype(np.int64))
+    used_numbers = np.unique(column.astype(np.int64))
     named = comments.parts if part == PART else {}
-    numbers = np.union1d(found, np.array(sorted(named), np.int64))
+    numbers = np.union1d(used_numbers, np.array(sorted(named), np.int64))
     names = [named.get(number, f"{part} {number}") for number in numbers.tolist()]
     return np.searchsorted(numbers, column.astype(np.int64)).astype(np.intp), different(names)
 
@@ -299,8 +299,8 @@ def triangles_of_strips(numbers: Indices, counts: Indices) -> tuple[Indices, Ind
     turned = places[thirds] % 2 == 1
     triangles = np.stack([np.where(turned, between, before), np.where(turned, before, between), last], axis=1)
     differ = (before != between) & (between != last) & (last != before)
-    kept = triangles[differ]
-    return kept.ravel(), np.full(len(kept), 3, np.intp)
+    visible = triangles[differ]
+    return visible.ravel(), np.full(len(visible), 3, np.intp)
 
 
 ROWS_AT_ONCE: Final = 1 << 16
@@ -372,7 +372,7 @@ def _faces(mesh: Mesh, chunk: slice, scalars: list[tuple[str, MeshScalar]], has_
         rows[name] = scalar.values[chunk]
     if not is_triangle.any():
         return rows.tobytes()
-    kept = np.ones((len(rows), rows.itemsize), np.bool_)
+    is_written = np.ones((len(rows), rows.itemsize), np.bool_)
     first = rows.dtype.fields["corner 3"][1]  # type: ignore[index]
-    kept[is_triangle, first : first + 4] = False
-    return rows.view(np.uint8).reshape(kept.shape)[kept].tobytes()
+    is_written[is_triangle, first : first + 4] = False
+    return rows.view(np.uint8).reshape(is_written.shape)[is_written].tobytes()

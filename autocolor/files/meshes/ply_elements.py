@@ -105,8 +105,10 @@ def parsed_header(data: bytes, place: str) -> PlyHeader:
     if problem := text_problem(data[:2]):
         raise InputError(f"{place}: a PLY file {problem}")
     if not FIRST_LINE.match(data):
-        found = shown(data[:HEAD].split(b"\n")[0].strip())
-        raise InputError(f"{place}: a PLY file must begin with a line 'ply', not {found}; export it again")
+        first_line = shown(data[:HEAD].split(b"\n")[0].strip())
+        raise InputError(
+            f"{place}: a PLY file must begin with a line 'ply', not {first_line}; export it again"
+        )
     order: str | None = None
     names: list[tuple[str, int]] = []
     properties: list[list[Property]] = []
@@ -364,7 +366,7 @@ def _walk(data: bytes, at: int, element: Element, order: str, place: str) -> tup
     Measured: a million triangles and quads, in any order, in a fifth of a second.
     """
     steps, tail = _steps(element.properties)
-    found: list[AnyArray] = []
+    blocks: list[AnyArray] = []
     for first in range(0, element.count, ROWS_AT_ONCE):
         counts: list[int] = []
         rows = min(ROWS_AT_ONCE, element.count - first)
@@ -384,9 +386,9 @@ def _walk(data: bytes, at: int, element: Element, order: str, place: str) -> tup
         if at > len(data):
             _refuse_short(place, element, "all their lists before the end, not after it")
         if not element.is_used:
-            found.clear()
-        found.append(np.array(counts, np.intp).reshape(rows, -1))
-    return list(np.ascontiguousarray(np.concatenate(found).T)), at
+            blocks.clear()
+        blocks.append(np.array(counts, np.intp).reshape(rows, -1))
+    return list(np.ascontiguousarray(np.concatenate(blocks).T)), at
 
 
 def _steps(properties: tuple[Property, ...]) -> tuple[list[Step], int]:
@@ -493,14 +495,14 @@ def _text_columns(
     columns: dict[str, Column] = {}
     at = begins.copy()
 
-    def refuse_width(is_wrong: Booleans, found: str) -> None:
+    def refuse_width(is_wrong: Booleans, fault: str) -> None:
         if not is_wrong.any():
             return
         names = ", ".join(each.name for each in element.properties[:8])
         more = ", ..." if len(element.properties) > 8 else ""
         raise InputError(
             f"{text.place}, line {text.line(int(begins[is_wrong.argmax()]))}: a line of an element"
-            f" {element.name!r} must have the values of {names}{more}, and this {found}; correct it"
+            f" {element.name!r} must have the values of {names}{more}, and this {fault}; correct it"
         )
 
     for each in element.properties:

@@ -177,12 +177,12 @@ def _without_repeats(corners: Indices, counts: Indices) -> tuple[Indices, Indice
     ends = np.cumsum(counts)
     filled = counts > 0
     following[ends[filled] - 1] = (ends - counts)[filled]
-    kept = corners != corners[following]
-    if kept.all():
+    differs = corners != corners[following]
+    if differs.all():
         return corners, counts, np.zeros(len(counts), np.bool_)
     owners = np.repeat(np.arange(len(counts)), counts)
-    kept_counts = np.bincount(owners[kept], minlength=len(counts))
-    return corners[kept], kept_counts, kept_counts != counts
+    kept_counts = np.bincount(owners[differs], minlength=len(counts))
+    return corners[differs], kept_counts, kept_counts != counts
 
 
 def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
@@ -215,8 +215,8 @@ def _far_from_flat(one: Floats, other: Floats, squares: Floats) -> Booleans:
     """Whether the triangles of two edges, (3, n), have area for sure; `squares` are at least the other's."""
     normals = cross(one, other)
     sizes = np.maximum(dot(one, one), squares)
-    found: Booleans = dot(normals, normals) > np.maximum(SURE * sizes * sizes, LEAST_SQUARE)
-    return found
+    are_far: Booleans = dot(normals, normals) > np.maximum(SURE * sizes * sizes, LEAST_SQUARE)
+    return are_far
 
 
 def _are_flat(corners: Floats) -> Booleans:
@@ -262,14 +262,14 @@ def different(names: Sequence[str], addition: str = "") -> tuple[str, ...]:
     >>> different(["hood", "hood", "hood"])
     ('hood', 'hood 2', 'hood 3')
     """
-    found: dict[str, None] = {}
+    unique_names: dict[str, None] = {}
     counts: dict[str, int] = {}
     for name in names:
-        unique = name if name not in found else f"{name}{addition}"
+        unique = name if name not in unique_names else f"{name}{addition}"
         number = counts.get(name, 1)
-        while unique in found:
+        while unique in unique_names:
             number += 1
             unique = f"{name}{addition} {number}"
         counts[name] = number
-        found[unique] = None
-    return tuple(found)
+        unique_names[unique] = None
+    return tuple(unique_names)

@@ -77,9 +77,9 @@ def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], tuple[st
         )
     if b"\r" in data:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    found = read_text(data, path.name)
-    names = different([name_of(name) or path.stem for name in found.names])
-    return found.corners, found.part_numbers, names, found.messages
+    triangles = read_text(data, path.name)
+    names = different([name_of(name) or path.stem for name in triangles.names])
+    return triangles.corners, triangles.part_numbers, names, triangles.messages
 
 
 def _is_text(data: bytes) -> bool:
@@ -190,12 +190,12 @@ def read_text(data: bytes, place: str) -> TextTriangles:
     begin = 0
     for match in chain(SOLID.finditer(data), (None,)):
         end = len(data) if match is None else match.start()
-        found = [_corners(data, *block, place) for block in _blocks(data, begin, end, place)]
-        if name is None and found:
+        corners_of_solid = [_corners(data, *block, place) for block in _blocks(data, begin, end, place)]
+        if name is None and corners_of_solid:
             _refuse(data, begin, place, "a facet must stand in a solid, not outside; add a line 'solid'")
-        if name is not None and found:
-            corners += found
-            counts.append(sum(map(len, found)) // 3)
+        if name is not None and corners_of_solid:
+            corners += corners_of_solid
+            counts.append(sum(map(len, corners_of_solid)) // 3)
             names.append(name)
         if match is None:
             break
@@ -217,12 +217,12 @@ def _blocks(data: bytes, begin: int, end: int, place: str) -> Iterator[tuple[int
     """The facets between two places, in blocks of about BLOCK bytes, by where these begin and end."""
     while begin < end:
         most = min(begin + BLOCK, end)
-        found = ENDFACET.search(data, most, min(most + LONGEST_FACET, end))
-        if found is None and most + LONGEST_FACET < end:
+        end_of_facet = ENDFACET.search(data, most, min(most + LONGEST_FACET, end))
+        if end_of_facet is None and most + LONGEST_FACET < end:
             _refuse(
                 data, most, place, f"a facet must have at most {LONGEST_FACET:,} bytes, not more; correct it"
             )
-        stop = end if found is None else found.end()
+        stop = end if end_of_facet is None else end_of_facet.end()
         if data[begin:stop].strip():
             yield begin, stop
         begin = stop

@@ -4,7 +4,7 @@
 - UNSTRUCTURED_GRID: polygons of all kinds, and the outer surface of volume cells (see `cells`).
 - STRUCTURED_GRID, RECTILINEAR_GRID and STRUCTURED_POINTS of one layer: its quads.
 
-The data of nodes and cells are scalars of the mesh (see `found_scalars`). The file is one part, of its name.
+The data of nodes and cells are scalars of the mesh (see `file_scalars`). The file is one part, of its name.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from autocolor.arrays import AnyArray, Floats, Indices, Numbers, runs
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
-from autocolor.files.meshes.found_scalars import FoundScalars
+from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import HEAD, LARGEST_MESH_FILE, read_bytes, shown
@@ -85,8 +85,8 @@ def _dataset(cursor: VtkCursor) -> bytes:
 def _read_cells(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
     """The nodes and cells of POLYDATA or an UNSTRUCTURED_GRID. Raises InputError."""
     if dataset not in (b"POLYDATA", b"UNSTRUCTURED_GRID"):
-        known = ", ".join(["POLYDATA", "UNSTRUCTURED_GRID", *(each.decode() for each in LAYERS)])
-        raise cursor.error(f"the DATASET must be one of {known}, not {shown(dataset)}; take its surface")
+        datasets = ", ".join(["POLYDATA", "UNSTRUCTURED_GRID", *(each.decode() for each in LAYERS)])
+        raise cursor.error(f"the DATASET must be one of {datasets}, not {shown(dataset)}; take its surface")
     coordinates: Floats | None = None
     cells, lists = VtkCells(), None
     while (keyword := cursor.peek()) and keyword not in TABLES:
@@ -634,7 +634,7 @@ class Attributes:
         self.cursor = cursor
         self.counts = counts
         self.rows = rows
-        self.scalars = FoundScalars()
+        self.scalars = FileScalars()
         self.of: str | None = None
         self.skipped: Counter[str] = Counter()
 
@@ -673,8 +673,8 @@ class Attributes:
 
     def _attribute(self, keyword: bytes, words: list[bytes]) -> bool:
         """Read one attribute; False if its keyword is unknown."""
-        known = (b"SCALARS", b"COLOR_SCALARS", b"LOOKUP_TABLE", b"TEXTURE_COORDINATES")
-        if keyword not in (*known, *COMPONENTS, *IGNORED):
+        others = (b"SCALARS", b"COLOR_SCALARS", b"LOOKUP_TABLE", b"TEXTURE_COORDINATES")
+        if keyword not in (*others, *COMPONENTS, *IGNORED):
             return False
         least = 4 if keyword == b"TEXTURE_COORDINATES" else 3
         if len(words) < least:
