@@ -246,7 +246,7 @@ class Session:
         return self._world[2]
 
     def _names_in(self, table: str) -> tuple[str, ...]:
-        return tuple(row.name for row in vars(self.scene)[table])
+        return tuple([row.name for row in vars(self.scene)[table]])
 
     def turn_to(self, screen: str) -> None:
         """Turn to a screen by its name."""

@@ -43,6 +43,8 @@ def short_label(label: str, most: int) -> str:
     >>> short_label("normal reflectance", 12), short_label("x minimum", 7), short_label("cone angle", 10)
     ('normal refl.', 'x min.', 'cone angle')
     """
+    if len(label) <= most:
+        return label
     words = label.split(" ")
     for number in sorted(range(len(words)), key=lambda each: -len(words[each])):
         excess = len(" ".join(words)) - most

@@ -19,7 +19,7 @@ from autocolor.scene.lights import Light
 from autocolor.screens.input import Gesture, turn_between, wheel_ratio
 from autocolor.screens.light_and_view.handles import FLAP, grip_of, handles_in, target_in, told
 from autocolor.screens.light_and_view.marks import SideItems, drawn_items, flap_marks
-from autocolor.screens.light_and_view.object_lines import Kept, ObjectLines, ObjectStrokes, visible_depths
+from autocolor.screens.light_and_view.object_lines import Cached, ObjectLines, ObjectStrokes, visible_depths
 from autocolor.screens.light_and_view.orthographic_views import (
     AXES,
     PICTURE_AREA,
@@ -72,8 +72,8 @@ class DisplayView:
         self._session = session
         self._lines = lines
         self.shown = PICTURE
-        self._picture: Kept[Item] = Kept()
-        self._mesh: Kept[list[Item]] = Kept()
+        self._picture: Cached[Item] = Cached()
+        self._mesh: Cached[list[Item]] = Cached()
         self._visible: VisiblePoints | None = None
         """The visible points by which hidden edges were left out last."""
 
@@ -233,7 +233,7 @@ class LightAndViewScreen(Screen):
         self._lines = ObjectLines()
         self._sides = {side: SideItems(side) for side in SIDES}
         self._display = DisplayView(session, self._lines)
-        self._handles: Kept[list[Handle]] = Kept()
+        self._handles: Cached[list[Handle]] = Cached()
         self._views: OrthographicViews | None = None
         self._eye_is_chosen = False
         self._moved: Vector | None = None

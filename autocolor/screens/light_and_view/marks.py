@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
-from autocolor.screens.light_and_view.object_lines import Kept, ObjectStrokes
+from autocolor.screens.light_and_view.object_lines import Cached, ObjectStrokes
 from autocolor.screens.light_and_view.orthographic_views import AXES, PICTURE_ASPECT, OrthographicViews, Side
 from autocolor.widgets.items import (
     BLUE,
@@ -104,7 +105,7 @@ def eye_marks(
     picture = together([between(np.broadcast_to(at, (4, 2)), corners), joined([*corners, corners[0]])])
     eye = together([joined(LIDS + at), joined(PUPIL + at)])
     direction = arrow(at, views.position(side, target))
-    return EyeMarks(*(clipped(strokes, side.area) for strokes in (eye, direction, picture)))
+    return EyeMarks(clipped(eye, side.area), clipped(direction, side.area), clipped(picture, side.area))
 
 
 def picture_corners(view: View, target: Vector, aspect: float = PICTURE_ASPECT) -> Floats:
@@ -229,7 +230,7 @@ def light_marks(views: OrthographicViews, side: Side, light: Light) -> LightMark
         if light.cone_angle is not None:
             cone = together([joined(each) for each in cone_outline(views, side, light, end)])
     cross = CROSS + np.tile(at, 2)
-    return LightMarks(*(clipped(strokes, side.area) for strokes in (cross, shaft, cone)))
+    return LightMarks(clipped(cross, side.area), clipped(shaft, side.area), clipped(cone, side.area))
 
 
 def flap_marks(views: OrthographicViews, side: Side, light: Light) -> tuple[FlapMark, ...]:
@@ -313,7 +314,7 @@ def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> lis
     `taken` are areas that should stay free, as far as can be.
     """
     seen = [cross for cross in crosses if area.has(cross.element, cross.line)]
-    filled = [*taken, *(cross.area for cross in seen)]
+    filled = [*taken, *[cross.area for cross in seen]]
     found = []
     for cross in seen:
         best, least = None, math.inf
@@ -322,7 +323,7 @@ def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> lis
             if not area.covers(place):
                 continue
             toward = (right * cross.arrow[0] + down * cross.arrow[1]) / math.hypot(right, down)
-            burden = sum(place.overlaps(other) for other in filled) + (toward > NEAR_ARROW) / 2
+            burden = sum(map(place.overlaps, filled)) + (toward > NEAR_ARROW) / 2
             if burden < least:
                 best, least = place, burden
             if least == 0:
@@ -342,11 +343,11 @@ class SideItems:
 
     def __init__(self, side: Side) -> None:
         self._side = side
-        self._eye: Kept[EyeMarks] = Kept()
-        self._still: Kept[list[Item]] = Kept()
-        self._chosen: Kept[list[Item]] = Kept()
-        self._numerals: Kept[list[Numeral]] = Kept()
-        self._lights: Kept[tuple[Light, ...]] = Kept()
+        self._eye: Cached[EyeMarks] = Cached()
+        self._still: Cached[list[Item]] = Cached()
+        self._chosen: Cached[list[Item]] = Cached()
+        self._numerals: Cached[list[Numeral]] = Cached()
+        self._lights: Cached[tuple[Light, ...]] = Cached()
         title = f"{side.name}   {AXES[side.right]} >  {AXES[side.up]} ^"
         self._label = text(title, side.area.left + 8, side.area.top + 4, GRAY)
 
@@ -382,7 +383,7 @@ class SideItems:
             self._label,
             *([] if moved is None else [lines_across(views, side, moved)]),
             *self._still.of(still, views, eye, strokes, bool(ours), *tables),
-            *self._chosen.of(above, views, eye, *(light for _, light in ours)),
+            *self._chosen.of(above, views, eye, *[light for _, light in ours]),
             *self._numeral_items(views, view, others, ours),
         ]
 
@@ -396,13 +397,13 @@ class SideItems:
         def found() -> list[Numeral]:
             return numerals([cross_of(views, side, *each) for each in others], side.area, taken)
 
-        kept = self._numerals.of(found, views, view, *(part for each in others for part in each))
+        kept = self._numerals.of(found, views, view, *chain.from_iterable(others))
         around = [area for cross, area in kept] + [cross.area for cross, _ in kept]
         own = numerals([cross_of(views, side, *each) for each in ours], side.area, [*taken, *around])
         is_on = {number: light.on for number, light in others}
         return [
-            *(numeral_item(each, WHITE if is_on[each.cross.number] else GRAY) for each in kept),
-            *(numeral_item(each, YELLOW) for each in own),
+            *[numeral_item(each, WHITE if is_on[each.cross.number] else GRAY) for each in kept],
+            *[numeral_item(each, YELLOW) for each in own],
         ]
 
 
@@ -454,7 +455,8 @@ def cross_of(views: OrthographicViews, side: Side, number: int, light: Light) ->
     element, line = views.position(side, light.position)
     end, arrow = arrow_end(views, light), (0.0, 0.0)
     if end is not None:
-        right, down = (a - b for a, b in zip(views.position(side, end), (element, line), strict=True))
+        to_element, to_line = views.position(side, end)
+        right, down = to_element - element, to_line - line
         length = math.hypot(right, down)
         # An arrow that points at the viewer or away is in no place's way.
         if length > SHORTEST:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from operator import is_
 from typing import Final, Generic, NamedTuple, TypeVar
 
 import numpy as np
@@ -330,33 +331,27 @@ def _between(edges: MeshEdges, facing: Booleans) -> Indices:
     return np.take(edges.smooth, np.flatnonzero(found), axis=0)
 
 
-# -------------------- kept
-# Values that are kept while what they are made of is the same, so that a movement makes only what moved.
-
 Value = TypeVar("Value")
 
 
-class Kept(Generic[Value]):
-    """The last value that was made, for as long as its sources are the same objects.
+class Cached(Generic[Value]):
+    """The last computed value, for as long as its sources are the same objects.
 
-    Scenes share with the one before all that an edit did not change, so that it need not be compared.
+    A scene shares with the scene before the edit all that the edit did not change, so nothing is compared by
+    value. A movement computes again only what moved.
     """
 
     def __init__(self) -> None:
         self._sources: tuple[object, ...] | None = None
         self._value: Value
 
-    def of(self, make: Callable[[], Value], *sources: object) -> Value:
-        """The value of some sources, made by a function if one of them is another object than before."""
-        known = self._sources
-        if known is None or len(known) != len(sources) or any(map(_differ, known, sources)):
-            self._value = make()
+    def of(self, compute: Callable[[], Value], *sources: object) -> Value:
+        """The value of some sources, computed if one of them is another object than before."""
+        cached = self._sources
+        if cached is None or len(cached) != len(sources) or not all(map(is_, cached, sources)):
+            self._value = compute()
             self._sources = sources
         return self._value
-
-
-def _differ(one: object, other: object) -> bool:
-    return one is not other
 
 
 class ObjectStrokes(NamedTuple):
@@ -387,7 +382,7 @@ class ObjectLines:
 
     def __init__(self) -> None:
         self._found: _Found | None = None
-        self._strokes: dict[str, Kept[ObjectStrokes]] = {side.name: Kept() for side in SIDES}
+        self._strokes: dict[str, Cached[ObjectStrokes]] = {side.name: Cached() for side in SIDES}
 
     def of_side(self, scene: Scene, views: OrthographicViews, side: Side) -> ObjectStrokes:
         """The lines in one of the three views, the same as before if nothing changed."""
