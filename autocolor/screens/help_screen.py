@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from autocolor.screens.pointing import rows_of_help
 from autocolor.screens.screen import Screen
 from autocolor.widgets.items import LIGHT_GRAY, ORANGE, WHITE, YELLOW, Item, text
 
@@ -32,7 +31,7 @@ class HelpScreen(Screen):
     shows_scene = False
 
     def items(self) -> Sequence[Item]:
-        return help_items(TITLE, rows_of_help())
+        return help_items(TITLE, self.session.keys)
 
 
 def help_items(title: str, rows: Sequence[tuple[str, str]]) -> list[Item]:

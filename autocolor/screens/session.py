@@ -7,6 +7,7 @@ coarse while it moves.
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
@@ -212,6 +213,8 @@ class Session:
         """Whether the next edit is one of a movement, whose pictures may be coarse."""
         self.has_keyboard = False
         """Whether something can be typed."""
+        self.keys: Sequence[tuple[str, str]] = ()
+        """Each key and what it does, for the help page."""
         self.is_at_hand = False
         """Whether the user sits at this machine; a pointer from elsewhere keeps to the folder."""
         self.mesh_up, self.mesh_scale = "z", 1.0
