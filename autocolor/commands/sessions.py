@@ -142,5 +142,5 @@ def _tell_left(viewer: Viewer) -> None:
         err=True,
     )
     viewer.tell(
-        "a session was left: autocolor view --recover opens it; the right edge: the menu", stands=True
+        "a session was left: autocolor view --recover opens it; the right edge: the menu", persistent=True
     )

@@ -36,8 +36,8 @@ class HelpScreen(Screen):
 
 def help_items(title: str, rows: Sequence[tuple[str, str]]) -> list[Item]:
     """A title, a line for each row (keys, what they do), and the limits of the method."""
-    found = [text(title, LEFT, 22, YELLOW, size=2)]
+    items = [text(title, LEFT, 22, YELLOW, size=2)]
     for number, (keys, does) in enumerate(rows):
         top = TOP + STEP * number
-        found += [text(keys, LEFT, top, ORANGE), text(does, MIDDLE, top, WHITE)]
-    return found + [text(line, LEFT, 438 + 12 * number, LIGHT_GRAY) for number, line in enumerate(LIMITS)]
+        items += [text(keys, LEFT, top, ORANGE), text(does, MIDDLE, top, WHITE)]
+    return items + [text(line, LEFT, 438 + 12 * number, LIGHT_GRAY) for number, line in enumerate(LIMITS)]

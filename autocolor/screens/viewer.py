@@ -34,7 +34,7 @@ from autocolor.screens.reflectance_screen import ReflectanceScreen
 from autocolor.screens.scalar_screen import ScalarScreen
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
-from autocolor.screens.variants_screen import KeptScreen
+from autocolor.screens.variants_screen import VariantsScreen
 from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import HostPort, PortError, RamtekError, ReplyError
@@ -151,7 +151,7 @@ class Viewer:
         self._mouse.forget()
         self._sheet.forget()
         self._unit.show()
-        self.session.tell("F1: help; Tab or the right edge: the menu", stands=True)
+        self.session.tell("F1: help; Tab or the right edge: the menu", persistent=True)
         self._update()
 
     @property
@@ -290,12 +290,12 @@ class Viewer:
         if self.session.disk.was_changed() and self._do(None, self.session.take_changes):
             self._update()
 
-    def tell(self, message: str, stands: bool = False) -> None:
+    def tell(self, message: str, persistent: bool = False) -> None:
         """Show a message of the window; an empty one takes the last one away at once.
 
         One that `stands` does so until something is done.
         """
-        self.session.tell(message, stands=stands)
+        self.session.tell(message, persistent=persistent)
         self._update()
 
     def _update(self) -> None:
@@ -445,7 +445,7 @@ SCREENS: Final[tuple[type[Screen], ...]] = (
     BlendingScreen,
     MappingScreen,
     ScalarScreen,
-    KeptScreen,
+    VariantsScreen,
     FileScreen,
     EntriesScreen,
     HelpScreen,

@@ -93,15 +93,15 @@ class Bar(Widget):
     def _row_items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
         value = self._row_number + ("" if self.flip is None else BESIDE_BOX)
-        found = self.labeled_row(lit, value)
+        items = self.labeled_row(lit, value)
         if self.flip is not None:
-            found += box_items(self._box, self.value is not None, self.ink, background)
+            items += box_items(self._box, self.value is not None, self.ink, background)
         track = self._track
-        found.append(filled(track, GRAY if lit else SLATE))
+        items.append(filled(track, GRAY if lit else SLATE))
         if self.value is not None and not self.why_not:
             end = track.left + round(self.share * (track.width - 1))
-            found.append(filled(track._replace(right=end), YELLOW if lit else self.word))
-        return found
+            items.append(filled(track._replace(right=end), YELLOW if lit else self.word))
+        return items
 
     @property
     def _row_number(self) -> str:
@@ -119,17 +119,17 @@ class Bar(Widget):
         middle = (top + bottom) // 2 - 4
         label = fitted(self.label, (track.left - left - MARGIN) // CHARACTER)
         number = fitted(f"{self.number} {self.unit}".rstrip(), (right - track.right - MARGIN) // CHARACTER)
-        found = [
+        items = [
             filled(self.area, NIGHT),
             filled(track, SLATE),
             filled(track._replace(right=end), YELLOW if lit else self.word),
             filled(Area(end, track.top - 2, end, track.bottom + 2), WHITE),
         ]
         if label:
-            found.append(text(label, left + MARGIN, middle, self.ink))
+            items.append(text(label, left + MARGIN, middle, self.ink))
         if number:
-            found.append(text(number, track.right + MARGIN, middle, self.ink))
-        return found
+            items.append(text(number, track.right + MARGIN, middle, self.ink))
+        return items
 
     @property
     def _box(self) -> Area:
@@ -313,17 +313,17 @@ class LevelBar(Widget):
         strip, ink = self.strip, YELLOW if lit else WHITE
         along = half_up(self.level * (self._length - 1) / (len(self.words) - 1))
         # The frame is seen beside dark levels, over a dark picture.
-        found = [filled(strip.inset(-1), GRAY), level_strip(self.words.tobytes(), strip, self.upright)]
+        items = [filled(strip.inset(-1), GRAY), level_strip(self.words.tobytes(), strip, self.upright)]
         if not self.upright:
             element = strip.left + along
             down, up = pointer(element, strip.top - 2, DOWN, ink), pointer(element, strip.bottom + 2, UP, ink)
-            return [*found, down, up]
+            return [*items, down, up]
         line = strip.bottom - along
-        found.append(pointer(strip.left - 2, line, RIGHT, ink))
+        items.append(pointer(strip.left - 2, line, RIGHT, ink))
         if self.number:
             left = self.area.left - CHARACTER * len(self.number)
-            found.append(text(self.number, left, line - REACH, ink, NIGHT))
-        return found
+            items.append(text(self.number, left, line - REACH, ink, NIGHT))
+        return items
 
     def pick(self, place: Place) -> object:
         return self.put(self.level_at(place))

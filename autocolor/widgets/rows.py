@@ -32,7 +32,6 @@ from autocolor.scene.row_kinds import NamedRows, Nested, Reference, References, 
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.widget import Choice, Entry, Heading, Switch, Widget, short_label
 
-# -------------------- name_rows
 # The rows of a menu for columns that refer to rows of other tables by name.
 #
 # A list of names has a switch that gives it, and then one for each known name. Many names come in pages, so
@@ -110,8 +109,8 @@ def _list_rows(
         wanted = {*value} ^ {name}
         chosen = tuple(each for each in names if each in wanted)
         is_in = name in value
-        told = f"Take {name} {'from' if is_in else 'into'} the list: {label}."
-        yield Switch(f"{INDENT}{name}", told, within=label, is_on=is_in, flip=partial(take, chosen))
+        help = f"Take {name} {'from' if is_in else 'into'} the list: {label}."
+        yield Switch(f"{INDENT}{name}", help, within=label, is_on=is_in, flip=partial(take, chosen))
 
 
 def _choose(take: TakeNames, has_none: bool, name: str) -> object:
@@ -180,27 +179,27 @@ def _rows_in(menu: _Menu, row: Row, leave_out: Sequence[str] = ()) -> Iterator[W
 
 def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator[Widget]:
     column = field.column
-    kind, told = column.kind, column.help
+    kind, help = column.kind, column.help
     shown = f"{menu.label}{name}".replace("_", " ")
     put = partial(_put, menu.put, name)
     if isinstance(kind, (Number, Whole)):
         yield _bar(menu, shown, name, field, value)
     elif isinstance(kind, SwitchKind):
-        yield Switch(shown, told, is_on=bool(value), flip=partial(put, not value))
+        yield Switch(shown, help, is_on=bool(value), flip=partial(put, not value))
     elif isinstance(kind, ChoiceKind):
-        yield Choice(shown, told, names=kind.names, present=str(value), choose=put)
+        yield Choice(shown, help, names=kind.names, present=str(value), choose=put)
     elif isinstance(kind, Text):
-        yield Entry(shown, told, value=str(value), take=put)
+        yield Entry(shown, help, value=str(value), take=put)
     elif isinstance(kind, ColorKind):
-        yield Entry(shown, told, value=in_digits(value), take=put)
+        yield Entry(shown, help, value=in_digits(value), take=put)
     elif isinstance(kind, VectorKind) and value is not None:
         yield from _vector_rows(menu, shown, name, column, value)
     elif isinstance(kind, AngleCurveKind):
-        yield from _curve_rows(menu, shown, name, kind, told, value)
+        yield from _curve_rows(menu, shown, name, kind, help, value)
     elif isinstance(kind, Referring):
         yield from reference_rows(shown, field, kind, value, put, menu.world.names)
     elif isinstance(kind, Variant):
-        yield Choice(shown, told, names=tuple(kind.classes), present=kind.name_of(value), choose=put)
+        yield Choice(shown, help, names=tuple(kind.classes), present=kind.name_of(value), choose=put)
         yield from _rows_in(menu, value)
     elif isinstance(kind, Nested) and kind.inline:
         yield from _rows_in(menu, value)
@@ -208,27 +207,27 @@ def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator
         axis = name if name in AXES else ""
         # In a narrow menu the name of the row itself is enough before those of its fields.
         inside = _Menu(put, menu.world, f"{name} ", axis)
-        yield from _rows_of_row(inside, shown, told, value)
+        yield from _rows_of_row(inside, shown, help, value)
     elif isinstance(kind, NamedRows):
         if value:
             yield Heading(shown)
         for row in value:
             inside = _Menu(partial(_put, put, row.name), menu.world, INDENT)
-            for each in _rows_of_row(inside, row.name, told, row, ("name",)):
+            for each in _rows_of_row(inside, row.name, help, row, ("name",)):
                 # Others have rows of the same labels.
                 yield replace(each, within=f"{name}.{row.name}", help=f"{row.name}: {each.help}")
 
 
 def _rows_of_row(
-    menu: _Menu, label: str, told: str, row: Row | None, leave_out: Sequence[str] = ()
+    menu: _Menu, label: str, help: str, row: Row | None, leave_out: Sequence[str] = ()
 ) -> Iterator[Widget]:
     """The rows of a row within a row, after its own switch if it has one; of an absent row, what makes it."""
     if row is None:
-        yield Switch(label, told, is_on=False, flip=partial(menu.put, {}))
+        yield Switch(label, help, is_on=False, flip=partial(menu.put, {}))
         return
     if "on" in fields_of(type(row)):
         is_on = vars(row)["on"]
-        yield Switch(label, told, is_on=is_on, flip=partial(_put, menu.put, "on", not is_on))
+        yield Switch(label, help, is_on=is_on, flip=partial(_put, menu.put, "on", not is_on))
     yield from _rows_in(menu, row, (*leave_out, "on"))
 
 
@@ -281,18 +280,18 @@ def _vector_rows(menu: _Menu, label: str, name: str, column: Column, value: Vect
 
 
 def _curve_rows(
-    menu: _Menu, label: str, name: str, kind: AngleCurveKind, told: str, curve: AngleCurve | None
+    menu: _Menu, label: str, name: str, kind: AngleCurveKind, help: str, curve: AngleCurve | None
 ) -> Iterator[Widget]:
     """A switch for a curve over angles, and a bar for the share of each of its points."""
     begun = kind.start if curve is None else None
-    yield Switch(label, told, is_on=curve is not None, flip=partial(_put, menu.put, name, begun))
+    yield Switch(label, help, is_on=curve is not None, flip=partial(_put, menu.put, name, begun))
     curve = curve or ()
     for number, (angle, share) in enumerate(curve):
         limits = kind.share_kind(number)
         usual = bar_within(limits.at_least, limits.at_most)
         yield Bar(
             f"at {angle:g} degrees",
-            told,
+            help,
             value=share,
             low=usual.low,
             high=usual.high,

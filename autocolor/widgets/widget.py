@@ -121,17 +121,17 @@ class Widget:
         ink = BLACK if chosen else self.ink
         room = self.characters
         shown = short_name(value, room)
-        found = [filled(self.area, background)]
+        items = [filled(self.area, background)]
         if shown:
             start = right + 1 - MARGIN - CHARACTER * len(shown)
-            found.append(text(shown, start, top + TEXT_DOWN, ink, background))
+            items.append(text(shown, start, top + TEXT_DOWN, ink, background))
         beside = room - len(shown) - bool(shown)
         # A value that fills the row is shown without its label: a letter or two of it would say nothing.
         label = short_name(label, beside) if beside >= min(len(label), LABEL_LETTERS) else ""
         if label:
             quiet = LIGHT_GRAY if value and ink == WHITE else ink
-            found.append(text(label, left + MARGIN, top + TEXT_DOWN, quiet, background))
-        return found
+            items.append(text(label, left + MARGIN, top + TEXT_DOWN, quiet, background))
+        return items
 
     def labeled_row(self, lit: bool, value: str) -> list[Item]:
         """The items of a row with the widget's own label, shortened where the value needs the room."""
@@ -187,8 +187,8 @@ class Switch(Widget):
 
     def items(self, lit: bool) -> list[Item]:
         background = WHITE if self.is_chosen else SLATE if lit else NIGHT
-        found = self.row(lit, self.label, "  ", self.is_chosen)
-        return [*found, *box_items(self._box, self.is_on, BLACK if self.is_chosen else self.ink, background)]
+        items = self.row(lit, self.label, "  ", self.is_chosen)
+        return [*items, *box_items(self._box, self.is_on, BLACK if self.is_chosen else self.ink, background)]
 
     @property
     def _box(self) -> Area:
@@ -207,8 +207,8 @@ class Switch(Widget):
 
 def box_items(area: Area, is_on: bool, word: int, background: int) -> list[Item]:
     """A box, full or empty."""
-    found = [filled(area, word), filled(area.inset(1), background)]
-    return [*found, filled(area.inset(2), word)] if is_on else found
+    items = [filled(area, word), filled(area.inset(1), background)]
+    return [*items, filled(area.inset(2), word)] if is_on else items
 
 
 @dataclass(frozen=True)
@@ -292,9 +292,9 @@ class Pair(Widget):
         background = SLATE if lit else NIGHT
         middle = self._middle
         most = (middle - self.area.left - MARGIN) // 7
-        found = self.row(lit, fitted(self.label, most))
+        items = self.row(lit, fitted(self.label, most))
         other = fitted(self.other, most)
-        return [*found, text(other, middle, self.area.top + TEXT_DOWN, self.ink, background)]
+        return [*items, text(other, middle, self.area.top + TEXT_DOWN, self.ink, background)]
 
     @property
     def _middle(self) -> int:

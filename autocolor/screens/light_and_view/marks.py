@@ -41,7 +41,6 @@ from autocolor.widgets.items import (
 )
 from ramtek_emu import instructions
 
-# -------------------- arrows
 # Arrows on the screen: a shaft and a head that is the same size however long the shaft is.
 
 HEAD: Final = 7.0
@@ -72,7 +71,6 @@ def arrow(start: tuple[float, float], end: tuple[float, float]) -> Floats:
     return together([shaft, joined(head)])
 
 
-# -------------------- eye_marks
 # The marks of the eye in the three views: an eye, its view direction, and the edges of the picture.
 #
 # Paper: Figure 5, "Each view shows the eye position and view direction". Assumed: the edges of the picture
@@ -120,7 +118,6 @@ def picture_corners(view: View, target: Vector, aspect: float = PICTURE_ASPECT) 
     return np.array(view.eye) + depth * np.array(rays)
 
 
-# -------------------- cone_outline
 # The outline of a light's cone as it is seen in one of the three views.
 #
 # The cone is drawn as far as the end of the arrow: its rim is a circle of points at that distance from the
@@ -181,7 +178,6 @@ def _perpendicular(axis: Floats) -> tuple[Floats, Floats]:
     return one, np.cross(axis, one)
 
 
-# -------------------- light_marks
 # The marks of a light in the three views: its cross, the arrow to its aim, its cone and its flaps.
 #
 # Paper: Figure 5, "the position and direction of each light. Point source lights would be shown with only a
@@ -258,7 +254,6 @@ def flap_marks(views: OrthographicViews, side: Side, light: Light) -> tuple[Flap
     return tuple(marks)
 
 
-# -------------------- numerals
 # The numerals beside the lights in the three views, each where it hides as little as can be.
 
 REACH: Final = 4
@@ -315,7 +310,7 @@ def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> lis
     """
     seen = [cross for cross in crosses if area.has(cross.element, cross.line)]
     filled = [*taken, *[cross.area for cross in seen]]
-    found = []
+    placed = []
     for cross in seen:
         best, least = None, math.inf
         for right, down in PLACES:
@@ -329,9 +324,9 @@ def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> lis
             if least == 0:
                 break
         if best is not None:
-            found.append(Numeral(cross, best))
+            placed.append(Numeral(cross, best))
             filled.append(best)
-    return found
+    return placed
 
 
 Numbered = tuple[int, Light]
@@ -394,15 +389,15 @@ class SideItems:
         side = self._side
         taken = [self._label.area, area_around(joined(LIDS + views.position(side, view.eye)))]
 
-        def found() -> list[Numeral]:
+        def compute() -> list[Numeral]:
             return numerals([cross_of(views, side, *each) for each in others], side.area, taken)
 
-        kept = self._numerals.of(found, views, view, *chain.from_iterable(others))
-        around = [area for cross, area in kept] + [cross.area for cross, _ in kept]
+        placed = self._numerals.of(compute, views, view, *chain.from_iterable(others))
+        around = [area for cross, area in placed] + [cross.area for cross, _ in placed]
         own = numerals([cross_of(views, side, *each) for each in ours], side.area, [*taken, *around])
         is_on = {number: light.on for number, light in others}
         return [
-            *[numeral_item(each, WHITE if is_on[each.cross.number] else GRAY) for each in kept],
+            *[numeral_item(each, WHITE if is_on[each.cross.number] else GRAY) for each in placed],
             *[numeral_item(each, YELLOW) for each in own],
         ]
 
@@ -475,13 +470,13 @@ def lines_across(views: OrthographicViews, side: Side, point: Vector) -> Item:
 
 def drawn_items(layers: Mapping[int, Sequence[Floats]]) -> list[Item]:
     """Strokes that are clipped already, by their words, each with the area that they need."""
-    found = []
+    items = []
     for word, parts in layers.items():
         strokes = together(parts)
         if len(strokes):
             stream = instructions.write_segments(rounded(strokes), word).tobytes()
-            found.append(Item(area_around(strokes), stream))
-    return found
+            items.append(Item(area_around(strokes), stream))
+    return items
 
 
 def area_around(strokes: Floats) -> Area:

@@ -753,7 +753,7 @@ def test_the_first_message_stands_until_the_menu_comes_or_something_is_done(
     assert viewer.board.message[0] == welcome
     viewer.on_pointer(638, 0, "move")
     assert viewer.board.message[0] == viewer.screens["picture"].help
-    viewer.tell(welcome, stands=True)
+    viewer.tell(welcome, persistent=True)
     viewer.on_key("c", typed="c")
     assert viewer.message != welcome
 

@@ -313,7 +313,6 @@ def test_names_of_other_tables_are_chosen_among_those_that_the_world_knows() -> 
     assert (table.lamp.follows, table.lamp.walls) == ("sun", ("south",))
 
 
-# -------------------- test_name_rows
 # Names of rows of other tables are chosen by pointing: one of them, or a list.
 
 NEXT = Place(600, 8)
