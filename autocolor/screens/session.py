@@ -28,7 +28,7 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
 from autocolor.studio import Studio
-from autocolor.widgets.rows import KnownNames, World
+from autocolor.widgets.rows import TableNames, World
 from autocolor.widgets.widget import short_name
 from ramtek_emu import HostPort, instructions
 
@@ -87,7 +87,7 @@ class Session:
         """The name of the part that was pointed at last; empty at first."""
         self._light = ""
         self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
-        self._names = KnownNames(self._names_in, {})
+        self._names = TableNames(self._names_in, {})
         self._refused_to_leave: Scene | None = None
         """The scene that the user was last warned about when leaving would have discarded its changes."""
         self.news = Message("", False, 0.0)
