@@ -67,7 +67,7 @@ def session_elsewhere(
     with port_to(address) as port:
         try:
             viewer = Viewer(history, port, folder)
-            viewer.tell("the right edge brings the menu; ENTER picks, TRACK drags", stands=True)
+            viewer.tell("the right edge brings the menu; ENTER picks, TRACK drags", persistent=True)
             prepare(viewer)
             click.echo(f"shown on {address}; pick `leave` in the menu there, or press Ctrl+C here", err=True)
             with autosaved_session(viewer, left) as update:

@@ -86,7 +86,7 @@ def _mention_left_sessions(viewer: Viewer) -> None:
         err=True,
     )
     viewer.tell(
-        "a session was left: autocolor view --recover opens it; the right edge: the menu", stands=True
+        "a session was left: autocolor view --recover opens it; the right edge: the menu", persistent=True
     )
 
 
