@@ -115,7 +115,7 @@ class Studio(StudioSession):
 
     @property
     def sight(self) -> Sight:
-        """What the pixels of the display see of the scene, for `lighting.rims` and the methods below."""
+        """What the pixels of the display see of the scene, for `lighting.picking.rims` and the methods below."""
         return Sight(self.scene, self._rendering.points, self._shown.block)
 
     def seen_at(self, line: int, element: int) -> Seen | None:
@@ -196,7 +196,7 @@ class Studio(StudioSession):
         """Let words stand for normals, so that lights change entries alone; or for levels again.
 
         Lights and the eye are then taken as far away, and what depends on the place of a point is left out:
-        see `mapping.normals.far_light`. Raises InputError where a scalar colors surfaces.
+        see `mapping.normal_words.light_at_normals`. Raises InputError where a scalar colors surfaces.
         """
         self.edit(self.scene.replace(words=NORMALS if on else LEVELS))
 
@@ -220,7 +220,7 @@ class Studio(StudioSession):
         """Make a scene the current one; nothing happens if it equals the current one.
 
         With `same_step`, this edit and the previous one are undone together, as for the many edits of a drag.
-        With `moving`, a picture that would take too long for a movement (see `pacing`) is computed at a half
+        With `moving`, a picture that would take too long for a movement (see `rendering.block_for`) is computed at a half
         or a quarter of its lines and elements; call `refine` when the movement rests.
         """
         costs = cost_of_edit(self.scene, scene)
