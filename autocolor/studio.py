@@ -115,7 +115,7 @@ class Studio(StudioSession):
 
     @property
     def sight(self) -> Sight:
-        """What the pixels of the display see of the scene, for `lighting.picking.rims` and the methods below."""
+        """What the pixels of the display see of the scene, for `picking.rims` and the methods below."""
         return Sight(self.scene, self._rendering.points, self._shown.block)
 
     def seen_at(self, line: int, element: int) -> Seen | None:
@@ -220,8 +220,8 @@ class Studio(StudioSession):
         """Make a scene the current one; nothing happens if it equals the current one.
 
         With `same_step`, this edit and the previous one are undone together, as for the many edits of a drag.
-        With `moving`, a picture that would take too long for a movement (see `rendering.block_for`) is computed at a half
-        or a quarter of its lines and elements; call `refine` when the movement rests.
+        With `moving`, a picture that would take too long for a movement (see `rendering.block_for`) is
+        computed at a half or a quarter of its lines and elements; call `refine` when the movement rests.
         """
         costs = cost_of_edit(self.scene, scene)
         if costs is not None:

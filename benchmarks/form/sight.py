@@ -16,7 +16,7 @@ import numpy as np
 import autocolor
 from autocolor import Mesh, Scene, View
 from autocolor.arrays import Bytes
-from autocolor.files.meshes.formats import mesh_suffixes
+from autocolor.files.formats import mesh_suffixes
 from autocolor.files.meshes.repair import UPS
 from autocolor.images import display_image
 from autocolor.rendering import Rendering, rendering
