@@ -38,7 +38,7 @@ EXCLUDING: Final = (
 DOWN: Final = (0.0, 0.0, -1.0)
 """The direction of a light that had none."""
 
-NEEDS_AXIS: Final = "a point source has none; choose the kind aim first"
+NEEDS_AXIS: Final = "a point source has no axis; choose the kind aim first"
 
 
 def kind_of(light: Light) -> str:
@@ -131,7 +131,7 @@ def _follows_row(session: Session, light: Light) -> Choice:
     """The choice of what a light follows: the world, the eye, or an aim that does not move with it."""
     return Choice(
         "follows",
-        "What it moves with: nothing in the world, the eye, or the aim of another light.",
+        "The light moves with the eye, with the aim of another light, or with nothing: world.",
         names=(WORLD, EYE, *names_to_follow(light, session.scene.lights)),
         present=light.follows or WORLD,
         choose=partial(choose_follows, session, light.name),

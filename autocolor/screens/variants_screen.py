@@ -194,13 +194,13 @@ class VariantsScreen(Screen):
             ),
             Pair(
                 "compare",
-                f"Compare with {name}, here and by the key; or with the state before the last step again.",
+                f"Compare with {name}, also by the key B; or with the state before the last step.",
                 why_not,
                 run=self._compare,
                 other="off",
                 run_other=self._compare_with_before,
             ),
-            Button("drop", f"Keep {name} no longer.", why_not, run=self._drop, value=name),
+            Button("drop", f"Drop variant {name}.", why_not, run=self._drop, value=name),
         ]
         pages = len(self._pages)
         if pages > 1:
@@ -208,7 +208,7 @@ class VariantsScreen(Screen):
             rows.append(
                 Choice(
                     "page",
-                    "The next variants; at the left end, those before.",
+                    "The next page of variants; at the left end, the page before.",
                     names=names,
                     present=names[min(self._page, pages - 1)],
                     choose=lambda name: setattr(self, "_page", names.index(name)),
@@ -248,7 +248,7 @@ class VariantsScreen(Screen):
         variant = self.session.studio.variants[name]
         self.session.studio.drop_variant(name)
         self.session.comparing.forget(variant.scene)
-        self.session.tell(f"{name} is variant no longer")
+        self.session.tell(f"variant {name} dropped")
 
 
 class VariantButton(Button):
