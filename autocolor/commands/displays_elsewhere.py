@@ -60,7 +60,7 @@ def session_elsewhere(
     its folder there if the session was left before. `prepare` is called with the viewer at the beginning.
     Raises UnavailableError if the display goes away or does not answer, PortError if it is not reached.
     """
-    from autocolor.commands.sessions import kept_session
+    from autocolor.commands.sessions import autosaved_session
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import PortError, ReplyError
 
@@ -70,7 +70,7 @@ def session_elsewhere(
             viewer.tell("the right edge brings the menu; ENTER picks, TRACK drags", persistent=True)
             prepare(viewer)
             click.echo(f"shown on {address}; pick `leave` in the menu there, or press Ctrl+C here", err=True)
-            with kept_session(viewer, left) as update:
+            with autosaved_session(viewer, left) as update:
                 attend(viewer, update)
             viewer.clear()
         except (PortError, ReplyError) as error:

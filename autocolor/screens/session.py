@@ -284,7 +284,7 @@ class Session:
         saved = self.studio.save_session(self.folder)
         self.disk.seen()
         note_file(saved.scene)
-        self.tell(saved.told(self.folder))
+        self.tell(saved.message(self.folder))
 
     def save_rig(self) -> None:
         """Save the lights, to put them on another scene."""

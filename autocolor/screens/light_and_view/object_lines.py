@@ -17,7 +17,7 @@ from autocolor.arrays import Booleans, Floats, Indices, Singles, dot
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.defaults import framed
 from autocolor.scene.geometry.normals import places_of_corners
-from autocolor.scene.geometry.planes import as_they_are, facet_normals
+from autocolor.scene.geometry.planes import ScaledPolygons
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
@@ -194,7 +194,7 @@ def mesh_edges(
     without area have no edges. The lines of a stage are drawn apart: the features alone of its parts.
     """
     parts, coordinate_rows, node_rows = mesh.part_numbers, mesh.coordinates.T, mesh.node_numbers.T
-    normals = facet_normals(as_they_are(coordinate_rows), node_rows)
+    normals = ScaledPolygons(coordinate_rows, node_rows).normals(np.arange(node_rows.shape[1]))
     has_edges = (normals != 0).any(axis=0)
     if part_numbers is not None:
         has_edges &= np.isin(parts, list(part_numbers))
