@@ -9,8 +9,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from autocolor.files.store.schema import DEFINITIONS, MESH_TABLES, ROW_TABLES, RowTable
-from autocolor.files.store.sql_columns import SqlColumn, literal
+from autocolor.files.store.schema import DEFINITIONS, MESH_TABLES, ROW_TABLES, RowTable, SqlColumn, literal
 
 ROOT = Path(__file__).resolve().parents[1]
 

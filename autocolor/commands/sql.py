@@ -24,9 +24,8 @@ from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.errors import AutocolorError, InputError, UsageError
 
 if TYPE_CHECKING:
-    from autocolor.files.scenes.scene_report import SceneReport
-    from autocolor.files.store.statements import Answer, Value
-    from autocolor.files.store.tables import Tables
+    from autocolor.files.scene_report import SceneReport
+    from autocolor.files.store.tables import Answer, Tables, Value
 
 
 # -------------------- answers

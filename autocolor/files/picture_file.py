@@ -15,6 +15,7 @@ again, its part numbers are all 0.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
@@ -23,6 +24,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import LARGEST_SINGLE, AnyArray
+from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.array_file import (
     KEY,
@@ -35,11 +37,11 @@ from autocolor.files.array_file import (
     scalar_rows,
     scalars_of,
 )
-from autocolor.files.plain_scene import plain_scene, scene_of_plain
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
-from autocolor.scene.columns import Problem, RowError
-from autocolor.scene.scalar import Limits
+from autocolor.scene.columns import Problem, RowError, made, plain
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalar import Limits, MeshScalar
 from autocolor.scene.scene import Scene
 
 PLAIN_FORMATS: Final = ("autocolor picture 2", "autocolor picture 1")
@@ -215,3 +217,37 @@ def _shown_scalar(
             f" not {values.shape} with others"
         )
     return values, limits
+
+
+# A scene, without the arrays of its mesh, as values that JSON can hold, and back.
+
+
+def plain_scene(scene: Scene) -> dict[str, Any]:
+    """The tables of a scene as values that JSON can hold, without the arrays of the mesh.
+
+    Keys whose value is None or infinite are omitted.
+    """
+    mesh = {"part_names": scene.mesh.part_names, "crease_angle": scene.mesh.crease_angle}
+    return {"mesh": mesh, **plain(scene)}
+
+
+def scene_of_plain(
+    values: object,
+    coordinates: AnyArray,
+    node_numbers: AnyArray,
+    part_numbers: AnyArray,
+    scalars: tuple[MeshScalar, ...] = (),
+) -> Scene:
+    """The scene of values as from `plain_scene` and of the mesh's arrays and scalars. Raises InputError."""
+    if not isinstance(values, Mapping) or not isinstance(values.get("mesh"), Mapping):
+        raise InputError(f"scene: it must be tables, its mesh among them, not {shown(values)}")
+    described = values["mesh"]
+    mesh = Mesh(
+        coordinates,
+        node_numbers,
+        part_numbers,
+        described.get("part_names", ()),
+        described.get("crease_angle", math.nan),
+        scalars,
+    )
+    return made(Scene, {**values, "mesh": mesh})

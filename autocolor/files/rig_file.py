@@ -19,9 +19,9 @@ from typing import Final
 from autocolor.checks import shown
 from autocolor.errors import AutocolorError, OutputError, UsageError
 from autocolor.files.reading import read_bytes
+from autocolor.files.scene_toml.scene_text import sparse_row
+from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, SceneProblems, parsed_toml, table_text
 from autocolor.files.scene_writing import refuse_names
-from autocolor.files.scenes.scene_report import SceneProblems
-from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml, sparse_row, table_text
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.scene.columns import RowError, made
 from autocolor.scene.rigs import Rig

@@ -19,9 +19,9 @@ from autocolor.files.meshes.formats import (
 from autocolor.files.meshes.repair import SCALES, UPS, Placement
 from autocolor.files.reading import status_of
 from autocolor.files.registry import recognized, suffix_rule, suffixes_of
+from autocolor.files.scene_report import SceneReport, scene_report
+from autocolor.files.scene_toml.scene_meshes import MeshSource, keep_source
 from autocolor.files.scenes.formats import SceneFormat, scene_formats
-from autocolor.files.scenes.scene_meshes import MeshSource, keep_source
-from autocolor.files.scenes.scene_report import SceneReport, scene_report
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.scene import Scene
 

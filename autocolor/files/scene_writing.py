@@ -14,21 +14,28 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError, OutputError, UsageError, reason_of
-from autocolor.files.mesh_writing import Meshes, entries_of, meshes_there, reports_of, written_mesh
 from autocolor.files.meshes.formats import mesh_suffixes
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
-from autocolor.files.scenes.formats import scene_suffixes
-from autocolor.files.scenes.scene_edit import (
+from autocolor.files.scene_toml.scene_file import report_of_text
+from autocolor.files.scene_toml.scene_meshes import (
+    Meshes,
+    entries_of,
+    meshes_there,
+    reports_of,
+    source_of,
+    written_mesh,
+)
+from autocolor.files.scene_toml.scene_text import (
     completed,
     edited_to,
+    scene_text,
     with_crease_angle,
     with_meshes,
     without_parts,
 )
-from autocolor.files.scenes.scene_file import report_of_text
-from autocolor.files.scenes.scene_meshes import source_of
-from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml, scene_text
+from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
+from autocolor.files.scenes.formats import scene_suffixes
 from autocolor.files.store.store_file import STORE_SUFFIXES, write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from autocolor.errors import InputError
-from autocolor.files.plain_scene import plain_scene
+from autocolor.files.picture_file import plain_scene
 from autocolor.files.scene_sources import read_scene
 from autocolor.journal.history import Opened
 from autocolor.journal.places import Place, Source, place_of

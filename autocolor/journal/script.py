@@ -25,8 +25,8 @@ from typing import Any, Final, NamedTuple
 
 from autocolor.errors import InputError
 from autocolor.files.paths import SCENE_FILE
+from autocolor.files.scene_toml.scene_meshes import source_of
 from autocolor.files.scene_writing import write_scene
-from autocolor.files.scenes.scene_meshes import source_of
 from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
 from autocolor.journal.opening import checksum_of
 from autocolor.journal.places import Source

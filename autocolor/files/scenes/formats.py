@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final, Protocol
 
 from autocolor.files.registry import Registry, format_named, suffixes_of
-from autocolor.files.scenes.scene_report import SceneReport
+from autocolor.files.scene_report import SceneReport
 from autocolor.scene.creation import MATERIALS, SurfaceSource
 
 

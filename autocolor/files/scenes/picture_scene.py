@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.files.picture_file import read_picture
+from autocolor.files.scene_report import SceneReport
 from autocolor.files.scenes.formats import SceneFormat, register
-from autocolor.files.scenes.scene_report import SceneReport
 from autocolor.scene.creation import MATERIALS, SurfaceSource
 
 

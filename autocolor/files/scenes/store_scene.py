@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
+from autocolor.files.scene_report import SceneReport
 from autocolor.files.scenes.formats import SceneFormat, register
-from autocolor.files.scenes.scene_report import SceneReport
 from autocolor.scene.creation import MATERIALS, SurfaceSource
 
 BEGINS: Final = b"SQLite format 3\0"

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import UsageError
-from autocolor.files.openable import kind_of
+from autocolor.files.scene_files import kind_of
 from autocolor.files.scene_sources import read_scene
 from autocolor.files.scene_writing import write_scene
 from tests.autocolor.files.store.stores import is_equal, small_scene, small_store

@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from autocolor import InputError, Mesh, MissingInputError, OutputError, Scene, UsageError, WriteError
 from autocolor.files.scene_sources import read_scene
 from autocolor.files.scene_writing import write_scene
-from autocolor.files.store.schema import DEFINITIONS
+from autocolor.files.store.schema import DEFINITIONS, INDEXES
 from autocolor.files.store.store_file import (
     MOST_PROBLEMS,
     broken_references,
@@ -35,6 +35,8 @@ from tests.autocolor.files.store.stores import (
     tables_of,
 )
 from tests.autocolor.linked_scenes import linked_scenes
+
+OWN_INDEXES = "SELECT name FROM sqlite_master WHERE type = 'index' AND sql IS NOT NULL"
 
 ONE_FILE = settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
@@ -179,33 +181,76 @@ def test_a_virtual_table_and_a_computed_column_are_refused_by_name(tmp_path: Pat
         read_store(path)
 
 
-def test_what_others_keep_in_a_store_is_kept_and_not_run_when_it_is_saved_over(tmp_path: Path) -> None:
+def test_the_tables_of_others_stay_when_a_store_is_saved_over(tmp_path: Path) -> None:
     path = small_store(tmp_path)
-    run(
-        path,
-        "CREATE TABLE notes (text)",
-        "INSERT INTO notes VALUES ('mine')",
-        "CREATE VIEW far AS SELECT * FROM nodes WHERE x > 0.9",
-        "CREATE INDEX by_part ON polygons (part)",
-        "CREATE TRIGGER evil AFTER DELETE ON lights BEGIN DELETE FROM notes; END",
-        "CREATE TRIGGER worse AFTER INSERT ON lights BEGIN DELETE FROM notes; END",
-    )
+    run(path, "CREATE TABLE notes (text, part REFERENCES parts)", "INSERT INTO notes VALUES ('mine', 'x')")
     scene = read_store(path).scene.without_light("rim").replace(ambient=0.25)
     write_store(path, scene, overwrite=True)
     assert is_equal(read_store(path).scene, scene)
-    assert run(path, "SELECT * FROM notes") == [("mine",)]
-    names = {name for (name,) in run(path, "SELECT name FROM sqlite_master WHERE sql IS NOT NULL")}
-    assert {"notes", "far", "by_part", "evil", "worse"} <= names
-    assert run(path, "SELECT count(*) FROM far") == [(2,)]
+    assert run(path, "SELECT * FROM notes") == [("mine", "x")]
 
 
-def test_what_others_keep_is_not_lost_where_it_does_not_fit(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("statement", "addition"),
+    [
+        ("CREATE VIEW far AS SELECT * FROM nodes WHERE x > 0.9", "view 'far'"),
+        ("CREATE INDEX by_part ON polygons (part)", "index 'by_part'"),
+        ("CREATE TRIGGER evil AFTER DELETE ON lights BEGIN DELETE FROM parts; END", "trigger 'evil'"),
+    ],
+)
+def test_a_store_with_additions_of_others_is_read_and_not_saved_over(
+    tmp_path: Path, statement: str, addition: str
+) -> None:
     path = small_store(tmp_path)
-    run(path, "DELETE FROM polygons WHERE polygon = 2", "CREATE UNIQUE INDEX one ON polygons (node1)")
-    before = tables_of(path)
-    with pytest.raises(WriteError, match="what others keep in the store cannot be kept"):
+    run(path, statement)
+    before = path.read_bytes()
+    assert is_equal(read_store(path).scene, small_scene())
+    with pytest.raises(WriteError) as refused:
         write_store(path, small_scene(), overwrite=True)
-    assert tables_of(path) == before
+    assert str(refused.value) == (
+        "small.sqlite: a store that is written over must have no triggers, views or indexes of other"
+        f" programs, and this one has {addition}; write to another file"
+    )
+    assert path.read_bytes() == before
+
+
+def test_an_index_of_ours_that_was_changed_is_an_addition(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "DROP INDEX polygons_part", "CREATE UNIQUE INDEX polygons_part ON polygons (part)")
+    with pytest.raises(WriteError, match="this one has index 'polygons_part'; write to another file"):
+        write_store(path, small_scene(), overwrite=True)
+
+
+def test_a_column_that_refers_to_a_table_has_an_index(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    assert {name for (name,) in run(path, OWN_INDEXES)} == INDEXES.keys()
+    referring = [
+        (table, column)
+        for table in DEFINITIONS
+        for _, _, _, column, *_ in run(path, f"PRAGMA foreign_key_list({table})")
+    ]
+    assert len(referring) > 8
+    for table, column in referring:
+        indexes = [name for _, name, *_ in run(path, f"PRAGMA index_list({table})")]
+        assert any(run(path, f"PRAGMA index_info('{name}')")[0][2] == column for name in indexes)
+
+
+def test_a_store_without_indexes_is_read_changed_and_saved_over(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, *(f"DROP INDEX {name}" for name in INDEXES))
+    assert is_equal(read_store(path).scene, small_scene())
+    write_store(path, small_scene(), overwrite=True)
+    assert {name for (name,) in run(path, OWN_INDEXES)} == INDEXES.keys()
+
+
+def test_rows_are_read_from_tables_and_not_from_indexes_that_are_out_of_date(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    ours = "FROM sqlite_master WHERE type = 'index' AND tbl_name = 'polygons'"
+    run(path, f"CREATE TABLE saved AS SELECT * {ours}", "PRAGMA writable_schema = ON", f"DELETE {ours}")
+    run(path, "DELETE FROM polygons WHERE polygon = 2", "DELETE FROM polygon_scalars WHERE polygon = 2")
+    run(path, "PRAGMA writable_schema = ON", "INSERT INTO sqlite_master SELECT * FROM saved")
+    assert run(path, "SELECT count(*) FROM polygons INDEXED BY polygons_node4") == [(2,)]
+    assert read_store(path).scene.mesh.node_numbers.tolist() == [[0, 1, 2, 3]]
 
 
 def test_a_damaged_store_is_written_anew(tmp_path: Path) -> None:

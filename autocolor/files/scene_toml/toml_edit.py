@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple
 
-from autocolor.files.scenes.toml_text import TOKEN, KeyPath, only_path, toml_key, toml_value
+from autocolor.files.scene_toml.toml_text import TOKEN, KeyPath, only_path, toml_key, toml_value
 
 # -------------------- toml_blocks
 # The text of a TOML file as blocks of statements; joined again they are the same text.

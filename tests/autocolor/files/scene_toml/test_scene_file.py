@@ -10,8 +10,8 @@ from autocolor import BlinnPhong, Phong, Reflectance
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.meshes.formats import mesh_suffixes
 from autocolor.files.registry import suffix_rule
-from autocolor.files.scenes.scene_file import read_scene_file
-from autocolor.files.scenes.scene_report import SceneReport
+from autocolor.files.scene_report import SceneReport
+from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.curves import CURVES
 from autocolor.scene.reflection_models import SpecularGrowth
