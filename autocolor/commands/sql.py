@@ -37,7 +37,7 @@ MEASURED: Final = 1000
 """Rows whose widths are looked at; those after them are printed as they come."""
 
 WIDEST: Final = 60
-"""Assumed: letters of a cell of a table; longer text is cut."""
+"""Limit: letters of a cell of a table; longer text is cut."""
 
 ABSENT: Final = "NULL"
 
@@ -229,7 +229,7 @@ FIRST: Final = "sql> "
 NEXT: Final = "...> "
 
 MOST_LETTERS: Final = 1 << 20
-"""Assumed: letters of one statement."""
+"""Limit: letters of one statement."""
 
 _PIECES: Final = re.compile(
     r"""'[^']*(?:'|\Z)|"[^"]*(?:"|\Z)|`[^`]*(?:`|\Z)|\[[^]]*(?:]|\Z)|--[^\n]*|/\*.*?(?:\*/|\Z)|;""", re.DOTALL
