@@ -10,7 +10,6 @@ the car once: first the picture, then a load of the table for each step. To play
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
@@ -19,7 +18,7 @@ import numpy as np
 
 import autocolor
 from ramtek_emu import Ramtek9300, Recorder, instructions
-from scenes.figures import Sheet, open_studio, read_scene
+from scenes.figures import Sheet, open_studio, parser_of_figure, read_scene
 
 STEPS: Final = 120
 """The loads of one round of the light."""
@@ -54,10 +53,10 @@ def angles() -> Iterator[float]:
 
 def main() -> None:
     """Show pictures by levels and by normals, and the normals; then move the light by loads alone."""
-    records = "--stream" in sys.argv
-    if records:
-        sys.argv.remove("--stream")
-    sheet = Sheet("normals")
+    parser = parser_of_figure("normals")
+    parser.add_argument("--stream", action="store_true", help="also record a round of the light as a stream")
+    arguments = parser.parse_args()
+    sheet = Sheet("normals", arguments.folder)
     studio, display = open_studio(coupe())
     sheet.add(display.field(), "A. Words Stand for Levels", "a")
     studio.normals()
@@ -74,7 +73,7 @@ def main() -> None:
     studio.normals()
     sheet.add(display.field(), "F. One Normal Each", "f")
     sheet.write(across=3)
-    if records:
+    if arguments.stream:
         record(sheet.folder / "figure-normals.ramtek")
 
 
