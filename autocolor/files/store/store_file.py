@@ -256,8 +256,8 @@ def refuse_additions(connection: sqlite3.Connection, kinds: Sequence[str], rule:
 def _fill(connection: sqlite3.Connection, scene: Scene) -> None:
     """Create the tables, insert the rows of a scene, and create the indexes.
 
-    Measured, for a million nodes and a million quads: the indexes take SECONDS; to insert rows into tables
-    with indexes would take TWICE.
+    Measured, for a million nodes and a million quads: 2.4 s without indexes, and 3.9 s with them. To insert
+    the rows into tables that have indexes takes 5.3 s.
     """
     for definition in DEFINITIONS.values():
         connection.execute(definition)
