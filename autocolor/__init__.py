@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from autocolor.files.store.tables import open_tables as open_tables
     from autocolor.images import image as image
     from autocolor.images import save_image as save_image
+    from autocolor.images import send_picture as send_picture
     from autocolor.journal.reading import read_journal as read_journal
     from autocolor.lighting.picture import Picture as Picture
     from autocolor.mapping.ranges import LevelRange as LevelRange
@@ -54,7 +55,6 @@ if TYPE_CHECKING:
     from autocolor.scene.surfaces import Reflectance as Reflectance
     from autocolor.scene.surfaces import Surface as Surface
     from autocolor.scene.view import View as View
-    from autocolor.sending import send_picture as send_picture
     from autocolor.studio import Studio as Studio
 
     __version__: str
@@ -97,7 +97,7 @@ _HOME: Final = {
     "render": "rendering",
     "save_image": "images",
     "scene_of": "scene.creation",
-    "send_picture": "sending",
+    "send_picture": "images",
     "write_picture": "files.picture_file",
     "write_rig": "files.rig_file",
     "write_scene": "files.scene_writing",

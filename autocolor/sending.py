@@ -10,34 +10,13 @@ import numpy as np
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import shown
 from autocolor.errors import UsageError
-from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
+from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.legend import GROUND, INK, Legend, legend
 from autocolor.mapping.ranges import WORDS
-from autocolor.scene.scene import Scene
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, Ramtek9300, instructions
 
 EntryEncoder = Callable[[int, Bytes], Words]
 """Makes the instruction that loads entries, (n, 3) uint8, from a first one on."""
-
-
-def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
-    """Reset a display and show a picture in the colors of a scene; nothing is rendered.
-
-    A picture that is smaller than the display is shown at its upper left. Raises InputError if the surfaces
-    of the picture are not those of the scene, UsageError if it is larger than the display.
-    """
-    check_surfaces(scene, picture)
-    sizes = configuration_of(display)
-    if hasattr(display, "configuration") and (
-        picture.lines > sizes.shown_lines or picture.elements > sizes.shown_elements
-    ):
-        raise UsageError(
-            f"a picture must be at most {sizes.shown_elements} x {sizes.shown_lines}, as large as the"
-            f" display, not {picture.elements} x {picture.lines}; render it smaller, or take a larger"
-            " configuration"
-        )
-    send_image(display, display_image(scene, picture))
 
 
 def configuration_of(display: HostPort) -> Configuration:

@@ -31,11 +31,12 @@ from typing import NoReturn, Unpack
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
+from autocolor.images import display_image
 from autocolor.journal.history import History
 from autocolor.journal.studio_session import StudioSession
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, display_image, words_by_line
+from autocolor.mapping.display_image import DisplayImage, words_by_line
 from autocolor.mapping.intensity import held_exposure
 from autocolor.mapping.ranges import LevelRange
 from autocolor.rendering import block_for, blocks_of, rendering, sees_the_same
@@ -79,7 +80,7 @@ class Studio(StudioSession):
     @property
     def picture(self) -> Picture:
         """The current picture; of a half or a quarter of the lines and elements while `is_coarse`."""
-        if self._shown.normals is not None:
+        if not self._shown.has_light_in_words:
             self._light_picture()
         return self._shown.picture
 
@@ -321,4 +322,4 @@ class Studio(StudioSession):
 
 def _differs_in_light_alone(before: DisplayImage, rendered: Scene, scene: Scene) -> bool:
     """Whether words stand for normals in an image and still do in a scene that sees what was rendered."""
-    return before.normals is not None and scene.words == NORMALS and sees_the_same(rendered, scene)
+    return not before.has_light_in_words and scene.words == NORMALS and sees_the_same(rendered, scene)

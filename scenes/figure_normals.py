@@ -17,6 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 import autocolor
+from autocolor.mapping.normal_words import NormalImage
 from ramtek_emu import Ramtek9300, Recorder, instructions
 from scenes.figures import Sheet, open_studio, parser_of_figure, read_scene
 
@@ -79,8 +80,9 @@ def main() -> None:
 
 def show_normals(studio: autocolor.Studio, display: Ramtek9300) -> None:
     """Load each word's normal as its color: red to the right, green upward, blue to the eye."""
-    stand_for = studio.image.normals
-    assert stand_for is not None
+    image = studio.image
+    assert isinstance(image, NormalImage)
+    stand_for = image.normals
     right, down, forward = stand_for.normals
     colors = np.zeros((1024, 3), np.uint8)
     colors[stand_for.words] = np.stack([right, -down, -forward], axis=1) * 127 + 128

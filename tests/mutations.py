@@ -22,7 +22,7 @@ import numpy as np
 from autocolor import Mesh, scene_of
 from autocolor.errors import InputError
 from autocolor.files.conversion import Output, outputs
-from autocolor.files.meshes.formats import mesh_formats
+from autocolor.files.formats import MESH_FORMATS
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.scalar import MeshScalar
 
@@ -298,7 +298,7 @@ def formats_without_seeds() -> list[str]:
     names = {name for seed in given for name in seed.files}
     return [
         each.name
-        for each in mesh_formats()
+        for each in MESH_FORMATS
         if not isinstance(each.read, partial)
         and not suffixes & set(each.suffixes)
         and not (each.in_folder and set(each.in_folder) <= names)

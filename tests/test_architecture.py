@@ -35,7 +35,7 @@ PUBLIC_NAMES = {
 
 WINGS = {
     "autocolor": (
-        "errors", "logs", "arrays", "immutable", "checks", "modules", "scene", "visibility", "scalars",
+        "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "scalars",
         "lighting", "mapping", "files", "rendering", "sending", "journal", "studio", "images",
         "widgets", "screens", "commands", "__main__",
     ),

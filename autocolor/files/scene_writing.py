@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError, OutputError, UsageError, reason_of
-from autocolor.files.meshes.formats import mesh_suffixes
+from autocolor.files.formats import mesh_suffixes, suffixes_of
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
+from autocolor.files.scene_sources import SCENE_FORMATS
 from autocolor.files.scene_toml.scene_file import report_of_text
 from autocolor.files.scene_toml.scene_meshes import (
     Meshes,
@@ -35,7 +36,6 @@ from autocolor.files.scene_toml.scene_text import (
     without_parts,
 )
 from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
-from autocolor.files.scenes.formats import scene_suffixes
 from autocolor.files.store.store_file import STORE_SUFFIXES, write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of
@@ -104,7 +104,7 @@ def _target(path: str | os.PathLike[str]) -> Path:
         is_other = target.exists() and suffix != ".toml"
     except (OSError, ValueError):
         is_other = False
-    if is_other or suffix in {*scene_suffixes(), *mesh_suffixes()} - {".toml"}:
+    if is_other or suffix in {*suffixes_of(SCENE_FORMATS), *mesh_suffixes()} - {".toml"}:
         raise UsageError(
             f"a scene must be written to a folder or to a file that ends in .toml,"
             f" {' or '.join(STORE_SUFFIXES)}, not to {target}; choose another name"

@@ -378,9 +378,9 @@ def _inside(points: VisiblePoints, light: Light) -> dict[Rim, Booleans]:
             assert cosines is not None
             np.greater_equal(cosines, np.float32(cone.least_cosine), out=inside[CONE][chunk.pixels])
     for rim, side in flap_sides(light, points).items():
-        inside[rim] = is_inside(side, points.rows)
+        inside[rim] = is_inside(side.row, points.rows)
     for name, side in half_space_sides(light, points).items():
-        inside[Plane(name)] = is_inside(side, points.rows)
+        inside[Plane(name)] = is_inside(side.row, points.rows)
     return inside
 
 

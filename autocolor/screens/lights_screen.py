@@ -14,8 +14,8 @@ from autocolor.checks import Vector
 from autocolor.errors import InputError
 from autocolor.scene.columns import fields_of
 from autocolor.scene.creation import new_light_of
-from autocolor.scene.following import free_name, set_down, taken_up
-from autocolor.scene.lights import HalfSpace, Light
+from autocolor.scene.following import attached, detached
+from autocolor.scene.lights import HalfSpace, Light, free_name
 from autocolor.scene.view import View
 from autocolor.screens.input import Gesture
 from autocolor.screens.light_parameters import parameter_rows
@@ -208,7 +208,7 @@ def _rows_of(session: Session, light: Light, half_space: HalfSpace) -> list[Widg
 def _carry(session: Session, light: Light, half_space: HalfSpace) -> None:
     """Let a light carry a half-space, or no more; its plane stays where it is."""
     there = session.scene.light_in_world(light.name)
-    carry = set_down if half_space.carried else taken_up
+    carry = detached if half_space.carried else attached
     _put_row(session, light, carry(half_space, there))
 
 

@@ -555,7 +555,7 @@ class MixingScreen(Screen):
         if down < words.shape[0] and across < words.shape[1]:
             level = int(words[down, across]) - levels.first
             if 0 <= level < levels.levels:
-                what = "level" if self.session.studio.image.normals is None else "normal"
+                what = self.session.studio.image.meaning
                 return f"{self.session.surface_name}, {what} {level} of {levels.levels - 1}"
         return f"Only {self.session.surface_name} is shown here"
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from autocolor.arrays import Bytes
 from autocolor.errors import InputError
-from autocolor.mapping.display_image import display_image
+from autocolor.images import display_image
 from autocolor.mapping.palette import in_palette, thumbnail
 from autocolor.mapping.ranges import BACKGROUND, SCREENS
 from autocolor.rendering import Rendering, rendering

@@ -204,6 +204,7 @@ class Viewer:
         if self.board.turn():
             self._refine()
         self._had_news = self.session.has_news
+        self.board.forget()
         page = self.board.page()
         self._sheet.show(page)
         if page.base is not self._base and not self.board.is_dragging:
@@ -226,6 +227,7 @@ class Viewer:
         """Do what a key or a gesture asks for; returns False if that does nothing here."""
         self._watching.end()
         taken = self._doing.do(source, run, continues, moving)
+        self.board.forget()
         if self._doing.costs > Tier.ENTRIES and not self.board.screen.shows_scene:
             self.session.turn_to(PICTURE)
         return taken

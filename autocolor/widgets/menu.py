@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from autocolor.widgets.items import HEIGHT, NIGHT, SLATE, WIDTH, Area, Item, filled
-from autocolor.widgets.widget import ROW_LINES, Gap, Heading, Widget
+from autocolor.widgets.widget import ROW_LINES, Heading, Widget
 
 MESSAGE_LINES: Final = 16
 """The height of the message line, at the bottom of every screen."""
@@ -19,13 +19,12 @@ WORK: Final = Area(0, 0, MENU.left - 1, MENU.bottom)
 WIDE_BAR: Final = Area(0, MENU.bottom - 23, WORK.right, MENU.bottom)
 """Where the wide bar of a number stands."""
 
-GAP_LINES: Final = 8
 MOST_LINES: Final = MENU.height
 
 
-def lines_of(row: Widget) -> int:
-    """The height of a row."""
-    return GAP_LINES if isinstance(row, Gap) else ROW_LINES
+def lines_of(rows: Sequence[Widget]) -> int:
+    """The lines that rows take one below the other."""
+    return sum([row.row_lines for row in rows])
 
 
 def laid_out(rows: Sequence[Widget], area: Area = MENU) -> list[Widget]:
@@ -33,11 +32,10 @@ def laid_out(rows: Sequence[Widget], area: Area = MENU) -> list[Widget]:
     found: list[Widget] = []
     top = area.top
     for row in rows:
-        height = lines_of(row)
-        if top + height - 1 > area.bottom:
+        if top + row.row_lines - 1 > area.bottom:
             break
-        found.append(row.at(Area(area.left + 1, top, area.right, top + height - 1)))
-        top += height
+        found.append(row.at(Area(area.left + 1, top, area.right, top + row.row_lines - 1)))
+        top += row.row_lines
     return found
 
 
@@ -51,16 +49,16 @@ def menu_items(rows: Sequence[Widget], lit: Widget | None, area: Area = MENU) ->
 
 def pages_of(rows: Sequence[Widget], lines: int = MOST_LINES) -> list[list[Widget]]:
     """The rows in pages that fit, each with room for one more row, by which the next is reached."""
-    if sum(map(lines_of, rows)) <= lines:
+    if lines_of(rows) <= lines:
         return [list(rows)]
     pages: list[list[Widget]] = [[]]
     used = 0
     for row in rows:
-        if used + lines_of(row) > lines - ROW_LINES:
+        if used + row.row_lines > lines - ROW_LINES:
             # A heading goes with what is below it.
             headings = [pages[-1].pop()] if len(pages[-1]) > 1 and isinstance(pages[-1][-1], Heading) else []
             pages.append(headings)
-            used = sum(map(lines_of, headings))
+            used = lines_of(headings)
         pages[-1].append(row)
-        used += lines_of(row)
+        used += row.row_lines
     return pages

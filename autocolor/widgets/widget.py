@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple, TypeVar
+from typing import Any, ClassVar, Final, NamedTuple, TypeVar
 
 from autocolor.widgets.items import (
     BLACK,
@@ -113,6 +113,8 @@ class Widget:
     area: Area = NOWHERE
     within: str = ""
     """What it belongs to, where other things have rows of the same label."""
+    row_lines: ClassVar[int] = ROW_LINES
+    """Its height in a menu."""
 
     @property
     def key(self) -> str:
@@ -192,6 +194,8 @@ class Heading(Widget):
 @dataclass(frozen=True)
 class Gap(Widget):
     """Some empty lines between rows."""
+
+    row_lines: ClassVar[int] = ROW_LINES // 2
 
     def items(self, lit: bool) -> list[Item]:
         return [filled(self.area, NIGHT)]

@@ -85,7 +85,7 @@ def serve(
     start: str | None,
     force: bool,
 ) -> None:
-    """Be a display that a program sends words to, low byte first, and receives words from.
+    """Run a display. Programs send and receive 16-bit words, low byte first.
 
     With --port or --unix it serves one host after the other until Ctrl+C; others wait in line meanwhile. At a
     Unix socket each write is rounded down to whole words by itself, as the drivers of the time did. With
@@ -111,16 +111,16 @@ def serve(
             return None
         return JoystickLines(joystick, display.joystick, resettable.reset, tell)
 
-    with recording(record, force) as kept:
+    with recording(record, force) as write:
         if stdio:
-            session = HostSession(display, kept)
+            session = HostSession(display, write)
             serve_stdio(session, window, lines_for(session))
         else:
             server: TcpServer | UnixServer
             if unix is not None:
-                server = UnixServer(display, unix, idle_seconds=idle, record=kept)
+                server = UnixServer(display, unix, idle_seconds=idle, record=write)
             else:
-                server = TcpServer(display, port or 0, host, idle_seconds=idle, record=kept)
+                server = TcpServer(display, port or 0, host, idle_seconds=idle, record=write)
             with server:
                 serve_hosts(server, window, once, lines_for(server))
     write_outputs(display, output, snapshot, force)
@@ -143,7 +143,7 @@ def serve_stdio(session: HostSession, window: bool, lines: JoystickLines | None 
                 lines.obey()
                 if pipe.ended or not pipe.step():
                     time.sleep(PIPE_SECONDS)
-    tell_the_end(session.display, session.held_words, session.odd_byte)
+    tell_the_end(session)
 
 
 def obeying(lines: JoystickLines | None, serve_for: Callable[[float], None]) -> Callable[[float], None]:

@@ -26,6 +26,8 @@ from ramtek_emu import (
     Timing,
     instructions,
 )
+from ramtek_emu.display import EXECUTORS
+from ramtek_emu.instruction_set.table import FORMATS, ILLEGAL
 from ramtek_emu.snapshot import snapshot_bytes
 from tests.ramtek_emu.displays import sent
 from tests.ramtek_emu.recorded_streams import RECORDED
@@ -49,6 +51,12 @@ def test_no_words_at_all_raise_or_leave_the_planes(stream: list[int], places: li
     assert cut.processor.parameters == whole.processor.parameters
     assert cut.processor.waiting == whole.processor.waiting
     assert (cut.receive(cut.processor.waiting) == whole.receive(whole.processor.waiting)).all()
+
+
+def test_every_row_of_the_instruction_table_has_an_executor_that_says_what_it_does() -> None:
+    assert set(EXECUTORS) == {row.name for row in (*FORMATS, ILLEGAL)}
+    for name, executor in EXECUTORS.items():
+        assert executor.__doc__, name
 
 
 def test_recorded_band_draws_vertical_bars() -> None:

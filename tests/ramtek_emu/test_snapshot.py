@@ -35,13 +35,13 @@ from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.snapshot import (
     MOST_TEXT,
     display_of,
+    from_plain,
     listed,
     packed,
     picture_bytes,
     picture_of,
-    plain,
-    restored,
     snapshot_bytes,
+    to_plain,
     unpacked,
     whole_number,
 )
@@ -228,7 +228,7 @@ def test_what_was_made_plain_is_restored_through_json(words: list[int], dots: li
     }
     for name, value in state.items():
         pattern = value if name != "parameters" else Parameters.at_reset(SMALL)
-        again = restored(pattern, json.loads(json.dumps(plain(value))), name)
+        again = from_plain(pattern, json.loads(json.dumps(to_plain(value))), name)
         assert np.array_equal(again, value) if isinstance(value, np.ndarray) else again == value
 
 

@@ -21,7 +21,6 @@ import numpy as np
 
 from autocolor.arrays import Indices, Numbers
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
@@ -150,6 +149,3 @@ def _corners(text: NumberText, first: int, count: int, polygons: int, nodes: int
             " ended by a negative corner; correct the header or the connectivity"
         )
     return (sizes - 1).astype(np.intp), np.diff(ends, prepend=-1)
-
-
-BYU: Final = register(MeshFormat("Movie.BYU", read_byu, (".g", ".byu")))

@@ -33,7 +33,6 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, Numbers, chunks
 from autocolor.checks import LARGEST_COORDINATE, nearest, printable
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.found_scalars import FoundScalars
 from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, Polygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
@@ -518,25 +517,11 @@ def _cells(values: Floats) -> Iterator[str]:
     return ("" if math.isnan(value) else repr(value) for value in values.tolist())
 
 
-# -------------------- csv_format
-# The two CSV tables of a mesh as a format: a folder of nodes.csv and polygons.csv, or two files.
-
-IN_FOLDER: Final = ("nodes.csv", "polygons.csv")
+CSV_FILES: Final = ("nodes.csv", "polygons.csv")
+"""The files of a folder that is a mesh in CSV."""
 
 
 def write_csv_tables(folder: Path, mesh: Mesh) -> None:
     """Write the tables of a mesh to an empty folder. Raises OSError."""
-    for name, data in zip(IN_FOLDER, csv_tables_bytes(mesh), strict=True):
+    for name, data in zip(CSV_FILES, csv_tables_bytes(mesh), strict=True):
         (folder / name).write_bytes(data)
-
-
-CSV: Final = register(
-    MeshFormat(
-        "CSV",
-        read_csv_tables,
-        (".csv",),
-        keys=("nodes", "polygons"),
-        in_folder=IN_FOLDER,
-        write=write_csv_tables,
-    )
-)

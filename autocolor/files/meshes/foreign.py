@@ -22,7 +22,6 @@ import tempfile
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Any, Final, NoReturn
 from urllib.parse import unquote
@@ -34,7 +33,6 @@ from autocolor.arrays import AnyArray
 from autocolor.checks import LARGEST_COORDINATE, Color, listed, printable, shown
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.array_file import ArrayFileKind, array_file_bytes, read_array_file
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.found_scalars import FoundScalars
 from autocolor.files.meshes.repair import (
     PLAIN,
@@ -539,7 +537,3 @@ def read_foreign(
 def _surface(name: str, color: Color) -> Surface:
     """The surface of a material, of which the base color is known."""
     return changed(created_surface(name, COLORED_PAINT.object_color), {"object_color": color})
-
-
-for _each in FOREIGN:
-    register(MeshFormat(_each.name, partial(read_foreign, _each), _each.suffixes))

@@ -41,7 +41,6 @@ import numpy as np
 from autocolor.arrays import AnyArray, Booleans, Floats, Indices, chunks
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError, OutputError, WriteError, reason_of
-from autocolor.files.meshes.formats import HELD, MeshFormat, register
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
 from autocolor.files.reading import opened, read_bytes, shown
 from autocolor.files.writing import write_together
@@ -623,21 +622,3 @@ def _pieces(table: AnyArray) -> Iterable[bytes]:
     for row in table.T if table.ndim > 1 else table[None]:
         for chunk in chunks(len(row), NUMBERS_AT_ONCE):
             yield row[chunk].tobytes()
-
-
-# -------------------- npy_format
-# The registration of .npy tables as a mesh format.
-
-NPY: Final = register(
-    MeshFormat(
-        "npy",
-        read_npy_tables,
-        (".npy",),
-        keys=("nodes", "polygons"),
-        in_folder=(NODES, POLYGONS),
-        begins=lambda head: head.startswith(MAGIC),
-        write=write_npy_tables,
-        holds=frozenset(HELD),
-        mapped=True,
-    )
-)

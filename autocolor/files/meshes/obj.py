@@ -30,7 +30,6 @@ import numpy as np
 from autocolor.arrays import Booleans, Bytes, Floats, Indices, Numbers, chunks, half_up
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import PARTS, MeshFormat, register
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, name_of, repaired
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
@@ -736,11 +735,6 @@ def read_obj(path: Path, placement: Placement = PLAIN) -> MeshReport:
     )
 
 
-def _begins(head: bytes) -> bool:
+def begins_as_obj(head: bytes) -> bool:
     """Whether the first bytes of a file contain a line that defines a node, and no NUL byte."""
     return NODE_LINE.search(head) is not None and b"\0" not in head
-
-
-OBJ: Final = register(
-    MeshFormat("OBJ", read_obj, (".obj",), begins=_begins, written=obj_text, holds=frozenset((PARTS,)))
-)

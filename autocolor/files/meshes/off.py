@@ -21,7 +21,6 @@ import numpy as np
 from autocolor.arrays import Floats, Indices
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
@@ -135,9 +134,7 @@ def _polygons(
     return np.concatenate(corners), counts, int(limits[-1])
 
 
-def _begins(head: bytes) -> bool:
+def begins_as_off(head: bytes) -> bool:
+    """Whether a file begins with the keyword of an OFF file."""
     found = KEYWORD.match(head)
     return found is not None and KNOWN.fullmatch(found[1]) is not None
-
-
-OFF: Final = register(MeshFormat("OFF", read_off, (".off",), begins=_begins))

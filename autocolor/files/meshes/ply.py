@@ -17,12 +17,10 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, chunks
 from autocolor.checks import LARGEST_COORDINATE, listed, printable
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.ply_elements import (
     AXES,
     CORNERS,
     FACE,
-    FIRST_LINE,
     MOST_UNNAMED_PARTS,
     PART,
     PARTS,
@@ -358,11 +356,3 @@ def _read(path: Path) -> tuple[Polygons, list[str]]:
         )
     tables = read_binary(data, header, path.name) if header.order else read_text(data, header, path.name)
     return ply_polygons(tables, named_in(header.comments), path.name, path.stem)
-
-
-def _begins(head: bytes) -> bool:
-    """Whether a file begins as PLY does."""
-    return FIRST_LINE.match(head) is not None
-
-
-PLY: Final = register(MeshFormat("PLY", read_ply, (".ply",), begins=_begins, written=ply_bytes))

@@ -157,6 +157,11 @@ class Header(NamedTuple):
     lines: int
 
 
+def begins_as_ply(head: bytes) -> bool:
+    """Whether a file begins as PLY does."""
+    return FIRST_LINE.match(head) is not None
+
+
 def parsed_header(data: bytes, place: str) -> Header:
     """The header at the start of a file; `place` is its name in messages. Raises InputError."""
     if problem := text_problem(data[:2]):

@@ -19,7 +19,6 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, Singles
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.obj import NUMBER
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, different, name_of, repaired
 from autocolor.files.reading import (
@@ -349,9 +348,6 @@ def _is_text(data: bytes) -> bool:
     return data[:2] in IN_UTF_16 or (BEGINNING.match(data) is not None and b"\0" not in data[:84])
 
 
-def _begins(head: bytes) -> bool:
+def begins_as_stl(head: bytes) -> bool:
     """Whether a file begins as a text of solids does; binary files are only known by their names."""
     return FIRST_FACET.match(head.removeprefix(UTF_8_MARK)) is not None
-
-
-STL: Final = register(MeshFormat("STL", read_stl, (".stl",), begins=_begins))

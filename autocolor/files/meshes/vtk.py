@@ -22,7 +22,6 @@ from autocolor.arrays import AnyArray, Floats, Indices, Numbers, runs
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface, used_nodes
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.found_scalars import FoundScalars
 from autocolor.files.meshes.number_text import NumberText
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
@@ -829,8 +828,6 @@ def _without_unused(flats: Flats, nodes: int) -> tuple[Flats, Indices, tuple[str
     return Flats(row_of[flats.corners], flats.corner_counts, flats.cells), kept, sentences
 
 
-def _begins(head: bytes) -> bool:
+def begins_as_vtk(head: bytes) -> bool:
+    """Whether a file begins as legacy VTK does."""
     return FIRST_LINE.match(head) is not None
-
-
-VTK: Final = register(MeshFormat("VTK", read_vtk, (".vtk",), begins=_begins))

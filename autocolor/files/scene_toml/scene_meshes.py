@@ -15,7 +15,7 @@ from typing import Annotated, Any, ClassVar, Final, NamedTuple
 from weakref import WeakKeyDictionary
 
 from autocolor.errors import InputError, OutputError
-from autocolor.files.meshes.formats import format_of_files, read_mesh
+from autocolor.files.formats import format_of_files, read_mesh
 from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import SCALES, UPS, MeshReport, Placement
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes

@@ -11,10 +11,9 @@ from typing import Final, NamedTuple
 
 from autocolor.checks import nearest, printable, shown
 from autocolor.errors import InputError, UsageError, WriteError
+from autocolor.files.formats import recognized
 from autocolor.files.meshes.repair import different
-from autocolor.files.registry import recognized
-from autocolor.files.scene_sources import PathLike, read_scene_with_report
-from autocolor.files.scenes.formats import scene_formats
+from autocolor.files.scene_sources import SCENE_FORMATS, PathLike, read_scene_with_report
 from autocolor.files.store.connections import (
     BUSY_ERRORS,
     CHANGES,
@@ -71,7 +70,7 @@ def is_store(path: Path) -> bool:
     """Whether a file is a store, by its name or its first bytes."""
     if os.path.isdir(path):
         return False
-    scene_format = recognized(path, scene_formats())
+    scene_format = recognized(path, SCENE_FORMATS)
     return scene_format is not None and scene_format.name == "store"
 
 

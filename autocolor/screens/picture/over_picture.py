@@ -108,7 +108,7 @@ class OverPicture(Screen):
         part = "" if seen is None else seen.part
         bands, scalar = studio.image.bands.get(name), studio.scene.scalar
         if bands is None or scalar is None:
-            what = "level" if studio.image.normals is None else "normal"
+            what = studio.image.meaning
             return Pointed(name, part, f"{what} {word - first} of {levels - 1}")
         values, block = studio.image.picture.scalar, studio.image.block
         value = float("nan") if values is None else float(values[line // block, element // block])

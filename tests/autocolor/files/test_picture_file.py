@@ -37,7 +37,7 @@ from autocolor import (
 from autocolor.errors import MissingInputError, OutputError, WriteError
 from autocolor.files.array_file import array_file_bytes, read_array_file
 from autocolor.files.picture_file import PICTURE_FILE, SavedPicture, plain_scene, scene_of_plain
-from autocolor.mapping.display_image import display_image
+from autocolor.images import display_image
 from autocolor.scene.columns import keys_of
 from autocolor.scene.scalar import MeshScalar
 from autocolor.scene.surfaces import Paint, Reflectance, Surface

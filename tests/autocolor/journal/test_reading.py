@@ -256,7 +256,7 @@ def taken(*lines: str) -> History:
     return history
 
 
-def test_variants_and_what_is_saved_are_taken_up() -> None:
+def test_variants_and_what_is_saved_are_attached() -> None:
     history = taken(
         "studio.keep_variant('A')",
         "studio.recolor('body', blend=0.25)",

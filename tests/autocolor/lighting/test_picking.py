@@ -45,7 +45,7 @@ from autocolor.lighting.picking import (
 )
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.columns import with_values
-from autocolor.scene.following import set_down
+from autocolor.scene.following import detached
 from autocolor.scene.reflection_models import BlinnPhong, CookTorrance, Phong, ReflectionModel
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
 from ramtek_emu import Ramtek9300
@@ -373,7 +373,7 @@ def test_a_half_space_ends_at_the_point_and_moves_along_its_direction(
     left, right = placed.half_spaces
     assert right == planes[1]
     assert left == planes[0].replace(point=left.point)
-    in_world = set_down(left, placed)
+    in_world = detached(left, placed)
     assert dot(minus(in_world.point, point), unit(in_world.direction)) == pytest.approx(0, abs=1e-9)
     across = np.cross(minus(left.point, start), unit(direction))
     assert across == pytest.approx(np.zeros(3), abs=1e-9)

@@ -31,7 +31,7 @@ from autocolor import (
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.scene.columns import Tier
-from autocolor.scene.lights import Links, middle_between, unit_vector
+from autocolor.scene.lights import Links, free_name, middle_between, unit_vector
 from autocolor.scene.scene import cost_of_edit
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import grid
@@ -423,3 +423,17 @@ def test_squares_of_very_small_or_large_ones_do_not_matter(size: float) -> None:
 def test_the_middle_of_two_points_is_halfway_also_between_the_largest() -> None:
     assert middle_between((1, 2, -3), (3, 2, 5)) == (2, 2, 1)
     assert middle_between((1.5e308, 0, 0), (1.7e308, 0, 0)) == (1.6e308, 0, 0)
+
+
+@given(
+    st.lists(st.sampled_from(["key", "key 2", "key 3", "key 4", "rim"])), st.sampled_from(["key", "key 2"])
+)
+def test_a_free_name_is_not_taken_and_keeps_the_word(taken: list[str], name: str) -> None:
+    free = free_name(name, taken)
+    assert free not in taken
+    assert free.startswith("key")
+    assert (free == name) == (name not in taken)
+
+
+def test_a_name_that_is_a_number_alone_is_kept_whole() -> None:
+    assert free_name("2", ["2"]) == "2 2"

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from ramtek_emu import NoScreenError, Ramtek9300, instructions
-from ramtek_emu.monitor.glass import placement
+from ramtek_emu.monitor.glass import viewport
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
 from tests.ramtek_emu.screens import shown
@@ -68,7 +68,7 @@ def test_every_pixel_is_a_block_at_every_window_size(
     resize(monitor, size)
     field = monitor.display.field()
     blocks = np.repeat(np.repeat(field, multiple, axis=0), multiple, axis=1)
-    left, top, *_ = placement((640, 480), size)
+    left, top, *_ = viewport((640, 480), size)
     expected = np.zeros((size[1], size[0], 3), np.uint8)
     cut_left, cut_top = max(0, -left), max(0, -top)
     part = blocks[cut_top : cut_top + size[1], cut_left : cut_left + size[0]]
@@ -248,7 +248,7 @@ def test_a_cursor_that_moves_leaves_nothing_behind(monitor: Monitor, size: tuple
     display = monitor.display
     display.send(instructions.write_cursor(0, 300, 200))
     resize(monitor, size)
-    left, top, width, _ = placement((640, 480), size)
+    left, top, width, _ = viewport((640, 480), size)
     for number, place in enumerate(((300, 200), (310, 210), (0, 0), (250, 299), (620, 470), (80, 150))):
         display.joystick.move_to(*place)
         if number == 3:

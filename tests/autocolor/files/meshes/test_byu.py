@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from autocolor.errors import InputError
+from autocolor.files.formats import format_of
 from autocolor.files.meshes.byu import read_byu
-from autocolor.files.meshes.formats import format_of
 from autocolor.files.meshes.repair import MeshReport, Placement
 from tests.autocolor.files.meshes.mutations import survives
 

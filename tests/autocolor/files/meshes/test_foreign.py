@@ -20,6 +20,7 @@ import pytest
 
 from autocolor.errors import InputError, UnavailableError
 from autocolor.files.array_file import array_file_bytes
+from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.cells import CORNERS
 from autocolor.files.meshes.foreign import (
     FAILED,
@@ -38,7 +39,6 @@ from autocolor.files.meshes.foreign import (
     size_of_file,
     size_of_gltf,
 )
-from autocolor.files.meshes.formats import read_mesh
 from autocolor.files.meshes.repair import MeshReport, Placement, Polygons, repaired
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.files.meshes.mutations import mutations

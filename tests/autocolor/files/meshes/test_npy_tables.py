@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from autocolor import Mesh, View, read_scene, render, scene_of
 from autocolor.arrays import AnyArray
 from autocolor.errors import InputError, MissingInputError, OutputError, WriteError
+from autocolor.files.formats import MESH_FORMATS, format_of_files, format_of_folder, read_mesh
 from autocolor.files.meshes import npy_tables as room
-from autocolor.files.meshes.formats import format_of_files, format_of_folder, mesh_formats, read_mesh
 from autocolor.files.meshes.npy_tables import (
     FORMAT,
     TableNotes,
@@ -768,7 +768,7 @@ def test_tables_are_known_by_the_names_of_their_files_or_how_they_begin(tmp_path
 
 
 def test_the_format_is_written_too_and_holds_all_that_a_mesh_has(tmp_path: Path) -> None:
-    npy = next(each for each in mesh_formats() if each.name == "npy")
+    npy = next(each for each in MESH_FORMATS if each.name == "npy")
     assert npy.write is not None
     npy.write(tmp_path, cube())
     mesh = npy.read(tmp_path / "nodes.npy", tmp_path / "polygons.npy").mesh

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from autocolor import Mesh, Surface
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError, MissingInputError
+from autocolor.files.formats import read_mesh
 from autocolor.files.meshes import obj as materials
 from autocolor.files.meshes import obj as module
 from autocolor.files.meshes import obj as plain_reader
-from autocolor.files.meshes.formats import read_mesh
 from autocolor.files.meshes.obj import (
     MOST_LIBRARIES,
     MOST_PROBLEMS,

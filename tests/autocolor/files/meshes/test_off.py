@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import format_of
+from autocolor.files.formats import format_of
 from autocolor.files.meshes.off import read_off
 from autocolor.files.meshes.repair import MeshReport
 from tests.autocolor.files.meshes.mutations import survives

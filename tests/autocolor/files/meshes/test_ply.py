@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError, MissingInputError
+from autocolor.files.formats import format_of, read_mesh
 from autocolor.files.meshes import ply as ply_bytes_module
 from autocolor.files.meshes import ply as ply_file_module
 from autocolor.files.meshes import ply as ply_polygons_module
-from autocolor.files.meshes.formats import format_of, read_mesh
 from autocolor.files.meshes.ply import ply_bytes, ply_polygons, read_ply, triangles_of_strips
 from autocolor.files.meshes.ply_elements import Column, Comments, Lists, PlyTables, Rows
 from autocolor.files.meshes.repair import MeshReport, Placement, Polygons

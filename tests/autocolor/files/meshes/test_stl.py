@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from autocolor.arrays import Floats, Singles
 from autocolor.errors import InputError, MissingInputError
+from autocolor.files.formats import format_of
 from autocolor.files.meshes import stl as stl_file_module
 from autocolor.files.meshes import stl as text_module
 from autocolor.files.meshes import stl as weld
-from autocolor.files.meshes.formats import format_of
 from autocolor.files.meshes.repair import MeshReport, Placement
 from autocolor.files.meshes.stl import (
     FACET,

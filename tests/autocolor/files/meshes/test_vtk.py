@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import format_of
+from autocolor.files.formats import format_of
 from autocolor.files.meshes.repair import MeshReport, Placement
 from autocolor.files.meshes.vtk import (
     TYPES,

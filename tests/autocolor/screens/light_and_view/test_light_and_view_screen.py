@@ -646,7 +646,7 @@ def test_all_rows_of_sixteen_lights_can_be_reached() -> None:
     hand = opened(boxed(*(Light(f"light {n}", (n, -3.0, 2.0)) for n in range(1, 17))))
     labels = set()
     for _ in range(3):
-        labels |= {each.label for each in hand.viewer.board.menu_rows()}
+        labels |= {each.label for each in hand.viewer.board.layout.rows}
         hand.pick("more")
     assert {f"{n} light {n}" for n in range(1, 17)} <= labels
     assert {"kind", "flaps z", "rescale", "display", "angle", "frame"} <= labels
