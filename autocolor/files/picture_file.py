@@ -8,9 +8,7 @@ elements) float32, to be multiplied by the header's scale, `surface_number` (lin
 at the pixels are `scalar_0`, (lines, elements) float32; NaN is a missing one.
 
 Before version 4 there were no part numbers: the picture of such a file does not know its parts. Written
-again, its part numbers are all 0.
-
-`array_file` reads and writes them.
+again, its part numbers are all 0. `array_file` reads and writes the members.
 """
 
 from __future__ import annotations
@@ -45,11 +43,10 @@ from autocolor.scene.scalar import Limits, MeshScalar
 from autocolor.scene.scene import Scene
 
 PLAIN_FORMATS: Final = ("autocolor picture 2", "autocolor picture 1")
-"""Before version 3 there were no scalars; in version 1 the reflectance and the paint of a surface were nested
-tables."""
+"""Versions without scalars. In version 1 the reflectance and the paint of a surface were nested tables."""
 
 SHOWN: Final = "shown_scalars"
-"""The key of the list in the header whose row, if any, is a table of the own `limits` of the scalar shown."""
+"""The key of a list in the header. Its row, if any, is a table with the `limits` of the shown scalar."""
 
 MOST_PROBLEMS: Final = 20
 LONGEST_PROBLEM: Final = 400
@@ -86,8 +83,8 @@ def write_picture(
 ) -> None:
     """Write a picture file atomically.
 
-    Raises UsageError for a name that does not end in .npz, or for a picture that is not that of the scene in
-    that only one of them has a scalar; OutputError or WriteError if it cannot be written.
+    Raises UsageError for a name that does not end in .npz, or if only one of the picture and the scene has a
+    scalar; OutputError or WriteError if it cannot be written.
     """
     check_suffix(path, ".npz", "a picture with its scene")
     if (picture.scalar_values is None) != (scene.scalar is None):
@@ -168,10 +165,10 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
 
 
 def _parts(arrays: Mapping[str, AnyArray], scene: Scene) -> AnyArray | None:
-    """The part numbers, (lines, elements), None if the file does not know them.
+    """The part numbers, (lines, elements); None if the file has none.
 
-    Raises InputError unless each is that of a part with polygons whose surface is the one there, or 0 where
-    there is none.
+    Raises InputError if a pixel names a part that does not exist, has no polygons, or belongs to another
+    surface than the pixel's.
     """
     parts, surfaces = arrays.get("part_number"), arrays["surface_number"]
     if parts is None:
@@ -199,7 +196,7 @@ def _parts(arrays: Mapping[str, AnyArray], scene: Scene) -> AnyArray | None:
 def _shown_scalar(
     rows: Sequence[object], scene: Scene, arrays: Mapping[str, AnyArray]
 ) -> tuple[AnyArray, tuple[float, float]] | tuple[None, None]:
-    """The raster and the own range of the scalar that a picture shows. Raises InputError."""
+    """The raster of the scalar that a picture shows, and the scalar's own range. Raises InputError."""
     if len(rows) != (scene.scalar is not None):
         rule = "there must be a scalar at the pixels if the scene shows one, and none if it does not"
         raise InputError(f"{rule}, not {len(rows)}")

@@ -161,9 +161,10 @@ def mesh_of(connection: sqlite3.Connection, tables: StoredTables, part_names: tu
 
 
 def _raise_any(problems: list[str]) -> None:
-    """Raise InputError with the problems, if any."""
+    """Raise InputError with the different problems, if any."""
     if problems:
-        raise InputError(problems[:MOST_MESH_PROBLEMS])
+        # The third node of a triangle is its fourth too.
+        raise InputError(list(dict.fromkeys(problems))[:MOST_MESH_PROBLEMS])
 
 
 def _nodes(connection: sqlite3.Connection, table: StoredTable) -> tuple[Numbers, Floats]:

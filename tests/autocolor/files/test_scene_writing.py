@@ -311,9 +311,7 @@ def test_over_the_file_of_another_object_nothing_of_it_is_kept(
 ) -> None:
     with caplog.at_level("WARNING", "autocolor"):
         write_scene(car, scene_of(cube()), overwrite=True)
-    assert caplog.messages == [
-        f"{car / 'scene.toml'}: written anew; what it held, comments included, is not kept"
-    ]
+    assert caplog.messages == [f"{car / 'scene.toml'}: written anew; its old content and comments are lost"]
     assert "by hand" not in (car / "scene.toml").read_text()
     assert same(read_scene(car), scene_of(cube()))
 

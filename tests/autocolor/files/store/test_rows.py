@@ -66,34 +66,6 @@ def test_an_empty_table_of_lights_means_no_lights(tmp_path: Path) -> None:
     assert read_store(path).scene.lights == ()
 
 
-def test_every_problem_of_the_rows_is_told(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(
-        path,
-        "UPDATE surfaces SET exponent = 5, model = 'cook-torrance' WHERE name = 'glass'",
-        "UPDATE lights SET concentration = 3 WHERE name = 'rim'",
-        "UPDATE scene SET exposure = '{\"body\": [2, 1]}'",
-    )
-    with pytest.raises(InputError) as refused:
-        read_store(path)
-    first, second = refused.value.problems
-    assert first.startswith("small.sqlite: surfaces, row 2: exponent must go with model = 'phong'")
-    assert second.startswith("small.sqlite: lights, row 2: concentration must come with a direction")
-
-
-def test_more_than_one_row_of_a_table_of_one_is_refused(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(
-        path,
-        "CREATE TABLE views AS SELECT * FROM view",
-        "DROP TABLE view",
-        "ALTER TABLE views RENAME TO view",
-    )
-    run(path, "INSERT INTO view SELECT * FROM view")
-    with pytest.raises(InputError, match="view must have one row, not 2; leave one"):
-        read_store(path)
-
-
 NEW_COLUMNS = (
     "inner_angle", "half_spaces", "falloff", "reach", "at_infinity", "follows", "only_surfaces",
     "except_surfaces", "only_parts", "except_parts", "flaps_x_edge_width", "flaps_y_edge_width",
@@ -131,71 +103,12 @@ def test_rows_by_name_and_names_are_read_from_what_any_tool_writes(tmp_path: Pat
     )
 
 
-@pytest.mark.parametrize(
-    ("change", "told"),
-    [
-        (
-            """half_spaces = '{"left": {"point": [0,0,0], "direction": [0,0,1], "edge_width": -1}}'""",
-            "lights, row 1: half_spaces.left.edge_width must be a finite number of at least 0, not -1",
-        ),
-        (
-            """half_spaces = '{"left": '""",
-            "lights, row 1: half_spaces must be a table of half-spaces by name, not '{\"left\": '",
-        ),
-        ("half_spaces = 3", "lights, row 1: half_spaces must be a table of half-spaces by name, not 3"),
-        ("only_parts = 'hood'", "lights, row 1: only_parts must be a list of names, not 'hood'"),
-        (
-            """only_parts = '["hod"]'""",
-            "light 'key': only_parts 'hod' is not in the part table; did you mean 'hood'?",
-        ),
-        (
-            "follows = 'rm'",
-            "light 'key': follows 'rm' is not in the light table; did you mean 'rim'?",
-        ),
-        (
-            "follows = 'rim'",
-            "light 'key': follows must be a light with an aim, not 'rim' without one; give it an aim",
-        ),
-    ],
-)
-def test_what_is_wrong_with_them_is_told_with_its_place(tmp_path: Path, change: str, told: str) -> None:
-    path = small_store(tmp_path)
-    run(path, f"UPDATE lights SET {change} WHERE name = 'key'")
-    with pytest.raises(InputError) as refused:
-        read_store(path)
-    assert list(refused.value.problems) == [f"small.sqlite: {told}"]
-
-
 LOOSE_NODES = (
     "ALTER TABLE nodes RENAME TO old",
     "CREATE TABLE nodes (node, x, y, z)",
     "INSERT INTO nodes SELECT * FROM old",
     "DROP TABLE old",
 )
-
-
-@pytest.mark.parametrize(
-    ("statement", "problem"),
-    [
-        ("UPDATE nodes SET x = 'a' WHERE node = 2", "nodes, row 2: x must be a number, not 'a'; correct it"),
-        ("UPDATE nodes SET y = NULL", "nodes, row 1: y must be a number, not missing; correct it"),
-        (
-            "UPDATE nodes SET node = 3 WHERE node = 2",
-            "nodes: rows must have different numbers, and 3 is repeated; number them anew",
-        ),
-        (
-            "UPDATE nodes SET node = 1.5 WHERE node = 2",
-            "nodes, row 1.5: node must be a whole number, not 1.5",
-        ),
-        ("UPDATE nodes SET z = 9e999 WHERE node = 2", "nodes, row 2: coordinates must be finite and at most"),
-    ],
-)
-def test_a_table_that_checks_nothing_is_checked(tmp_path: Path, statement: str, problem: str) -> None:
-    path = small_store(tmp_path)
-    run(path, *LOOSE_NODES, statement)
-    with pytest.raises(InputError) as refused:
-        read_store(path)
-    assert any(each.startswith(f"small.sqlite: {problem}") for each in refused.value.problems)
 
 
 def test_a_missing_node_is_named_also_where_no_table_tells_of_references(tmp_path: Path) -> None:
@@ -214,31 +127,6 @@ def test_a_missing_node_is_named_also_where_no_table_tells_of_references(tmp_pat
     assert refused.value.problems == (f"small.sqlite: {problem}",)
     run(path, "UPDATE polygons SET node4 = 37 WHERE node4 = 4", "DELETE FROM node_scalars WHERE node = 4")
     assert read_store(path).scene.mesh.node_numbers.tolist() == [[0, 1, 2, 4], [0, 1, 3, 3]]
-
-
-def test_a_value_of_a_node_that_is_not_there_is_refused(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(path, "INSERT INTO node_scalars VALUES ('stress', 9, 1.0)")
-    with pytest.raises(
-        InputError, match="node_scalars, scalar 'stress': node 9 is not in the node table; remove"
-    ):
-        read_store(path)
-    run(path, "DELETE FROM node_scalars WHERE node = 9", "INSERT INTO node_scalars VALUES ('heat', 1, 1.0)")
-    with pytest.raises(
-        InputError, match="node_scalars: a scalar is not in the mesh_scalars table; remove such"
-    ):
-        read_store(path)
-
-
-def test_a_crease_angle_and_a_scalar_are_checked(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(path, "DROP TABLE mesh", "CREATE TABLE mesh (crease_angle)", "INSERT INTO mesh VALUES (200)")
-    with pytest.raises(InputError, match="mesh, row 1: crease_angle must be a number from 0 to 180, not 200"):
-        read_store(path)
-    run(path, "DELETE FROM mesh", "DROP TABLE mesh_scalars", "CREATE TABLE mesh_scalars (name, 'of')")
-    run(path, "INSERT INTO mesh_scalars VALUES ('stress', 'edge')")
-    with pytest.raises(InputError, match="mesh_scalars, row 1: it must have a name, and be of 'node' or"):
-        read_store(path)
 
 
 def test_too_many_rows_are_refused_before_they_are_read(
