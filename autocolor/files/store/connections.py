@@ -200,9 +200,15 @@ READING_PRAGMAS: Final = frozenset(
 
 SETTABLE: Final = ("application_id", "schema_version", "user_version")
 
-UNSAFE_FUNCTIONS: Final = ("load_extension", "fts3_tokenizer")
-"""The functions of SQLite that run other code. Both are usually off, but Debian compiles the second in: it
-gives and takes addresses of memory."""
+UNSAFE_FUNCTIONS: Final = frozenset(
+    (
+        "load_extension", "fts3_tokenizer", "readfile", "writefile", "edit", "match", "matchinfo", "snippet",
+        "offsets", "optimize", "highlight", "bm25", "fts5", "rtreecheck", "rtreedepth", "rtreenode",
+    )
+)  # fmt: skip
+"""The functions that do more than compute with their arguments. The first ones run other code or open files;
+most builds lack them, but Debian's has `fts3_tokenizer`, which gives and takes addresses of memory. The others
+read the inner tables of full-text and R-tree indexes, which a file may have damaged."""
 
 READS: Final = (
     sqlite3.SQLITE_SELECT,

@@ -323,6 +323,8 @@ REFUSED = (
     "SELECT readfile('x')",
     "SELECT fts3_tokenizer('simple')",
     "SELECT FTS3_Tokenizer('simple', x'00')",
+    "SELECT * FROM nodes WHERE nodes MATCH 'a'",
+    "SELECT rtreenode(2, zeroblob(100))",
     "PRAGMA journal_mode = WAL",
     "PRAGMA writable_schema = ON",
     "PRAGMA user_version = 9",

@@ -137,10 +137,10 @@ REFUSALS = (
             "UPDATE lights SET concentration = 3 WHERE name = 'rim'",
         ),
         (
-            "surfaces, row 2: exponent must go with model = 'phong' or 'blinn', not with 'cook-torrance'; leave"
-            " it out, or change the other",
-            "lights, row 2: concentration must come with a direction or an aim, not with a point source; add an"
-            " aim",
+            "surfaces, row 2: exponent must go with model = 'phong' or 'blinn', not with 'cook-torrance';"
+            " leave it out, or change the other",
+            "lights, row 2: concentration must come with a direction or an aim, not with a point source; add"
+            " an aim",
         ),
     ),
     (
