@@ -206,9 +206,12 @@ UNSAFE_FUNCTIONS: Final = frozenset(
         "offsets", "optimize", "highlight", "bm25", "fts5", "rtreecheck", "rtreedepth", "rtreenode",
     )
 )  # fmt: skip
-"""The functions that do more than compute with their arguments. The first ones run other code or open files;
-most builds lack them, but Debian's has `fts3_tokenizer`, which gives and takes addresses of memory. The others
-read the inner tables of full-text and R-tree indexes, which a file may have damaged."""
+"""The functions that do more than compute with their arguments.
+
+The first functions run other code or open files. Most builds lack them, but Debian's has `fts3_tokenizer`,
+which gives and takes addresses of memory. The others read the inner tables of full-text and R-tree indexes,
+which a file may have damaged.
+"""
 
 READS: Final = (
     sqlite3.SQLITE_SELECT,
