@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from autocolor.images import image as image
     from autocolor.images import save_image as save_image
     from autocolor.images import send_picture as send_picture
-    from autocolor.journal.reading import read_journal as read_journal
+    from autocolor.journal.journal import read_journal as read_journal
     from autocolor.lighting.picture import Picture as Picture
     from autocolor.mapping.ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
@@ -90,7 +90,7 @@ _HOME: Final = {
     "demo": "commands.demo",
     "image": "images",
     "open_tables": "files.store.tables",
-    "read_journal": "journal.reading",
+    "read_journal": "journal.journal",
     "read_picture": "files.picture_file",
     "read_rig": "files.rig_file",
     "read_scene": "files.scene_sources",

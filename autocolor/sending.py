@@ -16,14 +16,14 @@ from autocolor.mapping.ranges import WORDS
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, Ramtek9300, instructions
 
 EntryEncoder = Callable[[int, Bytes], Words]
-"""Makes the instruction that loads entries, (n, 3) uint8, from a first one on."""
+"""Makes the instruction that loads entries, (n, 3) uint8, from a first entry on."""
 
 
 def configuration_of(display: HostPort) -> Configuration:
-    """The configuration of a display; GMR_9300, the paper's display, if the host port does not have one.
+    """The configuration of a display; GMR_9300, the paper's display, if the host port does not tell it.
 
-    Raises UsageError for what is no host port, and for a display with too few words or entries for the level
-    ranges.
+    Raises UsageError for a value that is no host port, and for a display with too few words or entries for
+    the level ranges.
     """
     if isinstance(display, type) or not callable(getattr(display, "send", None)):
         raise UsageError(
@@ -49,7 +49,7 @@ def encoder_of_entries(display: HostPort) -> EntryEncoder:
 def send_image(display: HostPort, image: DisplayImage, before: DisplayImage | None = None) -> None:
     """Send the entries and words that differ from `before`; without that, a reset and everything.
 
-    A legend is drawn over the words: again if they are sent, and with them if it is another one.
+    The legend is drawn over the words. If the legend changes, the words are sent again, too.
     """
     encode = encoder_of_entries(display)
     if before is None:

@@ -80,7 +80,7 @@ class Ramtek9300:
         beam.charge(words, self.frame_buffer.written - written)
 
     def reset(self) -> None:
-        """Press RESET on the control unit: reset parameters, screen, cursors; drop words held and replies.
+        """Press RESET on the control unit: reset parameters, screen, cursors; drop pending words and replies.
 
         Hardware: PRG introdoc (the switch), DRIVER.c (the interface's hard reset).
         Assumed: the lookup table and loaded characters stay, as after the instruction RSET.

@@ -36,7 +36,7 @@ PUBLIC_NAMES = {
 WINGS = {
     "autocolor": (
         "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "scalars",
-        "lighting", "mapping", "files", "rendering", "sending", "journal", "studio", "images",
+        "lighting", "mapping", "files", "rendering", "sending", "images", "journal", "studio",
         "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (

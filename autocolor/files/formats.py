@@ -185,7 +185,7 @@ def format_of_files(files: Mapping[str, Path]) -> MeshFormat | None:
     """The format of some files, given by their keys in `[[mesh]]`; None if it is unknown.
 
     Several files are recognized by the first: by its suffix, else by its first bytes. If neither is known,
-    they have the format that cannot be told by first bytes: CSV tables.
+    they are CSV tables, the format of several files that has no first bytes of its own.
     """
     first = next(iter(files.values()))
     if tuple(files) == FILE:

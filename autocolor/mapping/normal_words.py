@@ -27,8 +27,8 @@ from autocolor.arrays import Bytes, Floats, Indices, Real, RealArray, Singles, W
 from autocolor.checks import Vector
 from autocolor.immutable import read_only
 from autocolor.lighting.illumination import illuminate
-from autocolor.lighting.picking import ORIGIN, direction_to_eye, direction_to_light, middle_of
 from autocolor.lighting.picture import Picture
+from autocolor.lighting.rays import direction_to_eye, direction_to_light, middle_of
 from autocolor.mapping.colors import entries_at, entries_of
 from autocolor.mapping.display_image import DisplayImage, image_ranges, in_blocks
 from autocolor.mapping.intensity import fractions_by_surface, mapped_ranges
@@ -236,7 +236,7 @@ def light_at_normals(
     """
     nothing = np.empty(0, np.intp)
     middle = middle_of(scene)
-    view = scene.view.replace(eye=ORIGIN, direction=tuple(scene.view.axes[2].tolist()))
+    view = scene.view.replace(eye=(0.0, 0.0, 0.0), direction=tuple(scene.view.axes[2].tolist()))
     to_eye = direction_to_eye(scene).astype(np.float32)[:, None]
     rows = np.zeros((ROW_COUNT, normals.shape[1]), np.float32)
     rows[NORMAL] = normals

@@ -40,12 +40,9 @@ from autocolor.widgets.items import (
 from autocolor.widgets.menu import (
     MENU,
     MESSAGE_LINES,
-    MOST_LINES,
     WIDE_BAR,
-    laid_out,
-    lines_of,
     menu_items,
-    pages_of,
+    page_of_menu,
 )
 from autocolor.widgets.sheet import Page
 from autocolor.widgets.widget import (
@@ -294,7 +291,7 @@ class Board:
                 self._is_open = True
             elif not MENU.left <= element < WIDTH and self.layout.wide is None:
                 self._is_open = False
-            if self._is_open and not was_open and self.session.news.stands:
+            if self._is_open and not was_open and self.session.news.persistent:
                 # Beside the menu, hints stand in its place.
                 self.session.tell("")
         widget = self.layout.widget_at(element, line)
@@ -508,12 +505,12 @@ MOST_CHARACTERS: Final = (WIDTH - 16) // CHARACTER
 
 def message_items(line: str, ink: int, ends: bool = False) -> list[Item]:
     """A message, or an empty line. One that is too long is cut; with `ends`, so that its end is seen."""
-    found = [filled(MESSAGE, BLACK)]
+    items = [filled(MESSAGE, BLACK)]
     if ends and len(line) > MOST_CHARACTERS:
         line = f"..{line[2 - MOST_CHARACTERS :]}"
     if line:
-        found.append(text(fitted(line, MOST_CHARACTERS), 8, MESSAGE.top + 3, ink, BLACK))
-    return found
+        items.append(text(fitted(line, MOST_CHARACTERS), 8, MESSAGE.top + 3, ink, BLACK))
+    return items
 
 
 NUMBERS: Final = "0123456789.-+"
@@ -644,24 +641,3 @@ def compare_row(session: Session) -> Widget:
         run=session.switch_comparing,
         is_chosen=session.comparing.is_on,
     )
-
-
-def page_of_menu(
-    rows: Sequence[Widget], last: Sequence[Widget], number: int, turn: Callable[[int], object]
-) -> list[Widget]:
-    """The rows of a page of the menu, counted from 0, laid out; the last page if there are not so many.
-
-    Each page ends with the `last` rows. If there are several, the row before them calls `turn` with the
-    number of the next one.
-    """
-    pages = pages_of(rows, MOST_LINES - lines_of(last))
-    number = min(number, len(pages) - 1)
-    if len(pages) == 1:
-        return laid_out([*pages[0], *last])
-    more = Button(
-        "more",
-        "The other rows of this menu.",
-        run=partial(turn, (number + 1) % len(pages)),
-        value=f"{number + 1} of {len(pages)}",
-    )
-    return laid_out([*pages[number], more, *last])

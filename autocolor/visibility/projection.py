@@ -1,4 +1,4 @@
-"""The polygons projected to the raster: which of them may be visible, where, and how near their nodes are.
+"""The projection of polygons to the raster: polygons that may be visible, with the places of their nodes.
 
 Both hidden-surface algorithms start from a projection, so that they calculate with the same numbers. The
 paper does not describe its projection; this is a perspective one with square pixels whose centers are at
@@ -23,8 +23,8 @@ from autocolor.arrays import (
     chunks,
     least_of_four,
     most_of_four,
+    used_rows,
 )
-from autocolor.scene.geometry.normals import used_rows
 from autocolor.scene.geometry.planes import SharedPlanes
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
@@ -327,7 +327,7 @@ def _divides(x: Floats, y: Floats) -> Booleans:
 
 
 def _before(one: Floats, other: Floats) -> Booleans:
-    """Whether each column of `one`, (rows, n), is less than that of `other` in the first row that differs."""
+    """Whether columns of `one`, (rows, n), come before those of `other` in lexicographic order."""
     before = np.zeros(one.shape[1], np.bool_)
     for row, other_row in zip(reversed(one), reversed(other), strict=True):
         before = (row < other_row) | ((row == other_row) & before)

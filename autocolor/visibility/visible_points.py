@@ -150,7 +150,7 @@ class VisibleParts(Immutable):
 
 @dataclass(frozen=True, eq=False)
 class SurfaceSlice:
-    """The pixels `start` to `stop`, all of one surface."""
+    """The pixels of a surface, from `start` to before `stop`."""
 
     surface_number: int
     start: int
@@ -219,7 +219,7 @@ class Seen(NamedTuple):
     `surface` and `part` are names, and `polygon` is a row of the polygon table. `point` is P, in object
     coordinates; `normal` is the unit normal N that is used for shading, turned to the eye where the surface
     is two-sided; `reflected_view` is the unit vector R = 2 (N.V) N - V, where V is the direction from P to
-    the eye. N is zero where those of the corners cancel.
+    the eye. N is zero where the normals of the corners cancel.
     """
 
     surface: str

@@ -350,7 +350,7 @@ def _fill_along(
     depth_step = (up.inverse_depth - down.inverse_depth) / width
     inverse_depth = down.inverse_depth + depth_step * offset
     start[DEPTH], step[DEPTH] = inverse_depth, depth_step
-    # The normal is not: it is interpolated as the points of the surface are.
+    # The normal is linear on the surface, not in the picture.
     weight = offset / width * up.inverse_depth / inverse_depth
     rate = ((1 - weight) * up.inverse_depth + weight * down.inverse_depth) / width
     difference = up.normal - down.normal

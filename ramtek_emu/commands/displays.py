@@ -54,12 +54,12 @@ def display_options(function: Function) -> Function:
 
 
 def configuration_asked_for(name: str | None) -> Configuration:
-    """The configuration of that name, or that of the paper; ConfigurationError lists all names."""
+    """The configuration of that name, GMR_9300 without a name; ConfigurationError lists all names."""
     return GMR_9300 if name is None else configuration_named(name)
 
 
 def display_asked_for(configuration: str | None, start: str | None) -> Ramtek9300:
-    """A new display of that configuration, or the one of a snapshot."""
+    """A new display of that configuration, or the display of a snapshot."""
     if start is not None:
         if configuration is not None:
             raise click.UsageError("a display must be given by --configuration or --start; leave one out")
@@ -227,7 +227,7 @@ def tell_the_end(session: HostSession) -> None:
     if unknown:
         plural = "instruction is" if unknown == 1 else "instructions are"
         tell(f"{unknown} {plural} known by name only: without effect")
-    if rest := session.display.decoder.held_words:
+    if rest := session.display.decoder.pending_words:
         tell(f"the stream ends within an instruction: its {rest} words were dropped")
     if session.odd_byte:
         tell("the stream ends within a word: its last byte was dropped")

@@ -171,14 +171,14 @@ class DeviceRelay:
         self._port, self._wire = port, port.wire
         self._terminal, self._notices = terminal, notices
         self._written = bytearray()
-        """What the program wrote and the display has not got; it ends with an odd byte in mid-write."""
+        """Bytes that the program wrote and the display has not got; in mid-write their number may be odd."""
         self._replies = bytearray()
         os.set_blocking(terminal, False)
 
     def relay(self, ended: int) -> None:
         """Relay until the program has ended, so that the file `ended` can be read; PortError if lost.
 
-        The rest of what it wrote is sent by `finish`.
+        `finish` sends the rest of its bytes.
         """
         display, notices = self._wire.socket.fileno(), self._notices
         while True:
@@ -205,7 +205,7 @@ class DeviceRelay:
                 return
 
     def finish(self) -> None:
-        """Send the rest of what the program wrote; replies are dropped. PortError if the display left."""
+        """Send the rest of the program's bytes; replies are dropped. PortError if the display left."""
         while self._written:
             self._replies.clear()
             polled = select.poll()

@@ -113,7 +113,7 @@ def opened(path: str) -> int:
 
 
 def lines_of(number: int) -> Iterator[str]:
-    """The lines of an open file until its end; one that is too long is cut, so that it is refused."""
+    """The lines of an open file until its end; a line that is too long is cut, so that it is refused."""
     rest = b""
     while True:
         try:

@@ -172,7 +172,7 @@ class PacedReader:
         whole = self._odd_byte + data
         self._odd_byte = whole[len(whole) & ~1 :]
         words = np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16, copy=False)
-        begun, end = 0, -2 * self._decoder.held_words - odd
+        begun, end = 0, -2 * self._decoder.pending_words - odd
         for instruction in self._decoder.feed(words):
             end += 2 * len(encode(instruction))
             if instruction.format.name == "LAM":

@@ -4,7 +4,7 @@ Words are 16 bits and go low byte first, in files and on wires (Hardware: PRG, J
 words of their memory to the interface as they are).
 
 A `Wire` is what a host and a display in another process have between them: a TCP connection or a Unix socket.
-TCP carries one stream of bytes. A Unix socket carries packets, each of which is one write of the host.
+TCP carries one stream of bytes. A Unix socket carries packets; a packet is one write of the host.
 
 Between the words of a wire there may be marks. A host sends a mark to ask for a hard reset, and the display
 sends one back when the reset is done: the replies that arrive before it belong to the time before. On TCP, a
@@ -25,8 +25,7 @@ import socket
 import struct
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from enum import Enum
 from types import TracebackType
 from typing import BinaryIO, Final, NoReturn, Protocol, TypeVar
@@ -86,7 +85,7 @@ MARKS_WORK: Final = hasattr(select, "epoll")
 
 
 class Sign(Enum):
-    """What a wire gives when it gives no words."""
+    """A result of reading a wire other than bytes."""
 
     NOTHING = "nothing has arrived"
     MARK = "a mark"
@@ -178,8 +177,8 @@ Self = TypeVar("Self", bound="SocketPort")
 class SocketPort:
     """A host port over a connected socket; `timeout` is how long it waits for the display, in seconds.
 
-    While `send` is sending, it also takes what the display replies; otherwise both sides could wait for each
-    other forever.
+    While `send` is sending, it also takes the replies of the display. Otherwise both sides could wait for
+    each other forever.
     """
 
     at_once: int
@@ -253,8 +252,10 @@ class SocketPort:
                     "wait until no other host is served, or start it again"
                 )
             if events & selectors.EVENT_WRITE:
-                with self._lost_as_port_error():
+                try:
                     is_sent = self._mark_is_due = self.wire.send_mark()
+                except OSError as cause:
+                    raise self._gone(reason_of(cause)) from cause
             if events & selectors.EVENT_READ:
                 self._take()
 
@@ -295,8 +296,10 @@ class SocketPort:
             data = self._read()
             if data is Sign.END:
                 raise self._gone("it closed the connection")
-        with self._lost_as_port_error():
+        try:
             self.wire.socket.shutdown(socket.SHUT_WR)
+        except OSError as cause:
+            raise self._gone(reason_of(cause)) from cause
         while (left := deadline - time.monotonic()) > 0:
             if self._ready(left) and self._read() is Sign.END:
                 return
@@ -327,8 +330,10 @@ class SocketPort:
             self._take()
         if not events & selectors.EVENT_WRITE:
             return 0
-        with self._lost_as_port_error():
+        try:
             return self.wire.send(data)
+        except OSError as cause:
+            raise self._gone(reason_of(cause)) from cause
 
     def _take(self) -> None:
         """Keep the replies that have arrived; at a mark, drop those that precede it."""
@@ -342,14 +347,8 @@ class SocketPort:
             self._received += data
 
     def _read(self) -> bytes | Sign:
-        with self._lost_as_port_error():
-            return self.wire.read(self.at_once)
-
-    @contextmanager
-    def _lost_as_port_error(self) -> Iterator[None]:
-        """A `with` block in which a lost connection is raised as PortError."""
         try:
-            yield
+            return self.wire.read(self.at_once)
         except OSError as cause:
             raise self._gone(reason_of(cause)) from cause
 

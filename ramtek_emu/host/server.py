@@ -82,7 +82,7 @@ class HostSession:
     @property
     def unfinished(self) -> bool:
         """Whether a word or an instruction is incomplete."""
-        return bool(self.odd_byte) or self.display.decoder.held_words > 0
+        return bool(self.odd_byte) or self.display.decoder.pending_words > 0
 
     def feed(self, data: bytes) -> Iterator[bytes]:
         """Pass bytes of the host to the display, piece by piece, and yield the replies to each piece.
@@ -114,7 +114,7 @@ class HostSession:
     def _recorded(self, record: Record, piece: Words) -> Words:
         """Record the instructions that are complete now, and return the words of the incomplete one."""
         words = np.concatenate((self._unrecorded, piece))
-        whole = len(words) - self.display.decoder.held_words
+        whole = len(words) - self.display.decoder.pending_words
         record(words[:whole].astype("<u2", copy=False).tobytes())
         return words[whole:]
 
@@ -264,7 +264,7 @@ class Client:
         return True
 
     def leave(self) -> None:
-        """Close the wire and drop what is unfinished."""
+        """Close the wire and drop the unfinished instruction and the replies."""
         if self._pending is not None:
             # Not all of the host's words were executed, and it must know.
             self.wire.break_off()
@@ -276,7 +276,7 @@ class Client:
 IDLE_SECONDS: Final = 600.0
 PARTIAL_SECONDS: Final = 60.0
 LINE: Final = 128
-"""How many hosts can wait in line."""
+"""Limit: how many hosts can wait in line."""
 
 Self = TypeVar("Self", bound="Server")
 

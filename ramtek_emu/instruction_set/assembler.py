@@ -4,11 +4,11 @@ A line holds an instruction: its name, its flags, its operands by name or mnemon
 
     SET FORE=1 BK
     ERS BACK=2 WIN=100,331..200,411       ; a filled box
-    WVL STRT=10,501                       ; what comes after a semicolon is for readers
+    WVL STRT=10,501                       ; a comment follows a semicolon
       to 100,451  200,300                 ; points; `text "HELLO"` for characters, `words 0010*640` for others
 
 Numbers are decimal or, after 0x, hexadecimal. `raw` and `words` take hexadecimal words, `byte` takes the odd
-byte at the end of a stream. If no length is given, it is that of the data. The words on the left of a listing
+byte at the end of a stream. If no length is given, the data are counted. The words on the left of a listing
 are ignored.
 """
 

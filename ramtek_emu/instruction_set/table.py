@@ -77,7 +77,7 @@ OPERAND_BITS: Final = {
     for word, operands in enumerate((OPERANDS_1, OPERANDS_2))
     for bit, operand in enumerate(operands)
 }
-"""The bit of each operand in the two flag words, of which the second is the upper half."""
+"""The bit of each operand in the two flag words; the second word is the upper half."""
 
 
 @lru_cache(maxsize=1024)
@@ -170,7 +170,7 @@ SUBSTANTIATED: Final = (
 )
 """The instructions that programs of the time confirm, or whose names leave little doubt.
 
-Hardware: LIN, PRG, BTL (those that are not extended), JPL, NCAR (RAM, ZOOM, SELVO, WAITVR, the pixel and
+Hardware: LIN, PRG, BTL (the rows that are not extended), JPL, NCAR (RAM, ZOOM, SELVO, WAITVR, the pixel and
 global cursor forms, LCF, DDCC, ATTPF; FILL, WPT and CIRC in disabled code).
 Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP, WVU, WRP and COPY, of which the
 sources give numbers and names. Their executors say more.
@@ -231,7 +231,7 @@ UNIMPLEMENTED: Final = (
     (0x8C, "RTCS", "RTCS"),
     (0x8D, "WCVU", "WCVU"),
 )
-"""The opcodes of the 9400 and 9460 of which only number and name are known: opcode, name, and its meaning.
+"""Opcodes of the 9400 and 9460 that are known by number and name only: opcode, name, and its meaning.
 
 Hardware: NCAR, whose header lists them; no client that sends one of them was found. Names such as DL43 are
 ours: the header describes a whole range.

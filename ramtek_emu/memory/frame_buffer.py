@@ -22,7 +22,7 @@ from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanBlock, ScanOrd
 
 
 class WriteEnable(NamedTuple):
-    """What a write may change: the planes of the mask, within the window."""
+    """The planes that a write may change, by a mask, within a window."""
 
     mask: int = 0xFFFF
     window: Window = Window(-0x8000, -0x8000, 0x7FFF, 0x7FFF)

@@ -60,12 +60,12 @@ def open_screen() -> None:
     if driver in ("offscreen", "dummy") and driver not in asked.split(","):
         pygame.display.quit()
         raise NoScreenError(
-            f"a window must have a screen, and that of DISPLAY or WAYLAND_DISPLAY does not answer; {advice}"
+            f"a window must have a screen, and DISPLAY or WAYLAND_DISPLAY does not answer; {advice}"
         )
 
 
 class Glass:
-    """The window of one display, closed at first. `size` is that of the field, (elements, lines)."""
+    """The window of one display, closed at first. `size` is the field's, (elements, lines)."""
 
     def __init__(self, size: tuple[int, int], fit: bool = False) -> None:
         self.fit = fit

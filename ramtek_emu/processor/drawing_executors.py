@@ -19,7 +19,7 @@ from ramtek_emu.processor.processor import Executors, Processor
 
 
 def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
-    """What the instruction writes lines with."""
+    """The words and the texture of the instruction's lines."""
     foreground, background = processor.colors(instruction)
     transparent = bool(instruction.low_byte & Flags.ADDITIVE)
     return vectors.Ink(foreground, background, processor.parameters.texture, transparent)

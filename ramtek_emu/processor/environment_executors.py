@@ -67,7 +67,7 @@ def restore_environment(processor: Processor, instruction: Instruction) -> None:
 def read_parameters(processor: Processor, instruction: Instruction) -> None:
     """Reply the operands that the flag words name, in the order in which they would be sent.
 
-    Assumed: all of it; without flag words every operand is replied, those of the second word last.
+    Assumed: all of it; without flag words every operand is replied, the operands of the second word last.
     """
     names = instruction.operands or OPERANDS
     words = [word for name in names for word in processor.parameters.operand(name)]

@@ -38,7 +38,7 @@ def write_image(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN, PIC (one word a pixel); JPL, NCAR (mode 1, two pixels a word; a run goes on).
 
     Assumed: of an odd number of bytes in mode 0 the last is dropped; in mode 1 it is one pixel, and the upper
-    planes become 0. How pairs of pixels meet the edge of the window is told in scan_orders.
+    planes become 0. For pairs of pixels at the edge of the window see scan_orders.
     """
     parameters = processor.parameters
     if parameters.image_mode & 1:

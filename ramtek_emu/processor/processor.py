@@ -66,7 +66,7 @@ class Processor:
         self.saved: list[Parameters] = []
         """The parameters that PUSHE saved, the newest last."""
         self.loaded_characters = loadable(characters())
-        """The dots of the characters that a host can load, (256, 12, 8); until then those of the ROM."""
+        """The dots of the characters that a host can load, (256, 12, 8); at first the ROM's."""
         self.illegal_words = 0
         """How many words were skipped because no instruction begins with them; it never decreases."""
         self.unimplemented = 0

@@ -97,7 +97,7 @@ class ScanOut:
         # times; indices on huge pages take 3 % less, which is not worth the memory.
         self._indices = np.zeros((self.lines, self.elements), np.intp)
         self._indices_of: tuple[int, View] = (-1, PLAIN_VIEW)
-        """What the indices were made from: the count of words written, and the view."""
+        """The count of words written and the view when the indices were computed."""
         shown_words = self._frame_buffer.words[: self.lines, : self.elements]
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
         self._gray: tuple[int, PackedColors] = (-1, self._lookup_table.packed)
@@ -144,7 +144,7 @@ class ScanOut:
         self._draw_cursors(pixels)
 
     def lines_changed_since(self, last: Stamp | None) -> tuple[Run, ...]:
-        """The lines that may differ from those of the field with a stamp, as runs from the top.
+        """The lines that may have changed since the field with the stamp `last`, as runs from the top.
 
         After a load of entries, the lines that show some of them; where a cursor moved, the lines of its old
         place and of its new one; otherwise all lines, as with None.
@@ -259,7 +259,7 @@ def marks(cursors: Cursors, blink_is_on: bool) -> tuple[Mark, ...]:
 
 
 def draw(pixels: PackedColors, mark: Mark, shape: Dots, first_line: int = 0) -> None:
-    """Draw a cursor, clipped at the edges, on lines of a field of which the first is `first_line`."""
+    """Draw a cursor, clipped at the edges, on the lines of a field from `first_line` on."""
     top, left = mark.lines[0] - first_line, mark.element - SHAPE_CENTER
     up, across = max(0, -top), max(0, -left)
     part = pixels[max(0, top) : max(0, top + SHAPE_SIZE), max(0, left) : max(0, left + SHAPE_SIZE)]
@@ -297,7 +297,7 @@ def lines_with(words: Words, first: int, end: int) -> Run:
 
 def least_above(words: Words, first: int, axis: int | None = None) -> Any:
     """The smallest difference between a word and `first`, of all words or of each line, in 16 bits."""
-    # A word below `first` wraps to a difference that is larger than that of any word in the range.
+    # A word below `first` wraps to a larger difference than any word in the range.
     return (words - np.uint16(first)).min(axis=axis)
 
 

@@ -76,10 +76,10 @@ def test_a_display_that_is_not_there_is_told(folder: Path, run: Run) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends programs without a signal")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 128 + signal.SIGTERM)])
-def test_a_session_that_is_ended_here_is_kept_and_gone_on_with(
-    folder: Path, state: Path, number: int, code: int
+def test_a_session_that_is_ended_by_a_signal_is_recovered(
+    folder: Path, number: int, code: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The display turns the object by TRACK; what was done is there after the signal."""
+    """The joystick turns the object by TRACK, before and after the session is recovered."""
     with TcpServer(Ramtek9300()) as server:
 
         def start(*arguments: str) -> subprocess.Popen[str]:
@@ -91,35 +91,40 @@ def test_a_session_that_is_ended_here_is_kept_and_gone_on_with(
                 text=True,
             )
 
-        def serve(seconds: float) -> None:
-            end = time.monotonic() + seconds
-            while time.monotonic() < end:
-                server.step(0.01)
+        polls = 0
+        state_of = server.display.cursors.state_of
 
-        def is_shown() -> bool:
-            return any(cursor.is_visible for cursor in server.display.cursors.all)
+        def counted(number: int) -> int:
+            nonlocal polls
+            polls += 1
+            return state_of(number)
+
+        monkeypatch.setattr(server.display.cursors, "state_of", counted)
+
+        def serve_polls(process: subprocess.Popen[str]) -> None:
+            """Serve until the program has handled the joystick as it is now."""
+            end, wanted = time.monotonic() + 60, polls + 3
+            while polls < wanted and process.poll() is None:
+                assert time.monotonic() < end
+                server.step(0.01)
 
         for arguments in (("scene", "--set", "ambient=0.3"), ("--recover",)):
             process = start(*arguments)
-            end = time.monotonic() + 30
-            while not is_shown() and time.monotonic() < end:
-                serve(0.1)
-            serve(0.3)
             joystick = server.display.joystick
+            serve_polls(process)
             joystick.move_to(300, 200)
+            serve_polls(process)
             joystick.track = True
-            serve(0.1)
+            serve_polls(process)
             joystick.move_to(340, 210)
-            serve(0.3)
+            serve_polls(process)
             joystick.track = False
-            serve(0.3)
+            serve_polls(process)
             process.send_signal(number)
-            while process.poll() is None:
+            while process.poll() is None or server.busy:
                 server.step(0.01)
-            serve(0.1)
             _, err = process.communicate(timeout=30)
             assert process.returncode == code, err
-            server.display.cursors.hide()
     (left,) = left_sessions()
     history = read_journal(left / JOURNAL).history
     assert len(history.to_undo) == 2

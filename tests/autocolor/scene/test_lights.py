@@ -34,6 +34,7 @@ from autocolor.scene.columns import Tier
 from autocolor.scene.lights import Links, free_name, middle_between, unit_vector
 from autocolor.scene.scene import cost_of_edit
 from ramtek_emu import Ramtek9300
+from tests.autocolor.journal.random_steps import journal_of
 from tests.autocolor.meshes import grid
 from tests.autocolor.reference import cross, dot, minus
 from tests.autocolor.strategies import Vector, directions, lights, numbers, some_of, vectors
@@ -397,8 +398,7 @@ def test_links_are_undone_and_told_by_the_journal(tmp_path: Path) -> None:
     studio.light("key", only_surfaces=["glass"])
     assert (studio.words != before).any()
     studio.light("key", only_surfaces=None, except_parts=["b"])
-    (tmp_path / "session.py").write_text(studio.journal(beside=tmp_path / "beside"), "utf-8")
-    history = read_journal(tmp_path / "session.py").history
+    history = read_journal(journal_of(studio.history, tmp_path)).history
     assert history.scene.light("key").links == Links(except_parts=("b",))
     assert (Studio(history, Ramtek9300()).words == studio.words).all()
     studio.undo()

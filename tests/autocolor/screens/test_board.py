@@ -19,7 +19,6 @@ from autocolor.screens.board import (
     handles_near,
     last_rows,
     message_items,
-    page_of_menu,
     rows_of_menu,
     with_loads,
 )
@@ -29,7 +28,7 @@ from autocolor.screens.session import MESSAGE_SECONDS, Session
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import BLACK, GRAY, NIGHT, ORANGE, SCREEN, SLATE, WHITE, WIDTH, filled, text
-from autocolor.widgets.menu import MENU, WIDE_BAR, laid_out
+from autocolor.widgets.menu import MENU, WIDE_BAR, laid_out, page_of_menu
 from autocolor.widgets.sheet import Sheet
 from autocolor.widgets.widget import Button, Entry, Place, Widget
 from ramtek_emu import PRINCETON_9300, Ramtek9300
@@ -397,7 +396,6 @@ def test_the_mark_goes_when_the_pointer_is_exactly_on_it(tmp_path: Path) -> None
     assert viewer.board.mark is None
 
 
-# -------------------- test_layout
 # What a layout has is tried through the board, in test_board.py.
 
 places = st.tuples(st.integers(90, 110), st.integers(90, 110))
@@ -435,7 +433,6 @@ def test_a_widget_is_found_again_by_its_key_and_stays_where_it_was_grabbed(board
     assert Layout(board.screen, after).now(before[1]) is None
 
 
-# -------------------- test_composition
 # What a page looks like is tried through the board, in test_board.py.
 
 
@@ -462,7 +459,6 @@ def test_a_message_stands_over_all_that_a_screen_draws(
     assert items.index(filled(SCREEN, 3)) < min(items.index(item) for item in told)
 
 
-# -------------------- test_grip
 # What is dragged on a board is tried in test_board.py; here, what is asked of the screen.
 
 
@@ -502,7 +498,6 @@ def test_a_handle_is_held_and_placed_and_the_screen_dragged_step_by_step(viewer:
     assert screen.did == [("drag", 200, 200, 210), ("drag", 200, 210, 225)]
 
 
-# -------------------- test_message_line
 # How long a message stands, and what it leaves, is tried through the viewer, in test_viewer.py.
 
 

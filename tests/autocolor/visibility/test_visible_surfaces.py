@@ -263,7 +263,8 @@ def decals_on_grounds(seed: int) -> tuple[Mesh, View]:
     and size of the whole and how its coordinates are rounded.
     """
     random = np.random.default_rng(seed)
-    grounds, decals = [], []
+    grounds: list[Mesh] = []
+    decals: list[Mesh] = []
     for number in range(PAIRS):
         turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
         middle = np.array([5 * (number % 10 - 4.5), random.uniform(-3, 3), 5 * (number // 10 - 4.5)])

@@ -92,7 +92,7 @@ def test_words_and_replies_go_both_ways_and_the_rest_is_drawn_when_the_program_h
         twin.send(picture[: 0xF780 // 2].astype(np.uint16))
         twin.send(OUTLINE)
         assert (server.display.words == twin.words).all()
-        assert server.display.decoder.held_words == 0
+        assert server.display.decoder.pending_words == 0
 
 
 def test_a_display_that_leaves_ends_the_relay_with_an_error(tmp_path: Path) -> None:

@@ -324,10 +324,10 @@ def test_a_hard_reset_frees_a_display_that_waits_for_the_rest_of_an_instruction(
         port.send(OUTLINE)
         server_words = server.display.words
         port.send(words("0802 0002 0009 1600 0064 0464 0B03 0040 0 0 9 9 C8 0A01 FFFE 1 2 3"))
-        until(lambda: server.display.decoder.held_words == 5)
+        until(lambda: server.display.decoder.pending_words == 5)
         port.reset()
         assert not server_words.any()
-        assert server.display.decoder.held_words == 0
+        assert server.display.decoder.pending_words == 0
         assert not server.display.cursors[0].is_visible
         assert server.display.entries[3].tolist() == [1, 2, 3]
         # The replies before the reset are gone; the next reply answers the next instruction.
@@ -408,7 +408,7 @@ def test_each_write_is_rounded_down_to_whole_words_alone(tmp_path: Path) -> None
         port.write(bytes.fromhex("0017"))
         assert port.receive(2).tolist() == [0, 0]
         assert server.display.words.any()
-        assert server.display.decoder.held_words == 0
+        assert server.display.decoder.pending_words == 0
         # Single bytes are no words at all.
         for byte in b"\x02\x09\x44":
             port.write(bytes((byte,)))

@@ -122,7 +122,7 @@ def test_a_host_that_vanishes_in_mid_instruction_leaves_the_display_to_the_next(
                 )
             first.wire.socket.close()
         until(lambda: not server.busy)
-        assert server.display.decoder.held_words == 0
+        assert server.display.decoder.pending_words == 0
         assert server.display.processor.waiting == 0
         before = server.display.words.copy()
         assert before.any()
@@ -361,9 +361,9 @@ def test_a_display_gets_the_words_whatever_pieces_their_bytes_come_in(
     replies = b"".join(reply for piece in pieces for reply in session.feed(piece))
     assert np.frombuffer(replies, "<u2").tolist() == twin.receive(twin.processor.waiting).tolist()
     assert (session.display.words == twin.words).all()
-    assert session.display.decoder.held_words == twin.decoder.held_words
+    assert session.display.decoder.pending_words == twin.decoder.pending_words
     assert session.odd_byte == odd_byte
-    assert session.unfinished == bool(odd_byte or twin.decoder.held_words)
+    assert session.unfinished == bool(odd_byte or twin.decoder.pending_words)
 
 
 @quick
@@ -376,8 +376,8 @@ def test_what_is_recorded_ends_with_a_whole_instruction(stream: list[int], cut: 
         for _ in session.feed(piece):
             again = Ramtek9300(SMALL)
             again.send(np.frombuffer(b"".join(kept), "<u2").astype(np.uint16))
-            assert again.decoder.held_words == 0
-    assert b"".join(kept) == data[: len(data) - 2 * session.display.decoder.held_words]
+            assert again.decoder.pending_words == 0
+    assert b"".join(kept) == data[: len(data) - 2 * session.display.decoder.pending_words]
 
 
 def test_a_host_that_leaves_takes_its_unfinished_words_and_replies_with_it() -> None:

@@ -100,7 +100,7 @@ def test_the_parts_that_are_sent_are_seen_on_the_screen(
                     display.send(instructions.load_entries(9, [[200, 100, 50]]))
                 glass.show(display.scan_out, Overlay(), "", hides_mouse=True)
                 field = display.field().repeat(scale, axis=0).repeat(scale, axis=1)
-                until = time.monotonic() + 10
+                until = time.monotonic() + 60
                 while time.monotonic() < until:
                     seen = screen.pixels()[top : top + height, left : left + width]
                     if np.array_equal(seen, field):
