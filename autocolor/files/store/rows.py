@@ -89,10 +89,26 @@ def report_of(
     if len(parts) < len(part_rows):
         problems.append("parts: names must be unique, not repeated; rename one")
     _validated(ROW_TABLES["parts"], part_rows, problems)
+    if "surfaces" in rows_of:
+        problems.extend(_unknown_surfaces(part_rows, rows_of["surfaces"]))
     if problems:
         raise InputError(problems[:MOST_PROBLEMS])
     mesh = mesh_of(connection, tables, tuple(parts) if part_rows else None)
     return _report(mesh, parts, fields, "surfaces" in rows_of, surfaces)
+
+
+def _unknown_surfaces(parts: list[dict[str, SqlValue]], surfaces: list[dict[str, SqlValue]]) -> Iterator[str]:
+    """A problem for each part whose surface has no row.
+
+    Tools leave foreign keys unchecked unless they are asked to check them, and SQLite's own error names no
+    row, so references are checked here.
+    """
+    names = {str(row.get("name")): None for row in surfaces}
+    for number, row in enumerate(parts, 1):
+        surface = row.get("surface")
+        if surface is not None and surface not in names:
+            advice = nearest(str(surface), names) or "; correct it"
+            yield f"parts, row {number}: surface {shown(surface)} is not in the surface table{advice}"
 
 
 def _report(
@@ -271,6 +287,13 @@ def _scalars(
                 f" {shown(name)} of {shown(of)}; correct it"
             )
         scalars.append(_scalar(connection, tables, name, str(of), numbers[str(of)]))
+    for table in VALUES.values():
+        if table in tables and "scalar" in tables[table].columns:
+            query = f"SELECT scalar FROM {table} WHERE scalar NOT IN (SELECT name FROM {SCALARS}) LIMIT 1"
+            for (scalar,) in connection.execute(query):
+                raise InputError(
+                    f"{table}: scalar {shown(scalar)} is not in the {SCALARS} table; remove its values"
+                )
     return tuple(scalars)
 
 

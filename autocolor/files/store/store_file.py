@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import closing
-from itertools import islice
 from pathlib import Path
 from typing import Final
 
-from autocolor.checks import nearest, shown
+from autocolor.checks import shown
 from autocolor.errors import InputError, OutputError, UsageError, WriteError
 from autocolor.files.scene_report import SceneReport
 from autocolor.files.store.connections import (
@@ -36,11 +35,8 @@ from autocolor.files.store.schema import (
     APPLICATION,
     DEFINITIONS,
     INDEXES,
-    MESH_TABLES,
     ROW_TABLES,
-    VALUES,
     VERSION,
-    StoredTables,
     quoted,
     stored_tables,
 )
@@ -74,11 +70,7 @@ def report_in(
     try:
         with refusals(file, clock):
             tables = stored_tables(connection)
-            _refuse_broken(connection, tables, ROW_TABLES)
-            report = report_of(connection, tables, name or "scene", surfaces)
-            # If a node is missing, report the polygons that need it first.
-            _refuse_broken(connection, tables, VALUES.values())
-            return report
+            return report_of(connection, tables, name or "scene", surfaces)
     except InputError as error:
         prefix = f"{file}: "
         raise InputError(
@@ -87,74 +79,6 @@ def report_in(
     finally:
         connection.set_authorizer(None)
         connection.set_progress_handler(None, 0)
-
-
-def _refuse_broken(connection: sqlite3.Connection, tables: StoredTables, names: Iterable[str]) -> None:
-    """Raise InputError if a row of one of these tables refers to a row that is missing."""
-    problems = broken_references(connection, tables, names)
-    if problems:
-        raise InputError(problems)
-
-
-# Rows that refer to rows that are missing.
-#
-# Tools that edit a store leave its foreign keys unchecked unless they are asked to check them, and SQLite's
-# own error names no row. The references of polygons are left to `rows`, which must find each node and part
-# anyway: SQLite would take a quarter of a second for a million polygons.
-
-MOST_PROBLEMS: Final = 20
-MOST_NAMES: Final = 1000
-
-NOUNS: Final = {"parts": "part", "surfaces": "surface", "nodes": "node", "polygons": "polygon"}
-
-
-def broken_references(
-    connection: sqlite3.Connection, tables: Mapping[str, object], names: Iterable[str]
-) -> list[str]:
-    """What is wrong with the references of some tables of a store by name, up to MOST_PROBLEMS.
-
-    `tables` are the tables of the store. A reference to a missing table is no problem, as that is created.
-    """
-    problems = (
-        problem for table in names if table in tables for problem in _of_table(connection, table, tables)
-    )
-    # Rows without numbers give the same sentence.
-    return list(islice(dict.fromkeys(problems), MOST_PROBLEMS))
-
-
-def _of_table(connection: sqlite3.Connection, table: str, tables: Mapping[str, object]) -> Iterator[str]:
-    columns = {
-        number: (column, parent.lower())
-        for number, _, parent, column, *_ in connection.execute(f"PRAGMA foreign_key_list({quoted(table)})")
-        if parent.lower() in tables and parent.lower() in DEFINITIONS
-    }
-    if not columns:
-        return
-    try:
-        rows = connection.execute(f"PRAGMA foreign_key_check({quoted(table)})")
-        broken = [row for row in islice(rows, MOST_PROBLEMS * 10) if row[3] in columns]
-    except sqlite3.OperationalError:
-        # The keys fit no table. The values that they are for are checked as the rows are read.
-        return
-    for _, row, _, number in broken[:MOST_PROBLEMS]:
-        column, parent = columns[number]
-        noun = NOUNS.get(parent, parent)
-        if row is None:
-            yield f"{table}: a {column} is not in the {noun} table; remove such rows"
-            continue
-        query = f"SELECT {quoted(column)} FROM {quoted(table)} WHERE rowid = ?"
-        value = connection.execute(query, (row,)).fetchone()
-        text = shown(value[0]) if value else "a value"
-        sentence = f"{table}, row {row}: {noun} {text} is not in the {noun} table"
-        if parent in MESH_TABLES:
-            low, high = connection.execute(f"SELECT min(rowid), max(rowid) FROM {quoted(parent)}").fetchone()
-            known = "(which is empty)" if low is None else f"({low} to {high})"
-            yield f"{sentence} {known}; correct it"
-        else:
-            names = connection.execute(f"SELECT name FROM {quoted(parent)} LIMIT {MOST_NAMES}")
-            known_names = [name for (name,) in names if isinstance(name, str)]
-            advice = nearest(value[0], known_names) if value else ""
-            yield f"{sentence}{advice or '; correct it'}"
 
 
 # Writing.
