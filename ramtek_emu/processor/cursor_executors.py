@@ -93,7 +93,7 @@ def load_cursor_shape(processor: Processor, instruction: Instruction) -> None:
     if is_there(processor, instruction):
         data = instruction.data.astype("<u2").view(np.uint8)[: instruction.length]
         rows = data[: len(data) // SHAPE_BYTES_PER_ROW * SHAPE_BYTES_PER_ROW].reshape(-1, SHAPE_BYTES_PER_ROW)
-        processor.cursors.shape(instruction.low_byte, rows[:32])
+        processor.cursors.set_shape(instruction.low_byte, rows[:32])
 
 
 def connect_device(processor: Processor, instruction: Instruction) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from ramtek_emu.drawing import curves, text, vectors
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
+from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.memory.parameters import STANDARD_FONT, register
 from ramtek_emu.memory.scan_orders import Point
 from ramtek_emu.processor.processor import Executors, Processor
@@ -106,7 +107,7 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
     is_standard = parameters.font == STANDARD_FONT
     next_cell = text.write_text(
         processor.frame_buffer,
-        processor.characters if is_standard else processor.loaded_characters,
+        characters() if is_standard else processor.loaded_characters,
         instruction.data_bytes(),
         style,
         window=parameters.window,

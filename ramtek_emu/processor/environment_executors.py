@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -51,7 +52,7 @@ def do_nothing(processor: Processor, instruction: Instruction) -> None:
 def save_environment(processor: Processor, instruction: Instruction) -> None:
     """Assumed: all parameters are saved, zoom and font included."""
     if len(processor.saved) < MOST_SAVED:
-        processor.saved.append(processor.parameters.copy())
+        processor.saved.append(replace(processor.parameters))
     else:
         processor.flag_illegal()
 

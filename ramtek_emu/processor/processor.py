@@ -18,13 +18,13 @@ from typing import Final
 
 import numpy as np
 
-from ramtek_emu.arrays import Dots, Numbers, Words
+from ramtek_emu.arrays import Numbers, Words
 from ramtek_emu.checks import is_whole
 from ramtek_emu.configuration import Configuration
 from ramtek_emu.errors import ReplyError
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
-from ramtek_emu.memory.character_rom import characters, loadable
+from ramtek_emu.memory.character_rom import initial_loaded_characters
 from ramtek_emu.memory.cursors import Cursors
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
@@ -65,8 +65,8 @@ class Processor:
         self.parameters = Parameters.at_reset(configuration)
         self.saved: list[Parameters] = []
         """The parameters that PUSHE saved, the newest last."""
-        self.loaded_characters = loadable(characters())
-        """The dots of the characters that a host can load, (256, 12, 8); at first the ROM's."""
+        self.loaded_characters = initial_loaded_characters()
+        """The dots of the loaded characters, (256, 12, 8)."""
         self.illegal_words = 0
         """How many words were skipped because no instruction begins with them; it never decreases."""
         self.unimplemented = 0
@@ -77,11 +77,6 @@ class Processor:
     def __repr__(self) -> str:
         state = f"{self.waiting} words of replies waiting, status {self.status.name}"
         return f"Processor({self.configuration.name}, {state})"
-
-    @property
-    def characters(self) -> Dots:
-        """The dots of the ROM, (256, 9, 7), read-only."""
-        return characters()
 
     def current_parameters(self) -> Parameters:
         """The parameters; POPE and RSET replace them, so that they must be asked for each time."""

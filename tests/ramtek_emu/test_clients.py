@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ramtek_emu import GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, Configuration, Ramtek9300, instructions
+from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.processor.processor import Status
 from tests.ramtek_emu import reference
 from tests.ramtek_emu.clients import (
@@ -151,7 +152,7 @@ def test_relative_text_starts_where_the_operating_point_was_set() -> None:
     library.color(3)
     library.start(200, 150)
     library.text_here("Ramtek")
-    cells = np.concatenate([display.processor.characters[ord(letter)] for letter in "RAMTEK"], axis=1)
+    cells = np.concatenate([characters()[ord(letter)] for letter in "RAMTEK"], axis=1)
     assert (display.words[150:159, 200:242] == 3 * cells).all()
 
 
@@ -208,7 +209,7 @@ def test_the_plot_library_draws_lines_boxes_and_text() -> None:
     words = display.words
     assert words[501, 10] == 1
     assert (words[331:412, 100:201] == 2).all()
-    cells = np.concatenate([display.processor.characters[ord(letter)] for letter in "HELLO "], axis=1)
+    cells = np.concatenate([characters()[ord(letter)] for letter in "HELLO "], axis=1)
     # The box's color stayed the background.
     assert (words[451:460, 100:142] == np.where(cells, 1, 2)).all()
     assert display.field()[501, 10].tolist() == [255, 0, 0]
@@ -239,7 +240,7 @@ def test_the_image_driver_sets_text_at_the_edge_before_its_window() -> None:
     for element, line in ((0, 190), (-21, 300)):
         display.send(sent_words([0x0C0B, 0x8443, 255, 7, 1, 1, 640, 480, 0, element, line, 6]))
         display.send(sent_words(pairs(b"VICAR ", low_first=True)))
-    cells = np.concatenate([display.processor.characters[ord(letter)] for letter in "VICAR "], axis=1)
+    cells = np.concatenate([characters()[ord(letter)] for letter in "VICAR "], axis=1)
     assert (display.words[190:199, :42] == 7 * cells).all()
     assert (display.words[300:309, :21] == 7 * cells[:, 21:]).all()
     assert np.count_nonzero(display.words) == cells.sum() + cells[:, 21:].sum()

@@ -28,6 +28,7 @@ from ramtek_emu import (
 )
 from ramtek_emu.display import EXECUTORS
 from ramtek_emu.instruction_set.table import FORMATS, ILLEGAL
+from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.snapshot import snapshot_bytes
 from tests.ramtek_emu.displays import sent
 from tests.ramtek_emu.recorded_streams import RECORDED
@@ -200,7 +201,7 @@ def test_a_copy_of_a_display_is_apart_from_it_and_its_arrays_stay_read_only(
     display.send(sent_words([4, 5, 6, 0x2B00]))
     words, entries = twin.words, twin.lookup_table.packed
     assert words[10, 10] == (640 * 10 + 10) % 200
-    for handed_out in (words, entries, twin.entries, twin.processor.characters):
+    for handed_out in (words, entries, twin.entries, characters()):
         assert not handed_out.flags.writeable
     # The views that were handed out before stay current.
     twin.reset()

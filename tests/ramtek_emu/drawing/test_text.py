@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ramtek_emu import InstructionError, Ramtek9300, instructions
+from ramtek_emu.memory.character_rom import characters
 from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanOrder, Window
 from ramtek_emu.snapshot import display_of, snapshot_bytes
 from tests.ramtek_emu import reference
@@ -23,7 +24,7 @@ def test_the_scan_order_turns_text(code: int, text: str) -> None:
     data = text.encode()
     packed = np.frombuffer(data + bytes(len(data) % 2), ">u2").astype(np.uint16)
     display.send(np.concatenate(([0x0C01, len(data)], packed)).astype(np.uint16))
-    cells = np.concatenate([display.processor.characters[letter] for letter in data], axis=1)
+    cells = np.concatenate([characters()[letter] for letter in data], axis=1)
     window = SCAN_ORDERS[code].oriented(display.words[200:300, 200:300])
     assert (window[:9, : cells.shape[1]] == np.where(cells, 5, 2)).all()
     assert not window[9:].any()
@@ -34,7 +35,7 @@ def test_size_repeats_the_dots(size: int | tuple[int, int]) -> None:
     across, down = (size, size) if isinstance(size, int) else size
     display = Ramtek9300()
     display.send(instructions.write_text("Rg", 10, 20, 7, 1, size))
-    dots = np.concatenate([display.processor.characters[ord(letter)] for letter in "Rg"], axis=1)
+    dots = np.concatenate([characters()[ord(letter)] for letter in "Rg"], axis=1)
     large = np.repeat(np.repeat(dots, down, axis=0), across, axis=1)
     lines, elements = large.shape
     assert (display.words[20 : 20 + lines, 10 : 10 + elements] == np.where(large, 7, 1)).all()
@@ -52,13 +53,13 @@ def test_text_that_reaches_the_window_s_edge_goes_on_below() -> None:
     display = Ramtek9300()
     # A window of two cells' width, three characters.
     display.send(np.array([0x0C03, 0x0042, 5, 10, 10, 23, 40, 3, 0x4142, 0x4300], np.uint16))
-    shapes = display.processor.characters
+    shapes = characters()
     assert (display.words[19:28, 10:17] == np.where(shapes[ord("C")], 5, 0)).all()
     assert display.processor.parameters.start == (17, 19)
 
 
 def letters(display: Ramtek9300, text: str) -> NDArray[np.bool_]:
-    return np.concatenate([display.processor.characters[ord(letter)] for letter in text], axis=1)
+    return np.concatenate([characters()[ord(letter)] for letter in text], axis=1)
 
 
 def test_text_longer_than_its_window_keeps_its_beginning() -> None:
@@ -146,7 +147,7 @@ def test_spacing_leaves_the_pixels_between_the_cells() -> None:
     display = Ramtek9300()
     display.send(instructions.erase(word=4))
     display.send(np.array([0x0C03, 0x0246, 7, 2, 10, 20, 99, 60, 3, 2, 2, 0x4142], np.uint16))
-    shapes = display.processor.characters
+    shapes = characters()
     for element, letter in ((10, "A"), (20, "B")):
         cell = display.words[20:29, element : element + 7]
         assert (cell == np.where(shapes[ord(letter)], 7, 2)).all()
@@ -213,7 +214,7 @@ def test_text_in_every_scan_order_is_that_of_the_twin(
     words = (257, 514) if swapped else (514, 257)
     after = reference.write_text(
         twin,
-        display.processor.characters.tolist(),
+        characters().tolist(),
         codes,
         window,
         code,
@@ -237,7 +238,7 @@ def test_a_loaded_character_takes_the_place_of_its_code() -> None:
     assert (display.words[30:42, 20:28] == 5 * dots).all()
     # The standard font is the ROM's; the loaded one comes back, and survives RSET.
     display.send(sent_words([0x4EFF, 0x0C03, 0x0140, 20, 30, 99, 99, 7, 9, 1, 0x4100]))
-    assert (display.words[30:39, 20:27] == 5 * display.processor.characters[0x41]).all()
+    assert (display.words[30:39, 20:27] == 5 * characters()[0x41]).all()
     display.send(sent_words([0x0500, 0x0C03, 0x0142, 5, 20, 30, 99, 99, 8, 12, 1, 0x4100]))
     assert (display.words[30:42, 20:28] == 5 * dots).all()
     display.send(sent_words([0x2142] + [rows[row + 1] << 8 | rows[row] for row in range(0, 12, 2)]))

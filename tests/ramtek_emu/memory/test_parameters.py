@@ -76,10 +76,3 @@ def test_every_operand_is_read_as_the_words_that_set_it(name: str) -> None:
         words = tuple(half for number in range(1, 7) for half in (0, number))
     parameters.take({name: words}, 0)
     assert parameters.operand(name) == words
-
-
-def test_a_copy_is_changed_alone() -> None:
-    parameters = Parameters.at_reset(SMALL)
-    copy = parameters.copy()
-    copy.take({"foreground": (5,), "window": (1, 2, 3, 4)}, 0)
-    assert (parameters.foreground, parameters.window) == (1023, parameters.whole_window)

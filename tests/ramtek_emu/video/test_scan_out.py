@@ -168,7 +168,7 @@ def do(display: Ramtek9300, name: str, value: Any) -> None:
         visible, blinking = look != 0, look == 3
         display.send(instructions.write_cursor(number, element, line, visible=visible, blinking=blinking))
     elif name == "shape":
-        display.cursors.shape(0, np.full((32, 4), value, np.uint8))
+        display.cursors.set_shape(0, np.full((32, 4), value, np.uint8))
     elif name == "blink":
         display.scan_out.blink_is_on = value
 
@@ -472,7 +472,7 @@ def test_marks_are_those_of_the_cursors_that_are_seen_now() -> None:
     cursors.place(3, 9, 10, VISIBLE | BLINK)
     assert marks(cursors, True) == (Mark(1, 7, 8, 0), Mark(3, 9, 10, 0))
     assert marks(cursors, False) == (Mark(1, 7, 8, 0),)
-    cursors.shape(2, np.zeros((1, 4), np.uint8))
+    cursors.set_shape(2, np.zeros((1, 4), np.uint8))
     assert marks(cursors, False) == (Mark(1, 7, 8, 1),)
 
 
