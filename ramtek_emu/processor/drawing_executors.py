@@ -29,7 +29,7 @@ def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
 def write_linked_vectors(processor: Processor, instruction: Instruction) -> None:
     """Draw from the operating point through all vertices; the operating point moves to the last.
 
-    Hardware: LIN, BTL, JPL (from the operating point through every vertex, which it ends at); BTL (a
+    Hardware: LIN, BTL, JPL (from the operating point through every vertex; it ends at the last); BTL (a
     vector to the operating point is a point); NCAR (texture, write window).
     """
     parameters = processor.parameters
