@@ -287,7 +287,7 @@ def test_a_display_that_does_not_get_to_the_end_is_told_when_closing() -> None:
         with pytest.raises(PortError) as refusal:
             port.close()
     assert str(refusal.value) == (
-        f"a display must get to the end of what it was sent within 0.2 seconds, and {address} has not: "
+        f"a display must execute all words within 0.2 seconds, and {address} has not: "
         "it may be serving another host first; give a longer timeout"
     )
 
