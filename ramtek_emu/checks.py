@@ -96,7 +96,7 @@ def checked_words(words: object, planes: int = 10) -> Words:
     array = whole_numbers(words, "words", WordsError)
     if array.ndim != 2 or 0 in array.shape:
         raise WordsError(
-            f"words must be a (lines, elements) array with at least one of each, not of shape {array.shape}; "
+            f"words must be a (lines, elements) array with at least one word, not of shape {array.shape}; "
             "pass words[np.newaxis] for one line"
         )
     largest = (1 << planes) - 1

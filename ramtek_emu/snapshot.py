@@ -64,9 +64,7 @@ def read_snapshot(path: str | PathLike[str]) -> Ramtek9300:
     """The display of a snapshot file; MissingInputError if it cannot be read, SnapshotError if not valid."""
     try:
         if not Path(path).is_file():
-            raise MissingInputError(
-                f"a snapshot must be a file, and {os.fspath(path)} is none; check the name"
-            )
+            raise MissingInputError(f"a snapshot must be a file, not {os.fspath(path)}; check the name")
         with open(path, "rb") as file:
             data = file.read(MOST_FILE + 1)
     except MissingInputError:
@@ -404,11 +402,11 @@ def picture_of(data: bytes) -> tuple[Words, dict[str, str]]:
                 raise refusal("have each text once", f"{keyword!r} twice")
             texts[keyword] = text
             if sum(map(len, texts.values())) > MOST_TEXT:
-                raise refusal(f"have texts of at most {MOST_TEXT} bytes", "longer ones")
+                raise refusal(f"have texts of at most {MOST_TEXT} bytes", "longer texts")
         elif kind == b"IEND":
             break
         elif not kind[0] & 0x20:
-            raise refusal("have chunks that are known", f"one called {kind.decode('latin-1')!r}")
+            raise refusal("have known chunks", f"a chunk {kind.decode('latin-1')!r}")
     if kind != b"IEND" or size is None:
         raise refusal(f"end within {MOST_CHUNKS} chunks", "go on")
     return _words(packed, *size), texts
@@ -422,14 +420,14 @@ def _chunk(kind: bytes, content: bytes) -> bytes:
 def _next_chunk(data: bytes, place: int) -> tuple[bytes, bytes, int]:
     """The kind and the content of a chunk, and the place of the next chunk."""
     if len(data) < place + 12:
-        raise refusal("have whole chunks", f"end in one, at byte {len(data)}")
+        raise refusal("have whole chunks", f"end in a chunk, at byte {len(data)}")
     length, kind = struct.unpack_from(">I4s", data, place)
     end = place + 12 + length
     if end > len(data):
-        raise refusal("have whole chunks", f"one of {length} bytes at byte {place} of {len(data)}")
+        raise refusal("have whole chunks", f"a chunk of {length} bytes at byte {place} of {len(data)}")
     content = data[place + 8 : end - 4]
     if zlib.crc32(content, zlib.crc32(kind)) != struct.unpack_from(">I", data, end - 4)[0]:
-        raise refusal("have chunks with a right checksum", f"a wrong one at byte {place}")
+        raise refusal("have chunks with a right checksum", f"a wrong checksum at byte {place}")
     return kind, content, end
 
 
@@ -447,7 +445,7 @@ def _size(kind: bytes, content: bytes) -> tuple[int, int]:
 def _text(content: bytes) -> tuple[str, str]:
     keyword, zero, text = content.partition(b"\0")
     if not zero or not 1 <= len(keyword) <= 79 or not content.isascii():
-        raise refusal("have texts with a keyword, in ASCII", "other ones")
+        raise refusal("have texts with a keyword, in ASCII", "other texts")
     return keyword.decode("ascii"), text.decode("ascii")
 
 
@@ -457,10 +455,10 @@ def _words(packed: list[bytes], lines: int, elements: int) -> Words:
     try:
         unpacked = unpacker.decompress(b"".join(packed), expected + 1)
     except zlib.error as cause:
-        raise refusal("have pixels that can be unpacked", f"broken ones ({cause})") from None
+        raise refusal("have pixels that can be unpacked", f"broken pixels ({cause})") from None
     if len(unpacked) != expected or not unpacker.eof:
         raise refusal(f"have {lines} lines of {elements} words", "more or fewer")
     rows = np.frombuffer(unpacked, np.uint8).reshape(lines, -1)
     if rows[:, 0].any():
-        raise refusal("have unfiltered lines, as they were written", "filtered ones from another program")
+        raise refusal("have unfiltered lines, as they were written", "lines that another program filtered")
     return np.ascontiguousarray(rows[:, 1:]).view(">u2").astype(np.uint16)

@@ -110,7 +110,7 @@ def refuse_output(path: str | os.PathLike[str], overwrite: bool) -> None:
         raise _refusal(target, error) from None
     except ValueError:
         raise OutputError(
-            f"a file name must be one that the system can hold, not {str(path)!r}; choose another name"
+            f"a file name must be valid on this system, not {str(path)!r}; choose another name"
         ) from None
 
 

@@ -61,7 +61,7 @@ def tty(
     """
     refuse_systems_without_pidfd()
     if shutil.which(program) is None:
-        raise MissingInputError(f"a program must be one that can be run, not {program!r}; check its name")
+        raise MissingInputError(f"a program must be executable, not {program!r}; check its name")
 
     from ramtek_emu.host.device import DeviceRelay
     from ramtek_emu.host.port import UnixPort
@@ -117,7 +117,7 @@ def linked(name: str, device: str) -> Iterator[None]:
         ) from None
     except (OSError, ValueError) as cause:
         raise OutputError(
-            f"a link must be made where it can, not at {name} ({reason_of(cause)}); choose another"
+            f"a link must be where a link can be made, not at {name} ({reason_of(cause)}); choose another"
         ) from None
     try:
         yield
@@ -196,9 +196,7 @@ def forked(command: list[str], environment: dict[str, str], with_notices: bool) 
     for file in files:
         os.close(file)
     if failure:
-        raise MissingInputError(
-            f"a program must be one that can be run, not {command[0]!r} ({failure}); check it"
-        )
+        raise MissingInputError(f"a program must be executable, not {command[0]!r} ({failure}); check it")
     # Some sandboxes kill a process that asks for notices: then it sent nothing.
     reason = sent.decode() or "asking for it is forbidden"
     raise PortError(

@@ -402,7 +402,7 @@ class TcpServer(Server):
             listener = socket.create_server((host, port), family=family, backlog=HOSTS_IN_LINE)
         except (OSError, OverflowError, UnicodeError) as cause:
             raise PortError(
-                f"a server must have a port to itself, and {host}:{port} cannot be had ({reason_of(cause)}); "
+                f"a server must have a free port, and {host}:{port} cannot be opened ({reason_of(cause)}); "
                 "choose another, or 0 for any"
             ) from cause
         self.host = host
@@ -445,7 +445,7 @@ class UnixServer(Server):
         except (OSError, ValueError) as cause:
             listener.close()
             raise OutputError(
-                f"a server's socket must be where one can be made, not at {address!r} "
+                f"a server's socket must be where a socket can be made, not at {address!r} "
                 f"({reason_of(cause)}); choose another path"
             ) from cause
         super().__init__(display, listener, address, idle_seconds, record)

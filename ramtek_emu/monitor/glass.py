@@ -125,7 +125,7 @@ class Glass:
         except pygame.error as cause:
             self.close()
             raise NoScreenError(
-                f"a window must have a screen that takes it, not this one ({cause}); "
+                f"a window must have a screen, and this screen refuses it ({cause}); "
                 "ask for a picture file instead"
             ) from cause
         self._forget_shown()

@@ -69,14 +69,14 @@ def test_text_longer_than_its_window_keeps_its_beginning() -> None:
     assert (display.words[:9, :14] == 1023 * letters(display, "AB")).all()
     assert np.count_nonzero(display.words) == np.count_nonzero(letters(display, "AB"))
     assert display.processor.parameters.start == (14, 0)
-    # What follows without a start of its own is the same text, and dropped too.
+    # Text without a start point continues the dropped text, and is dropped too.
     display.send(sent_words([0x0C01, 2, 0x4748]))
     assert np.count_nonzero(display.words) == np.count_nonzero(letters(display, "AB"))
 
 
 def test_text_fills_the_lines_of_its_window_and_then_ends() -> None:
     display = Ramtek9300()
-    # Two cells a line, two lines, and a rest in which no third one fits.
+    # Two cells in a line, two lines, and a rest that is too small for a third line.
     display.send(sent_words([0x0C03, 0x0042, 5, 10, 20, 23, 45, 7, 0x4142, 0x4344, 0x4546, 0x4700]))
     assert (display.words[20:29, 10:24] == 5 * letters(display, "AB")).all()
     assert (display.words[29:38, 10:24] == 5 * letters(display, "CD")).all()
@@ -106,7 +106,7 @@ def test_only_lines_of_text_that_reach_into_the_memory_are_drawn(monkeypatch: py
         blocks.append(block.shape)
 
     monkeypatch.setattr(display.frame_buffer, "write_block", write_block)
-    # 65,534 cells of one dot: a column below the memory, one that begins in it, then lines.
+    # 65,534 cells of one dot: a column below the memory, a column that begins in the memory, then lines.
     display.send(sent_words([0x0C03, 0x0140, 9, 480, 9, 0x7FFF, 1, 1, 65534, *[0x4142] * 32767]))
     assert blocks == []
     display.send(sent_words([0x0C03, 0x0140, 9, 0, 9, 0x7FFF, 1, 1, 65534, *[0x4142] * 32767]))
@@ -124,7 +124,7 @@ def test_text_may_run_off_the_screen() -> None:
     assert display.words[475:, 630:].any()
 
 
-def test_the_operating_point_after_text_stays_one_of_16_bits() -> None:
+def test_the_operating_point_after_text_has_16_bits() -> None:
     display = Ramtek9300()
     display.send(instructions.write_text("A", 32761, 0))
     display.send(instructions.set_parameters(start=(32767, 0), spacing=(20, 0)))
@@ -177,7 +177,7 @@ small = st.integers(1, 4)
     masks,
     windows(),
 )
-def test_text_in_every_scan_order_is_that_of_the_twin(
+def test_text_in_every_scan_order_equals_the_twin(
     codes: bytes,
     window: Window,
     code: int,
@@ -236,7 +236,7 @@ def test_a_loaded_character_takes_the_place_of_its_code() -> None:
     display.send(sent_words([0x0C03, 0x0142, 5, 20, 30, 99, 99, 8, 12, 1, 0x4100]))
     dots = np.unpackbits(np.array(rows, np.uint8)[:, np.newaxis], axis=1)
     assert (display.words[30:42, 20:28] == 5 * dots).all()
-    # The standard font is the ROM's; the loaded one comes back, and survives RSET.
+    # The standard font is the ROM; the loaded font can be attached again, and survives RSET.
     display.send(sent_words([0x4EFF, 0x0C03, 0x0140, 20, 30, 99, 99, 7, 9, 1, 0x4100]))
     assert (display.words[30:39, 20:27] == 5 * characters()[0x41]).all()
     display.send(sent_words([0x0500, 0x0C03, 0x0142, 5, 20, 30, 99, 99, 8, 12, 1, 0x4100]))

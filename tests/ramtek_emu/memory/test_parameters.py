@@ -28,7 +28,7 @@ def test_addresses_count_from_index_registers_and_the_operating_point() -> None:
     assert box(display) == (5, 6, 6, 6)
     display = sent("0802 0010 0009 0007", "0982 0044 0003 FFFF 0000 0000 0000")
     assert box(display) == (8, 7, 9, 7)
-    # The text window of wtr() lies at the operating point.
+    # The text window of wtr() begins at the operating point.
     display = sent("0802 8000 0014 001E", "09C2 0044 0003 0000 0000 0006 0008")
     assert box(display) == (20, 30, 26, 38)
 
