@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.fidelity_ledger import KINDS, ROOT, document, lines_of_packages, lines_of_source
+from docs.generate.fidelity import KINDS, ROOT, document, lines_of_packages, lines_of_source
 
 BEARING_FORMULAS = [
     "autocolor.lighting.controls",
@@ -61,7 +61,7 @@ def test_a_module_with_formulas_or_rules_says_where_they_come_from(module: str) 
 
 def test_the_document_is_up_to_date() -> None:
     is_up_to_date = (ROOT / "docs" / "FIDELITY.md").read_text("utf-8") == document()
-    assert is_up_to_date, "run: python -m tests.fidelity_ledger > docs/FIDELITY.md"
+    assert is_up_to_date, "run: python -m docs.generate.fidelity > docs/FIDELITY.md"
 
 
 def test_every_line_says_something() -> None:

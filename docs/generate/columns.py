@@ -1,6 +1,6 @@
 """The reference of scene files: every table and key, as the columns describe them.
 
-`python -m tests.column_reference > docs/COLUMNS.md` writes it.
+`python -m docs.generate.columns > docs/COLUMNS.md` writes it.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 HEAD = """# The columns
 
 Every table of a scene and every key, as `scene.toml`, `--set`, Python and picture files have them. The page
-is written from the columns in `autocolor/scene` by `python -m tests.column_reference > docs/COLUMNS.md`.
+is written from the columns in `autocolor/scene` by `python -m docs.generate.columns > docs/COLUMNS.md`.
 
 A key that has no default must be given; one whose default is "absent" may be left out. "On a bar" is the
 usual range of a number and its step where it is set by pointing, and what it starts with if it was absent;

@@ -1,6 +1,6 @@
 """The reference of what commands answer: their exit codes and messages, and what a shell completes.
 
-Each command of the document is run, in a folder of its own. `python -m tests.command_reference >
+Each command of the document is run, in a folder of its own. `python -m docs.generate.commands >
 docs/COMMANDS.md` writes it.
 """
 
@@ -19,12 +19,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 HEAD = """# The commands
 
 `autocolor --help` and `ramtek --help` list the commands; `--help` of each has examples. This page is what the
-commands themselves answered: `python -m tests.command_reference > docs/COMMANDS.md` runs every line and
+commands themselves answered: `python -m docs.generate.commands > docs/COMMANDS.md` runs every line and
 writes it.
 
 Results go to stdout, messages to stderr. `-v` says what `autocolor` reads, creates and computes, and how long

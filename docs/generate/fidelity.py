@@ -1,7 +1,7 @@
 """The fidelity ledger: every line of the sources that says where a formula or a number comes from.
 
 `Paper:` Warn's paper; `Hardware:` a source about the RAMTEK by its key; `Assumed:` our choice where sources
-are silent; `Departs:` where the program knowingly differs. `python -m tests.fidelity_ledger >
+are silent; `Departs:` where the program knowingly differs. `python -m docs.generate.fidelity >
 docs/FIDELITY.md` writes the document.
 """
 
@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("autocolor", "ramtek_emu")
 KINDS = {
     "Paper": "What follows the paper",
@@ -119,7 +119,7 @@ def document() -> str:
     lines = lines_of_packages()
     parts = [
         "# Fidelity\n\nWhere every formula, number and rule comes from, collected from the sources by"
-        ' `python -m tests.fidelity_ledger > docs/FIDELITY.md`. The paper is D. R. Warn, "Lighting Controls'
+        ' `python -m docs.generate.fidelity > docs/FIDELITY.md`. The paper is D. R. Warn, "Lighting Controls'
         ' for Synthetic Images", SIGGRAPH 1983; the keys of the hardware sources stand in `ramtek_emu`.\n'
     ]
     for kind in ("Departs", "Assumed", "Paper", "Hardware"):
