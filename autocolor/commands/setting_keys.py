@@ -8,9 +8,9 @@ from typing import Any, Final, NamedTuple
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
 from autocolor.scene.color_scales import COLOR_SCALES
-from autocolor.scene.columns import Column, Field, Kind, Row, fields_of, keys_of, plain
-from autocolor.scene.kinds import Choice, ColorKind, Instance, color_names
-from autocolor.scene.row_kinds import NamedRows, Nested, RangesByName, Referring, Rows, Variant
+from autocolor.scene.columns import Column, Field, Kind, Row, fields_of, keys_of, to_plain
+from autocolor.scene.kinds import ColorKind, Instance, OneOf, color_names
+from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, RangesByName, Referring, RowList
 from autocolor.scene.scalar import Scalar, ScaleKind
 from autocolor.scene.scene import Scene
 
@@ -39,12 +39,12 @@ def place_of(scene: Scene, key: str) -> Place:
     kinds = _settable()
     table, _, rest = key.partition(".")
     kind = kinds.get(table)
-    if kind is None or (rest and not isinstance(kind, (Nested, Rows))):
+    if kind is None or (rest and not isinstance(kind, (Nested, RowList))):
         raise UsageError(f"--set {key}: there is no field of this name{nearest(table, kinds)}")
-    if not isinstance(kind, (Nested, Rows)):
+    if not isinstance(kind, (Nested, RowList)):
         return Place("", "", (table,))
     row: Row | None = None
-    if isinstance(kind, Rows):
+    if isinstance(kind, RowList):
         rows = {each.name: each for each in vars(scene)[table]}
         name, field = _name_and_rest(rest, rows)
         if name is None and "." in rest:
@@ -58,7 +58,7 @@ def place_of(scene: Scene, key: str) -> Place:
         return Place("", "", (table,))
     if name is None or not field:
         raise UsageError(f"--set {key}: it must name one field; write it as in {EXAMPLES[table]}")
-    if field == "name" and isinstance(kind, Rows):
+    if field == "name" and isinstance(kind, RowList):
         raise UsageError(f"--set {key}: a name cannot be set; change it in the scene file")
     path = _path_in(row, field, key)
     if len(path) > MOST_PARTS:
@@ -101,7 +101,7 @@ def _path_in(row: Row | None, field: str, key: str) -> tuple[str, ...]:
 def field_of(place: Place) -> Field | None:
     """The field at a place; None if its row has none there."""
     kind = _settable().get(place.table)
-    return _field_at(kind.row_class if isinstance(kind, (Nested, Rows)) else Scene, place.path)
+    return _field_at(kind.row_class if isinstance(kind, (Nested, RowList)) else Scene, place.path)
 
 
 def _settable() -> Mapping[str, Kind]:
@@ -117,7 +117,7 @@ def _field_at(cls: type[Row], path: Sequence[str]) -> Field | None:
         return None
     field = fields_of(cls)[key.field]
     kind = field.column.kind
-    if isinstance(kind, Variant) and path[0] != key.field:
+    if isinstance(kind, OneRowOf) and path[0] != key.field:
         inside = next(each for each in kind.classes.values() if path[0] in keys_of(each))
         return _field_at(inside, path)
     if isinstance(kind, Nested) and kind.inline:
@@ -141,12 +141,12 @@ def keys_after(scene: Scene, start: str) -> list[str]:
         return [f"{start}{value}" for value in _values(scene, start[:-1])]
     if not start:
         return [
-            f"{name}." if isinstance(kind, (Nested, Rows)) else f"{name}="
+            f"{name}." if isinstance(kind, (Nested, RowList)) else f"{name}="
             for name, kind in _settable().items()
         ]
     table, _, rest = start[:-1].partition(".")
     kind = _settable()[table]
-    if isinstance(kind, Rows):
+    if isinstance(kind, RowList):
         names = [row.name for row in vars(scene)[table]]
         if not rest:
             return [f"{start}{name}." for name in names]
@@ -192,9 +192,9 @@ def _values(scene: Scene, key: str) -> list[str]:
     if field is None:
         return []
     kind = field.column.kind
-    if isinstance(kind, Choice):
+    if isinstance(kind, OneOf):
         return list(kind.names)
-    if isinstance(kind, Variant):
+    if isinstance(kind, OneRowOf):
         return list(kind.classes)
     if isinstance(kind, ScaleKind):
         return list(COLOR_SCALES)
@@ -203,7 +203,7 @@ def _values(scene: Scene, key: str) -> list[str]:
     if isinstance(kind, Referring) and not isinstance(kind, RangesByName):
         return [*kind.words, *(each.name for each in vars(scene)[kind.table])]
     row = _row_at(scene, place)
-    value: Any = {} if row is None else plain(row)
+    value: Any = {} if row is None else to_plain(row)
     for part in place.path:
         value = value.get(part) if isinstance(value, dict) else None
     if isinstance(value, bool):

@@ -146,13 +146,13 @@ def _unset(field: Field | None, key: str, text: str) -> object:
     """
     from autocolor.scene.columns import REFUSED
 
-    if field is None or field.column.kind.held(text, (), []) is not REFUSED:
+    if field is None or field.column.kind.validated(text, (), []) is not REFUSED:
         return text
     if field.is_optional:
         return None
     default = None if field.default is None else field.default()
     # What a scene file leaves out is unset there: no limit of a flap, no flaps.
-    if default is not None and field.column.kind.written(key, default).get(key) in (None, {}):
+    if default is not None and field.column.kind.to_plain(key, default).get(key) in (None, {}):
         return default
     rule = field.column.kind.rule()
     raise UsageError(f"--set {key}: it {rule}, not none; only a field that may be absent can be unset")

@@ -39,7 +39,7 @@ from autocolor.files.plain_scene import plain_scene, scene_of_plain
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
 from autocolor.scene.columns import Problem, RowError
-from autocolor.scene.scalar import Limits
+from autocolor.scene.scalar import LimitsKind
 from autocolor.scene.scene import Scene
 
 PLAIN_FORMATS: Final = ("autocolor picture 2", "autocolor picture 1")
@@ -206,7 +206,7 @@ def _shown_scalar(
     row, values = rows[0], arrays["scalar_0"]
     found: list[Problem] = []
     given = row["limits"] if isinstance(row, Mapping) and row.keys() == {"limits"} else row
-    limits: Any = Limits().held(given, (SHOWN, 0, "limits"), found)
+    limits: Any = LimitsKind().validated(given, (SHOWN, 0, "limits"), found)
     if found:
         raise RowError(found)
     if values.shape != arrays["surface_number"].shape or np.isinf(values).any():

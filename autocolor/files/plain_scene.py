@@ -9,7 +9,7 @@ from typing import Any
 from autocolor.arrays import AnyArray
 from autocolor.checks import shown
 from autocolor.errors import InputError
-from autocolor.scene.columns import made, plain
+from autocolor.scene.columns import from_plain, to_plain
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MeshScalar
 from autocolor.scene.scene import Scene
@@ -21,7 +21,7 @@ def plain_scene(scene: Scene) -> dict[str, Any]:
     Keys whose value is None or infinite are omitted.
     """
     mesh = {"part_names": scene.mesh.part_names, "crease_angle": scene.mesh.crease_angle}
-    return {"mesh": mesh, **plain(scene)}
+    return {"mesh": mesh, **to_plain(scene)}
 
 
 def scene_of_plain(
@@ -43,4 +43,4 @@ def scene_of_plain(
         described.get("crease_angle", math.nan),
         scalars,
     )
-    return made(Scene, {**values, "mesh": mesh})
+    return from_plain(Scene, {**values, "mesh": mesh})

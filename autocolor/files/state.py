@@ -19,7 +19,7 @@ from autocolor.checks import Color
 from autocolor.errors import AutocolorError, OutputError
 from autocolor.files.reading import read_bytes
 from autocolor.files.writing import write_atomically
-from autocolor.scene.kinds import IN_FULL, ColorKind, in_digits
+from autocolor.scene.kinds import SIX_DIGITS, ColorKind, in_digits
 
 # -------------------- state_folder
 # The folder in which a program keeps what must outlast it, such as journals, on each system.
@@ -115,7 +115,7 @@ def note_file(path: str | os.PathLike[str]) -> None:
 
 
 def _is_color(entry: str) -> bool:
-    return IN_FULL.fullmatch(entry) is not None
+    return SIX_DIGITS.fullmatch(entry) is not None
 
 
 def _is_path(entry: str) -> bool:

@@ -30,7 +30,7 @@ from autocolor.files.scenes.scene_meshes import source_of
 from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
 from autocolor.journal.opening import checksum_of
 from autocolor.journal.places import Source
-from autocolor.scene.columns import difference, fields_of, plain
+from autocolor.scene.columns import difference, fields_of, to_plain
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import AUTO, Scene
 from autocolor.scene.surfaces import Paint
@@ -137,7 +137,7 @@ def first_lines(start: Scene, source: Source) -> list[str]:
         *HEADER,
         "",
         f"scene = autocolor.read_scene({_arguments((path,), _options(source))})",
-        f"scene = scene.replace({_arguments((), plain(start))})",
+        f"scene = scene.replace({_arguments((), to_plain(start))})",
         f"checksum = {literal(checksum_of(start))}",
         STUDIO,
     ]
@@ -149,7 +149,7 @@ def step_line(step: Step, start: Scene, beside: MeshesBeside) -> str:
         case Edit():
             return _edit_line(step, start, beside)
         case Open(scene, source):
-            options = {**_options(source), "tables": plain(scene), "checksum": checksum_of(scene)}
+            options = {**_options(source), "tables": to_plain(scene), "checksum": checksum_of(scene)}
             return f"studio.open({_arguments((os.path.abspath(source.path),), options)})"
         case Keep(name):
             return f"studio.keep_variant({literal(name)})"
@@ -204,7 +204,7 @@ def call_between(before: Scene, after: Scene) -> Call:
             if after.scalar is None:
                 return Call("without_scalar", (), {})
             row = after.scalar
-            return Call("with_scalar", (), difference(before.scalar, row) if before.scalar else plain(row))
+            return Call("with_scalar", (), difference(before.scalar, row) if before.scalar else to_plain(row))
         if table in ROW_METHODS:
             rows, others = vars(before)[table], vars(after)[table]
             call = _row_call(ROW_METHODS[table], rows, others)
@@ -226,7 +226,7 @@ def _row_call(method: str, rows: tuple[Any, ...], others: tuple[Any, ...]) -> Ca
 def _light_call(lights: tuple[Any, ...], others: tuple[Any, ...]) -> Call | None:
     """The call that adds or removes a light; None if more than that was changed."""
     if others[:-1] == lights:
-        fields = plain(others[-1])
+        fields = to_plain(others[-1])
         return Call("with_new_light", (str(fields.pop("name")),), fields)
     removed = [light for light in lights if light not in others]
     if len(removed) == 1 and tuple(light for light in lights if light is not removed[0]) == others:

@@ -16,7 +16,7 @@ from autocolor.checks import nearest, shown
 from autocolor.errors import InputError, UsageError
 from autocolor.logs import logger_of
 from autocolor.scene.changes import PartChanges, SceneFields
-from autocolor.scene.columns import Problem, Row, RowError, fields_of, made, unknown
+from autocolor.scene.columns import Problem, Row, RowError, fields_of, from_plain, unknown_key
 from autocolor.scene.defaults import (
     MAPPING_FIELDS,
     color_in_turn,
@@ -79,7 +79,7 @@ def scene_of(
     mesh = Mesh.of(mesh, polygons)
     if isinstance(surfaces, str) and surfaces not in (MATERIALS, PARTS):
         raise UsageError(f"surfaces must be rows, {MATERIALS!r} or {PARTS!r}, not {shown(surfaces)}")
-    found = [unknown(name, fields_of(Scene)) for name in fields if name not in fields_of(Scene)]
+    found = [unknown_key(name, fields_of(Scene)) for name in fields if name not in fields_of(Scene)]
     given = () if isinstance(surfaces, str) else _held("surfaces", surfaces, found)
     rows = _part_rows(mesh, parts or {}, surface_of_part or {}, found)
     tables: dict[str, Any] = {**(MAPPING_FIELDS if fields.get("lights") is None else {}), **fields}
@@ -124,7 +124,7 @@ def scene_of(
 
 
 def _held(name: str, value: object, found: list[Problem]) -> Any:
-    return fields_of(Scene)[name].column.kind.held(value, (name,), found)
+    return fields_of(Scene)[name].column.kind.validated(value, (name,), found)
 
 
 def _part_rows(
@@ -146,9 +146,9 @@ def _part_rows(
         if name in surface_of_part:
             table["surface"] = surface_of_part[name]
         try:
-            rows.append(made(Part, table))
+            rows.append(from_plain(Part, table))
         except RowError as error:
-            found.extend(problem.under((PARTS, name)) for problem in error.found)
+            found.extend(problem.under((PARTS, name)) for problem in error.row_problems)
     return tuple(rows)
 
 

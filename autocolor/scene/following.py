@@ -166,7 +166,7 @@ def changes_in_frame(changes: Mapping[str, Any], frame: Frame | None) -> dict[st
             "direction": frame.direction_from_world,
         }
         for name in turns.keys() & turned.keys():
-            vector: Any = VectorKind().held(turned[name], (name,), [])
+            vector: Any = VectorKind().validated(turned[name], (name,), [])
             if vector is not REFUSED:
                 turned[name] = turns[name](vector)
     return turned

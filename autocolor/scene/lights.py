@@ -18,9 +18,19 @@ from autocolor.arrays import Floats
 from autocolor.checks import Vector
 from autocolor.errors import InputError
 from autocolor.scene.changes import FlapChanges, FlapsChanges, HalfSpaceChanges, LightChanges, LinksChanges
-from autocolor.scene.columns import REFUSED, WORLD_UNITS, Bar, Column, Problem, Row, RowError, Tier, changed
-from autocolor.scene.kinds import Choice, Number, Switch, Text, VectorKind
-from autocolor.scene.row_kinds import NamedRows, Nested, References, WordOrName
+from autocolor.scene.columns import (
+    REFUSED,
+    WORLD_UNITS,
+    BarRange,
+    Column,
+    Problem,
+    Row,
+    RowError,
+    Tier,
+    replaced,
+)
+from autocolor.scene.kinds import Boolean, Number, OneOf, Text, VectorKind
+from autocolor.scene.row_kinds import NamedRows, Nested, Reference, References
 
 # -------------------- flaps
 # Flaps: ranges of object coordinates outside of which a light has no effect.
@@ -47,7 +57,7 @@ class Flap(Row):
         float,
         Column(Number(endless=math.inf), Tier.LIGHT, "The largest coordinate that is lit.", WORLD_UNITS),
     ] = math.inf
-    on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether the flap restricts the light.")] = True
+    on: Annotated[bool, Column(Boolean(), Tier.LIGHT, "Whether the flap restricts the light.")] = True
     edge_width: Annotated[
         float,
         Column(
@@ -66,7 +76,7 @@ class Flap(Row):
 
     def replace(self, /, **changes: Unpack[FlapChanges]) -> Flap:
         """The flap with some fields changed."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
 
 @dataclass(frozen=True, repr=False)
@@ -81,7 +91,7 @@ class Flaps(Row):
 
     def replace(self, /, **changes: Unpack[FlapsChanges]) -> Flaps:
         """The flaps with some changed; a table of fields changes only these fields of a flap."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
 
 # -------------------- half_spaces
@@ -125,9 +135,9 @@ class HalfSpace(Row):
         ),
     ] = 0.0
     carried: Annotated[
-        bool, Column(Switch(), Tier.LIGHT, "Whether it moves and turns with the light, as barn doors do.")
+        bool, Column(Boolean(), Tier.LIGHT, "Whether it moves and turns with the light, as barn doors do.")
     ] = False
-    on: Annotated[bool, Column(Switch(), Tier.LIGHT, "Whether it restricts the light.")] = True
+    on: Annotated[bool, Column(Boolean(), Tier.LIGHT, "Whether it restricts the light.")] = True
 
     @classmethod
     def through(
@@ -162,13 +172,13 @@ class HalfSpace(Row):
 
     def replace(self, /, **changes: Unpack[HalfSpaceChanges]) -> HalfSpace:
         """The half-space with some fields changed."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
 
 def _checked_points(name: str, *points: Sequence[float]) -> Floats:
     """Three points that are finite, (3, 3)."""
     kind, problems = VectorKind(), list[Problem]()
-    held = [kind.held(point, (key,), problems) for key, point in zip("abc", points, strict=True)]
+    held = [kind.validated(point, (key,), problems) for key, point in zip("abc", points, strict=True)]
     if any(each is REFUSED for each in held):
         raise RowError(problems, f"half-space {name!r}")
     return np.array(held, np.float64)
@@ -223,7 +233,7 @@ class Links(Row):
 
     def replace(self, /, **changes: Unpack[LinksChanges]) -> Links:
         """The links with some fields changed."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
     @property
     def depend_on_parts(self) -> bool:
@@ -253,7 +263,7 @@ class Links(Row):
             for field in fields
             if (names := vars(self)[field])
         }
-        return changed(self, kept) if any(kept[field] != vars(self)[field] for field in kept) else self
+        return replaced(self, kept) if any(kept[field] != vars(self)[field] for field in kept) else self
 
 
 def _meant(names: Iterable[str], only: Names | None, excepted: Names | None) -> set[str]:
@@ -317,10 +327,10 @@ class Light(Row):
             Number(at_least=0),
             Tier.MIX,
             "The intensity of the light, without an upper limit.",
-            bar=Bar(0, 2, 0.01),
+            bar=BarRange(0, 2, 0.01),
         ),
     ] = 1.0
-    on: Annotated[bool, Column(Switch(), Tier.MIX, "Whether the light is switched on.")] = True
+    on: Annotated[bool, Column(Boolean(), Tier.MIX, "Whether the light is switched on.")] = True
     direction: Annotated[
         Vector | None,
         Column(
@@ -344,7 +354,7 @@ class Light(Row):
             Number(at_least=0),
             Tier.LIGHT,
             "C: the exponent of the cosine of the angle from the direction.",
-            bar=Bar(0, 100, 1),
+            bar=BarRange(0, 100, 1),
         ),
     ] = 0.0
     cone_angle: Annotated[
@@ -354,7 +364,7 @@ class Light(Row):
             Tier.LIGHT,
             "A: the largest angle from the direction that is lit; if absent, there is no cone.",
             "degrees",
-            bar=Bar(1, 90, 1),
+            bar=BarRange(1, 90, 1),
             start=30.0,
         ),
     ] = None
@@ -365,7 +375,7 @@ class Light(Row):
             Tier.LIGHT,
             "The angle up to which all of the light is left; if absent, the cone is sharp.",
             "degrees",
-            bar=Bar(0, 90, 1),
+            bar=BarRange(0, 90, 1),
             start=0.0,
         ),
     ] = field(default=None, kw_only=True)
@@ -378,7 +388,7 @@ class Light(Row):
     ] = ()
     falloff: Annotated[
         str,
-        Column(Choice(FALLOFFS), Tier.LIGHT, "How it falls with the distance, to nothing at its reach."),
+        Column(OneOf(FALLOFFS), Tier.LIGHT, "How it falls with the distance, to nothing at its reach."),
     ] = "none"
     reach: Annotated[
         float | None,
@@ -391,12 +401,14 @@ class Light(Row):
     ] = None
     at_infinity: Annotated[
         bool,
-        Column(Switch(), Tier.LIGHT, "Whether its rays are parallel, as if the position were endlessly far."),
+        Column(
+            Boolean(), Tier.LIGHT, "Whether its rays are parallel, as if the position were endlessly far."
+        ),
     ] = False
     follows: Annotated[
         str | None,
         Column(
-            WordOrName("lights", EYE),
+            Reference("lights", EYE),
             Tier.LIGHT,
             "What it is fixed to: 'eye', or the name of another light, for the point at which that is aimed.",
         ),
@@ -459,4 +471,4 @@ class Light(Row):
 
         Raises InputError for an unknown field or an invalid value.
         """
-        return changed(self, changes)
+        return replaced(self, changes)

@@ -76,7 +76,7 @@ class Mesh(Immutable):
             )
             names = tuple(map(repr, names))
         found: list[Problem] = []
-        angle = CREASE_ANGLES.held(self.crease_angle, ("crease_angle",), found)
+        angle = CREASE_ANGLES.validated(self.crease_angle, ("crease_angle",), found)
         problems.extend(f"mesh: {problem.sentence}" for problem in found)
         if coordinate_rows.size and not (
             coordinate_rows.min() >= -LARGEST_COORDINATE and coordinate_rows.max() <= LARGEST_COORDINATE

@@ -26,7 +26,7 @@ from typing import Annotated, ClassVar, Final, NamedTuple, TypeVar
 import numpy as np
 
 from autocolor.arrays import Singles, power
-from autocolor.scene.columns import Bar, Column, Problem, Row, Tier
+from autocolor.scene.columns import BarRange, Column, Problem, Row, Tier
 from autocolor.scene.kinds import AngleCurve, AngleCurveKind, Number
 from autocolor.scene.row_kinds import Nested
 
@@ -67,7 +67,7 @@ class SpecularGrowth(Row):
             Number(LEAST_REFLECTANCE, 1),
             Tier.LIGHT,
             "F0: what is reflected at normal incidence; the less, the more S grows.",
-            bar=Bar(0.01, 1, 0.01),
+            bar=BarRange(0.01, 1, 0.01),
             start=0.04,
         ),
     ] = None
@@ -77,7 +77,7 @@ class SpecularGrowth(Row):
             Number(LEAST_INDEX, 10),
             Tier.LIGHT,
             "The refractive index, which tells F0: S grows with the angle of incidence.",
-            bar=Bar(1.1, 4, 0.01),
+            bar=BarRange(1.1, 4, 0.01),
             start=1.5,
         ),
     ] = None
@@ -205,7 +205,7 @@ class _PowerOfCosine(ReflectionModel):
 
     exponent: Annotated[
         float,
-        Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.", bar=Bar(1, 200, 1)),
+        Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.", bar=BarRange(1, 200, 1)),
     ] = 20.0
 
     growth: Annotated[
@@ -262,7 +262,7 @@ class CookTorrance(ReflectionModel):
             Number(0.01, 1),
             Tier.LIGHT,
             "How rough it is: m, the slope of the microfacets.",
-            bar=Bar(0.01, 1, 0.01),
+            bar=BarRange(0.01, 1, 0.01),
         ),
     ] = 0.3
     normal_reflectance: Annotated[
@@ -271,7 +271,7 @@ class CookTorrance(ReflectionModel):
             Number(0.001, 1),
             Tier.LIGHT,
             "F0: what is reflected at normal incidence.",
-            bar=Bar(0.01, 1, 0.01),
+            bar=BarRange(0.01, 1, 0.01),
         ),
     ] = 0.05
 

@@ -18,7 +18,7 @@ from autocolor.scene.columns import REFUSED, WORLD_UNITS, Column, Problem, Row, 
 from autocolor.scene.following import AXES
 from autocolor.scene.kinds import VectorKind
 from autocolor.scene.lights import Flaps, HalfSpace, Light, middle_between
-from autocolor.scene.row_kinds import Rows
+from autocolor.scene.row_kinds import RowList
 
 
 @dataclass(frozen=True, repr=False)
@@ -33,7 +33,7 @@ class Rig(Row):
     maximum: Annotated[
         Vector, Column(VectorKind(), Tier.LIGHT, "The largest coordinates of the object.", WORLD_UNITS)
     ]
-    lights: Annotated[tuple[Light, ...], Column(Rows(Light), Tier.MIX, "The lights.")] = ()
+    lights: Annotated[tuple[Light, ...], Column(RowList(Light), Tier.MIX, "The lights.")] = ()
 
     def rules(self) -> Iterator[Problem]:
         """No coordinate of the minimum is above that of the maximum."""

@@ -17,13 +17,12 @@ from autocolor.checks import LARGEST_COORDINATE, Color, Vector, nearest, shown
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
 from autocolor.scene.color_scales import COLOR_SCALES, REVERSED
-from autocolor.scene.columns import Bar, Column, Problem, Row, Tier
+from autocolor.scene.columns import BarRange, Column, Kind, Problem, Row, Tier
 from autocolor.scene.kinds import (
     UNORDERED,
+    Boolean,
     ColorKind,
-    Leaf,
     Number,
-    Switch,
     Text,
     VectorKind,
     Whole,
@@ -39,7 +38,7 @@ MOST_COLORS: Final = 256
 
 
 @dataclass(frozen=True)
-class Limits(Leaf):
+class LimitsKind(Kind):
     """Two numbers of float32, the second above the first."""
 
     def rule(self) -> str:
@@ -54,7 +53,7 @@ class Limits(Leaf):
         require(low < high)
         return low, high
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: list(value)}
 
 
@@ -67,7 +66,7 @@ class EndColor(ColorKind):
 
 
 @dataclass(frozen=True)
-class ScaleKind(Leaf):
+class ScaleKind(Kind):
     """The name of a color scale, or a list of at least two colors."""
 
     def rule(self) -> str:
@@ -91,7 +90,7 @@ class ScaleKind(Leaf):
         forward = (name for name in COLOR_SCALES if not name.endswith(REVERSED))
         return nearest(value, COLOR_SCALES) or nearest(value, forward)
 
-    def written(self, name: str, value: Any) -> Mapping[str, object]:
+    def to_plain(self, name: str, value: Any) -> Mapping[str, object]:
         return {name: value if isinstance(value, str) else [in_digits(color) for color in value]}
 
 
@@ -112,7 +111,7 @@ class Scalar(Row):
     limits: Annotated[
         tuple[float, float] | None,
         Column(
-            Limits(),
+            LimitsKind(),
             Tier.LEVELS,
             "Where the first band begins and the last ends; if absent, its range.",
         ),
@@ -122,7 +121,7 @@ class Scalar(Row):
         Column(ScaleKind(), Tier.ENTRIES, "The color scale: a name, or a list of colors."),
     ] = "viridis"
     bands: Annotated[
-        int, Column(Whole(2, MOST_BANDS), Tier.LEVELS, "The number of colors.", bar=Bar(2, 64, 1))
+        int, Column(Whole(2, MOST_BANDS), Tier.LEVELS, "The number of colors.", bar=BarRange(2, 64, 1))
     ] = 16
     shades: Annotated[
         int | None,
@@ -130,7 +129,7 @@ class Scalar(Row):
             Whole(1, MOST_BANDS),
             Tier.LEVELS,
             "The levels of each color; 1 for flat color codes. If absent, as many as fit, at most 8.",
-            bar=Bar(1, 16, 1),
+            bar=BarRange(1, 16, 1),
             start=8,
         ),
     ] = None
@@ -155,9 +154,9 @@ class Scalar(Row):
         128,
         128,
     )
-    legend: Annotated[bool, Column(Switch(), Tier.NOTHING, "Whether the legend is drawn on the display.")] = (
-        True
-    )
+    legend: Annotated[
+        bool, Column(Boolean(), Tier.NOTHING, "Whether the legend is drawn on the display.")
+    ] = True
     surfaces: Annotated[
         tuple[str, ...] | None,
         Column(
@@ -177,7 +176,10 @@ class Scalar(Row):
     stripes: Annotated[
         float,
         Column(
-            Number(at_least=1, at_most=1000), Tier.MIX, "Zebra stripes in a half turn.", bar=Bar(1, 60, 1)
+            Number(at_least=1, at_most=1000),
+            Tier.MIX,
+            "Zebra stripes in a half turn.",
+            bar=BarRange(1, 60, 1),
         ),
     ] = 12.0
 

@@ -27,15 +27,15 @@ from autocolor.scene.changes import (
 )
 from autocolor.scene.columns import (
     REFUSED,
-    Bar,
+    BarRange,
     Column,
     Problem,
     Row,
     RowError,
     Tier,
-    changed,
     cost,
     fields_of,
+    replaced,
     row_label,
     with_values,
 )
@@ -53,11 +53,11 @@ from autocolor.scene.following import (
     lights_in_world,
     mirrored,
 )
-from autocolor.scene.kinds import Choice, ColorKind, CurveKind, Instance, Number, Text
+from autocolor.scene.kinds import ColorKind, CurveKind, Instance, Number, OneOf, Text
 from autocolor.scene.lights import Light
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.rigs import Rig
-from autocolor.scene.row_kinds import Nested, RangesByName, ReferenceAt, Rows, references_of
+from autocolor.scene.row_kinds import Nested, RangesByName, ReferenceAt, RowList, references_of
 from autocolor.scene.scalar import COMPUTED, Scalar, name_problems
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 from autocolor.scene.view import View
@@ -93,12 +93,12 @@ class Scene(Row):
     mesh: Annotated[Mesh, Column(Instance(Mesh), Tier.FRAME, "The node table and the polygon table.")]
     parts: Annotated[
         tuple[Part, ...],
-        Column(Rows(Part, by_name=True), Tier.FRAME, "The parts, which are groups of polygons."),
+        Column(RowList(Part, by_name=True), Tier.FRAME, "The parts, which are groups of polygons."),
     ]
     surfaces: Annotated[
-        tuple[Surface, ...], Column(Rows(Surface, by_name=True), Tier.FRAME, "The surface types.")
+        tuple[Surface, ...], Column(RowList(Surface, by_name=True), Tier.FRAME, "The surface types.")
     ]
-    lights: Annotated[tuple[Light, ...], Column(Rows(Light), Tier.MIX, "The lights.")]
+    lights: Annotated[tuple[Light, ...], Column(RowList(Light), Tier.MIX, "The lights.")]
     view: Annotated[View, Column(Nested(View), Tier.FRAME, "The eye position and the view direction.")]
     ambient: Annotated[
         float,
@@ -106,13 +106,13 @@ class Scene(Row):
             Number(at_least=0),
             Tier.MIX,
             "The intensity of every point without any light.",
-            bar=Bar(0, 1, 0.01),
+            bar=BarRange(0, 1, 0.01),
         ),
     ] = 0.1
     scaling: Annotated[
         str,
         Column(
-            Choice(SCALINGS),
+            OneOf(SCALINGS),
             Tier.LEVELS,
             "Whether each surface has its own intensity range, or all share one.",
         ),
@@ -124,7 +124,7 @@ class Scene(Row):
     contrast: Annotated[
         str,
         Column(
-            Choice(CONTRASTS),
+            OneOf(CONTRASTS),
             Tier.ENTRIES,
             "Whether the lowest level is black, or in proportion to the minimum intensity.",
         ),
@@ -141,7 +141,7 @@ class Scene(Row):
     dither: Annotated[
         str,
         Column(
-            Choice(DITHERS),
+            OneOf(DITHERS),
             Tier.LEVELS,
             "Whether levels are rounded, or dithered by an ordered pattern.",
         ),
@@ -149,7 +149,7 @@ class Scene(Row):
     division: Annotated[
         str,
         Column(
-            Choice(DIVISIONS),
+            OneOf(DIVISIONS),
             Tier.LEVELS,
             "Whether surfaces get more levels the more of the picture they cover, or all the same number.",
         ),
@@ -157,7 +157,7 @@ class Scene(Row):
     words: Annotated[
         str,
         Column(
-            Choice((LEVELS, NORMALS)),
+            OneOf((LEVELS, NORMALS)),
             Tier.LEVELS,
             "Whether words stand for levels, or for normals, so that lights change entries alone.",
         ),
@@ -206,7 +206,7 @@ class Scene(Row):
         tables: list[tuple[type[Row], Sequence[Row]]] = [(Scene, (self,))]
         for table, field in fields_of(Scene).items():
             kind, rows = field.column.kind, vars(self)[table]
-            if isinstance(kind, Rows) and rows is not REFUSED:
+            if isinstance(kind, RowList) and rows is not REFUSED:
                 tables.append((kind.row_class, rows))
         if isinstance(self.scalar, Scalar):
             tables.append((Scalar, (self.scalar,)))
@@ -218,7 +218,7 @@ class Scene(Row):
 
     def replace(self, /, **changes: Unpack[SceneChanges]) -> Scene:
         """The scene with some fields changed."""
-        return changed(self, changes)
+        return replaced(self, changes)
 
     def equals(self, other: Scene) -> bool:
         """Whether all columns are equal; meshes are compared by identity."""
@@ -283,9 +283,9 @@ class Scene(Row):
         place = _place("surface", self.surfaces, name)
         surface = self.surfaces[place]
         try:
-            paint = changed(surface.paint, changes)
+            paint = replaced(surface.paint, changes)
         except RowError as error:
-            raise RowError(error.found, row_label(surface)) from None
+            raise RowError(error.row_problems, row_label(surface)) from None
         if paint == surface.paint:
             return self
         row = with_values(surface, {"paint": paint})
@@ -301,7 +301,7 @@ class Scene(Row):
 
     def with_scalar(self, /, **changes: Unpack[ScalarChanges]) -> Scene:
         """The scene with some fields of its scalar changed; without one, it must be given a name."""
-        return changed(self, {"scalar": changes})
+        return replaced(self, {"scalar": changes})
 
     def without_scalar(self) -> Scene:
         """The scene with its own colors."""
@@ -313,7 +313,7 @@ class Scene(Row):
         Raises InputError if a field is invalid or a light has that name already.
         """
         new: dict[str, Any] = {**fields, "name": name}
-        return changed(self, {"lights": (*self.lights, new)})
+        return replaced(self, {"lights": (*self.lights, new)})
 
     def without_light(self, name: str) -> Scene:
         """The scene without one light.
@@ -326,7 +326,7 @@ class Scene(Row):
             raise InputError(
                 f"light {name!r} must stay while {followers[0]!r} follows it; let that follow something else"
             )
-        return changed(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
+        return replaced(self, {"lights": (*self.lights[:place], *self.lights[place + 1 :])})
 
     def with_copied_light(self, name: str, new_name: str | None = None) -> Scene:
         """The scene with a copy of one light after the others, named like "key 2" unless a name is given.
@@ -336,7 +336,7 @@ class Scene(Row):
         light = self.light(name)
         if new_name is None:
             new_name = self._free_light_name(name)
-        return changed(self, {"lights": (*self.lights, light.replace(name=new_name))})
+        return replaced(self, {"lights": (*self.lights, light.replace(name=new_name))})
 
     def with_mirrored_light(
         self, name: str, axis: str = "x", about: float | None = None, new_name: str | None = None
@@ -357,7 +357,7 @@ class Scene(Row):
             new_name = self._free_light_name(f"{name} mirrored")
         copy = mirrored(light, new_name, axis, about)
         copy = in_frame(copy, self._frame_of(name), self.light(name).follows)
-        return changed(self, {"lights": (*self.lights, copy)})
+        return replaced(self, {"lights": (*self.lights, copy)})
 
     def with_all_lights_on(self) -> Scene:
         """The scene with all lights switched on, as they are again after `only_lights`."""
@@ -392,7 +392,7 @@ class Scene(Row):
     def _with_row(self, table: str, place: int, changes: Mapping[str, Any]) -> Scene:
         rows = vars(self)[table]
         row = rows[place]
-        rows = (*rows[:place], changed(row, changes), *rows[place + 1 :])
+        rows = (*rows[:place], replaced(row, changes), *rows[place + 1 :])
         # Tables refer to each other by name only: if no name changes, the references stay valid, but that a
         # light must keep the aim that another one follows. What is cached of a scene depends on its parts.
         is_followed = table == "lights" and any(light.follows is not None for light in self.lights)
@@ -401,7 +401,7 @@ class Scene(Row):
             for key, reference in references_of(type(row)).items()
         )
         if table == "parts" or "name" in changes or is_referring or is_followed:
-            return changed(self, {table: rows})
+            return replaced(self, {table: rows})
         return with_values(self, {table: rows})
 
     @cached_property

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from autocolor.scene.columns import Row, fields_of, keys_of
 from autocolor.scene.lights import Flap, Flaps, HalfSpace, Light, Links
-from autocolor.scene.row_kinds import Nested, Variant
+from autocolor.scene.row_kinds import Nested, OneRowOf
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Paint, Part, Reflectance, Surface
@@ -86,7 +86,7 @@ def optional_keys(cls: type[Row]) -> set[str]:
     found = {name for name, field in fields_of(cls).items() if field.is_optional}
     for field in fields_of(cls).values():
         kind = field.column.kind
-        if isinstance(kind, Variant):
+        if isinstance(kind, OneRowOf):
             found = found.union(*map(optional_keys, kind.classes.values()))
         elif isinstance(kind, Nested) and kind.inline:
             found |= optional_keys(kind.row_class)

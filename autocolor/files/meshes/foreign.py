@@ -48,7 +48,7 @@ from autocolor.files.meshes.repair import (
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes
 from autocolor.files.reading import shown as shown_2
-from autocolor.scene.columns import changed
+from autocolor.scene.columns import replaced
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.scalar import NODE, POLYGON
 from autocolor.scene.surfaces import Surface
@@ -538,7 +538,7 @@ def read_foreign(
 
 def _surface(name: str, color: Color) -> Surface:
     """The surface of a material, of which the base color is known."""
-    return changed(created_surface(name, COLORED_PAINT.object_color), {"object_color": color})
+    return replaced(created_surface(name, COLORED_PAINT.object_color), {"object_color": color})
 
 
 for _each in FOREIGN:

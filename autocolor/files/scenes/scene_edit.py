@@ -13,7 +13,7 @@ from typing import Any, Final
 from autocolor.errors import InputError
 from autocolor.files.scenes.toml_edit import TomlText
 from autocolor.files.scenes.toml_text import FILE_TABLES, KeyPath, parsed_toml, sparse_entry, sparse_tables
-from autocolor.scene.columns import fields_of, plain, with_values
+from autocolor.scene.columns import fields_of, to_plain, with_values
 from autocolor.scene.row_kinds import RangesByName, without_name
 from autocolor.scene.scene import Scene
 
@@ -54,7 +54,7 @@ def completed(data: bytes, scene: Scene) -> bytes:
     """The text of a scene file that gives the scene, with the keys and rows added that it does not tell."""
     document = parsed_toml(data, "scene.toml")
     text = TomlText(data.decode(), FILE_TABLES)
-    tables: dict[str, Any] = plain(scene)
+    tables: dict[str, Any] = to_plain(scene)
     _complete(text, (), document, {key: tables[key] for key in tables if key not in (*FILE_TABLES, "name")})
     _complete(text, ("view",), document.get("view", {}), tables["view"])
     if "scalar" in tables:
@@ -124,8 +124,8 @@ def _changed(data: bytes, old: Scene, new: Scene) -> bytes:
     """The text with all that differs between the scene that it gives and another one."""
     document = parsed_toml(data, "scene.toml")
     text = TomlText(data.decode(), FILE_TABLES)
-    before: dict[str, Any] = plain(old)
-    after: dict[str, Any] = plain(new)
+    before: dict[str, Any] = to_plain(old)
+    after: dict[str, Any] = to_plain(new)
     told = sparse_tables(new)
 
     keys = [key for key in after if key not in (*FILE_TABLES, "name")]

@@ -16,13 +16,13 @@ from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
 from autocolor.files.scenes.scene_report import SceneProblems
 from autocolor.files.scenes.toml_text import KeyPath
-from autocolor.scene.columns import Bar, Column, Problem, Row, RowError, Tier, made
-from autocolor.scene.kinds import Choice, Text
+from autocolor.scene.columns import BarRange, Column, Problem, Row, RowError, Tier, from_plain
+from autocolor.scene.kinds import OneOf, Text
 from autocolor.scene.mesh import CREASE_ANGLES, Mesh
 
 MOST_MESHES: Final = 1000
 
-SCALE_BAR: Final = Bar(0.01, 10, 0.01)
+SCALE_BAR: Final = BarRange(0.01, 10, 0.01)
 
 FILE_KEYS: Final = (("file",), ("nodes", "polygons"))
 """The keys that name the files of a mesh: one file, or a node table and a polygon table."""
@@ -41,7 +41,7 @@ class MeshEntry(Row):
     file: Annotated[str | None, Column(Text(), Tier.FRAME, "A mesh file in the scene's folder.")] = None
     nodes: Annotated[str | None, Column(Text(), Tier.FRAME, "A node table, with a polygon table.")] = None
     polygons: Annotated[str | None, Column(Text(), Tier.FRAME, "The polygon table.")] = None
-    up: Annotated[str, Column(Choice(UPS), Tier.FRAME, "The file's up axis; the world's is z.")] = "z"
+    up: Annotated[str, Column(OneOf(UPS), Tier.FRAME, "The file's up axis; the world's is z.")] = "z"
     scale: Annotated[float, Column(SCALES, Tier.FRAME, "A factor for its coordinates.", bar=SCALE_BAR)] = 1.0
     crease_angle: Annotated[
         float | None,
@@ -126,14 +126,14 @@ def _entry(problems: SceneProblems, path: KeyPath, table: object) -> MeshEntry |
     So its files are still read, and their problems reported too.
     """
     try:
-        return made(MeshEntry, table)
+        return from_plain(MeshEntry, table)
     except RowError as error:
-        problems.note_all(error.found, path)
-        wrong = {problem.path[0] for problem in error.found if problem.path}
+        problems.note_all(error.row_problems, path)
+        wrong = {problem.path[0] for problem in error.row_problems if problem.path}
     if not wrong or not isinstance(table, Mapping):
         return None
     try:
-        return made(MeshEntry, {key: value for key, value in table.items() if key not in wrong})
+        return from_plain(MeshEntry, {key: value for key, value in table.items() if key not in wrong})
     except RowError:
         return None
 

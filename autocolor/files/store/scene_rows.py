@@ -13,7 +13,7 @@ from autocolor.files.scenes.scene_report import SceneReport, scene_report
 from autocolor.files.store.mesh_rows import mesh_of
 from autocolor.files.store.schema import ROW_TABLES, SCENE, FoundTables, RowTable, small_table
 from autocolor.files.store.sql_columns import NUMBER, SqlValue, quoted, row_table, row_values
-from autocolor.scene.columns import Row, RowError, changed, made
+from autocolor.scene.columns import Row, RowError, from_plain, replaced
 from autocolor.scene.creation import PARTS, UNASSIGNED, SurfaceSource
 from autocolor.scene.defaults import default_surface
 from autocolor.scene.mesh import Mesh
@@ -105,11 +105,11 @@ def _held(table: RowTable, rows: list[dict[str, SqlValue]], problems: list[str])
         try:
             if table.row_class is Surface and isinstance(values.get("name"), str):
                 name = values.pop("name")
-                held.append(changed(default_surface(name, number - 1), values))
+                held.append(replaced(default_surface(name, number - 1), values))
             else:
                 # A part without a surface gets one when the scene is made.
                 start = {"surface": UNASSIGNED} if table.row_class is Part else {}
-                held.append(made(table.row_class, {**start, **values}))
+                held.append(from_plain(table.row_class, {**start, **values}))
         except RowError as error:
-            problems.extend(f"{table.name}, row {number}: {each.sentence}" for each in error.found)
+            problems.extend(f"{table.name}, row {number}: {each.sentence}" for each in error.row_problems)
     return tuple(held)

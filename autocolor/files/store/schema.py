@@ -15,7 +15,7 @@ from autocolor.checks import LARGEST_COORDINATE, listed, nearest, shown
 from autocolor.errors import InputError
 from autocolor.files.store.sql_columns import NUMBER, SqlColumn, SqlValue, checked, columns_of, quoted
 from autocolor.scene.columns import Row, fields_of
-from autocolor.scene.row_kinds import Nested, Rows
+from autocolor.scene.row_kinds import Nested, RowList
 from autocolor.scene.scalar import NODE, POLYGON
 from autocolor.scene.scene import Scene
 
@@ -89,7 +89,7 @@ def _row_tables() -> dict[str, RowTable]:
     found = {SCENE: row_table(SCENE, Scene, is_single=True)}
     for name, field in fields_of(Scene).items():
         kind = field.column.kind
-        if isinstance(kind, (Rows, Nested)):
+        if isinstance(kind, (RowList, Nested)):
             found[name] = row_table(name, kind.row_class, is_single=isinstance(kind, Nested))
     return found
 

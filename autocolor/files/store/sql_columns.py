@@ -14,19 +14,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from autocolor.scene.columns import Field, Kind, Row, fields_of, plain
+from autocolor.scene.columns import Field, Kind, Row, fields_of, to_plain
 from autocolor.scene.kinds import (
     LARGEST_PLACE,
-    Choice,
+    Boolean,
     ColorKind,
     Instance,
     Number,
-    Switch,
+    OneOf,
     Text,
     VectorKind,
     Whole,
 )
-from autocolor.scene.row_kinds import NamedRows, Nested, Reference, Rows, Variant, WordOrName
+from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, RowList
 
 NUMBER: Final = "number"
 """The column of every small table that counts its rows from 1; it keeps their order."""
@@ -34,7 +34,7 @@ NUMBER: Final = "number"
 AXES: Final = ("x", "y", "z")
 LARGEST_FLOAT: Final = 1.7976931348623157e308
 
-OF_TEXT: Final = (Text, Choice, ColorKind, Reference, WordOrName, Variant)
+OF_TEXT: Final = (Text, OneOf, ColorKind, Reference, OneRowOf)
 """The kinds whose values are text."""
 
 OF_JSON: Final = ("[", "{", '"')
@@ -66,7 +66,7 @@ class SqlColumn:
         """Its type in SQL."""
         if isinstance(self.kind, (Number, VectorKind)):
             return "REAL"
-        if isinstance(self.kind, (Whole, Switch)):
+        if isinstance(self.kind, (Whole, Boolean)):
             return "INTEGER"
         return "TEXT" if isinstance(self.kind, OF_TEXT) else "ANY"
 
@@ -84,12 +84,12 @@ class SqlColumn:
                 yield f"{name} <= {kind.at_most!r}"
         elif isinstance(kind, Whole):
             yield f"{name} BETWEEN {kind.at_least} AND {kind.at_most}"
-        elif isinstance(kind, Switch):
+        elif isinstance(kind, Boolean):
             yield f"{name} IN (0, 1)"
-        elif isinstance(kind, (Choice, Variant)):
-            names = kind.names if isinstance(kind, Choice) else kind.classes
+        elif isinstance(kind, (OneOf, OneRowOf)):
+            names = kind.names if isinstance(kind, OneOf) else kind.classes
             yield f"{name} IN ({', '.join(map(literal, names))})"
-        elif isinstance(kind, (Reference, WordOrName)) or (isinstance(kind, Text) and not kind.may_be_empty):
+        elif isinstance(kind, Reference) or (isinstance(kind, Text) and not kind.may_be_empty):
             yield f"{name} <> ''"
 
     @property
@@ -155,7 +155,7 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
     """The columns of a field; unless the row around it `is_given`, all of them may be NULL."""
     column, is_optional, default = field
     kind, path = column.kind, (*prefix, name)
-    if isinstance(kind, (Instance, Rows)):
+    if isinstance(kind, (Instance, RowList)):
         return
     if isinstance(kind, Nested) and (not is_optional or _tells_itself(kind.row_class)):
         inner_prefix = prefix if kind.inline else path
@@ -165,7 +165,7 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
     may_be_null = is_optional or not is_given or getattr(kind, "endless", None) is not None
     may_be_null |= isinstance(kind, NamedRows)
     start: Any = default() if default is not None and is_given and not may_be_null else None
-    begun = {} if start is None else dict(kind.written(name, start))
+    begun = {} if start is None else dict(kind.to_plain(name, start))
     keys = kind.keys(name, column)
     for key, inner_column in keys.items():
         # The other keys of a variant are those of its classes: each has only some of them.
@@ -186,7 +186,7 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
                     component,
                 )
         else:
-            references = inner_kind.table if isinstance(inner_kind, Reference) else ""
+            references = inner_kind.table if isinstance(inner_kind, Reference) and not inner_kind.word else ""
             yield SqlColumn(
                 "_".join((*prefix, key)),
                 (*prefix, key),
@@ -222,7 +222,7 @@ def in_sql(value: object) -> SqlValue:
 
 def row_values(row: Row) -> dict[str, SqlValue]:
     """The values of a row by the names of the columns of its class."""
-    table = plain(row)
+    table = to_plain(row)
     return {column.name: in_sql(_within(table, column)) for column in columns_of(type(row))}
 
 
@@ -261,7 +261,7 @@ def row_table(row_class: type[Row], values: Mapping[str, SqlValue]) -> dict[str,
 
 def _out_of_sql(kind: Kind, value: SqlValue) -> object:
     """A value of a store as a plain value; one that its kind will refuse stays as it is."""
-    if isinstance(kind, Switch) and value in (0, 1):
+    if isinstance(kind, Boolean) and value in (0, 1):
         return bool(value)
     if isinstance(value, str) and value.startswith(OF_JSON):
         try:

@@ -17,25 +17,25 @@ from autocolor.scene.kinds import (
     MOST_POINTS,
     AngleCurve,
     AngleCurveKind,
-    Choice,
+    Boolean,
     ColorKind,
     CurveKind,
     Instance,
     Number,
-    Switch,
+    OneOf,
     Text,
     VectorKind,
     Whole,
     in_digits,
 )
-from autocolor.scene.row_kinds import Reference, References, WordOrName
+from autocolor.scene.row_kinds import Reference, References
 from tests.autocolor.strategies import angle_curves
 
 
 def held(kind: Kind, value: object) -> tuple[Any, list[str]]:
     """What a kind holds of a value, and the sentences of its problems."""
     problems: list[Problem] = []
-    return kind.held(value, ("it",), problems), [problem.sentence for problem in problems]
+    return kind.validated(value, ("it",), problems), [problem.sentence for problem in problems]
 
 
 def refusal(kind: Kind, value: object) -> str:
@@ -75,17 +75,17 @@ def test_what_is_no_finite_number_is_refused(value: object) -> None:
         (Whole(2, 9), 1, "it must be a whole number from 2 to 9, not 1"),
         (Whole(2, 9), 2.0, "it must be a whole number from 2 to 9, not 2.0"),
         (Whole(0, 9), True, "it must be a whole number from 0 to 9, not true"),
-        (Switch(), 1, "it must be true or false, not 1"),
-        (Switch(), None, "it must be true or false, not None"),
+        (Boolean(), 1, "it must be true or false, not 1"),
+        (Boolean(), None, "it must be true or false, not None"),
         (Text(), "", "it must be a string of at least one character, not ''"),
         (Text(may_be_empty=True), 3, "it must be a string, not 3"),
-        (Choice(("on", "off")), "of", "it must be 'on' or 'off', not 'of'; did you mean 'off'?"),
-        (Choice(("surface", "object")), 3, "it must be 'surface' or 'object', not 3"),
+        (OneOf(("on", "off")), "of", "it must be 'on' or 'off', not 'of'; did you mean 'off'?"),
+        (OneOf(("surface", "object")), 3, "it must be 'surface' or 'object', not 3"),
         (VectorKind(has_length=True), (0, 0, 0), "it must not be zero, not (0, 0, 0); give it a length"),
         (Reference("surfaces"), 3, "it must be a string of at least one character, not 3"),
         (References("lights"), "key", "it must be a list of names, not 'key'"),
         (References("lights"), ["key", 3], "it must be a list of names, not ['key', 3]"),
-        (WordOrName("lights", "eye"), 3, "it must be 'eye' or the name of one of the lights, not 3"),
+        (Reference("lights", "eye"), 3, "it must be 'eye' or the name of one of the lights, not 3"),
         (Instance(dict), [], "it must be a dict, not []"),
         (
             CurveKind({"linear": 1, "gamma": 2}),
@@ -108,15 +108,15 @@ def test_a_value_that_breaks_a_rule_is_refused_in_a_sentence(
         (Number(at_least=0, at_most=1), 1, 1.0),
         (Number(endless=math.inf), math.inf, math.inf),
         (Whole(2, 9), np.int64(5), 5),
-        (Switch(), np.False_, False),
+        (Boolean(), np.False_, False),
         (Text(may_be_empty=True), "", ""),
         (VectorKind(), np.array([1, 2, 3], np.float32), (1.0, 2.0, 3.0)),
         (VectorKind(), (0, 0, 0), (0.0, 0.0, 0.0)),
         (Reference("surfaces"), "body", "body"),
         (References("lights"), ["key", "rim"], ("key", "rim")),
         (References("lights"), [], ()),
-        (WordOrName("lights", "eye"), "key", "key"),
-        (WordOrName("lights", "eye"), "eye", "eye"),
+        (Reference("lights", "eye"), "key", "key"),
+        (Reference("lights", "eye"), "eye", "eye"),
         (CurveKind({"linear": 1}), "linear", "linear"),
         (CurveKind({"linear": 1}), [[0, 0], [1, 0.5]], ((0.0, 0.0), (1.0, 0.5))),
     ],
@@ -170,7 +170,7 @@ KIND = AngleCurveKind(0.001, ((0.0, 0.04), (60.0, 0.1), (90.0, 1.0)))
 
 def held_2(value: object) -> tuple[object, list[str]]:
     problems: list[Problem] = []
-    return KIND.held(value, ("curve",), problems), [problem.sentence for problem in problems]
+    return KIND.validated(value, ("curve",), problems), [problem.sentence for problem in problems]
 
 
 @given(angle_curves)
@@ -217,7 +217,7 @@ PARTS = st.integers(0, 255)
 def held_3(value: object) -> tuple[Any, list[str]]:
     """What a color column holds of a value, and the sentences of its problems."""
     problems: list[Problem] = []
-    return ColorKind().held(value, ("it",), problems), [problem.sentence for problem in problems]
+    return ColorKind().validated(value, ("it",), problems), [problem.sentence for problem in problems]
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Rig, Scene, render, scene_of
-from autocolor.scene.columns import made, plain
+from autocolor.scene.columns import from_plain, to_plain
 from tests.autocolor.meshes import cube
 from tests.autocolor.strategies import scenes
 
@@ -13,7 +13,7 @@ from tests.autocolor.strategies import scenes
 @given(scenes())
 def test_a_rig_on_its_own_scene_gives_the_same_lights_exactly(scene: Scene) -> None:
     assert scene.replace(lights=()).with_rig(scene.rig).lights == scene.lights
-    assert made(Rig, plain(scene.rig)) == scene.rig
+    assert from_plain(Rig, to_plain(scene.rig)) == scene.rig
 
 
 @given(scenes(), scenes())

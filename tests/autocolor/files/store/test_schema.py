@@ -10,14 +10,14 @@ from autocolor.files.store import schema as module
 from autocolor.files.store.schema import DEFINITIONS, MESH_TABLES, ROW_TABLES
 from autocolor.files.store.store_file import read_store
 from autocolor.scene.columns import fields_of
-from autocolor.scene.row_kinds import Nested, Rows
+from autocolor.scene.row_kinds import Nested, RowList
 from autocolor.scene.scene import Scene
 from tests.autocolor.files.store.stores import run, small_store
 
 
 def test_every_table_of_a_scene_has_a_table_and_all_are_strict() -> None:
     kinds = {name: field.column.kind for name, field in fields_of(Scene).items()}
-    tables = {name for name, kind in kinds.items() if isinstance(kind, (Rows, Nested))}
+    tables = {name for name, kind in kinds.items() if isinstance(kind, (RowList, Nested))}
     assert ROW_TABLES.keys() == {"scene", *tables}
     assert DEFINITIONS.keys() == {*ROW_TABLES, *MESH_TABLES}
     connection = sqlite3.connect(":memory:")

@@ -13,10 +13,10 @@ from autocolor import BlinnPhong, Flap, Flaps, Light, Paint, Surface
 from autocolor.checks import Color
 from autocolor.files.store.schema import row_table as table_of
 from autocolor.files.store.sql_columns import SqlValue, columns_of, in_sql, row_table, row_values
-from autocolor.scene.columns import Column, Row, Tier, keys_of, made
-from autocolor.scene.kinds import Choice, ColorKind, Number, Switch, Text, VectorKind, Whole
+from autocolor.scene.columns import Column, Row, Tier, from_plain, keys_of
+from autocolor.scene.kinds import Boolean, ColorKind, Number, OneOf, Text, VectorKind, Whole
 from autocolor.scene.reflection_models import MODELS
-from autocolor.scene.row_kinds import Nested, References, Variant, WordOrName
+from autocolor.scene.row_kinds import Nested, OneRowOf, Reference, References
 from autocolor.scene.scalar import Scalar
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part
@@ -29,7 +29,7 @@ FREE = Tier.NOTHING
 @dataclass(frozen=True)
 class Inner(Row):
     low: Annotated[float, Column(Number(endless=-math.inf), FREE, "")] = -math.inf
-    shut: Annotated[bool, Column(Switch(), FREE, "")] = False
+    shut: Annotated[bool, Column(Boolean(), FREE, "")] = False
 
 
 @dataclass(frozen=True)
@@ -43,12 +43,12 @@ class MadeUp(Row):
 
     name: Annotated[str, Column(Text(), FREE, "")]
     order: Annotated[int, Column(Whole(1, 5), FREE, "")]
-    group: Annotated[str, Column(Choice(("a", "it's")), FREE, "")] = "it's"
+    group: Annotated[str, Column(OneOf(("a", "it's")), FREE, "")] = "it's"
     place: Annotated[tuple[float, float, float], Column(VectorKind(), FREE, "")] = (1.0, 2.0, 3.0)
     way: Annotated[tuple[float, float, float] | None, Column(VectorKind(has_length=True), FREE, "")] = None
     tint: Annotated[Color | None, Column(ColorKind(), FREE, "")] = None
-    model: Annotated[Row, Column(Variant(MODELS), FREE, "")] = field(default_factory=BlinnPhong)
-    near: Annotated[object, Column(WordOrName("lights", "here"), FREE, "")] = "here"
+    model: Annotated[Row, Column(OneRowOf(MODELS), FREE, "")] = field(default_factory=BlinnPhong)
+    near: Annotated[object, Column(Reference("lights", "here"), FREE, "")] = "here"
     all: Annotated[tuple[str, ...] | None, Column(References("lights"), FREE, "")] = None
     inner: Annotated[Inner | None, Column(Nested(Inner), FREE, "")] = None
     loose: Annotated[Loose | None, Column(Nested(Loose), FREE, "")] = None
@@ -89,7 +89,7 @@ def through_a_table(row: Row) -> dict[str, SqlValue]:
 
 @given(made_up | lights() | surfaces("body"))
 def test_a_row_of_any_class_comes_back_from_its_table(row: Row) -> None:
-    assert made(type(row), row_table(type(row), through_a_table(row))) == row
+    assert from_plain(type(row), row_table(type(row), through_a_table(row))) == row
 
 
 @pytest.mark.parametrize("cls", [Scene, View, Scalar, Light, Surface, Part, Flap, Flaps, MadeUp])
@@ -106,7 +106,7 @@ def test_a_table_fills_in_the_defaults_of_the_row() -> None:
     cursor = connection.execute("SELECT * FROM rows")
     (row,) = cursor.fetchall()
     values = dict(zip((each[0] for each in cursor.description), row, strict=True))
-    assert made(MadeUp, row_table(MadeUp, values)) == MadeUp("new", 2)
+    assert from_plain(MadeUp, row_table(MadeUp, values)) == MadeUp("new", 2)
 
 
 def test_a_row_in_a_row_that_is_absent_has_no_infinite_limits() -> None:
