@@ -80,7 +80,7 @@ def complete_surfaces(context: click.Context, parameter: click.Parameter, incomp
 @_silent
 def complete_settings(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """The keys of `--set` for the scene on the line, and the values of a whole key."""
-    from autocolor.commands.setting_keys import keys_after
+    from autocolor.commands.settings import keys_after
 
     scene = _scene(context)
 

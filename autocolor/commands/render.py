@@ -11,10 +11,9 @@ from typing import Final
 import click
 
 from autocolor.commands.completion import complete_lights
-from autocolor.commands.options import normals_option, size_option, with_normals
+from autocolor.commands.options import normals_option, set_option, size_option, with_normals
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
-from autocolor.commands.scenes import SceneSource, ended, read, scene_options
-from autocolor.commands.settings import created_again, reframed, set_option, with_settings
+from autocolor.commands.scenes import SceneSource, created_again, ended, read, reframed, scene_options
 
 EXAMPLES: Final = """\b
 Examples:
@@ -73,6 +72,8 @@ def render(
     force: bool,
 ) -> None:
     """Render SCENE: a folder, a scene.toml, a mesh file or a picture file."""
+    from autocolor.commands.settings import with_settings
+
     elements, lines = size
     report = reframed(read(source), elements / lines)
     original = with_normals(report.scene, normals)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.displays_elsewhere import refuse_address, session_elsewhere
 from autocolor.commands.options import verbose_option
+from autocolor.commands.show import refuse_address, session_elsewhere
 
 if TYPE_CHECKING:
     from autocolor.screens.viewer import Viewer

@@ -323,8 +323,8 @@ def test_an_edit_costs_the_planes_of_its_light() -> None:
         ),
         (
             {0: None, "a": None},
-            " must be a table of half-spaces by name, not by 0; name it by at least one character\nlight 'key':"
-            " half_spaces.a: there is no half-space of this name; known are 'left', 'right'",
+            " must be a table of half-spaces by name, not by 0; name it by at least one character\n"
+            "light 'key': half_spaces.a: there is no half-space of this name; known are 'left', 'right'",
         ),
         (None, " must be a table of half-spaces by name, not None"),
         ("left", " must be a table of half-spaces by name, not 'left'"),
