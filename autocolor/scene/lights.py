@@ -307,6 +307,10 @@ EYE: Final = "eye"
 """What a light that is fixed to the eye follows."""
 
 
+AXIS_CONTROLS: Final = ("concentration", "cone_angle", "inner_angle", "at_infinity")
+"""The controls of a light that need an axis: a direction or an aim."""
+
+
 @dataclass(frozen=True, repr=False)
 class Light(Row):
     """One light.
@@ -418,7 +422,7 @@ class Light(Row):
     ] = field(default_factory=Links)
 
     def rules(self) -> Iterator[Problem]:
-        """At most one of direction and aim is given; without both, no control that needs one is given.
+        """At most one of direction and aim is given; without both, none of AXIS_CONTROLS is given.
 
         An inner angle comes with a cone that is not narrower, and a falloff with a reach.
         """

@@ -11,7 +11,7 @@ from typing import Any, Final
 from autocolor.checks import Vector
 from autocolor.scene.columns import fields_of
 from autocolor.scene.following import names_to_follow
-from autocolor.scene.lights import EYE, Light
+from autocolor.scene.lights import AXIS_CONTROLS, EYE, Light
 from autocolor.screens.session import Session
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Choice, Widget
@@ -24,7 +24,7 @@ AIM: Final = "aim"
 WORLD: Final = "world"
 """The choice of following nothing."""
 
-OF_AN_AXIS: Final = ("direction", "aim", "concentration", "cone_angle", "inner_angle", "at_infinity")
+OF_AN_AXIS: Final = ("direction", "aim", *AXIS_CONTROLS)
 """The columns that only a light with an axis has."""
 
 EXCLUDING: Final = (
@@ -56,7 +56,7 @@ def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()
         rows = [*found[:place], _follows_row(session, light), *found[place:]]
     # A point source has no axis: what needs one cannot be used, and says so.
     if kind_of(light) == POINT:
-        needing = ("concentration", "cone angle", "inner angle", "at infinity")
+        needing = [name.replace("_", " ") for name in AXIS_CONTROLS]
         rows = [replace(row, why_not=NEEDS_AXIS) if row.label in needing else row for row in rows]
     axis = ("direction", "aim", "concentration")
     before = next((number for number, row in enumerate(rows) if row.label.startswith(axis)), len(rows))

@@ -62,20 +62,6 @@ def test_a_shell_can_complete_commands_and_options(run: Run, monkeypatch: pytest
     assert run().out.split() == ["plain,render", "plain,recolor"]
 
 
-@POSIX
-def test_a_file_name_that_is_no_text_works(run: Run, folder: Path) -> None:
-    name = os.fsdecode(b"\xff\xfe.obj")
-    try:
-        (folder / name).write_bytes((folder / "two.obj").read_bytes())
-    except OSError:
-        pytest.skip("this file system takes text alone")
-    for arguments in (("info", name), ("render", name, "--save", "x.npz"), ("render", name)):
-        ran = run(*arguments)
-        assert ran.code == 0, ran.err
-    assert (folder / os.fsdecode(b"\xff\xfe.png")).is_file()
-    assert run("info", "x.npz").code == 0
-
-
 def test_the_version_is_told_even_where_nothing_is_installed(run: Run) -> None:
     ran = run("--version")
     assert (ran.code, ran.err) == (0, "")
@@ -205,6 +191,20 @@ def test_without_a_utf_8_locale_foreign_names_work(process: Run, folder: Path) -
     json.loads(ran.out)
     assert process("info", "ж.obj", environment=ascii_only).code == 66
     assert process("render", "two.obj", "--set", "ж=1", environment=ascii_only).code == 2
+
+
+@POSIX
+def test_a_file_name_that_is_no_text_works(process: Run, folder: Path) -> None:
+    name = os.fsdecode(b"\xff\xfe.obj")
+    try:
+        (folder / name).write_bytes((folder / "two.obj").read_bytes())
+    except OSError:
+        pytest.skip("this file system takes text alone")
+    for arguments in (("info", name), ("render", name, "--save", "x.npz"), ("render", name)):
+        ran = process(*arguments)
+        assert ran.code == 0, ran.err
+    assert (folder / os.fsdecode(b"\xff\xfe.png")).is_file()
+    assert process("info", "x.npz").code == 0
 
 
 def test_nothing_is_needed_of_a_home(process: Run, folder: Path) -> None:

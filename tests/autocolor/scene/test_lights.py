@@ -31,7 +31,7 @@ from autocolor import (
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.scene.columns import Tier
-from autocolor.scene.lights import Links, middle_between, unit_vector
+from autocolor.scene.lights import AXIS_CONTROLS, Links, middle_between, unit_vector
 from autocolor.scene.scene import cost_of_edit
 from ramtek_emu import Ramtek9300
 from tests.autocolor.meshes import grid
@@ -423,3 +423,10 @@ def test_squares_of_very_small_or_large_ones_do_not_matter(size: float) -> None:
 def test_the_middle_of_two_points_is_halfway_also_between_the_largest() -> None:
     assert middle_between((1, 2, -3), (3, 2, 5)) == (2, 2, 1)
     assert middle_between((1.5e308, 0, 0), (1.7e308, 0, 0)) == (1.6e308, 0, 0)
+
+
+@pytest.mark.parametrize("name", AXIS_CONTROLS)
+def test_a_point_source_has_no_control_of_an_axis(name: str) -> None:
+    value = {"concentration": 2, "cone_angle": 40, "inner_angle": 30, "at_infinity": True}[name]
+    with pytest.raises(InputError, match=r"must come with a (direction or an aim|cone), not with"):
+        Light("key", (0, 0, 1), **{name: value})  # type: ignore[arg-type]
