@@ -1,4 +1,7 @@
-"""Keeping the session of a window: its journal stays unless the window is closed by its user."""
+"""Sessions of `autocolor view` and `show`: keeping a journal while one lasts, and those that were left.
+
+The journal of a session stays if the session does not end orderly, such as by a signal.
+"""
 
 from __future__ import annotations
 
@@ -21,29 +24,26 @@ if TYPE_CHECKING:
     from autocolor.journal.reading import Session
 
 
-# -------------------- left_sessions
-# Sessions that did not end orderly, for `autocolor view`: listing, choosing and forgetting them.
-
 NEWEST: Final = "newest"
 """The choice of the newest session that can be read."""
 
 
 def when(folder: Path) -> str:
-    """When the journal of a session was written last, in local time."""
+    """The time of the last write of a session's journal, in local time."""
     return time.strftime("%Y-%m-%d %H:%M", time.localtime((folder / JOURNAL).stat().st_mtime))
 
 
 def list_sessions() -> None:
-    """Print a line for each session that was left, the newest first: its name, its time and its steps."""
+    """Print a line for each session that was left, the newest first: name, time and steps."""
     for folder in left_sessions():
         try:
             session = read_journal(folder / JOURNAL)
         except InputError as error:
-            told = str(error).replace("\n", "; ")
+            description = str(error).replace("\n", "; ")
         else:
             steps = len(session.history.steps)
-            told = f"{session.source.path}, {steps} step{'' if steps == 1 else 's'}"
-        click.echo(f"{folder.name}  {when(folder)}  {told}")
+            description = f"{session.source.path}, {steps} step{'' if steps == 1 else 's'}"
+        click.echo(f"{folder.name}  {when(folder)}  {description}")
 
 
 def forget_session(name: str) -> None:
@@ -54,10 +54,10 @@ def forget_session(name: str) -> None:
 
 
 def chosen_session(name: str) -> tuple[Path, Session]:
-    """The folder of a session by the beginning of its name, or of the NEWEST that is readable, and itself.
+    """The session whose name begins so, or the NEWEST that can be read, and its folder.
 
-    Raises UsageError for no name or that of several, InputError if it cannot be read, MissingInputError if
-    there is none.
+    Raises UsageError if no session or several have such a name, InputError if the session cannot be read,
+    MissingInputError if no session is left.
     """
     if name != NEWEST:
         folder = _named(name)
@@ -74,7 +74,7 @@ def chosen_session(name: str) -> tuple[Path, Session]:
 
 
 def _named(name: str) -> Path:
-    """The one folder of a session that was left whose name begins so. Raises UsageError."""
+    """The folder of the only session whose name begins so. Raises UsageError."""
     folders = [folder for folder in left_sessions() if name and folder.name.startswith(name)]
     if len(folders) != 1:
         found = "several of these" if folders else "none of these"
@@ -94,21 +94,22 @@ BY_SIGNAL: Final = 128
 
 @contextmanager
 def kept_session(viewer: Viewer, left: Path | None = None) -> Iterator[Callable[[], None]]:
-    """Keep the journal of the session of a viewer; the function that is given must be called often.
+    """Keep the journal of the session of a viewer; call the function that it yields often.
 
-    A journal that cannot be written is told once, and sessions that were left before on stderr. `left` is the
-    folder of one that is gone on with. SIGTERM and SIGHUP end the program at once, and leave the journal.
+    A journal that cannot be written is reported once, in the viewer. Sessions that were left before are
+    reported on stderr. `left` is the folder of the session that is continued, if any. SIGTERM and SIGHUP end
+    the program at once, and leave the journal.
     """
     autosave = Autosave(left)
     _tell_left(viewer)
-    told: set[str] = set()
+    reported: set[str] = set()
 
     def update(at_once: bool = False) -> None:
         try:
             autosave.update(viewer.studio.history, at_once)
         except AutocolorError as error:
-            if str(error) not in told:
-                told.add(str(error))
+            if str(error) not in reported:
+                reported.add(str(error))
                 viewer.tell(str(error))
 
     before = {number: signal.signal(number, _end) for number in ENDING}
@@ -130,7 +131,7 @@ def _end(number: int, _: FrameType | None) -> NoReturn:
 
 
 def _tell_left(viewer: Viewer) -> None:
-    """Tell of sessions that were left before."""
+    """Report sessions that were left before, on stderr and in the viewer."""
     left = left_sessions()
     if not left:
         return

@@ -1,7 +1,6 @@
-"""The row that tells which scalar is shown in color, and how.
+"""Scalars: the numbers of a mesh, such as stress, and the row that says how one of them is shown in color.
 
-Paper: "Introduction": scalar variables such as stress on the surface of an object are shown in color. The
-keys are those of the table `[scalar]` of a scene file.
+Paper: "Introduction": scalar variables such as stress on the surface of an object are shown in color.
 """
 
 from __future__ import annotations
@@ -31,10 +30,8 @@ from autocolor.scene.kinds import (
 )
 from autocolor.scene.row_kinds import References
 
-# -------------------- scalar_kinds
-# The kinds of columns that only scalars have: limits, the colors beyond them, and color scales.
-
 MOST_COLORS: Final = 256
+"""Limit: colors of a scale."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +56,7 @@ class LimitsKind(Kind):
 
 @dataclass(frozen=True)
 class EndColor(ColorKind):
-    """The color of values beyond a limit: a band of its own, so that its coming and going changes levels."""
+    """The color of values beyond a limit. It is a band of its own: with it, or without it, levels change."""
 
     def cost(self, one: Any, other: Any, own: Tier) -> Tier | None:
         return Tier.LEVELS if one is None or other is None else super().cost(one, other, own)
@@ -95,6 +92,8 @@ class ScaleKind(Kind):
 
 
 MOST_BANDS: Final = 256
+"""Limit: bands, and levels of a band."""
+
 UP: Final = (0.0, 0.0, 1.0)
 
 
@@ -184,24 +183,18 @@ class Scalar(Row):
     ] = 12.0
 
 
-# -------------------- mesh_scalars
-# Scalars of a mesh: one number for each node or each polygon, such as stress, pressure or temperature.
-#
-# Paper: "Introduction": scalar variables such as stress on the surface of an object. A number that is
-# missing is NaN; no other is without an end.
-
 NODE: Final = "node"
 POLYGON: Final = "polygon"
 
 MOST_SCALARS: Final = 1000
-"""Assumed: the scalars of one mesh."""
+"""Limit: scalars of a mesh."""
 
 LARGEST_SCALAR: Final = LARGEST_COORDINATE
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class MeshScalar(Immutable):
-    """A scalar: `values`, (n,) float64, one for each row of the table that `of` names, "node" or "polygon".
+    """A scalar of a mesh: `values`, (n,) float64, for the rows of the table `of`, "node" or "polygon".
 
     NaN is a missing value; all others are at most 1e30 in size. The values are copied unless they are a
     read-only array of this type. Raises InputError.
@@ -235,7 +228,7 @@ class MeshScalar(Immutable):
 
 
 def _endless(values: Floats) -> str | None:
-    """What is wrong with the first value that is infinite or too large; None if none is."""
+    """The problem of the first value that is infinite or too large, or None."""
     # A comparison with NaN is false, and warns of nothing.
     rows = np.flatnonzero((values > LARGEST_SCALAR) | (values < -LARGEST_SCALAR))
     if not len(rows):
@@ -245,7 +238,7 @@ def _endless(values: Floats) -> str | None:
 
 
 def scalar_problems(scalars: Sequence[MeshScalar], nodes: int, polygons: int) -> Iterator[str]:
-    """What is wrong with the scalars of a mesh of so many nodes and polygons."""
+    """The problems of the scalars of a mesh with these numbers of nodes and polygons."""
     names: set[str] = set()
     counts = {NODE: nodes, POLYGON: polygons}
     for scalar in scalars:
@@ -264,8 +257,8 @@ def joined_scalars(
 ) -> tuple[MeshScalar, ...]:
     """The scalars of several meshes that are joined to one; `nodes` and `polygons` are their counts.
 
-    A mesh without a scalar of a name has missing values. A name that is of nodes in one mesh and of polygons
-    in another becomes two: the second is named as in "stress of polygons".
+    A mesh without a scalar of some name has missing values. If a name is of nodes in one mesh and of polygons
+    in another, the second scalar gets another name, as in "stress of polygons".
     """
     kinds = dict.fromkeys((scalar.name, scalar.of) for each in scalars for scalar in each)
     names: dict[str, tuple[str, str]] = {}
@@ -283,9 +276,6 @@ def joined_scalars(
     return tuple(joined)
 
 
-# -------------------- computed_names
-# The names of the scalars that are computed of any mesh; `autocolor.scalars` computes them.
-
 COMPUTED: Final = (
     "x",
     "y",
@@ -299,11 +289,15 @@ COMPUTED: Final = (
     "smallest curvature",
     "zebra",
 )
-"""Assumed: a scalar of the mesh hides a computed one of its name, since the file's own numbers are meant."""
+"""The names of the scalars that `autocolor.scalars` computes for any mesh.
+
+Assumed: a scalar of the mesh hides a computed scalar of the same name, since the user means the numbers of
+the file.
+"""
 
 
 def name_problems(name: str, scalars: Iterable[MeshScalar]) -> Iterator[Problem]:
-    """What is wrong with the name of the scalar to show, given the scalars of the mesh."""
+    """The problem of the name of the scalar to show, given the scalars of the mesh."""
     known = [*(scalar.name for scalar in scalars), *COMPUTED]
     if name not in known:
         rule = "must be a scalar of the mesh or a computed one"

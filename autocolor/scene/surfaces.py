@@ -21,7 +21,7 @@ MOST_SURFACES: Final = 255
 """Surface numbers have 8 bits, and 0 means that nothing is visible."""
 
 MOST_LEVELS: Final = 1_000_000
-"""Assumed: more than any lookup table has."""
+"""Limit: levels of a surface, more than any lookup table has."""
 
 PHONG: Final = Phong()
 """The default reflection model."""
@@ -71,7 +71,7 @@ class Reflectance(Row):
         *,
         exponent: float | None = None,
     ) -> None:
-        """Set D, S and the model, given by a value or a name; a number, or `exponent`, is N of Phong's model.
+        """Set D, S and the model, a row or a name; a number, or `exponent`, is N of Phong's model.
 
         Raises InputError.
         """
