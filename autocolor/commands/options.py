@@ -1,4 +1,4 @@
-"""Options that several commands share: `--set`, `--normals`, `--size` and `-v`; and mistakes in them.
+"""Options that several commands share: `--normals`, `--size` and `-v`; and mistakes in options.
 
 An invalid value of an option is wrong usage, not invalid input.
 """
@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.completion import complete_settings
 from autocolor.errors import InputError, UsageError
 
 if TYPE_CHECKING:
@@ -32,15 +31,6 @@ def as_usage(place: str = "") -> Iterator[None]:
     except InputError as error:
         raise UsageError("\n".join(f"{place}{problem}" for problem in error.problems)) from None
 
-
-set_option = click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    metavar="KEY=VALUE",
-    shell_complete=complete_settings,
-    help="Set a field of the scene, as in scene.toml; none unsets it; repeatable.",
-)
 
 normals_option = click.option(
     "--normals",

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from autocolor.commands.completion import complete_colors, complete_pictures, complete_surfaces
-from autocolor.commands.options import as_usage, set_option, verbose_option
+from autocolor.commands.options import as_usage, verbose_option
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
+from autocolor.commands.scenes import set_option
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -82,7 +83,8 @@ def recolor(
 ) -> None:
     """Change the colors of SURFACE in PICTURE, a picture file, without rendering it again.
 
-    --set takes what renders nothing: paints, the mapping, the color scale, limits and bands of a scalar.
+    --set takes fields that need no rendering: paints, the mapping, and the color scale, limits and bands of a
+    scalar.
     """
     changes: dict[str, Any] = {
         "object_color": object_color,

@@ -11,9 +11,17 @@ from typing import Final
 import click
 
 from autocolor.commands.completion import complete_lights
-from autocolor.commands.options import normals_option, set_option, size_option, with_normals
+from autocolor.commands.options import normals_option, size_option, with_normals
 from autocolor.commands.outputs import refuse_outputs, tell_written, write_png
-from autocolor.commands.scenes import SceneSource, created_again, ended, read, reframed, scene_options
+from autocolor.commands.scenes import (
+    SceneSource,
+    created_again,
+    ended,
+    read,
+    reframed,
+    scene_options,
+    set_option,
+)
 
 EXAMPLES: Final = """\b
 Examples:
@@ -47,7 +55,7 @@ Examples:
     multiple=True,
     metavar="NAME",
     shell_complete=complete_lights,
-    help="Use only this light; repeat it for more than one.",
+    help="Use only this light; repeatable.",
 )
 @set_option
 @normals_option
@@ -55,7 +63,7 @@ Examples:
 @click.option(
     "--hold-exposure",
     is_flag=True,
-    help="Keep the exposure that the scene has without --light and --set, so that less light is darker.",
+    help="Keep the exposure of the scene without --light and --set, so that less light is darker.",
 )
 @click.option("--force", is_flag=True, help="Overwrite existing files.")
 @click.pass_context

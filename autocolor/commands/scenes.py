@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import click
 
-from autocolor.commands.completion import complete_scenes
+from autocolor.commands.completion import complete_scenes, complete_settings
 from autocolor.commands.options import verbose_option
 
 if TYPE_CHECKING:
@@ -80,6 +80,16 @@ def scene_options(command: Callable[..., Any], required: bool = True) -> Callabl
     ):
         decorated = decorate(decorated)
     return decorated
+
+
+set_option = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    shell_complete=complete_settings,
+    help="Set a field of the scene, as in scene.toml; none unsets it; repeatable.",
+)
 
 
 def read(source: SceneSource) -> SceneReport:

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from autocolor.commands.demo import PLACES
-from autocolor.commands.options import set_option
-from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options
+from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options, set_option
 from autocolor.errors import UnavailableError, UsageError
 
 if TYPE_CHECKING:

@@ -30,7 +30,7 @@ Examples:
 @click.option("--fit", is_flag=True, help="Scale the picture to fill the window; pixels may become uneven.")
 @verbose_option
 def tutorial(address: str | None, full_screen: bool, fit: bool) -> None:
-    """Light and paint a car step by step: a panel says what to do, and sees when it is done.
+    """Light and paint a car step by step: a panel says what to do, and notices when you have done it.
 
     Files are saved in the current folder.
     """

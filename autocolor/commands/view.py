@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from autocolor.commands.options import normals_option, set_option, with_normals
-from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options
+from autocolor.commands.options import normals_option, with_normals
+from autocolor.commands.scenes import SceneSource, created_again, ended, read, scene_options, set_option
 from autocolor.errors import UsageError
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def view(
     full_screen: bool,
     fit: bool,
 ) -> None:
-    """Show SCENE in an interactive window; press F1 there for a list of keys."""
+    """Show SCENE in an interactive window; F1 there lists the keys."""
     asked = [source is not None, recover is not None, sessions, forget is not None]
     if sum(asked) != 1:
         raise UsageError(

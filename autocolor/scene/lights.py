@@ -63,7 +63,7 @@ class Flap(Row):
         Column(
             Number(at_least=0),
             Tier.LIGHT,
-            "How far inside its ends the light is whole; 0 for sharp edges.",
+            "The distance inside the ends to full light; 0 for sharp edges.",
             WORLD_UNITS,
         ),
     ] = 0.0
@@ -130,14 +130,14 @@ class HalfSpace(Row):
         Column(
             Number(at_least=0),
             Tier.LIGHT,
-            "How far inside the plane the light is whole; 0 for a sharp edge.",
+            "The distance inside the plane to full light; 0 for a sharp edge.",
             WORLD_UNITS,
         ),
     ] = 0.0
     carried: Annotated[
-        bool, Column(Boolean(), Tier.LIGHT, "Whether it moves and turns with the light, as barn doors do.")
+        bool, Column(Boolean(), Tier.LIGHT, "Whether it moves and turns with the light, like a barn door.")
     ] = False
-    on: Annotated[bool, Column(Boolean(), Tier.LIGHT, "Whether it restricts the light.")] = True
+    on: Annotated[bool, Column(Boolean(), Tier.LIGHT, "Whether the half-space restricts the light.")] = True
 
     @classmethod
     def through(
@@ -207,7 +207,7 @@ class Links(Row):
 
     only_surfaces: Annotated[
         Names | None,
-        Column(References("surfaces"), Tier.MIX, "The surfaces that it shines on; if absent, on all."),
+        Column(References("surfaces"), Tier.MIX, "The surfaces that it shines on; if absent, all surfaces."),
     ] = None
     except_surfaces: Annotated[
         Names | None,
@@ -215,7 +215,7 @@ class Links(Row):
     ] = None
     only_parts: Annotated[
         Names | None,
-        Column(References("parts"), Tier.LIGHT, "The parts that it shines on; if absent, on all."),
+        Column(References("parts"), Tier.LIGHT, "The parts that it shines on; if absent, all parts."),
     ] = None
     except_parts: Annotated[
         Names | None,
@@ -377,7 +377,7 @@ class Light(Row):
         Column(
             Number(at_least=0, at_most=180),
             Tier.LIGHT,
-            "The angle up to which all of the light is left; if absent, the cone is sharp.",
+            "The angle of full light inside the cone; if absent, the cone is sharp.",
             "degrees",
             bar=BarRange(0, 90, 1),
             start=0.0,
@@ -392,14 +392,16 @@ class Light(Row):
     ] = ()
     falloff: Annotated[
         str,
-        Column(OneOf(FALLOFFS), Tier.LIGHT, "How it falls with the distance, to nothing at its reach."),
+        Column(
+            OneOf(FALLOFFS), Tier.LIGHT, "How the light decreases with the distance, to nothing at its reach."
+        ),
     ] = "none"
     reach: Annotated[
         float | None,
         Column(
             Number(at_least=0, above=True),
             Tier.LIGHT,
-            "The distance at which nothing is left of a light that falls with the distance.",
+            "The distance at which a light with falloff ends.",
             WORLD_UNITS,
         ),
     ] = None
@@ -414,7 +416,7 @@ class Light(Row):
         Column(
             Reference("lights", EYE),
             Tier.LIGHT,
-            "What it is fixed to: 'eye', or the name of another light, for the point at which that is aimed.",
+            "The frame that it moves with: 'eye', or another light's name for the aim of that light.",
         ),
     ] = None
     links: Annotated[

@@ -66,7 +66,7 @@ class SpecularGrowth(Row):
         Column(
             Number(LEAST_REFLECTANCE, 1),
             Tier.LIGHT,
-            "F0: what is reflected at normal incidence; the less, the more S grows.",
+            "F0: the share reflected at normal incidence; the smaller, the more S grows.",
             bar=BarRange(0.01, 1, 0.01),
             start=0.04,
         ),
@@ -76,7 +76,7 @@ class SpecularGrowth(Row):
         Column(
             Number(LEAST_INDEX, 10),
             Tier.LIGHT,
-            "The refractive index, which tells F0: S grows with the angle of incidence.",
+            "The refractive index, which determines F0: S grows with the angle of incidence.",
             bar=BarRange(1.1, 4, 0.01),
             start=1.5,
         ),
@@ -86,7 +86,7 @@ class SpecularGrowth(Row):
         Column(
             AngleCurveKind(LEAST_REFLECTANCE, START_CURVE),
             Tier.LIGHT,
-            "Points [angle in degrees, share reflected]; S grows as the share does.",
+            "Points [angle in degrees, reflected share]; S grows with the share.",
         ),
     ] = None
 
@@ -205,7 +205,12 @@ class _PowerOfCosine(ReflectionModel):
 
     exponent: Annotated[
         float,
-        Column(Number(at_least=0), Tier.LIGHT, "N: how narrow the highlight is.", bar=BarRange(1, 200, 1)),
+        Column(
+            Number(at_least=0),
+            Tier.LIGHT,
+            "N: the exponent, which makes the highlight narrower.",
+            bar=BarRange(1, 200, 1),
+        ),
     ] = 20.0
 
     growth: Annotated[
@@ -261,7 +266,7 @@ class CookTorrance(ReflectionModel):
         Column(
             Number(0.01, 1),
             Tier.LIGHT,
-            "How rough it is: m, the slope of the microfacets.",
+            "The roughness: m, the slope of the microfacets.",
             bar=BarRange(0.01, 1, 0.01),
         ),
     ] = 0.3
@@ -270,7 +275,7 @@ class CookTorrance(ReflectionModel):
         Column(
             Number(0.001, 1),
             Tier.LIGHT,
-            "F0: what is reflected at normal incidence.",
+            "F0: the share reflected at normal incidence.",
             bar=BarRange(0.01, 1, 0.01),
         ),
     ] = 0.05

@@ -105,14 +105,14 @@ class Scalar(Row):
 
     name: Annotated[
         str,
-        Column(Text(), Tier.MIX, "A scalar of the mesh, or a computed one such as 'mean curvature'."),
+        Column(Text(), Tier.MIX, "A scalar of the mesh, or a computed scalar such as 'mean curvature'."),
     ]
     limits: Annotated[
         tuple[float, float] | None,
         Column(
             LimitsKind(),
             Tier.LEVELS,
-            "Where the first band begins and the last ends; if absent, its range.",
+            "The start of the first band and the end of the last; if absent, the scalar's range.",
         ),
     ] = None
     scale: Annotated[
@@ -137,7 +137,7 @@ class Scalar(Row):
         Column(
             EndColor(),
             Tier.ENTRIES,
-            "The color below the limits; if absent, that of the first band.",
+            "The color below the limits; if absent, the color of the first band.",
         ),
     ] = None
     above: Annotated[
@@ -145,23 +145,21 @@ class Scalar(Row):
         Column(
             EndColor(),
             Tier.ENTRIES,
-            "The color above the limits; if absent, that of the last band.",
+            "The color above the limits; if absent, the color of the last band.",
         ),
     ] = None
-    missing: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where there is no value.")] = (
+    missing: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color of missing values.")] = (
         128,
         128,
         128,
     )
-    legend: Annotated[
-        bool, Column(Boolean(), Tier.NOTHING, "Whether the legend is drawn on the display.")
-    ] = True
+    legend: Annotated[bool, Column(Boolean(), Tier.NOTHING, "Whether the display shows the legend.")] = True
     surfaces: Annotated[
         tuple[str, ...] | None,
         Column(
             References("surfaces"),
             Tier.LEVELS,
-            "The surfaces that it colors; if absent, all but those of stage parts alone.",
+            "The surfaces that it colors; if absent, all surfaces that are not only of stage parts.",
         ),
     ] = None
     direction: Annotated[
@@ -169,7 +167,7 @@ class Scalar(Row):
         Column(
             VectorKind(has_length=True),
             Tier.MIX,
-            "The axis of a distance, the pull of a draft angle, the up of a slope, or the run of stripes.",
+            "The direction of a distance, of a draft angle's pull, of up for a slope, or of stripes.",
         ),
     ] = UP
     stripes: Annotated[
@@ -177,7 +175,7 @@ class Scalar(Row):
         Column(
             Number(at_least=1, at_most=1000),
             Tier.MIX,
-            "Zebra stripes in a half turn.",
+            "The number of zebra stripes in half a turn.",
             bar=BarRange(1, 60, 1),
         ),
     ] = 12.0

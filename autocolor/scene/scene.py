@@ -114,7 +114,7 @@ class Scene(Row):
         Column(
             OneOf(SCALINGS),
             Tier.LEVELS,
-            "Whether each surface has its own intensity range, or all share one.",
+            "Whether each surface has its own intensity range, or all surfaces share a range.",
         ),
     ] = "surface"
     mapping: Annotated[
@@ -134,7 +134,7 @@ class Scene(Row):
         Column(
             RangesByName("surfaces", AUTO, OBJECT),
             Tier.LEVELS,
-            "Whether ranges are the picture's, or held: by surface, or of the object for all others.",
+            "Whether intensity ranges are automatic, or fixed: by surface, or of the object for all others.",
             "intensity",
         ),
     ] = AUTO
@@ -159,7 +159,7 @@ class Scene(Row):
         Column(
             OneOf((LEVELS, NORMALS)),
             Tier.LEVELS,
-            "Whether words stand for levels, or for normals, so that lights change entries alone.",
+            "Whether words stand for levels, or for normals: lights then change entries only.",
         ),
     ] = LEVELS
     background: Annotated[Color, Column(ColorKind(), Tier.ENTRIES, "The color where nothing is visible.")] = (
@@ -173,7 +173,7 @@ class Scene(Row):
     ] = None
     name: Annotated[
         str,
-        Column(Text(may_be_empty=True), Tier.NOTHING, "The name of the scene, that of its folder or file."),
+        Column(Text(may_be_empty=True), Tier.NOTHING, "The name of the scene, from its folder or file."),
     ] = "scene"
 
     def rules(self) -> Iterator[Problem]:

@@ -37,7 +37,7 @@ class Part(Row):
     surface: Annotated[str, Column(Reference("surfaces"), Tier.FRAME, "The name of the part's surface.")]
     stage: Annotated[
         bool,
-        Column(Boolean(), Tier.MIX, "Whether the part is not of the object, so that views leave it out."),
+        Column(Boolean(), Tier.MIX, "Whether the part is scenery: views are framed without it."),
     ] = False
 
     def replace(self, /, **changes: Unpack[PartChanges]) -> Part:
@@ -153,16 +153,14 @@ class Surface(Row):
     ] = field(default_factory=Paint)
     two_sided: Annotated[
         bool,
-        Column(
-            Boolean(), Tier.FRAME, "Whether the normals of polygons seen from behind are turned to the eye."
-        ),
+        Column(Boolean(), Tier.FRAME, "Whether normals of polygons seen from behind turn to the eye."),
     ] = True
     levels: Annotated[
         int | None,
         Column(
             Whole(at_least=2, at_most=MOST_LEVELS),
             Tier.LEVELS,
-            "The number of lookup table entries; if absent, a share of the rest.",
+            "The number of lookup table entries; if absent, a share of the remaining entries.",
             bar=BarRange(2, 256, 1),
             start=64,
         ),

@@ -42,7 +42,9 @@ class MeshEntry(Row):
     nodes: Annotated[str | None, Column(Text(), Tier.FRAME, "A node table, with a polygon table.")] = None
     polygons: Annotated[str | None, Column(Text(), Tier.FRAME, "The polygon table.")] = None
     up: Annotated[str, Column(OneOf(UPS), Tier.FRAME, "The file's up axis; the world's is z.")] = "z"
-    scale: Annotated[float, Column(SCALES, Tier.FRAME, "A factor for its coordinates.", bar=SCALE_BAR)] = 1.0
+    scale: Annotated[
+        float, Column(SCALES, Tier.FRAME, "A factor for the coordinates of the file.", bar=SCALE_BAR)
+    ] = 1.0
     crease_angle: Annotated[
         float | None,
         Column(
