@@ -190,12 +190,8 @@ def test_an_error_leaves_the_journal(state: Path) -> None:
     assert signal.getsignal(signal.SIGTERM) is before
 
 
-# -------------------- test_left_sessions
-# Sessions that did not end orderly: listed, chosen, forgotten, and gone on with in a window.
-
-
 @pytest.fixture
-def left_2(folder: Path, state: Path) -> Path:
+def sessions(folder: Path, state: Path) -> Path:
     """The folder of three sessions: an older one, a newer one of two steps, and one that cannot be read."""
     for number, name in enumerate(("2026-01-01-a", "2026-01-02-b", "2026-01-02-c")):
         path = state / "sessions" / name / JOURNAL
@@ -209,14 +205,14 @@ def left_2(folder: Path, state: Path) -> Path:
     return state / "sessions"
 
 
-def test_the_newest_that_can_be_read_is_chosen(left_2: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_newest_that_can_be_read_is_chosen(sessions: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder, session = chosen_session(NEWEST)
-    assert folder == left_2 / "2026-01-02-b"
+    assert folder == sessions / "2026-01-02-b"
     assert session.history.scene.ambient == 1.3
     assert "a journal must begin as autocolor writes it" in capsys.readouterr().err
 
 
-def test_a_session_is_named_by_the_beginning_of_its_name(left_2: Path) -> None:
+def test_a_session_is_named_by_the_beginning_of_its_name(sessions: Path) -> None:
     assert chosen_session("2026-01-01")[1].history.scene.ambient == 0.3
     for name, found in (("2026-01", "several of these"), ("x", "none of these"), ("", "none of these")):
         with pytest.raises(UsageError) as refusal:
@@ -227,7 +223,7 @@ def test_a_session_is_named_by_the_beginning_of_its_name(left_2: Path) -> None:
         )
 
 
-def test_sessions_are_listed_with_their_scene_and_steps(left_2: Path, folder: Path, run: Run) -> None:
+def test_sessions_are_listed_with_their_scene_and_steps(sessions: Path, folder: Path, run: Run) -> None:
     ran = run("view", "--sessions")
     lines = ran.out.splitlines()
     assert (ran.code, ran.err, len(lines)) == (0, "", 3)
@@ -237,9 +233,9 @@ def test_sessions_are_listed_with_their_scene_and_steps(left_2: Path, folder: Pa
     assert lines[2].endswith(f"  {folder / 'scene'}, 1 step")
 
 
-def test_a_session_is_forgotten_and_no_other(left_2: Path, run: Run) -> None:
+def test_a_session_is_forgotten_and_no_other(sessions: Path, run: Run) -> None:
     assert run("view", "--forget", "2026-01-02-c") == (0, "", "autocolor: 2026-01-02-c is removed\n")
-    assert sorted(path.name for path in left_2.iterdir()) == ["2026-01-01-a", "2026-01-02-b"]
+    assert sorted(path.name for path in sessions.iterdir()) == ["2026-01-01-a", "2026-01-02-b"]
     with pytest.raises(UsageError):
         forget_session("2026-01-02-c")
 
@@ -250,13 +246,13 @@ def test_without_any_a_scene_is_asked_for() -> None:
 
 
 def test_a_session_is_gone_on_with_in_full_screen_and_removed_when_it_ends(
-    left_2: Path, run: Run, monitors: list[Any]
+    sessions: Path, run: Run, monitors: list[Any]
 ) -> None:
     assert run("view", "--recover", "2026-01-01", "--full-screen", "--fit").code == 0
     assert (monitors[1].full_screen, monitors[1].fit) == (True, True)
     assert monitors[1].caption.startswith("autocolor - scene* - ")
-    assert not (left_2 / "2026-01-01-a").exists()
-    assert (left_2 / "2026-01-02-b").exists()
+    assert not (sessions / "2026-01-01-a").exists()
+    assert (sessions / "2026-01-02-b").exists()
 
 
 @pytest.mark.parametrize(
@@ -264,7 +260,7 @@ def test_a_session_is_gone_on_with_in_full_screen_and_removed_when_it_ends(
     [(), ("scene", "--recover"), ("--recover", "--sessions"), ("--sessions", "--forget", "2026")],
 )
 def test_a_scene_or_one_thing_with_sessions_is_asked_for(
-    left_2: Path, run: Run, arguments: tuple[str, ...]
+    sessions: Path, run: Run, arguments: tuple[str, ...]
 ) -> None:
     ran = run("view", *arguments)
     count = sum(not each.startswith("2026") for each in arguments)
@@ -275,6 +271,6 @@ def test_a_scene_or_one_thing_with_sessions_is_asked_for(
     )
 
 
-def test_what_is_set_is_set_in_a_scene(left_2: Path, run: Run) -> None:
+def test_what_is_set_is_set_in_a_scene(sessions: Path, run: Run) -> None:
     ran = run("view", "--set", "ambient=1", "--sessions")
     assert (ran.code, ran.err) == (2, "autocolor: --set is for SCENE, not for sessions; leave it out\n")
