@@ -1,7 +1,7 @@
 """The scene: mesh, parts, surfaces, lights and view, and how intensities are shown.
 
-Scenes are immutable. An edit makes a new scene that shares every unchanged table with the old one, so that
-comparing the tables of two scenes tells what must be recomputed.
+Scenes are immutable. An edit makes a new scene that shares every unchanged table with the old scene, so that
+a comparison of two scenes gives the cost of the edit (see `Tier`).
 """
 
 from __future__ import annotations
@@ -70,21 +70,22 @@ DIVISIONS: Final = ("covered", "equal")
 DITHERS: Final = ("off", "ordered")
 LEVELS: Final = "levels"
 NORMALS: Final = "normals"
-"""What words stand for."""
+"""The meanings of words."""
 
 AUTO: Final = "auto"
 OBJECT: Final = "object"
-"""In `exposure`, the name of the range of the whole object; a surface of this name cannot be held."""
+"""In `exposure`, the name of the range of the whole object; a surface of this name has no fixed range."""
 
 Exposure = str | tuple[tuple[str, tuple[float, float]], ...]
-"""AUTO, or held ranges: pairs of a name, OBJECT or that of a surface, and its minimum and maximum."""
+"""AUTO, or fixed ranges: pairs of a name, OBJECT or a surface's, and its minimum and maximum."""
 
 MOST_PROBLEMS: Final = 100
+"""Limit: problems of references, and of lights that follow each other, in a message."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene(Row):
-    """All that is needed to render and color a picture; `scene_of` makes one of a mesh.
+    """Everything needed to render and color a picture. `scene_of` makes a scene of a mesh.
 
     There is one part for each part name of the mesh, in the same order, and every part's surface is in the
     surface table. Paper: "The Lighting Model" (ambient; mapping by surface or by object; nonlinear mappings).
@@ -179,7 +180,7 @@ class Scene(Row):
     def rules(self) -> Iterator[Problem]:
         """The parts are those of the mesh, all references are valid, and there are at most MOST_SURFACES.
 
-        Words do not stand for normals where a scalar colors surfaces: a band is told by the place of a point.
+        Words do not stand for normals if a scalar colors surfaces: a band depends on the place of a point.
         """
         if self.mesh is not REFUSED and self.parts is not REFUSED:
             names = [part.name for part in self.parts]
@@ -230,18 +231,18 @@ class Scene(Row):
 
     @property
     def lights_in_world(self) -> tuple[Light, ...]:
-        """The lights where they are, in object coordinates, also those that follow something."""
+        """The lights in object coordinates, whatever they follow."""
         return lights_in_world(self.lights, self.view)
 
     def light_in_world(self, name: str) -> Light:
-        """The light of that name where it is, in object coordinates. Raises UsageError if there is none."""
+        """The light of that name in object coordinates. Raises UsageError if there is none."""
         return self.lights_in_world[_place("light", self.lights, name)]
 
     def with_light_in_world(self, name: str, /, **changes: Unpack[LightChanges]) -> Scene:
         """The scene with some fields of one light changed; places and directions are in object coordinates.
 
-        They are turned to those of what the light follows, if anything; one that is to follow something else
-        stays where it is if nothing else is told. Raises UsageError or InputError.
+        They are converted to the frame that the light follows. A change of `follows` alone leaves the light
+        where it is in the object. Raises UsageError or InputError.
         """
         if "follows" in changes:
             followed = self.with_light_following(name, changes.pop("follows"))
@@ -251,7 +252,7 @@ class Scene(Row):
     def with_light_following(self, name: str, follows: str | None) -> Scene:
         """The scene with a light that follows "eye", another light or nothing, and stays where it is now.
 
-        Raises UsageError if there is no light of that name, InputError if it cannot follow that.
+        Raises UsageError if no light has that name, InputError if the light cannot follow `follows`.
         """
         world = self.light_in_world(name)
         places = {each: vars(world)[each] for each in ("position", "aim", "direction")}
@@ -279,7 +280,7 @@ class Scene(Row):
         return self._with_row("surfaces", _place("surface", self.surfaces, name), changes)
 
     def with_paint(self, name: str, /, **changes: Unpack[PaintChanges]) -> Scene:
-        """The scene with some colors of one surface changed; the same scene if they are those it has."""
+        """The scene with some colors of one surface changed; the same scene if no color differs."""
         place = _place("surface", self.surfaces, name)
         surface = self.surfaces[place]
         try:
@@ -300,11 +301,11 @@ class Scene(Row):
         return with_values(self, {"view": self.view.replace(**changes)})
 
     def with_scalar(self, /, **changes: Unpack[ScalarChanges]) -> Scene:
-        """The scene with some fields of its scalar changed; without one, it must be given a name."""
+        """The scene with some fields of its scalar changed. A new scalar must have a name."""
         return replaced(self, {"scalar": changes})
 
     def without_scalar(self) -> Scene:
-        """The scene with its own colors."""
+        """The scene in the colors of its surfaces."""
         return with_values(self, {"scalar": None})
 
     def with_new_light(self, name: str, /, **fields: Unpack[LightChanges]) -> Scene:
@@ -344,10 +345,10 @@ class Scene(Row):
         """The scene with a mirrored copy of one light after the others; the light itself stays.
 
         It is mirrored in the plane where the coordinate of the axis, "x", "y" or "z", is `about`, by default
-        in the middle of the object: position, aim or direction, half-spaces, and the flap of that axis. One
-        that follows something is mirrored where it is now, and its copy follows, too. Its name is like "key
-        mirrored" unless one is given. Raises UsageError for an unknown light or axis, InputError if the new
-        name is taken.
+        in the middle of the object: position, aim or direction, half-spaces, and the flap of that axis. A
+        light that follows something is mirrored where it is now, and its copy follows it, too. The name of
+        the copy is like "key mirrored" unless `new_name` is given. Raises UsageError for an unknown light or
+        axis, InputError if the new name is taken.
         """
         light, number = self.light_in_world(name), axis_number(axis)
         if about is None:
@@ -360,7 +361,7 @@ class Scene(Row):
         return replaced(self, {"lights": (*self.lights, copy)})
 
     def with_all_lights_on(self) -> Scene:
-        """The scene with all lights switched on, as they are again after `only_lights`."""
+        """The scene with all lights switched on, as before `only_lights`."""
         return self.replace(lights=tuple(light.replace(on=True) for light in self.lights))
 
     def with_rig(self, rig: Rig) -> Scene:
@@ -378,7 +379,7 @@ class Scene(Row):
 
     @property
     def rig(self) -> Rig:
-        """The lights, with the size of the object that they were placed for."""
+        """The lights, with the size of their object."""
         return Rig(*self.object_bounds, self.lights)
 
     def _free_light_name(self, name: str) -> str:
@@ -393,8 +394,8 @@ class Scene(Row):
         rows = vars(self)[table]
         row = rows[place]
         rows = (*rows[:place], replaced(row, changes), *rows[place + 1 :])
-        # Tables refer to each other by name only: if no name changes, the references stay valid, but that a
-        # light must keep the aim that another one follows. What is cached of a scene depends on its parts.
+        # Tables refer to each other by name only: if no name changes, references stay valid, except that a
+        # light must keep the aim that another light follows. Cached properties depend on the parts.
         is_followed = table == "lights" and any(light.follows is not None for light in self.lights)
         is_referring = any(
             key in changes or reference.path[0] in changes
