@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from autocolor.files.store.tables import open_tables as open_tables
     from autocolor.images import image as image
     from autocolor.images import save_image as save_image
-    from autocolor.journal.reading import read_journal as read_journal
+    from autocolor.images import send_picture as send_picture
+    from autocolor.journal.journal import read_journal as read_journal
     from autocolor.lighting.picture import Picture as Picture
     from autocolor.mapping.ranges import LevelRange as LevelRange
     from autocolor.rendering import render as render
@@ -54,7 +55,6 @@ if TYPE_CHECKING:
     from autocolor.scene.surfaces import Reflectance as Reflectance
     from autocolor.scene.surfaces import Surface as Surface
     from autocolor.scene.view import View as View
-    from autocolor.sending import send_picture as send_picture
     from autocolor.studio import Studio as Studio
 
     __version__: str
@@ -90,14 +90,14 @@ _HOME: Final = {
     "demo": "commands.demo",
     "image": "images",
     "open_tables": "files.store.tables",
-    "read_journal": "journal.reading",
+    "read_journal": "journal.journal",
     "read_picture": "files.picture_file",
     "read_rig": "files.rig_file",
     "read_scene": "files.scene_sources",
     "render": "rendering",
     "save_image": "images",
     "scene_of": "scene.creation",
-    "send_picture": "sending",
+    "send_picture": "images",
     "write_picture": "files.picture_file",
     "write_rig": "files.rig_file",
     "write_scene": "files.scene_writing",

@@ -1,7 +1,7 @@
 """Array types, each with one meaning, and the array operations that several wings use.
 
-A run is an arithmetic series of whole numbers: the lines of an edge, or the pixels of a segment.
-Vectors stand in three rows, one for each axis, so that numpy works on long rows.
+A run is an arithmetic series of whole numbers: the lines of an edge, or the pixels of a segment. Arrays of
+vectors are (3, n), with one row for each axis, so that numpy works on long rows.
 """
 
 from __future__ import annotations
@@ -14,28 +14,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 Singles = NDArray[np.float32]
-"""Intensities, cosines, and everything else that is held for each pixel."""
+"""Intensities, cosines, and everything else that is stored for each pixel."""
 
 Floats = NDArray[np.float64]
-"""Coordinates, and what is computed from them before it is held for pixels."""
+"""Coordinates, and the numbers that are computed from them before pixels store them."""
 
 Indices = NDArray[np.intp]
-"""Row numbers of tables, counts of rows, and places in a raster: what numpy indexes with."""
+"""Row numbers of tables, counts of rows, and places in a raster: numpy indexes with these."""
 
 Numbers = NDArray[np.int64]
 """Whole numbers to calculate with: depth keys, runs."""
 
 Booleans = NDArray[np.bool_]
-"""Whether something holds, for each of many."""
+"""Whether something is true of each row, pixel or polygon."""
 
 Bytes = NDArray[np.uint8]
 """Surface numbers, components of colors, bytes of files."""
 
 RasterPlaces = NDArray[np.int16]
-"""Lines and elements of a raster, which has at most 16,384 of each, for each of many nodes."""
+"""Lines and elements of a raster, which has at most 16,384 of both."""
 
 PartNumbers = NDArray[np.int32]
-"""Numbers of parts, of which a mesh may have any count, at each of many points."""
+"""Numbers of parts, of which a mesh may have any count."""
 
 LowBits = NDArray[np.uint32]
 """The low bits of hashes."""
@@ -47,7 +47,7 @@ AnyArray = NDArray[Any]
 """An array whose element type is not known, or is checked elsewhere."""
 
 Scratch = Callable[[tuple[int, ...], type[Any]], AnyArray]
-"""What gives an array of a shape and a type to work in, such as `np.empty`, or one that a file backs."""
+"""Makes an array of a shape and a type to work in: `np.empty`, or a function whose arrays files back."""
 
 Real = TypeVar("Real", np.float32, np.float64)
 
@@ -56,8 +56,13 @@ RealArray = NDArray[Real]
 
 LARGEST_SINGLE: Final = float(np.finfo(np.float32).max)
 
+HALF: Final = 0.5
+"""Added before taking the floor: rounding half up is the only rounding rule of the package."""
+
 MOST_MULTIPLIED: Final = 64
 """The largest exponent for which repeated squaring is exact to 1e-5."""
+
+NUMBERS_AT_ONCE: Final = 1 << 16
 
 
 def runs(first: Numbers, count: Numbers, step: Numbers | None = None) -> Numbers:
@@ -84,7 +89,7 @@ def runs(first: Numbers, count: Numbers, step: Numbers | None = None) -> Numbers
 
 
 def chunks(end: int, most: int, start: int = 0) -> Iterator[slice]:
-    """The numbers from `start` to `end`, which is not included, in slices of at most `most`.
+    """The numbers from `start` to before `end`, in slices of at most `most`.
 
     >>> list(chunks(5, 3))
     [slice(0, 3, None), slice(3, 5, None)]
@@ -159,6 +164,33 @@ def bounds_of(points: Floats) -> tuple[Floats, Floats]:
     return rows.min(axis=1), rows.max(axis=1)
 
 
+def used_rows(numbers: Indices, count: int) -> Booleans:
+    """Which of `count` rows appear in the numbers, (k, n). No table is copied whole.
+
+    >>> used_rows(np.array([[0, 3], [1, 3]]), 5).tolist()
+    [True, True, False, True, False]
+    """
+    used = np.zeros(count, np.bool_)
+    for chunk in chunks(numbers.shape[1], NUMBERS_AT_ONCE):
+        used[numbers[:, chunk]] = True
+    return used
+
+
+def used_bounds(rows: Floats, numbers: Indices) -> tuple[Floats, Floats]:
+    """The least and the largest number of each row of (k, count) in the columns in use; infinite if none is.
+
+    A column is in use if `numbers` has its number.
+
+    >>> low, high = used_bounds(np.array([[5.0, 2.0, 3.0]]), np.array([[0, 2]]))
+    >>> low.tolist(), high.tolist()
+    ([3.0], [5.0])
+    """
+    used = used_rows(numbers, rows.shape[1])
+    low: Floats = rows.min(axis=1, where=used, initial=np.inf)
+    high: Floats = rows.max(axis=1, where=used, initial=-np.inf)
+    return low, high
+
+
 def lengths(vectors: Floats) -> Floats:
     """The length of each vector of (3, ...).
 
@@ -207,13 +239,6 @@ def _multiplied(out: Singles, exponent: int) -> Singles:
             np.multiply(out, out, out=out)
             exponent >>= 1
     return out if powers is None else np.multiply(out, powers, out=out)
-
-
-# -------------------- rounding
-# Rounding half up, the only rounding rule of the package; `color_blending` applies it as it blends.
-
-HALF: Final = 0.5
-"""Added before taking the floor."""
 
 
 def half_up(value: float) -> int:

@@ -1,4 +1,4 @@
-"""Immutable values: a copy of one is itself, its arrays stay read-only, and it is shown in a line."""
+"""Immutable values: copies are the value itself, arrays stay read-only, and a `repr` takes one line."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SomeArray = TypeVar("SomeArray", bound=AnyArray)
 
 
 def read_only(array: SomeArray) -> SomeArray:
-    """The array itself, which can no longer be written to.
+    """The array itself, made read-only.
 
     >>> read_only(np.zeros(2)).flags.writeable
     False
@@ -27,8 +27,8 @@ def read_only(array: SomeArray) -> SomeArray:
 class Immutable:
     """A base class of frozen dataclasses, some of whose fields may be arrays.
 
-    Pickles of arrays do not tell that they are read-only: here they are made so again. In a `repr`, an array
-    is its shape and its type; a dataclass leaves that to this class with `repr=False`.
+    A pickle forgets that an array is read-only: `__setstate__` makes it read-only again. A `repr` shows the
+    shape and the type of an array, if the dataclass has `repr=False`.
     """
 
     def __copy__(self: Self) -> Self:
@@ -38,16 +38,16 @@ class Immutable:
         return self
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
-        # What was cached is kept: it was computed from the fields alone.
+        # Cached properties stay: they were computed from the fields alone.
         vars(self).update(state)
         for value in state.values():
-            for each in value if isinstance(value, tuple) else (value,):
-                if isinstance(each, np.ndarray):
-                    read_only(each)
+            for item in value if isinstance(value, tuple) else (value,):
+                if isinstance(item, np.ndarray):
+                    read_only(item)
 
     def __repr__(self) -> str:
         values = vars(self)
-        fields = [each.name for each in dataclasses.fields(self) if each.repr]  # type: ignore[arg-type]
+        fields = [field.name for field in dataclasses.fields(self) if field.repr]  # type: ignore[arg-type]
         return f"{type(self).__name__}({', '.join(f'{name}={_shown(values[name])}' for name in fields)})"
 
 

@@ -1,4 +1,4 @@
-"""Rendering a scene to a picture, and reusing what the previous scene has in common with the next.
+"""Rendering a scene to a picture, and reusing from the previous picture all that did not change.
 
 | changed | recomputed |
 |---|---|
@@ -40,7 +40,7 @@ from autocolor.visibility.watkins import watkins
 LOG: Final = logger_of(__name__)
 
 LARGEST_RASTER: Final = 16384
-"""Assumed: a picture with this many lines and elements takes tens of gigabytes."""
+"""Limit: a picture with this many lines and elements takes tens of gigabytes."""
 
 LARGE: Final = 1600 * 1200
 """Pixels of the largest picture whose arrays are not larger than 32 MB."""
@@ -49,8 +49,8 @@ M_TRIM_THRESHOLD: Final = -1
 M_MMAP_THRESHOLD: Final = -3
 """Options of glibc's `mallopt`, from malloc.h."""
 
-MOST_KEPT: Final = 1 << 29
-"""Assumed: bytes that a process may keep; a picture of 2560 x 1920 takes a bit more than half of them."""
+MOST_FREED: Final = 1 << 29
+"""Limit: freed bytes that a process may reuse; a picture of 2560 x 1920 takes a bit more than half."""
 
 ALGORITHMS: Final[dict[str, Callable[..., VisiblePoints]]] = {"batch": visible_surfaces, "watkins": watkins}
 
@@ -121,7 +121,7 @@ def rendering(
 
 
 def _with_scalar(picture: Picture, scene: Scene, points: VisiblePoints, before: Rendering | None) -> Picture:
-    """The picture with the values of the scene's scalar, those of the earlier picture if they are the same.
+    """The picture with the values of the scene's scalar, reused from an earlier picture if they are equal.
 
     `before` is None, or has the same visible points.
     """
@@ -145,7 +145,7 @@ def _with_scalar(picture: Picture, scene: Scene, points: VisiblePoints, before: 
 
 
 def _with_normals(picture: Picture, scene: Scene, points: VisiblePoints) -> Picture:
-    """The picture with the normals of its points where words stand for normals, else without."""
+    """The picture with the normals of its points if words stand for normals, else without."""
     normals = points.normals if scene.words == NORMALS else None
     if picture.normals is normals:
         return picture
@@ -153,7 +153,7 @@ def _with_normals(picture: Picture, scene: Scene, points: VisiblePoints) -> Pict
 
 
 def _stage(scene: Scene) -> list[bool]:
-    """Which parts are stage: their coordinates are left out of the range of a scalar."""
+    """Whether each part is stage: the range of a scalar does not include its coordinates."""
     return [part.stage for part in scene.parts]
 
 
@@ -164,7 +164,7 @@ def _has_the_same_values(old: Scalar, new: Scalar) -> bool:
 
 
 def _is_lit_the_same(old: Scene, new: Scene) -> bool:
-    """Whether two scenes with the same visible points differ in no more than their scalars."""
+    """Whether two scenes with the same visible points differ in their scalars at most."""
     return not costs_at_least(with_values(old, {"scalar": new.scalar}), new, Tier.MIX)
 
 
@@ -178,8 +178,8 @@ def sees_the_same(old: Scene, new: Scene) -> bool:
 def _keep_arrays() -> None:
     """Make glibc reuse the memory of arrays of up to 32 MB.
 
-    By default it returns them to the system and maps them again, page by page, for every picture. Once an
-    array of this size was freed, it keeps them. Measured: this saves 4 to 15 ms for each picture.
+    By default glibc returns the memory to the system and maps it again, page by page, for every picture. Once
+    an array of this size was freed, glibc holds the memory. Measured: this saves 4 to 15 ms for each picture.
     """
     _ = np.empty(30 << 20, np.uint8)
 
@@ -189,7 +189,7 @@ def _keep_large_arrays() -> None:
     """Make glibc reuse the memory of larger arrays, too, for pictures of more than `LARGE` pixels.
 
     Without this, 2560 x 1920 takes 5,000 page faults for each picture, up to a fifth of its time. From then
-    on the whole process keeps up to `MOST_KEPT` bytes that it freed, and returns only what exceeds them.
+    on the whole process keeps up to `MOST_FREED` bytes that it freed, and returns only more than these.
     Measured and rejected: no mapping at all (M_MMAP_MAX), which saves as much and would never return any
     array.
     """
@@ -200,24 +200,23 @@ def _keep_large_arrays() -> None:
         process = ctypes.CDLL(None)
         _ = process.gnu_get_libc_version
         for option in (M_MMAP_THRESHOLD, M_TRIM_THRESHOLD):
-            process.mallopt(option, MOST_KEPT)
+            process.mallopt(option, MOST_FREED)
 
 
 # -------------------- pacing
-# Pacing: how coarse a picture is while it moves, so that its fields follow each other fast enough.
-#
-# A coarse picture is computed at a half or a quarter of the lines and elements; each of its pixels is shown
-# as a block of 2 x 2 or 4 x 4 pixels of the display.
+# While a picture moves, it may be coarse, so that its fields follow each other fast enough. A coarse picture
+# is computed at a half or a quarter of the lines and elements; each of its pixels is shown as a block of
+# 2 x 2 or 4 x 4 pixels of the display.
 
 BLOCKS: Final = (1, 2, 4)
 """The lines and elements of a block; 1 is the whole picture."""
 
 PICTURE_SECONDS: Final = 1 / 36
-"""Assumed: the longest time that a picture may take while it moves; of a thirtieth of a second, the rest is
-for the field, which a window of 1280 x 960 shows in 6 to 14 ms without a graphics processor."""
+"""Limit: the longest time that a picture may take while it moves. The rest of a thirtieth of a second is for
+the field, which a window of 1280 x 960 shows in 6 to 14 ms without a graphics processor."""
 
 MARGIN: Final = 0.75
-"""Assumed: a finer picture is tried again when it is expected to take this part of PICTURE_SECONDS, so that
+"""Assumed: a finer picture is tried again if it is expected to take this fraction of PICTURE_SECONDS, so that
 the picture does not change back and forth between two blocks."""
 
 
@@ -240,8 +239,8 @@ def block_for(blocks: Sequence[int], block: int, seconds: float) -> int:
     >>> block_for(BLOCKS, 1, 0.020), block_for(BLOCKS, 1, 0.045), block_for(BLOCKS, 4, 0.013)
     (1, 2, 4)
     """
-    for each in blocks:
-        limit = PICTURE_SECONDS if each >= block else MARGIN * PICTURE_SECONDS
-        if seconds * block <= limit * each:
-            return each
+    for next_block in blocks:
+        limit = PICTURE_SECONDS if next_block >= block else MARGIN * PICTURE_SECONDS
+        if seconds * block <= limit * next_block:
+            return next_block
     return blocks[-1]

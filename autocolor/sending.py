@@ -10,41 +10,20 @@ import numpy as np
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import shown
 from autocolor.errors import UsageError
-from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, check_surfaces, display_image
+from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.legend import GROUND, INK, Legend, legend
 from autocolor.mapping.ranges import WORDS
-from autocolor.scene.scene import Scene
 from ramtek_emu import GMR_9300, Configuration, EntryFormat, HostPort, Ramtek9300, instructions
 
 EntryEncoder = Callable[[int, Bytes], Words]
-"""Makes the instruction that loads entries, (n, 3) uint8, from a first one on."""
-
-
-def send_picture(scene: Scene, picture: Picture, display: HostPort) -> None:
-    """Reset a display and show a picture in the colors of a scene; nothing is rendered.
-
-    A picture that is smaller than the display is shown at its upper left. Raises InputError if the surfaces
-    of the picture are not those of the scene, UsageError if it is larger than the display.
-    """
-    check_surfaces(scene, picture)
-    sizes = configuration_of(display)
-    if hasattr(display, "configuration") and (
-        picture.lines > sizes.shown_lines or picture.elements > sizes.shown_elements
-    ):
-        raise UsageError(
-            f"a picture must be at most {sizes.shown_elements} x {sizes.shown_lines}, as large as the"
-            f" display, not {picture.elements} x {picture.lines}; render it smaller, or take a larger"
-            " configuration"
-        )
-    send_image(display, display_image(scene, picture))
+"""Makes the instruction that loads entries, (n, 3) uint8, from a first entry on."""
 
 
 def configuration_of(display: HostPort) -> Configuration:
-    """The configuration of a display; GMR_9300, the paper's display, if the host port does not have one.
+    """The configuration of a display; GMR_9300, the paper's display, if the host port does not tell it.
 
-    Raises UsageError for what is no host port, and for a display with too few words or entries for the level
-    ranges.
+    Raises UsageError for a value that is no host port, and for a display with too few words or entries for
+    the level ranges.
     """
     if isinstance(display, type) or not callable(getattr(display, "send", None)):
         raise UsageError(
@@ -70,7 +49,7 @@ def encoder_of_entries(display: HostPort) -> EntryEncoder:
 def send_image(display: HostPort, image: DisplayImage, before: DisplayImage | None = None) -> None:
     """Send the entries and words that differ from `before`; without that, a reset and everything.
 
-    A legend is drawn over the words: again if they are sent, and with them if it is another one.
+    The legend is drawn over the words. If the legend changes, the words are sent again, too.
     """
     encode = encoder_of_entries(display)
     if before is None:

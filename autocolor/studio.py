@@ -1,41 +1,44 @@
 """The studio: an editing session that connects one scene to one display.
 
-Like the host computer of the paper, it only sends RAMTEK instructions through a host port, and never accesses
-the display's memories directly. Each edit makes a new scene; comparing it with the previous scene tells what
-must be recomputed and sent.
+Like the host computer of the paper, a studio only sends RAMTEK instructions through a host port, and never
+accesses the display's memories. Each edit makes a new scene. The studio compares it with the previous scene,
+computes what differs, and sends it.
 
-| changed | sent to the display |
+| the edit changes | the studio sends |
 |---|---|
 | mesh, view, parts, lights, ambient, D, S, reflection model, two_sided | all words |
 | mapping, scaling, exposure, dither, numbers of levels | all words, the entries that differ |
 | the name of the scalar, what it is computed with | all words |
-| limits, bands and shades of the scalar, the surfaces that it colors | all words, the entries that differ |
+| limits, bands and shades of the scalar, the surfaces with its colors | all words, the entries that differ |
 | object color, light color, blend, light percentage | the entries of one range, no words |
 | color scale, the colors below, above and of missing values | the entries of the colored surfaces, no words |
 | contrast, background | the entries that differ, no words |
 | the legend switched on or off | all words |
 
-Where words stand for normals (`normals`), a light, ambient, D, S and a reflection model send the entries that
-differ, no words, and so do mapping, scaling and exposure. No light plane is computed for that: the picture is
-rendered when it is asked for.
+While words stand for normals (`normals`), an edit of a light, ambient, D, S, a reflection model, mapping,
+scaling or exposure sends the entries that differ and no words. Such an edit computes no light plane: the
+picture is rendered when a program asks for it.
 
-The legend of a scalar is drawn over the words, after them and again whenever it changes.
+The legend of a scalar is sent after the words, and again whenever it changes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from os import fspath
+from pathlib import Path
 from time import perf_counter
-from typing import NoReturn, Unpack
+from typing import TYPE_CHECKING, NoReturn, Unpack
 
 from autocolor.arrays import Bytes, Words
 from autocolor.checks import nearest
 from autocolor.errors import UsageError
+from autocolor.images import display_image
 from autocolor.journal.history import History
-from autocolor.journal.studio_session import StudioSession
+from autocolor.journal.places import PICTURE_SUFFIX, Source, file_of, opened, opened_again
 from autocolor.lighting.picking import highlight_of, highlight_placed
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, display_image, words_by_line
+from autocolor.mapping.display_image import DisplayImage, words_by_line
 from autocolor.mapping.intensity import held_exposure
 from autocolor.mapping.ranges import LevelRange
 from autocolor.rendering import block_for, blocks_of, rendering, sees_the_same
@@ -47,8 +50,16 @@ from autocolor.sending import configuration_of, send_image, shown_colors
 from autocolor.visibility.visible_points import Seen, Sight, seen_at
 from ramtek_emu import HostPort
 
+if TYPE_CHECKING:
+    from os import PathLike
 
-class Studio(StudioSession):
+    from autocolor.journal.history import Variants
+    from autocolor.journal.saving import SavedFiles
+    from autocolor.scene.changes import SceneChanges
+    from autocolor.scene.creation import SurfaceSource
+
+
+class Studio:
     """A scene shown on a display, which can be edited step by step, with undo and redo.
 
     `display` is a host port: a `Ramtek9300`, a `TcpPort` to one, or a `Recorder`. It is reset and sent the
@@ -56,7 +67,7 @@ class Studio(StudioSession):
     """
 
     def __init__(self, scene: Scene | History, display: HostPort) -> None:
-        """Show a scene, or go on with the history of a session, such as that of a journal."""
+        """Show a scene, or go on with a session, such as the history of a journal."""
         self._history = scene if isinstance(scene, History) else History(scene)
         scene = self._history.scene
         configuration = configuration_of(display)
@@ -66,7 +77,7 @@ class Studio(StudioSession):
         self._rendering = rendering(scene, *self._size)
         self._shown = display_image(scene, self._rendering.picture)
         self._pace = 1, perf_counter() - begun
-        """The block of the last picture that was computed from scratch, and the seconds it took."""
+        """The block of the last picture that was computed whole, and the seconds that took."""
         self.sends = True
         """Whether edits are sent to the display; programs that draw over the picture send it themselves."""
         self.send_everything()
@@ -77,9 +88,14 @@ class Studio(StudioSession):
         return self._shown.scene
 
     @property
+    def history(self) -> History:
+        """The steps of the session, with the scenes to undo and to redo."""
+        return self._history
+
+    @property
     def picture(self) -> Picture:
-        """The current picture; of a half or a quarter of the lines and elements while `is_coarse`."""
-        if self._shown.normals is not None:
+        """The current picture; while `is_coarse`, it has a half or a quarter of the lines and elements."""
+        if not self._shown.has_light_in_words:
             self._light_picture()
         return self._shown.picture
 
@@ -100,32 +116,32 @@ class Studio(StudioSession):
 
     @property
     def image(self) -> DisplayImage:
-        """What is shown: the words, the entries, and what they mean."""
+        """The image on the display: the words, the entries, and their meaning."""
         return self._shown
 
     def image_of(self, scene: Scene) -> DisplayImage:
-        """What another scene would look like on the display; the present one stays, and nothing is sent.
+        """The image of another scene for the display; the current scene stays, and nothing is sent.
 
-        What both have in common is neither computed nor stored again: if they differ in colors only, `words`
-        is the same array. Raises InputError if the scene cannot be rendered.
+        Everything that both scenes share is neither computed nor stored again: if they differ in colors only,
+        `words` is the same array. Raises InputError if the scene cannot be rendered.
         """
         picture = rendering(scene, *self._size, self._rendering).picture
         return display_image(scene, picture, self._shown)
 
     @property
     def sight(self) -> Sight:
-        """What the pixels of the display see of the scene, for `lighting.rims` and the methods below."""
+        """The visible points of the scene at the pixels of the display, for the methods below."""
         return Sight(self.scene, self._rendering.points, self._shown.block)
 
     def seen_at(self, line: int, element: int) -> Seen | None:
-        """What is seen at a pixel of the display; None on the background."""
+        """The point, normal and surface that a pixel of the display shows; None on the background."""
         return seen_at(self.sight, line, element)
 
     def highlight_of(self, light: str, surface: str | None = None) -> tuple[int, int] | None:
-        """The line and element where a light's highlight is, on one surface or on all; None if nowhere.
+        """The line and element of a light's highlight, on one surface or on all; None if it has none.
 
-        This is the pixel with the largest cos(E), wherever the light is: also for one that follows the eye or
-        another light, or is at infinity. Raises UsageError for an unknown light or surface.
+        This is the pixel with the largest cos(E). The light may follow the eye or another light, or be at
+        infinity. Raises UsageError for an unknown light or surface.
 
             studio.place_highlight("key", 200, 320)
             studio.highlight_of("key", studio.seen_at(200, 320).surface)   # (200, 320)
@@ -133,12 +149,12 @@ class Studio(StudioSession):
         return highlight_of(self.sight, light, surface)
 
     def place_highlight(self, light: str, line: int, element: int) -> None:
-        """Move a light so that the middle of its highlight, cos(E) = 1, is at what is seen at a pixel.
+        """Move a light so that the middle of its highlight, cos(E) = 1, is at the point that a pixel shows.
 
-        The light keeps its distance from that point. One with an aim is aimed at the point, the direction of
-        one that has a direction leads there, and a point source stays one; what the light follows stays, too.
-        One step to undo; for drags, `edit` with `highlight_placed`. Raises UsageError for an unknown light, a
-        pixel that is not there, the background, and where the surface turns away from the eye.
+        The light keeps its distance from the point, and follows the same thing. Its aim or direction, if it
+        has one, leads to the point. This is one step to undo; for drags, use `edit` with `highlight_placed`.
+        Raises UsageError for an unknown light, a pixel outside of the display, the background, and a point
+        where the surface turns away from the eye.
         """
         self.edit(highlight_placed(self.scene, self.seen_at(line, element), light))
 
@@ -148,10 +164,10 @@ class Studio(StudioSession):
         `changes` are fields of its Paint: object_color and light_color ("#rrggbb", a name, or three whole
         numbers), blend, light_percentage.
         """
-        known = fields_of(Paint)
+        fields = fields_of(Paint)
         for name in changes:
-            if name not in known:
-                raise UsageError(f"recolor takes fields of a Paint, not {name!r}{nearest(name, known)}")
+            if name not in fields:
+                raise UsageError(f"recolor takes fields of a Paint, not {name!r}{nearest(name, fields)}")
         scene = self.scene.with_paint(surface, **changes)
         if scene is not self.scene:
             self._take(scene, Tier.ENTRIES)
@@ -165,11 +181,11 @@ class Studio(StudioSession):
         self.edit(self.scene.with_light(name, **changes))
 
     def add_light(self, name: str, /, **fields: Unpack[LightChanges]) -> None:
-        """Add a light after the others; it must have a position. Its planes alone are computed."""
+        """Add a light after the others; it must have a position. Only its light planes are computed."""
         self.edit(self.scene.with_new_light(name, **fields))
 
     def remove_light(self, name: str) -> None:
-        """Remove a light; nothing but the sum of the others is computed."""
+        """Remove a light; only the sum of the other lights is computed."""
         self.edit(self.scene.without_light(name))
 
     def view(self, /, **changes: Unpack[ViewChanges]) -> None:
@@ -177,10 +193,10 @@ class Studio(StudioSession):
         self.edit(self.scene.with_view(**changes))
 
     def scalar(self, *none: None, **changes: Unpack[ScalarChanges]) -> None:
-        """Change fields of the scalar that colors the surfaces; `scalar(None)` gives them their own colors.
+        """Change fields of the scalar that colors the surfaces; after `scalar(None)` they have their paint.
 
-        The first time it must be given a name: one of the mesh's, or a computed one. Another color scale
-        sends entries, but no words; limits, bands and shades render nothing.
+        The first time, give a name: a scalar of the mesh, or a computed scalar. Another color scale sends
+        entries, but no words; limits, bands and shades render nothing.
         """
         if not none:
             self.edit(self.scene.with_scalar(**changes))
@@ -192,24 +208,24 @@ class Studio(StudioSession):
         self.edit(self.scene.without_scalar())
 
     def normals(self, on: bool = True) -> None:
-        """Let words stand for normals, so that lights change entries alone; or for levels again.
+        """Let words stand for normals, so that edits of lights send only entries; or for levels again.
 
-        Lights and the eye are then taken as far away, and what depends on the place of a point is left out:
-        see `mapping.normals.far_light`. Raises InputError where a scalar colors surfaces.
+        All points with one normal then have one intensity: lights and the eye count as far away. Raises
+        InputError if a scalar colors surfaces.
         """
         self.edit(self.scene.replace(words=NORMALS if on else LEVELS))
 
     def hold_exposure(self, ranges: Mapping[str, Sequence[float]] | None = None) -> None:
-        """Keep the intensity ranges of the current picture, so that less light looks darker from now on.
+        """Hold the intensity ranges of the current picture, so that less light looks darker from now on.
 
-        If `ranges` are given, as by a journal, these are kept: a minimum and a maximum by the surface's name.
+        Other `ranges` can be given: a minimum and a maximum by the name of the surface.
         """
-        if ranges is None:
-            self.refine()
-            held = held_exposure(self._shown.mapped, self.scene.scaling, self.scene.exposure)
-            self.edit(self.scene.replace(exposure=held))
-        else:
+        if ranges is not None:
             self.edit(self.scene.replace(exposure=ranges))
+            return
+        self.refine()
+        exposure = held_exposure(self._shown.mapped, self.scene.scaling, self.scene.exposure)
+        self.edit(self.scene.replace(exposure=exposure))
 
     def release_exposure(self) -> None:
         """Let the intensity ranges follow the picture again."""
@@ -218,9 +234,9 @@ class Studio(StudioSession):
     def edit(self, scene: Scene, same_step: bool = False, moving: bool = False) -> None:
         """Make a scene the current one; nothing happens if it equals the current one.
 
-        With `same_step`, this edit and the previous one are undone together, as for the many edits of a drag.
-        With `moving`, a picture that would take too long for a movement (see `pacing`) is computed at a half
-        or a quarter of its lines and elements; call `refine` when the movement rests.
+        With `same_step`, this edit and the previous one are undone together, like the many edits of a drag.
+        With `moving`, a picture that would take too long for a movement (see `block_for`) is computed at a
+        half or a quarter of its lines and elements; call `refine` when the movement rests.
         """
         costs = cost_of_edit(self.scene, scene)
         if costs is not None:
@@ -244,10 +260,147 @@ class Studio(StudioSession):
         """Redo the last undone step; returns False if there is none."""
         return self._step(self._history.to_redo, self._history.redo)
 
-    def watch(self) -> Iterator[tuple[int, Words]]:
-        """The lines of the picture from the top, each computed when it is asked for (see `words_by_line`).
+    @property
+    def is_changed(self) -> bool:
+        """Whether the scene differs from the one that was opened or saved last.
 
-        All lines together are the `words` of that moment. Nothing is sent but a refined picture.
+        `history.left_unsaved` names other scenes of the session with unsaved changes.
+        """
+        return self._history.is_changed
+
+    @property
+    def variants(self) -> Variants:
+        """The variants by name, each a scene and its place."""
+        return self._history.variants
+
+    def keep_variant(self, name: str | None = None) -> str:
+        """Make the current scene a variant; returns its name, a free letter if None is given.
+
+        Undo and redo leave the variants alone. Raises UsageError if the name is in use.
+        """
+        name = self.variants.free_name() if name is None else name
+        self._history.keep(name)
+        return name
+
+    def show_variant(self, name: str) -> None:
+        """Make a variant the current scene, by one step to undo; nothing happens if they are equal."""
+        scene = self.variants[name].scene
+        if not scene.equals(self.scene):
+            self._show_scene(scene)
+            self._history.show(name)
+
+    def drop_variant(self, name: str) -> None:
+        """Drop a variant. Raises UsageError if there is none of that name."""
+        self._history.drop(name)
+
+    def open(
+        self,
+        path: str | PathLike[str],
+        *,
+        up: str = "z",
+        scale: float = 1.0,
+        surfaces: SurfaceSource = "materials",
+        tables: SceneChanges | None = None,
+        checksum: str | None = None,
+    ) -> None:
+        """Read a scene (see `read_scene`) and make it the current one, by one step to undo.
+
+        Undo also brings back the files to which `save_session` saves. The script of a session gives the
+        `tables` that the scene had, because the file may have been saved over since, and the `checksum` of
+        the scene. Raises InputError if the scene has another checksum.
+        """
+        source = Source(fspath(path), up, surfaces, scale)
+        scene = opened(source, tables, checksum)
+        self._show_scene(scene.scene)
+        self._history.open(scene, source)
+
+    @property
+    def file(self) -> Path | None:
+        """The scene file or the store that the scene is saved to; None if there is none yet."""
+        saved = [Path(path) for path in self._history.saved.files]
+        place = self._history.place
+        if not saved and place.source is not None and place.stamp is not None:
+            saved = [path for path in (file_of(place.source),) if path is not None]
+        return next((path for path in saved if path.suffix.lower() != PICTURE_SUFFIX), None)
+
+    def reopen(self) -> bool:
+        """Read the scene's file again, by one step to undo; returns False if the scene is still the same.
+
+        Raises UsageError if there is no such file, InputError if it cannot be read.
+        """
+        path, source = self.file, self._history.place.source
+        if path is None:
+            raise UsageError("the scene must be in a file to be read again, and it is in none; save it")
+        source = Source(str(path), surfaces="materials" if source is None else source.surfaces)
+        again = opened_again(source, self.scene)
+        if again.scene.equals(self.scene):
+            return False
+        self._show_scene(again.scene)
+        self._history.open(again, source)
+        return True
+
+    def save(self, path: str | PathLike[str], overwrite: bool = False) -> None:
+        """Write the picture with its scene to a picture file, and mark the scene as saved."""
+        from autocolor.files.picture_file import write_picture
+
+        self.refine()
+        write_picture(path, self.picture, self.scene, overwrite=overwrite)
+        self.mark_saved()
+
+    def save_scene(self, path: str | PathLike[str], overwrite: bool = False) -> None:
+        """Write the scene to a scene file (see `write_scene`), and mark it as saved."""
+        from autocolor.files.scene_writing import write_scene
+
+        write_scene(path, self.scene, overwrite=overwrite)
+        self.mark_saved()
+
+    def save_session(self, folder: str | PathLike[str] = ".") -> SavedFiles:
+        """Save scene and picture to their files, or to new files in the folder; returns the files.
+
+        No file of others is lost (see `journal.saving`).
+        """
+        from autocolor.journal.saving import save_session
+
+        self.refine()
+        return save_session(self._history, self.picture, Path(folder))
+
+    def mark_saved(self, files: Mapping[str, str] | None = None) -> None:
+        """Mark the current scene as saved.
+
+        `files` are the files to which `save_session` saves again, with the SHA-256 of their bytes.
+        """
+        self._history.mark_saved(files)
+
+    def journal(
+        self,
+        path: str | PathLike[str] | None = None,
+        *,
+        up: str = "z",
+        scale: float = 1.0,
+        surfaces: SurfaceSource = "materials",
+        beside: str | PathLike[str] | None = None,
+    ) -> str:
+        """The session as a Python script, one line a step, which gives the same scenes when it is run.
+
+        `path` is the file that the first scene was read from; `up`, `scale` and `surfaces` are the keywords
+        with which it was read. A session that was recovered or opened by a command knows them. A mesh that an
+        edit changed is saved in a folder in the folder `beside`; without `beside`, InputError is raised.
+        """
+        from autocolor.journal.journal import MeshesBeside
+        from autocolor.journal.script import script_of
+
+        source = (
+            self._history.first_place.source if path is None else Source(fspath(path), up, surfaces, scale)
+        )
+        if source is None:
+            raise UsageError("a journal must name what its first scene was read from; give its path")
+        return script_of(self._history, source, MeshesBeside(None if beside is None else Path(beside)))
+
+    def watch(self) -> Iterator[tuple[int, Words]]:
+        """The numbers and words of the lines from the top, computed line by line (see `words_by_line`).
+
+        Together they are the `words` at the time of the call. A coarse picture is refined and sent before;
+        nothing else is sent.
 
             for line, words in studio.watch():
                 display.send(instructions.write_image(words, top=line))
@@ -260,11 +413,12 @@ class Studio(StudioSession):
         send_image(self._display, self._shown)
 
     def _take(self, scene: Scene, costs: Tier, same_step: bool = False, moving: bool = False) -> None:
-        """Make a scene the current one by an edit of a cost, and note the step."""
+        """Show a scene, which an edit of this cost made, and add the step to the history."""
         self._show(scene, costs, moving)
         self._history.take(scene, same_step)
 
     def _step(self, scenes: Sequence[Scene], move: Callable[[], None]) -> bool:
+        """Show the last scene, if any, and move there in the history; returns whether there was one."""
         if not scenes:
             return False
         self._show_scene(scenes[-1])
@@ -275,7 +429,7 @@ class Studio(StudioSession):
         self._show(scene, cost_of_edit(self.scene, scene) or Tier.NOTHING)
 
     def _show(self, scene: Scene, costs: Tier, moving: bool = False) -> None:
-        """Recompute and send what an edit changed. If that raises an error, the session is unchanged."""
+        """Compute and send the difference to another scene. An error leaves the session unchanged."""
         before, rendered, block = self._shown, self._rendering, self._shown.block
         begun = perf_counter()
         if costs >= Tier.MIX or scene.words != before.scene.words:
@@ -283,7 +437,7 @@ class Studio(StudioSession):
                 block = 1
             elif costs == Tier.FRAME:
                 block = block_for(blocks_of(*self._size), *self._pace)
-            # Else what is visible stays: what was computed for it is used again.
+            # Otherwise the visible points stay, and are used again.
             if not (block == before.block and _differs_in_light_alone(before, rendered.scene, scene)):
                 lines, elements = (size // block for size in self._size)
                 rendered = rendering(scene, lines, elements, rendered)
@@ -295,7 +449,7 @@ class Studio(StudioSession):
             self._pace = block, perf_counter() - begun
 
     def _light_picture(self) -> None:
-        """Render what edits of lights left out while words stand for normals; nothing is sent."""
+        """Render the edits of lights since words stand for normals; nothing is sent."""
         shown = self._shown
         lines, elements = (size // shown.block for size in self._size)
         rendered = rendering(self.scene, lines, elements, self._rendering)
@@ -320,5 +474,5 @@ class Studio(StudioSession):
 
 
 def _differs_in_light_alone(before: DisplayImage, rendered: Scene, scene: Scene) -> bool:
-    """Whether words stand for normals in an image and still do in a scene that sees what was rendered."""
-    return before.normals is not None and scene.words == NORMALS and sees_the_same(rendered, scene)
+    """Whether words stand for normals in the image and the scene, and both have the same visible points."""
+    return not before.has_light_in_words and scene.words == NORMALS and sees_the_same(rendered, scene)

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from autocolor import Mesh
-from autocolor.files.meshes.formats import read_mesh
+from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.obj import obj_text
 from benchmarks.cases import Case, spread, timed
 from benchmarks.hills import hills, side_of

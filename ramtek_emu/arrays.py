@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Scalar = TypeVar("Scalar", bound=np.generic)
 
 Words = NDArray[np.uint16]
-"""16-bit words: a stream of them, or those of a picture as (lines, elements)."""
+"""16-bit words: a stream, or a picture as (lines, elements)."""
 Dots = NDArray[np.bool_]
 """Whether each pixel, or each dot of a character or a cursor, is meant."""
 Booleans = NDArray[np.bool_]

@@ -1,6 +1,6 @@
 """Checks of what Python callers pass in: numbers, words, streams and colors.
 
-The hardware drops bits that do not fit. A Python program is told instead which number is wrong.
+The hardware drops bits that do not fit. For a Python program an error names the wrong number instead.
 """
 
 from __future__ import annotations
@@ -81,8 +81,8 @@ def whole_numbers(values: object, thing: str, error: type[WordsError] | type[Col
                 f"{thing} must be whole numbers, not {array.dtype}; convert them first, rounding half up"
             )
         other = "objects" if array.ndim else type(values).__name__
-        found = {"U": "text", "S": "bytes"}.get(array.dtype.kind, other)
-        raise error(f"{thing} must be whole numbers, not {found}; pass a list or an array of them")
+        kind = {"U": "text", "S": "bytes"}.get(array.dtype.kind, other)
+        raise error(f"{thing} must be whole numbers, not {kind}; pass a list or an array of them")
     return array
 
 
@@ -110,7 +110,7 @@ def checked_words(words: object, planes: int = 10) -> Words:
 
 
 def checked_stream(words: object) -> Words:
-    """A stream of 16-bit words as a flat uint16 array; one that is that already is returned unchanged."""
+    """A stream of 16-bit words as a flat uint16 array; such an array is returned unchanged."""
     if isinstance(words, np.ndarray) and words.dtype == np.uint16 and words.ndim == 1:
         return words
     if isinstance(words, bytes | bytearray) or (isinstance(words, memoryview) and words.itemsize == 1):

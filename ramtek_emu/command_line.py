@@ -1,4 +1,4 @@
-"""What the commands `autocolor` and `ramtek` have in common: loading a command by name, and running it.
+"""Command line: loads a command by name, runs it, and completes words in bash; for `autocolor` and `ramtek`.
 
 A command writes its result to stdout and all messages to stderr. It ends with an exit code, and shows no
 traceback unless --debug is given.
@@ -25,11 +25,11 @@ FAULT: Final = 70
 WRITING_FAILED: Final = 74
 INTERRUPTED: Final = 130
 READER_LEFT: Final = 141
-"""The code of a program that the signal of a broken pipe ended, as a shell tells it."""
+"""The exit code that a shell gives a program that the signal of a broken pipe ended."""
 WINDOW: Final = "ramtek_emu.monitor.window"
 """The module that imports pygame."""
 PYGAME: Final = "pygame" if sys.version_info < (3, 14) else "pygame-ce"
-"""What to install for it, as pyproject.toml has it: pygame has no wheels from Python 3.14 on."""
+"""The package to install for it, as in pyproject.toml: pygame has no wheels from Python 3.14 on."""
 
 
 def _show_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
@@ -65,7 +65,7 @@ class CommandGroup(click.Group):
     package: ClassVar[str]
     """The package that holds the modules of the commands."""
     table: ClassVar[dict[str, str]]
-    """What each command does, in the order of the help."""
+    """Each command and its line of help, in the order of the help."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names in the order of the table."""
@@ -106,10 +106,10 @@ class CommandGroup(click.Group):
 def run_command(command: click.Command, name: str) -> None:
     """Run a command and end the process with its exit code.
 
-    An error with an attribute `exit_code` is one that the user can act on: its message is shown, and the code
-    is that attribute. A reader of stdout that leaves ends the command in silence. An error while the module
-    of the window is loaded is that of a pygame that is missing or broken. Any other error is a fault of the
-    program. With `--debug`, anywhere before a `--`, the traceback is shown.
+    If an error has an attribute `exit_code`, the user can act on it: its message is shown, and the attribute
+    is the code. A reader of stdout that leaves ends the command in silence. An error while the module of the
+    window is loaded means that pygame is missing or broken. Any other error is a fault of the program. With
+    `--debug`, anywhere before a `--`, the traceback is shown.
     """
     debug, arguments = _without_debug(sys.argv[1:])
     had_stdout = sys.stdout is not None
@@ -119,7 +119,7 @@ def run_command(command: click.Command, name: str) -> None:
         # File names may contain bytes that are no valid text.
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
-        code = _done(command, name, arguments)
+        code = _exit_code(command, name, arguments)
         sys.stdout.flush()
     except (click.exceptions.Abort, KeyboardInterrupt):
         _end(name, "interrupted", INTERRUPTED)
@@ -156,7 +156,7 @@ def run_command(command: click.Command, name: str) -> None:
     _leave(code if isinstance(code, int) else 0)
 
 
-def _done(command: click.Command, name: str, arguments: list[str]) -> object:
+def _exit_code(command: click.Command, name: str, arguments: list[str]) -> object:
     """The exit code of a command, or None. Click's own `main` would end silently with 1 at a broken pipe."""
     completion = f"_{name.upper()}_COMPLETE"
     if completion in os.environ:
@@ -194,7 +194,7 @@ def _closed_pipe() -> TextIOWrapper:
 
 
 def _end(name: str, message: str, code: int) -> NoReturn:
-    """Print the message, each line after the name of the command, and end the process."""
+    """Print the message, with the name of the command before each line, and end the process."""
     for line in message.splitlines():
         # A file name may contain characters that the terminal cannot encode.
         with suppress(OSError, ValueError):
@@ -203,7 +203,7 @@ def _end(name: str, message: str, code: int) -> NoReturn:
 
 
 def _leave(code: int) -> NoReturn:
-    """End the process with the code; what is left in the buffers is written now, or dropped."""
+    """End the process with the code; the rest of the buffers is written now, or dropped."""
     for stream in (sys.stdout, sys.stderr):
         try:
             if stream is not None:
@@ -214,13 +214,6 @@ def _leave(code: int) -> NoReturn:
                 os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
     sys.exit(code)
 
-
-# -------------------- bash_completion
-# Completion in bash, which takes a word apart at each "=": `ambient=0.2` comes as three words.
-#
-# Click takes them for three arguments, so that nothing would be completed after `--set KEY=`. Here they are
-# put together again, and candidates are told without what stands before the last "=", since bash keeps
-# that.
 
 SCRIPT: Final = """\
 %(complete_func)s() {
@@ -243,15 +236,20 @@ SCRIPT: Final = """\
 
 complete -o nosort -F %(complete_func)s %(prog_name)s
 """
-"""What bash runs: a candidate that goes on after "=", "." or "/" gets no space."""
+"""The function that bash runs: a candidate that goes on after "=", "." or "/" gets no space."""
 
 
 class WholeWords(BashComplete):
-    """The completion of click for bash, with words as they are typed."""
+    """Click's completion for bash, with words as they are typed.
+
+    Bash takes a word apart at each "=": `ambient=0.2` comes as three words. Click takes them for three
+    arguments, so that nothing would be completed after `--set KEY=`. Here they are joined again. Bash keeps
+    the part of a word up to its last "=", so that candidates are given without it.
+    """
 
     source_template: ClassVar[str] = SCRIPT
-    _kept: str = ""
-    """The start of all candidates that bash keeps."""
+    _prefix: str = ""
+    """The start of all candidates that bash has already."""
 
     def get_completion_args(self) -> tuple[list[str], str]:
         """The whole words before the cursor, and the incomplete one there."""
@@ -260,39 +258,39 @@ class WholeWords(BashComplete):
         words = split_arg_string(os.environ["COMP_WORDS"])[:count]
         typed = joined(words)
         incomplete = typed.pop() if len(words) == count else ""
-        self._kept = "" if words[-1:] == [incomplete] else kept(incomplete)
+        self._prefix = "" if words[-1:] == [incomplete] else prefix_in_bash(incomplete)
         return typed[1:], incomplete
 
     def format_completion(self, item: CompletionItem[Any]) -> str:
         """A candidate for the script, in quotes that bash takes off again."""
         value = str(item.value)
         if item.type == "plain":
-            value = re.sub(r"([^\w@%+=:,./-])", r"\\\1", value.removeprefix(self._kept))
+            value = re.sub(r"([^\w@%+=:,./-])", r"\\\1", value.removeprefix(self._prefix))
         return f"{item.type},{value}"
 
 
 def joined(words: Sequence[str]) -> list[str]:
-    """Words with those that bash took apart put together.
+    """The words as they were typed, from the parts that bash makes of them.
 
     >>> joined(["render", "--set", "ambient", "=", "0.2", "-o", "x.png"])
     ['render', '--set', 'ambient=0.2', '-o', 'x.png']
     """
-    found: list[str] = []
+    typed: list[str] = []
     follows = False
     for word in words:
         is_sign = bool(word) and not word.strip("=")
-        if found and (is_sign or follows):
-            found[-1] += word
+        if typed and (is_sign or follows):
+            typed[-1] += word
         else:
-            found.append(word)
+            typed.append(word)
         follows = is_sign
-    return found
+    return typed
 
 
-def kept(word: str) -> str:
-    """The part of an incomplete word that bash keeps and that candidates have, too: an option is not.
+def prefix_in_bash(word: str) -> str:
+    """The start of an incomplete word that bash keeps, up to its last "="; without the name of an option.
 
-    >>> kept("scaling=ob"), kept("--set=scaling=ob"), kept("--set=sc")
+    >>> prefix_in_bash("scaling=ob"), prefix_in_bash("--set=scaling=ob"), prefix_in_bash("--set=sc")
     ('scaling=', 'scaling=', '')
     """
     value = word.partition("=")[2] if word.startswith("-") else word

@@ -6,6 +6,7 @@ host port -> decoder -> processor -> frame buffer, lookup table, cursors -> scan
 from __future__ import annotations
 
 from os import PathLike
+from typing import Final
 
 import numpy as np
 
@@ -18,8 +19,8 @@ from ramtek_emu.instruction_set.table import FORMAT_OF_NAME
 from ramtek_emu.memory.cursors import Cursors, Joystick
 from ramtek_emu.memory.frame_buffer import FrameBuffer
 from ramtek_emu.memory.lookup_table import LookupTable
-from ramtek_emu.processor.executors import EXECUTORS as EXECUTORS  # This import enters the executors.
-from ramtek_emu.processor.processor import Processor, Status
+from ramtek_emu.processor import cursor_executors, drawing_executors, environment_executors, image_executors
+from ramtek_emu.processor.processor import Executors, Processor, Status
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.scan_out import ScanOut
 
@@ -64,7 +65,7 @@ class Ramtek9300:
     def _take(self, stream: Words) -> None:
         if self.beam is None:
             for instruction in self.decoder.feed(stream, in_rows=True):
-                self.processor.execute(instruction)
+                execute(self.processor, instruction)
         else:
             for instruction in self.decoder.feed(stream):
                 self._execute_in_time(instruction, self.beam)
@@ -73,13 +74,13 @@ class Ramtek9300:
         # Lines that the beam has passed show the state before the instruction, all others the state after.
         self.scan_out.follow_beam()
         written = self.frame_buffer.written
-        self.processor.execute(instruction)
+        execute(self.processor, instruction)
         self.scan_out.follow_beam()
         words = 1 + sum(map(len, instruction.operands.values())) + len(instruction.data)
         beam.charge(words, self.frame_buffer.written - written)
 
     def reset(self) -> None:
-        """Press RESET on the control unit: reset parameters, screen, cursors; drop words held and replies.
+        """Press RESET on the control unit: reset parameters, screen, cursors; drop pending words and replies.
 
         Hardware: PRG introdoc (the switch), DRIVER.c (the interface's hard reset).
         Assumed: the lookup table and loaded characters stay, as after the instruction RSET.
@@ -130,3 +131,19 @@ class Ramtek9300:
         from ramtek_emu.png import png_bytes
 
         return png_bytes(self.field())
+
+
+def execute(processor: Processor, instruction: Instruction) -> None:
+    """Set the operands of an instruction, then execute it; no instruction raises an error."""
+    format = instruction.format
+    if format.is_normal and instruction.operands and not format.requests_operands:
+        processor.parameters.take(instruction.operands, instruction.low_byte)
+    EXECUTORS[format.name](processor, instruction)
+
+
+EXECUTORS: Final[Executors] = (
+    image_executors.EXECUTORS
+    | drawing_executors.EXECUTORS
+    | cursor_executors.EXECUTORS
+    | environment_executors.EXECUTORS
+)

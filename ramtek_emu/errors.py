@@ -1,4 +1,4 @@
-"""The errors of the display. Each message says what must hold, what was found and what to do about it.
+"""The errors of the display. A message says the rule, the wrong value, and what to do about it.
 
 They are raised to Python callers only. Words that a host sends never raise anything.
 """

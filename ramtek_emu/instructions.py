@@ -1,4 +1,11 @@
-"""Streams of words, put together."""
+"""Encoders: functions that return the words of instructions, for a host to send; one for each purpose.
+
+They set up the display, write and read images, draw circles, areas, lines and text, place cursors, and load
+and read the lookup table. Operands that are left out stay as earlier instructions set them.
+
+>>> " ".join(f"{word:04X}" for word in set_parameters(foreground=1))
+'0802 0002 0001'
+"""
 
 from __future__ import annotations
 
@@ -39,13 +46,6 @@ def concatenate(*parts: Words) -> Words:
     return np.concatenate([checked_stream(part) for part in parts]) if parts else NO_WORDS
 
 
-# -------------------- settings
-# Encoders that set the display up: reset, parameters, zoom.
-#
-# >>> " ".join(f"{word:04X}" for word in set_parameters(foreground=1))
-# '0802 0002 0001'
-
-
 def reset() -> Words:
     """RSET: set every parameter as at power-on and erase the screen; the lookup table is kept."""
     return encode(Instruction(FORMAT_OF_NAME["RSET"]))
@@ -73,10 +73,6 @@ def zoom(across: int = 1, down: int | None = None) -> Words:
         raise InstructionError(f"zoom factors must be 1 to 16, not {factors}; choose smaller ones")
     word = int(factors[1]) - 1 << 8 | int(factors[0]) - 1
     return np.array((FORMAT_OF_NAME["ZOOM"].opcode << 8, word), np.uint16)
-
-
-# -------------------- images
-# Encoders of images: windows that are filled, written and read.
 
 
 def erase(window: Sequence[int] | None = None, word: int | None = None) -> Words:
@@ -137,10 +133,6 @@ def read_image(left: int, top: int, elements: int, lines: int) -> Iterator[tuple
         window = None
 
 
-# -------------------- shapes
-# Encoders of circles and of areas that are filled.
-
-
 def write_circles(circles: Sequence[Sequence[int]], word: int | None = None) -> Words:
     """CIRC: draw the outlines of (n, 3) circles: element and line of the center, and radius."""
     numbers = whole_numbers(circles, "circles", WordsError)
@@ -165,17 +157,6 @@ def fill(element: int, line: int, word: int | None = None) -> Words:
     return encode(normal("FILL", operands, np.zeros(1, np.uint16)))
 
 
-# -------------------- vectors
-# Encoders of straight lines, linked and unlinked.
-#
-# Lines are clipped at the write window, never at the window of images and text, and are drawn with the
-# texture. Both stay as earlier instructions set them. Where other programs drew before, give the window: it
-# is sent with a texture without gaps. Both are operands that only the 9400 and the 9460 have.
-
-SOLID: Final = (0xFFFF, 0)
-"""The texture without gaps."""
-
-
 def write_vectors(
     vertices: object,
     word: int | None = None,
@@ -185,14 +166,16 @@ def write_vectors(
     """WVL: draw the lines that link (n, 2) vertices (element, line), from `start` or the first vertex on.
 
     Vertices that do not fit in one instruction go on in the next. The word stays set as the foreground.
-    `window` (left, top, right, bottom) sets the write window, which stays and clips images and text too, and
-    a texture without gaps; the mask is never set. WordsError if the vertices are not such an array.
+    Lines are clipped at the write window, never at the window of images and text, and are drawn with the
+    texture. Where other programs drew before, give `window` (left, top, right, bottom): it sets the write
+    window, which stays and clips images and text too, and a texture without gaps. Only the 9400 and the 9460
+    have both. The mask is never set. WordsError if the vertices are not such an array.
     """
     words = checked_places(vertices, "vertices", "vertex", ("element", "line"))
     if start is None:
         start = words[0].tolist()
         words = words[1:] if len(words) > 1 else words
-    return in_instructions("WVL", words, {**surroundings(word, window), "start": start})
+    return in_instructions("WVL", words, {**line_operands(word, window), "start": start})
 
 
 def write_segments(segments: object, word: int | None = None, window: Sequence[int] | None = None) -> Words:
@@ -202,12 +185,12 @@ def write_segments(segments: object, word: int | None = None, window: Sequence[i
     `write_vectors`. WordsError if the segments are not such an array.
     """
     words = checked_places(segments, "segments", "segment", ("element", "line", "element", "line"))
-    return in_instructions("WVU", words, surroundings(word, window))
+    return in_instructions("WVU", words, line_operands(word, window))
 
 
-def surroundings(word: int | None, window: Sequence[int] | None) -> dict[str, OperandValue | None]:
-    """The operands that lines depend on."""
-    return {"foreground": word, "write_window": window, "texture": None if window is None else SOLID}
+def line_operands(word: int | None, window: Sequence[int] | None) -> dict[str, OperandValue | None]:
+    """The operands for lines of a word; with a window, the texture has no gaps."""
+    return {"foreground": word, "write_window": window, "texture": None if window is None else (0xFFFF, 0)}
 
 
 def in_instructions(name: str, rows: Words, operands: dict[str, OperandValue | None]) -> Words:
@@ -234,10 +217,6 @@ def checked_places(values: object, things: str, thing: str, columns: tuple[str, 
             "clip the lines first"
         )
     return (numbers.astype(np.int64) & 0xFFFF).astype(np.uint16)
-
-
-# -------------------- text
-# Encoder of text.
 
 
 def write_text(
@@ -276,10 +255,6 @@ def write_text(
     return encode(normal("WT", operands, packed, len(data), Flags.ADDITIVE if transparent else 0))
 
 
-# -------------------- cursors
-# Encoders of cursors: they are placed and read.
-
-
 def write_cursor(
     number: int, element: int, line: int, *, visible: bool = True, blinking: bool = False
 ) -> Words:
@@ -297,9 +272,6 @@ def read_cursor(number: int) -> Words:
     """RCSS: ask for a cursor; then receive two words: element, and line with the state above ten bits."""
     return np.array([FORMAT_OF_NAME["RCSS"].opcode << 8 | checked_cursor(number)], np.uint16)
 
-
-# -------------------- table
-# Encoders of the lookup table: its entries are loaded and read.
 
 LOW_BYTE_FIRST: Final = np.dtype("<u2")
 THREE_WORDS: Final = Struct("<3H")

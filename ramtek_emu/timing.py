@@ -12,7 +12,7 @@ from typing import Final
 from ramtek_emu.errors import ConfigurationError
 
 MOST: Final = 1_000_000_000
-"""The largest value of any rate: one second, if it is a time."""
+"""The largest value of any rate. Limit: one second, if it is a time."""
 
 
 @dataclass(frozen=True, kw_only=True)

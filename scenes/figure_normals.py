@@ -10,7 +10,6 @@ the car once: first the picture, then a load of the table for each step. To play
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
@@ -18,8 +17,9 @@ from typing import Any, Final
 import numpy as np
 
 import autocolor
+from autocolor.mapping.normal_words import NormalImage
 from ramtek_emu import Ramtek9300, Recorder, instructions
-from scenes.figures import Sheet, open_studio, read_scene
+from scenes.figures import Sheet, open_studio, parser_of_figure, read_scene
 
 STEPS: Final = 120
 """The loads of one round of the light."""
@@ -54,10 +54,10 @@ def angles() -> Iterator[float]:
 
 def main() -> None:
     """Show pictures by levels and by normals, and the normals; then move the light by loads alone."""
-    records = "--stream" in sys.argv
-    if records:
-        sys.argv.remove("--stream")
-    sheet = Sheet("normals")
+    parser = parser_of_figure("normals")
+    parser.add_argument("--stream", action="store_true", help="also record a round of the light as a stream")
+    arguments = parser.parse_args()
+    sheet = Sheet("normals", arguments.folder)
     studio, display = open_studio(coupe())
     sheet.add(display.field(), "A. Words Stand for Levels", "a")
     studio.normals()
@@ -74,14 +74,15 @@ def main() -> None:
     studio.normals()
     sheet.add(display.field(), "F. One Normal Each", "f")
     sheet.write(across=3)
-    if records:
+    if arguments.stream:
         record(sheet.folder / "figure-normals.ramtek")
 
 
 def show_normals(studio: autocolor.Studio, display: Ramtek9300) -> None:
     """Load each word's normal as its color: red to the right, green upward, blue to the eye."""
-    stand_for = studio.image.normals
-    assert stand_for is not None
+    image = studio.image
+    assert isinstance(image, NormalImage)
+    stand_for = image.normals
     right, down, forward = stand_for.normals
     colors = np.zeros((1024, 3), np.uint8)
     colors[stand_for.words] = np.stack([right, -down, -forward], axis=1) * 127 + 128

@@ -9,9 +9,9 @@ is given: `python -m scenes.figure_04 elsewhere`.
 
 from __future__ import annotations
 
+import argparse
 import dataclasses
 import importlib
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -55,14 +55,26 @@ def captioned(field: Field, text: str) -> Field:
     return np.vstack([field, strip.field()])
 
 
+def parser_of(module: str, description: str) -> argparse.ArgumentParser:
+    """The command line of a script in this folder: where its pictures go."""
+    parser = argparse.ArgumentParser(prog=f"python -m scenes.{module}", description=description)
+    parser.add_argument("folder", nargs="?", type=Path, default=Path("figures"), help="default: %(default)s")
+    return parser
+
+
+def parser_of_figure(figure: str) -> argparse.ArgumentParser:
+    """The command line of the script of one figure."""
+    return parser_of(
+        f"figure_{figure.replace('-', '_')}", f"Write figure {figure} and its panels as PNG files."
+    )
+
+
 class Sheet:
     """The panels of one figure: each is written alone, and all of them side by side at the end."""
 
-    def __init__(self, figure: str) -> None:
+    def __init__(self, figure: str, folder: Path | None = None) -> None:
         self.figure = figure
-        self.folder = Path(sys.argv[1] if len(sys.argv) > 1 else "figures")
-        if str(self.folder).startswith("-"):
-            sys.exit(f"usage: python -m scenes.figure_{figure} [FOLDER]")
+        self.folder = folder or parser_of_figure(figure).parse_args().folder
         self.panels: list[Field] = []
 
     def add(self, field: Field, caption: str, panel: str = "") -> None:
@@ -85,6 +97,7 @@ class Sheet:
 
 def main() -> None:
     """Make every figure."""
+    parser_of("figures", f"Write the figures {', '.join(FIGURES)} as PNG files.").parse_args()
     for number in FIGURES:
         importlib.import_module(f"scenes.figure_{number.replace('-', '_')}").main()
 

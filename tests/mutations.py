@@ -22,7 +22,7 @@ import numpy as np
 from autocolor import Mesh, scene_of
 from autocolor.errors import InputError
 from autocolor.files.conversion import Output, outputs
-from autocolor.files.meshes.formats import mesh_formats
+from autocolor.files.formats import MESH_FORMATS
 from autocolor.files.scene_sources import read_scene_with_report
 from autocolor.scene.scalar import MeshScalar
 
@@ -236,6 +236,29 @@ BYU_TEXT = (
     b" 2.00000E+00 1.00000E+00 0.00000E+00 2.00000E+00 2.00000E+00 1.00000E+00\n"
     b"       1       2       3      -4       2       5      -3       3       5       6\n      -4\n"
 )
+BYU_FREE = (
+    b"2 8 6 24\n1 5 6 6\n0 0 0 1 0 0 0 1 0 1 1 0\n0 0 1 1 0 1 0 1 1 1 1 1\n"
+    b"1 3 4 -2 5 6 8 -7 1 2 6 -5\n3 7 8 -4 1 5 7 -3 2 4 8 -6\n"
+)
+VTK_VOLUME = (
+    b"# vtk DataFile Version 3.0\nvolume\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 double\n"
+    b"0 0 0 1 0 0 0 1 0 1 1 0\n0 0 1 1 0 1 0 1 1 1 1 1\n0.5 0.5 0.5\n"
+    b"CELLS 4 24\n8 0 1 3 2 4 5 7 6\n3 0 1 8\n4 0 1 2 3\n5 0 1 2 3 8\nCELL_TYPES 4\n12 5 6 7\n"
+    b"CELL_DATA 4\nFIELD f 1\nrow 1 4 int\n0 1 2 3\n"
+)
+VTK_OFFSETS = (
+    b"# vtk DataFile Version 5.1\nvolume\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n"
+    + struct.pack(">15f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0)
+    + b"\nCELLS 3 7\nOFFSETS vtktypeint64\n"
+    + struct.pack(">3q", 0, 4, 7)
+    + b"\nCONNECTIVITY vtktypeint64\n"
+    + struct.pack(">7q", 0, 1, 2, 3, 1, 4, 2)
+    + b"\nCELL_TYPES 2\n"
+    + struct.pack(">2i", 10, 5)
+    + b"\nPOINT_DATA 5\nVECTORS v float\n"
+    + struct.pack(">15f", *range(15))
+    + b"\n"
+)
 OBJ_TEXT = (
     b"# by hand\nmtllib car.mtl\no hood\nusemtl red\nv 0 0 0\nv 1.5e0 0 0 1\nv 1 1 0\nv 0 1 .5\n"
     b"vt 0 0\nvn 0 0 1\n"
@@ -251,17 +274,23 @@ TOML_TEXT = (
 OFF_TEXT = (
     b"OFF\n# a plate\n5 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n2 0.5 1\n4 0 1 2 3\n3 1 4 2 255 0 0\n5 0 1 4 2 3\n"
 )
+OFF_NORMALS = b"NOFF\n4 2 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0.5 0 0 1\n4 0 1 2 3\n3 0 1 2 9 9\n"
 
 BY_HAND = (
     Seed("OBJ by hand", {"car.obj": OBJ_TEXT, "car.mtl": MTL_TEXT}, "car.obj"),
     Seed("STL in text", {"plate.stl": STL_TEXT}, "plate.stl"),
     Seed("STL in bits", {"plate.stl": STL_BITS}, "plate.stl"),
+    Seed("STL in bits that begins solid", {"plate.stl": b"solid" + STL_BITS[5:]}, "plate.stl"),
     Seed("PLY in text", {"plate.ply": PLY_TEXT}, "plate.ply"),
     Seed("PLY in bits", {"plate.ply": PLY_BITS}, "plate.ply"),
     Seed("VTK in text", {"plate.vtk": VTK_TEXT}, "plate.vtk"),
     Seed("VTK in bits", {"plate.vtk": VTK_GRID}, "plate.vtk"),
+    Seed("VTK volume in text", {"plate.vtk": VTK_VOLUME}, "plate.vtk"),
+    Seed("VTK volume in bits", {"plate.vtk": VTK_OFFSETS}, "plate.vtk"),
+    Seed("OFF with normals", {"plate.off": OFF_NORMALS}, "plate.off"),
     Seed("OFF", {"plate.off": OFF_TEXT}, "plate.off"),
     Seed("Movie.BYU", {"plate.g": BYU_TEXT}, "plate.g"),
+    Seed("Movie.BYU in words", {"plate.g": BYU_FREE}, "plate.g"),
     Seed("scene file", {"scene.toml": TOML_TEXT, "car.obj": OBJ_TEXT, "car.mtl": MTL_TEXT}),
 )
 """Samples of what is only read, and of kinds of files that are read and not written."""
@@ -298,7 +327,7 @@ def formats_without_seeds() -> list[str]:
     names = {name for seed in given for name in seed.files}
     return [
         each.name
-        for each in mesh_formats()
+        for each in MESH_FORMATS
         if not isinstance(each.read, partial)
         and not suffixes & set(each.suffixes)
         and not (each.in_folder and set(each.in_folder) <= names)

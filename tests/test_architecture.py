@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ast
 import importlib
-import os
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -35,8 +35,8 @@ PUBLIC_NAMES = {
 
 WINGS = {
     "autocolor": (
-        "errors", "logs", "arrays", "immutable", "checks", "modules", "scene", "visibility", "scalars",
-        "lighting", "mapping", "files", "rendering", "sending", "journal", "studio", "images",
+        "errors", "logs", "arrays", "immutable", "checks", "scene", "visibility", "scalars",
+        "lighting", "mapping", "files", "rendering", "sending", "images", "journal", "studio",
         "widgets", "screens", "commands", "__main__",
     ),
     "ramtek_emu": (
@@ -47,15 +47,6 @@ WINGS = {
     ),
 }  # fmt: skip
 """The wings of a package in the order of its data: each may use those before it and no other."""
-
-USED_WHOLE: tuple[str, ...] = ()
-"""The wings whose names are used from the wing itself, which imports them from all of its rooms."""
-
-IN_THE_DIALECT = ("autocolor", "ramtek_emu")
-"""The packages whose constants are Final and whose array types are all in arrays.py."""
-
-TESTED_MODULE_BY_MODULE = ("autocolor", "ramtek_emu")
-"""The packages of which every module has a file of tests at the mirrored place."""
 
 KNOWING_THE_DISPLAY = (
     "autocolor.__main__", "autocolor.files.writing", "autocolor.images", "autocolor.lighting.picture",
@@ -81,68 +72,70 @@ STILL_TWINS = {
 
 
 class Import(NamedTuple):
-    """A module that another imports, and whether it does so when it is loaded itself."""
+    """A module that another one imports, and whether it does so when it is loaded itself."""
 
     target: str
     at_once: bool
 
 
-def modules() -> dict[str, Path]:
-    found = {}
-    for package in PUBLIC_NAMES:
-        for path in sorted((ROOT / package).rglob("*.py")):
-            name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
-            found[name] = path
-    return found
+MODULES: dict[str, Path] = {
+    ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path
+    for package in PUBLIC_NAMES
+    for path in sorted((ROOT / package).rglob("*.py"))
+}
+TREES = {name: ast.parse(path.read_text("utf-8")) for name, path in MODULES.items()}
 
 
-MODULES = modules()
-
-
-def imports_in(nodes: list[ast.stmt], name: str, is_package: bool, at_once: bool = True) -> Iterator[Import]:
+def imports_in(nodes: list[ast.stmt], at_once: bool = True) -> Iterator[Import]:
+    """The imports of some statements; relative ones are refused by ruff."""
     for node in nodes:
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            yield from imports_in(node.body, name, is_package, at_once=False)
-            yield from imports_in(node.orelse, name, is_package, at_once)
+            yield from imports_in(node.body, at_once=False)
+            yield from imports_in(node.orelse, at_once)
         elif isinstance(node, ast.Import):
             yield from (Import(alias.name, at_once) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                parts = name.split(".")
-                kept = parts[: len(parts) - node.level + is_package]
-                base = ".".join([*kept, *([node.module] if node.module else [])])
             for alias in node.names:
-                whole = f"{base}.{alias.name}"
-                yield Import(whole if whole in MODULES else base, at_once)
+                full = f"{node.module}.{alias.name}"
+                yield Import(full if full in MODULES else str(node.module), at_once)
         else:
             inner = at_once and not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
             for field in ("body", "orelse", "finalbody", "handlers"):
                 for child in getattr(node, field, None) or []:
                     body = child.body if isinstance(child, ast.ExceptHandler) else [child]
-                    yield from imports_in(body, name, is_package, inner)
+                    yield from imports_in(body, inner)
 
 
-def imports_of(name: str) -> list[Import]:
-    path = MODULES[name]
-    return list(imports_in(ast.parse(path.read_text("utf-8")).body, name, path.stem == "__init__"))
+IMPORTS = {name: list(imports_in(tree.body)) for name, tree in TREES.items()}
 
 
-def outer(target: str) -> str:
-    return target.split(".")[0]
+def top(name: str) -> str:
+    """The package of a module."""
+    return name.split(".")[0]
 
 
-@pytest.mark.parametrize("name", [name for name in MODULES if outer(name) == "ramtek_emu"])
-def test_the_display_knows_nothing_of_the_renderer(name: str) -> None:
-    assert "autocolor" not in {outer(each.target) for each in imports_of(name)}
+def wing_of(name: str) -> str:
+    """The wing of a module; empty for the package itself."""
+    return [*name.split("."), ""][1]
 
 
-@pytest.mark.parametrize("name", [name for name in MODULES if outer(name) == "autocolor"])
-def test_the_renderer_knows_the_display_only_where_they_meet_and_only_by_its_doors(name: str) -> None:
-    used = {each.target for each in imports_of(name) if outer(each.target) == "ramtek_emu"}
-    if name not in KNOWING_THE_DISPLAY and not name.startswith(WINGS_KNOWING_THE_DISPLAY):
-        assert not used
-    assert used <= DOORS_OF_THE_DISPLAY
+def importers(packages: set[str]) -> set[tuple[str, bool]]:
+    """The modules that import one of some packages, and whether they do so at once."""
+    return {
+        (name, i.at_once) for name, imports in IMPORTS.items() for i in imports if top(i.target) in packages
+    }
+
+
+def test_the_display_knows_nothing_of_the_renderer() -> None:
+    assert {name for name, _ in importers({"autocolor"}) if top(name) == "ramtek_emu"} == set()
+
+
+def test_the_renderer_knows_the_display_only_where_they_meet_and_only_by_its_doors() -> None:
+    for name in MODULES:
+        if top(name) == "autocolor":
+            used = {i.target for i in IMPORTS[name] if top(i.target) == "ramtek_emu"}
+            assert used <= DOORS_OF_THE_DISPLAY, name
+            assert not used or name in KNOWING_THE_DISPLAY or name.startswith(WINGS_KNOWING_THE_DISPLAY), name
 
 
 def test_no_two_classes_share_a_name_and_no_two_modules_of_a_wing() -> None:
@@ -160,145 +153,161 @@ def test_no_two_classes_share_a_name_and_no_two_modules_of_a_wing() -> None:
 
 
 def test_pygame_is_in_one_file() -> None:
-    having = {name for name in MODULES for each in imports_of(name) if outer(each.target) == "pygame"}
-    assert having == {"ramtek_emu.monitor.glass"}
+    assert {name for name, _ in importers({"pygame"})} == {"ramtek_emu.monitor.glass"}
 
 
 def test_pillow_is_in_two_files_one_for_pictures_and_one_for_the_names_of_colors() -> None:
-    found = {
-        (name, each.at_once) for name in MODULES for each in imports_of(name) if outer(each.target) == "PIL"
-    }
-    # Colors written as "#rrggbb" need no Pillow: it is loaded for the first one that is not.
-    assert found == {("ramtek_emu.png", True), ("autocolor.scene.kinds", False)}
+    # Colors written as "#rrggbb" need no Pillow: it is loaded for the first name.
+    assert importers({"PIL"}) == {("ramtek_emu.png", True), ("autocolor.scene.kinds", False)}
 
 
 def test_nothing_is_imported_that_is_no_dependency() -> None:
-    used = {outer(each.target) for name in MODULES for each in imports_of(name)}
+    used = {top(i.target) for imports in IMPORTS.values() for i in imports}
     assert used <= {*PUBLIC_NAMES, *OUTSIDE, *READING_FOR_US, *sys.stdlib_module_names}
 
 
 def test_the_libraries_that_read_meshes_are_in_one_file_and_loaded_when_they_are_needed() -> None:
-    found = {
-        (name, each.at_once)
-        for name in MODULES
-        for each in imports_of(name)
-        if outer(each.target) in READING_FOR_US
-    }
-    assert found == {("autocolor.files.meshes.foreign_worker", False)}
+    assert importers(READING_FOR_US) == {("autocolor.files.meshes.foreign_worker", False)}
 
 
-@pytest.mark.parametrize("name", [name for name in MODULES if outer(name) in IN_THE_DIALECT])
-def test_constants_are_final_and_array_types_stand_in_one_module(name: str) -> None:
-    source = MODULES[name].read_text("utf-8")
-    for node in ast.parse(source).body:
-        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
-        names = [
-            each.id for target in targets if target for each in ast.walk(target) if isinstance(each, ast.Name)
-        ]
-        if any(each.strip("_").isupper() for each in names):
-            assert isinstance(node, ast.AnnAssign), f"{names} must be Final"
-            assert ast.unparse(node.annotation).startswith("Final"), f"{names} must be Final"
-    assert ("NDArray" in source) == (name == f"{outer(name)}.arrays")
+def test_constants_are_final_and_array_types_stand_in_one_module() -> None:
+    for name, tree in TREES.items():
+        for node in tree.body:
+            targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+            names = [
+                n.id for target in targets if target for n in ast.walk(target) if isinstance(n, ast.Name)
+            ]
+            if any(constant.strip("_").isupper() for constant in names):
+                assert isinstance(node, ast.AnnAssign), f"{name}: {names} must be Final"
+                assert ast.unparse(node.annotation).startswith("Final"), f"{name}: {names} must be Final"
+        assert ("NDArray" in MODULES[name].read_text("utf-8")) == (name == f"{top(name)}.arrays"), name
 
 
-@pytest.mark.parametrize("package", TESTED_MODULE_BY_MODULE)
-def test_every_module_has_its_tests_at_the_mirrored_place(package: str) -> None:
-    modules = [path for path in (ROOT / package).rglob("*.py") if not path.stem.startswith("__")]
-    mirrored = {ROOT / "tests" / path.relative_to(ROOT).with_name(f"test_{path.name}") for path in modules}
-    assert sorted(str(path.relative_to(ROOT)) for path in mirrored if not path.is_file()) == []
+def test_every_subject_has_its_tests_at_the_mirrored_place() -> None:
+    mirrored = [
+        path.relative_to(ROOT).with_name(f"test_{path.name}")
+        for path in MODULES.values()
+        if not path.stem.startswith("__")
+    ]
+    assert [str(path) for path in mirrored if not (ROOT / "tests" / path).is_file()] == []
 
 
-def wing_of(name: str) -> str:
-    return [*name.split("."), ""][1]
+def test_every_wing_has_its_place_in_the_order() -> None:
+    for package, order in WINGS.items():
+        assert {wing_of(name) for name in MODULES if top(name) == package} == {"", *order}
 
 
-@pytest.mark.parametrize("package", WINGS)
-def test_every_wing_has_its_place_in_the_order(package: str) -> None:
-    assert {wing_of(name) for name in MODULES if outer(name) == package} == {"", *WINGS[package]}
-
-
-@pytest.mark.parametrize("package", WINGS)
-def test_a_wing_says_what_it_is_and_imports_nothing_unless_it_is_used_whole(package: str) -> None:
-    for path in (ROOT / package).glob("*/__init__.py"):
-        wing = f"{package}.{path.parent.name}"
-        what_it_is, *rest = ast.parse(path.read_text("utf-8")).body
-        assert isinstance(what_it_is, ast.Expr), f"{path} must begin with a docstring"
-        if wing in USED_WHOLE:
-            rooms = {each.target for each in imports_of(wing) if outer(each.target) == package}
-            assert rooms == {name for name in MODULES if name.startswith(f"{wing}.")}
-        else:
+def test_a_wing_says_what_it_is_and_imports_nothing() -> None:
+    for name, path in MODULES.items():
+        if path.stem == "__init__" and name not in PUBLIC_NAMES:
+            what_it_is, *rest = TREES[name].body
+            assert isinstance(what_it_is, ast.Expr), f"{path} must begin with a docstring"
             assert not rest, f"{path} must hold a docstring and nothing else"
 
 
-@pytest.mark.parametrize("name", [name for name in MODULES if outer(name) in WINGS and name not in WINGS])
-def test_no_module_imports_from_a_wing_below_its_own(name: str) -> None:
-    package, order = outer(name), WINGS[outer(name)]
-    above = ("", *order[: order.index(wing_of(name)) + 1])
-    used = {each.target for each in imports_of(name) if outer(each.target) == package}
-    # The package itself names all of its modules: it stands below every wing.
-    assert package not in used
-    assert {target for target in used if wing_of(target) not in above} == set()
+def test_no_module_imports_from_a_wing_below_its_own() -> None:
+    for name in MODULES:
+        if name not in WINGS:
+            package, order = top(name), WINGS[top(name)]
+            above = order[: order.index(wing_of(name)) + 1]
+            # The package itself names all of its modules: it stands below every wing.
+            below = {
+                i.target for i in IMPORTS[name] if top(i.target) == package and wing_of(i.target) not in above
+            }
+            assert below == set(), name
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
     state: dict[str, str] = {}
-
-    def counts(name: str, each: Import) -> bool:
-        """Whether an import links two files: in a package with wings also one that is made later."""
-        if each.target not in MODULES or name.startswith(f"{each.target}."):
-            # A module of a package loads the package before it; that is no circle of theirs.
-            return False
-        return each.at_once or (outer(name) in WINGS and name not in WINGS)
 
     def visit(name: str, path: tuple[str, ...]) -> None:
         assert state.get(name) != "open", f"circle: {' -> '.join((*path, name))}"
         if name in state:
             return
         state[name] = "open"
-        for each in imports_of(name):
-            if counts(name, each):
-                visit(each.target, (*path, name))
+        for target, at_once in IMPORTS[name]:
+            # A module of a package loads the package before it; that is no circle of theirs.
+            if target in MODULES and not name.startswith(f"{target}.") and (at_once or name not in WINGS):
+                visit(target, (*path, name))
         state[name] = "done"
 
     for name in MODULES:
         visit(name, ())
 
 
+def test_no_two_modules_of_a_wing_have_the_same_name() -> None:
+    names = Counter(
+        (top(name), wing_of(name), path.stem) for name, path in MODULES.items() if path.stem != "__init__"
+    )
+    assert [name for name, count in names.items() if count > 1] == []
+
+
+def test_no_two_classes_have_the_same_name() -> None:
+    for package in WINGS:
+        names = Counter(
+            node.name
+            for name, tree in TREES.items()
+            if top(name) == package
+            for node in ast.walk(tree)
+            if isinstance(node, ast.ClassDef)
+        )
+        assert [name for name, count in names.items() if count > 1] == []
+
+
 def run(code: str, timeout: float = 60) -> str:
-    return subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=timeout
-    ).stdout
+    """What some code prints in a new interpreter."""
+    ended = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=timeout, check=False
+    )
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout
 
 
-def test_each_module_imports_alone_and_only_the_window_loads_pygame() -> None:
-    # One fresh interpreter forks for each module, as loading numpy once is enough, one on each processor.
-    names = [name for name in MODULES if not name.endswith("__main__")]
-    code = f"""
-import importlib, os, sys
-import numpy
-names, running = list({names!r}), {{}}
-while names or running:
-    while names and len(running) < (os.cpu_count() or 1):
-        name = names.pop()
-        child = os.fork()
-        if child == 0:
-            importlib.import_module(name)
-            window = name in ("ramtek_emu.monitor.glass", "ramtek_emu.monitor.window")
-            if ("pygame" in sys.modules) != window:
-                print(name, "and pygame", flush=True)
-            if "PIL" in sys.modules and name != "ramtek_emu.png" and not window:
-                print(name, "and Pillow", flush=True)
-            os._exit(0)
-        running[child] = name
-    child, status = os.wait()
-    name = running.pop(child)
-    if status:
-        print(name, "does not import alone", flush=True)
+WITH_PYGAME = {"ramtek_emu.monitor.glass", "ramtek_emu.monitor.window"}
+WITH_PILLOW = {"ramtek_emu.png", *WITH_PYGAME}
+
+IMPORTING_ALONE = """
+import importlib, sys
+import numpy, click
+
+def forget(prefix):
+    for loaded in list(sys.modules):
+        if loaded == prefix or loaded.startswith(prefix + "."):
+            del sys.modules[loaded]
+
+def allow(libraries):
+    for library in ("pygame", "PIL"):
+        forget(library)
+        if library not in libraries:
+            sys.modules[library] = None  # To import it raises ImportError.
+
+for wing, name, libraries in {modules!r}:
+    forget(wing)
+    allow(libraries)
+    try:
+        importlib.import_module(name)
+    except ImportError as error:
+        raise SystemExit(f"{{name}} does not import alone: {{error}}")
+    if libraries:
+        forget("ramtek_emu")
 """
-    if not hasattr(os, "fork"):
-        pytest.skip("needs os.fork")
-    output = run(code, timeout=300)
-    assert [line for line in output.splitlines() if not line.startswith("pygame")] == []
+
+
+@pytest.mark.parametrize("package", WINGS)
+def test_every_module_imports_alone_and_only_the_window_loads_pygame(package: str) -> None:
+    # A wing never imports a later one, so that the wings before it can stay loaded.
+    modules = [
+        (
+            f"{package}.{wing}",
+            name,
+            ["pygame"] * (name in WITH_PYGAME) + ["PIL"] * (name in WITH_PILLOW),
+        )
+        for wing in WINGS[package]
+        if wing != "__main__"
+        for name in MODULES
+        if (top(name), wing_of(name)) == (package, wing)
+    ]
+    run(IMPORTING_ALONE.format(modules=modules), timeout=300)
 
 
 def test_the_packages_import_no_numpy_and_no_screen() -> None:

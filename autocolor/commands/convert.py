@@ -57,7 +57,7 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
     if out in ("", "-"):
         raise UsageError(f"OUT must be a file or a folder, not {out!r}; give it a name")
     from autocolor.files.conversion import left_out, output_named, output_of
-    from autocolor.files.meshes.formats import MeshFormat
+    from autocolor.files.formats import MeshFormat
     from autocolor.files.scene_sources import source_format
     from autocolor.files.writing import refuse_output
 
@@ -79,16 +79,16 @@ def convert(context: click.Context, source: SceneSource, out: str, to: str | Non
 def format_lines() -> list[str]:
     """A line for each format: its name, the endings of its files, and whether it is read and written."""
     from autocolor.files.conversion import outputs
-    from autocolor.files.meshes.formats import mesh_formats
-    from autocolor.files.scenes.formats import scene_formats
+    from autocolor.files.formats import MESH_FORMATS
+    from autocolor.files.scene_sources import SCENE_FORMATS
 
     rows: dict[str, tuple[str, str]] = {}
-    for each in scene_formats():
+    for each in SCENE_FORMATS:
         rows[each.name.removesuffix(" file")] = (
             " ".join([*each.suffixes, *([f"a folder of {each.in_folder}"] if each.in_folder else [])]),
             "read",
         )
-    for mesh_format in mesh_formats():
+    for mesh_format in MESH_FORMATS:
         folder = [f"a folder of {', '.join(mesh_format.in_folder)}"] if mesh_format.in_folder else []
         rows[mesh_format.name] = (" ".join([*mesh_format.suffixes, *folder]), "read")
     for output in outputs():

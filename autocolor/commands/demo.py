@@ -36,8 +36,8 @@ def demo_session() -> History:
     """A session with the demo. Raises MissingInputError if it is not installed."""
     from autocolor.files.scene_sources import read_scene
     from autocolor.journal.history import History
-    from autocolor.journal.places import Place, Source
+    from autocolor.journal.places import ScenePlace, Source
 
     folder = demo_folder()
     # The demo was not named by the user: it is saved to new files, wherever it is.
-    return History(read_scene(folder), Place(Source(str(folder))))
+    return History(read_scene(folder), ScenePlace(Source(str(folder))))

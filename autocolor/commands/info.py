@@ -40,7 +40,7 @@ def info(context: click.Context, source: SceneSource, as_json: bool) -> None:
 
 def facts_of(report: SceneReport) -> dict[str, Any]:
     """The facts about a scene, as values that JSON can hold; the scene is rendered for them."""
-    from autocolor.mapping.display_image import display_image
+    from autocolor.images import display_image
     from autocolor.rendering import render
     from autocolor.scene.mesh_faults import quad_shapes
 

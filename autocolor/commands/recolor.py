@@ -101,8 +101,8 @@ def recolor(
     refuse_outputs(output, save, force)
 
     from autocolor.files.picture_file import read_picture, write_picture
+    from autocolor.images import send_picture
     from autocolor.logs import logger_of, timed
-    from autocolor.sending import send_picture
     from ramtek_emu import GMR_9300, Ramtek9300
 
     logger = logger_of(__name__)

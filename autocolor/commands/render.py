@@ -86,7 +86,7 @@ def render(
     report = reframed(read(source), elements / lines)
     original = with_normals(report.scene, normals)
     if hold_exposure:
-        from autocolor.mapping.display_image import display_image
+        from autocolor.images import display_image
         from autocolor.mapping.intensity import held_exposure
         from autocolor.rendering import render as rendered
 

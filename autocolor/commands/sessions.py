@@ -1,7 +1,4 @@
-"""Sessions of `autocolor view` and `show`: keeping a journal while one lasts, and those that were left.
-
-The journal of a session stays if the session does not end orderly, such as by a signal.
-"""
+"""Sessions of a window: autosaved while it is open; listed, recovered or forgotten if they were left."""
 
 from __future__ import annotations
 
@@ -16,74 +13,20 @@ from typing import TYPE_CHECKING, Final, NoReturn
 import click
 
 from autocolor.errors import AutocolorError, InputError, MissingInputError, UsageError
-from autocolor.journal.autosave import JOURNAL, Autosave, forget, left_sessions
-from autocolor.journal.reading import read_journal
+from autocolor.journal.autosave import OLD_SCRIPT, Autosave, forget, journal_in, left_sessions
+from autocolor.journal.journal import read_journal
 from autocolor.screens.viewer import Viewer
 
 if TYPE_CHECKING:
-    from autocolor.journal.reading import Session
-
+    from autocolor.journal.journal import JournalSession
 
 NEWEST: Final = "newest"
 """The choice of the newest session that can be read."""
 
-
-def when(folder: Path) -> str:
-    """The time of the last write of a session's journal, in local time."""
-    return time.strftime("%Y-%m-%d %H:%M", time.localtime((folder / JOURNAL).stat().st_mtime))
-
-
-def list_sessions() -> None:
-    """Print a line for each session that was left, the newest first: name, time and steps."""
-    for folder in left_sessions():
-        try:
-            session = read_journal(folder / JOURNAL)
-        except InputError as error:
-            description = str(error).replace("\n", "; ")
-        else:
-            steps = len(session.history.steps)
-            description = f"{session.source.path}, {steps} step{'' if steps == 1 else 's'}"
-        click.echo(f"{folder.name}  {when(folder)}  {description}")
-
-
-def forget_session(name: str) -> None:
-    """Remove a session that was left, by the beginning of its name, and say so on stderr."""
-    folder = _named(name)
-    forget(folder)
-    click.echo(f"autocolor: {folder.name} is removed", err=True)
-
-
-def chosen_session(name: str) -> tuple[Path, Session]:
-    """The session whose name begins so, or the NEWEST that can be read, and its folder.
-
-    Raises UsageError if no session or several have such a name, InputError if the session cannot be read,
-    MissingInputError if no session is left.
-    """
-    if name != NEWEST:
-        folder = _named(name)
-        return folder, read_journal(folder / JOURNAL)
-    for folder in left_sessions():
-        try:
-            return folder, read_journal(folder / JOURNAL)
-        except InputError as error:
-            click.echo(f"autocolor: {folder}: {error}", err=True)
-    raise MissingInputError(
-        "--recover: there must be a session that did not end orderly and can be read, and there is none;"
-        " name a scene"
-    )
-
-
-def _named(name: str) -> Path:
-    """The folder of the only session whose name begins so. Raises UsageError."""
-    folders = [folder for folder in left_sessions() if name and folder.name.startswith(name)]
-    if len(folders) != 1:
-        found = "several of these" if folders else "none of these"
-        raise UsageError(
-            f"a session must be named by the beginning of its name and no other's, and {name!r} is {found};"
-            " `autocolor view --sessions` lists them"
-        )
-    return folders[0]
-
+OLD: Final = (
+    "the session was left by an older version of autocolor, and cannot be recovered; `autocolor view"
+    " --forget` removes it"
+)
 
 ENDING: Final = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
 """The signals that end a program from outside."""
@@ -93,23 +36,23 @@ BY_SIGNAL: Final = 128
 
 
 @contextmanager
-def kept_session(viewer: Viewer, left: Path | None = None) -> Iterator[Callable[[], None]]:
-    """Keep the journal of the session of a viewer; call the function that it yields often.
+def autosaved_session(viewer: Viewer, folder: Path | None = None) -> Iterator[Callable[[], None]]:
+    """Autosave the session of a viewer; yields a function to call often.
 
-    A journal that cannot be written is reported once, in the viewer. Sessions that were left before are
-    reported on stderr. `left` is the folder of the session that is continued, if any. SIGTERM and SIGHUP end
-    the program at once, and leave the journal.
+    `folder` is the folder of a left session that goes on. A journal that cannot be written is told once in
+    the viewer, and left sessions are told on stderr. SIGTERM and SIGHUP end the program at once, and leave
+    the journal.
     """
-    autosave = Autosave(left)
-    _tell_left(viewer)
-    reported: set[str] = set()
+    autosave = Autosave(folder)
+    _mention_left_sessions(viewer)
+    messages: set[str] = set()
 
-    def update(at_once: bool = False) -> None:
+    def update() -> None:
         try:
-            autosave.update(viewer.studio.history, at_once)
+            autosave.update(viewer.studio.history)
         except AutocolorError as error:
-            if str(error) not in reported:
-                reported.add(str(error))
+            if str(error) not in messages:
+                messages.add(str(error))
                 viewer.tell(str(error))
 
     before = {number: signal.signal(number, _end) for number in ENDING}
@@ -130,18 +73,83 @@ def _end(number: int, _: FrameType | None) -> NoReturn:
     raise SystemExit(BY_SIGNAL + number)
 
 
-def _tell_left(viewer: Viewer) -> None:
-    """Report sessions that were left before, on stderr and in the viewer."""
+def _mention_left_sessions(viewer: Viewer) -> None:
+    """Mention sessions that were left, on stderr and in the viewer."""
     left = left_sessions()
     if not left:
         return
     many = len(left) > 1
-    what = f"{len(left)} sessions, the last one" if many else "a session"
+    sessions = f"{len(left)} sessions, the last one" if many else "a session"
     click.echo(
-        f"autocolor: {what} of {when(left[0])}, did not end orderly; `autocolor view --recover` opens it,"
-        f" `--sessions` lists {'them' if many else 'it'}, `--forget` removes {'one' if many else 'it'}",
+        f"autocolor: {sessions} of {_time_of(left[0])}, did not end orderly; `autocolor view --recover` opens"
+        f" it, `--sessions` lists {'them' if many else 'it'}, `--forget` removes {'one' if many else 'it'}",
         err=True,
     )
     viewer.tell(
-        "a session was left: autocolor view --recover opens it; the right edge: the menu", stands=True
+        "a session was left: autocolor view --recover opens it; the right edge: the menu", persistent=True
     )
+
+
+def list_sessions() -> None:
+    """Print a line for each session that was left, the newest first: its name, its time and its steps."""
+    for folder in left_sessions():
+        try:
+            session = _session_in(folder)
+        except InputError as error:
+            text = str(error).replace("\n", "; ")
+        else:
+            steps = len(session.history.steps)
+            text = f"{session.source.path}, {steps} step{'' if steps == 1 else 's'}"
+        click.echo(f"{folder.name}  {_time_of(folder)}  {text}")
+
+
+def forget_session(name: str) -> None:
+    """Remove a session that was left, by the beginning of its name, and say so on stderr."""
+    folder = _folder_named(name)
+    forget(folder)
+    click.echo(f"autocolor: {folder.name} is removed", err=True)
+
+
+def chosen_session(name: str) -> tuple[Path, JournalSession]:
+    """A left session and its folder, by the beginning of its name; NEWEST is the newest that can be read.
+
+    Raises UsageError if none or several have the name, InputError if the session cannot be read,
+    MissingInputError if there is no session.
+    """
+    if name != NEWEST:
+        folder = _folder_named(name)
+        return folder, _session_in(folder)
+    for folder in left_sessions():
+        try:
+            return folder, _session_in(folder)
+        except InputError as error:
+            click.echo(f"autocolor: {folder}: {error}", err=True)
+    raise MissingInputError(
+        "--recover: there must be a session that did not end orderly and can be read, and there is none;"
+        " name a scene"
+    )
+
+
+def _session_in(folder: Path) -> JournalSession:
+    """The session in a folder. Raises InputError if an older version left it, and as `read_journal`."""
+    journal = journal_in(folder)
+    if journal.name == OLD_SCRIPT:
+        raise InputError(OLD)
+    return read_journal(journal)
+
+
+def _folder_named(name: str) -> Path:
+    """The folder of the only left session whose name begins with `name`. Raises UsageError."""
+    folders = [folder for folder in left_sessions() if name and folder.name.startswith(name)]
+    if len(folders) != 1:
+        matches = "several of these" if folders else "none of these"
+        raise UsageError(
+            f"a session must be named by the beginning of its name and no other's, and {name!r} is {matches};"
+            " `autocolor view --sessions` lists them"
+        )
+    return folders[0]
+
+
+def _time_of(folder: Path) -> str:
+    """When the journal of a session was written last, in local time."""
+    return time.strftime("%Y-%m-%d %H:%M", time.localtime(journal_in(folder).stat().st_mtime))

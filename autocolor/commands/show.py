@@ -124,17 +124,17 @@ def session_elsewhere(
     The unit is polled for the only input: a place, ENTER and TRACK. Everything else is a row of a menu.
     Raises UnavailableError if the display goes away or does not answer, PortError if it is not reached.
     """
-    from autocolor.commands.sessions import kept_session
+    from autocolor.commands.sessions import autosaved_session
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import PortError, ReplyError
 
     with port_to(address) as port:
         try:
             viewer = Viewer(history, port, folder)
-            viewer.tell("the right edge brings the menu; ENTER picks, TRACK drags", stands=True)
+            viewer.tell("the right edge brings the menu; ENTER picks, TRACK drags", persistent=True)
             prepare(viewer)
             click.echo(f"shown on {address}; pick `leave` in the menu there, or press Ctrl+C here", err=True)
-            with kept_session(viewer, left) as update:
+            with autosaved_session(viewer, left) as update:
                 attend(viewer, update)
             viewer.clear()
         except (PortError, ReplyError) as error:

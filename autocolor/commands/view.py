@@ -115,7 +115,7 @@ def show(
     left before. `prepare` is called with the viewer at the beginning. Raises UnavailableError if there is no
     screen.
     """
-    from autocolor.commands.sessions import kept_session
+    from autocolor.commands.sessions import autosaved_session
     from autocolor.errors import UnavailableError
     from autocolor.screens.viewer import Viewer
     from ramtek_emu import NoScreenError, Ramtek9300
@@ -128,7 +128,7 @@ def show(
         viewer = Viewer(history, display)
         viewer.session.is_at_hand = True
         prepare(viewer)
-        with kept_session(viewer, left) as update:
+        with autosaved_session(viewer, left) as update:
             monitor_of(viewer, display, full_screen, fit, update).run()
     except NoScreenError as error:
         raise UnavailableError(f"{error}; `autocolor render SCENE -o PNG` renders without a screen") from None

@@ -1,8 +1,9 @@
 """Files of arrays, as .npz archives that numpy can open: picture files and table files.
 
-Each has a member `header`, JSON in UTF-8, and arrays of given types, some of them in series whose lengths the
-header tells. They are stored without compression: the size of each array is checked against the size of its
-member before anything is allocated, so a small file cannot take much memory. Nothing is ever unpickled.
+A file has a member `header`, JSON in UTF-8, and arrays of given types. Some arrays are in series, whose
+lengths the header gives. Members are stored without compression, and the size of an array is compared with
+the size of its member before memory is allocated. So a small file cannot take much memory. Nothing is ever
+unpickled.
 """
 
 from __future__ import annotations
@@ -13,17 +14,17 @@ import math
 import re
 import struct
 import zipfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final, NamedTuple, NoReturn
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import AnyArray
 from autocolor.checks import printable, shown
 from autocolor.errors import InputError
-from autocolor.files.reading import read_bytes
+from autocolor.files.reading import bounded_json, read_bytes
 from autocolor.scene.scalar import MOST_SCALARS, MeshScalar
 
 LARGEST_HEADER: Final = 16 << 20
@@ -40,17 +41,13 @@ ArrayType = tuple[str, int]
 
 HEADER_TYPE: Final[ArrayType] = ("|u1", 1)
 
-
 LONGEST_REASON: Final = 300
-"""Letters of what is said of a damaged file."""
+"""Limit: letters of the reason in a message about a damaged file."""
 
 
 @dataclass(frozen=True)
 class Series:
-    """Arrays of one type, as many as a list in the header has rows, which describe them.
-
-    The member of the first is named like "scalar_0".
-    """
+    """Arrays of one type, one for each row of a list in the header. The first member is named "scalar_0"."""
 
     member: str
     type: ArrayType
@@ -61,11 +58,10 @@ class Series:
 class ArrayFileKind:
     """One kind of array file.
 
-    `noun` is what messages call it, and `advice` what they say to do about a damaged one. `formats` are the
-    values of `format` in the header that can be read, the one that is written first; `keys` are the other
-    keys that the header has. `arrays` has the types of the members, and `series` those of series of members,
-    each by the key of its list in the header. The `plain` formats have no series and none of their lists.
-    `added` are the names of the arrays that only the first format has.
+    `noun` is its name in messages, and `advice` says there what to do about a damaged file. `formats` are the
+    values of `format` in the header that can be read; the first is written. `keys` are the other keys of the
+    header. `arrays` has the types of the members by name, and `series` the series by the key of their list in
+    the header. The `plain` formats have no series. `added` are the arrays that only the first format has.
     """
 
     noun: str
@@ -79,7 +75,7 @@ class ArrayFileKind:
     added: frozenset[str] = frozenset()
 
     def types(self, header: Mapping[str, Any]) -> dict[str, ArrayType]:
-        """The types of all members but the header of a file with this one."""
+        """The types of all members but the header, for a file with this header."""
         is_older = header.get("format", self.formats[0]) != self.formats[0]
         types = {name: each for name, each in self.arrays.items() if not (is_older and name in self.added)}
         for key, series in self.series.items():
@@ -132,19 +128,19 @@ def read_array_file(kind: ArrayFileKind, source: Path) -> ArrayFile:
         raise _damaged(kind, source, f"damaged ({error})") from None
 
 
-def _damaged(kind: ArrayFileKind, source: Path, found: str) -> InputError:
+def _damaged(kind: ArrayFileKind, source: Path, reason: str) -> InputError:
     # Names in the file may be anything.
-    told = printable(found[:LONGEST_REASON])
+    reason = printable(reason[:LONGEST_REASON])
     return InputError(
-        f"{source.name}: a {kind.noun} must be whole and as autocolor wrote it, not {told}; {kind.advice}"
+        f"{source.name}: a {kind.noun} must be whole and as autocolor wrote it, not {reason}; {kind.advice}"
     )
 
 
 def _read(kind: ArrayFileKind, source: Path, archive: zipfile.ZipFile) -> ArrayFile:
-    """The header, and then the arrays that it tells of. Raises InputError if there are any other members."""
-    found = [member.filename for member in archive.infolist()]
-    listed = ", ".join(map(shown, found[:3])) or "none"
-    if "header.npy" not in found:
+    """The header and the arrays that it describes. Raises InputError if there are other members."""
+    names = [member.filename for member in archive.infolist()]
+    listed = ", ".join(map(shown, names[:3])) or "none"
+    if "header.npy" not in names:
         raise _damaged(kind, source, f"with members like {listed}")
     if any(member.compress_type != zipfile.ZIP_STORED for member in archive.infolist()):
         raise _damaged(kind, source, "compressed")
@@ -154,7 +150,7 @@ def _read(kind: ArrayFileKind, source: Path, archive: zipfile.ZipFile) -> ArrayF
 
     header = _header(kind, source, array("header", HEADER_TYPE))
     types = kind.types(header)
-    if sorted(found) != sorted(f"{name}.npy" for name in ("header", *types)):
+    if sorted(names) != sorted(f"{name}.npy" for name in ("header", *types)):
         raise _damaged(kind, source, f"with members like {listed}")
     return ArrayFile(header, {name: array(name, wanted) for name, wanted in types.items()})
 
@@ -179,25 +175,21 @@ def _header(kind: ArrayFileKind, source: Path, data: AnyArray) -> dict[str, Any]
     """The parsed header. Raises InputError if it is not JSON, or has other keys than its format."""
     place = f"{source.name}, header"
 
-    def refuse(constant: str) -> NoReturn:
-        raise ValueError(f"the number {constant}")
-
     try:
-        text = data.tobytes()
-        if len(text) > LARGEST_HEADER or sum(map(text.count, (b",", b"[", b"{"))) > MOST_VALUES:
-            raise ValueError(f"{len(text):,} bytes of it")
-        header = json.loads(text.decode("utf-8"), parse_constant=refuse)
-    except (ValueError, RecursionError) as error:
+        if len(data) > LARGEST_HEADER:
+            raise ValueError(f"{len(data):,} bytes of it")
+        header = bounded_json(data.tobytes(), MOST_VALUES)
+    except ValueError as error:
         raise InputError(
             f"{place}: it must be JSON of at most {LARGEST_HEADER >> 20} MiB and {MOST_VALUES:,} values, not"
             f" {error}; {kind.advice}"
         ) from None
     formats = (*kind.formats, *kind.plain)
     if not isinstance(header, dict) or header.get("format") not in formats:
-        raise InputError(f"{place}: its format must be {kind.formats[0]!r}, not another; {kind.advice}")
+        raise InputError(f"{place}: its format must be {kind.formats[0]!r}; {kind.advice}")
     series = {} if header["format"] in kind.plain else kind.series
     if set(header) != {"format", *kind.keys, *series}:
-        raise InputError(f"{place}: it must have the keys of its format, not others; {kind.advice}")
+        raise InputError(f"{place}: it must have exactly the keys of its format; {kind.advice}")
     for key, each in series.items():
         if not isinstance(header[key], list) or len(header[key]) > each.most:
             raise InputError(
@@ -207,8 +199,7 @@ def _header(kind: ArrayFileKind, source: Path, data: AnyArray) -> dict[str, Any]
     return header
 
 
-# -------------------- scalar_members
-# The scalars of a mesh in an array file: a row of the header and a member for each.
+# The scalars of a mesh: a row of the header and a member for each.
 
 KEY: Final = "mesh_scalars"
 """The key of the list in the header whose rows are tables of `name` and `of`."""
@@ -217,7 +208,7 @@ MESH_SCALARS: Final = Series("mesh_scalar", ("<f8", 1), MOST_SCALARS)
 
 
 def scalar_rows(scalars: Sequence[MeshScalar]) -> list[dict[str, str]]:
-    """What the header tells of the scalars."""
+    """The rows of the header that describe the scalars."""
     return [{"name": scalar.name, "of": scalar.of} for scalar in scalars]
 
 
@@ -228,11 +219,9 @@ def scalar_members(scalars: Sequence[MeshScalar]) -> dict[str, AnyArray]:
 
 def scalars_of(header: Mapping[str, Any], arrays: Mapping[str, AnyArray]) -> tuple[MeshScalar, ...]:
     """The scalars of a header and its arrays, none of a header without them. Raises InputError."""
-    return tuple(_scalars_of(header.get(KEY, ()), arrays))
-
-
-def _scalars_of(rows: Sequence[object], arrays: Mapping[str, AnyArray]) -> Iterator[MeshScalar]:
-    for number, row in enumerate(rows):
+    scalars = []
+    for number, row in enumerate(header.get(KEY, ())):
         if not isinstance(row, Mapping) or row.keys() != {"name", "of"}:
             raise InputError(f"{KEY}[{number + 1}] must be a table of name and of, not {shown(row)}")
-        yield MeshScalar(row["name"], arrays[f"{MESH_SCALARS.member}_{number}"], row["of"])
+        scalars.append(MeshScalar(row["name"], arrays[f"{MESH_SCALARS.member}_{number}"], row["of"]))
+    return tuple(scalars)

@@ -15,21 +15,24 @@ from typing import Final
 
 from autocolor.checks import shown
 from autocolor.errors import OutputError, UsageError, WriteError, reason_of
-from autocolor.files.meshes.formats import (
+from autocolor.files.formats import (
     HELD,
+    MESH_FORMATS,
     NODE_SCALARS,
     PARTS,
     POLYGON_SCALARS,
+    Format,
     MeshFormat,
+    format_named,
     format_of_folder,
-    mesh_formats,
+    suffix_rule,
+    suffixes_of,
 )
-from autocolor.files.meshes.obj import OBJ, materials_of, mtl_text, obj_text
+from autocolor.files.meshes.obj import materials_of, mtl_text, obj_text
 from autocolor.files.meshes.repair import name_of
 from autocolor.files.paths import SCENE_FILE
-from autocolor.files.registry import format_named, suffix_rule, suffixes_of
+from autocolor.files.scene_sources import STORE
 from autocolor.files.scene_writing import write_scene_with_tables
-from autocolor.files.scenes.store_scene import STORE
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.scene.columns import fields_of
 from autocolor.scene.creation import SHARED
@@ -56,15 +59,13 @@ It returns the files that it wrote, and raises OutputError or WriteError, with n
 
 
 @dataclass(frozen=True)
-class Output:
+class Output(Format):
     """One format that a scene is written in.
 
     `suffixes` are those of its file, or of its folder; `in_folder` are the names of the files of a folder.
     `holds` is what is read back from it, of WHOLE_SCENE.
     """
 
-    name: str
-    suffixes: tuple[str, ...]
     write: SceneWriter
     holds: frozenset[str] = WHOLE_SCENE
     in_folder: tuple[str, ...] = ()
@@ -203,13 +204,13 @@ SCENE: Final = Output("scene", (".toml",), _write_scene, in_folder=(SCENE_FILE,)
 
 def outputs() -> tuple[Output, ...]:
     """All formats that a scene can be written in, sorted by name without regard to capitals."""
-    meshes = [_mesh_output(each) for each in mesh_formats() if each.written or each.write]
+    meshes = [_mesh_output(each) for each in MESH_FORMATS if each.written or each.write]
     return tuple(sorted([*meshes, SCENE, STORE_OUTPUT], key=lambda each: each.name.casefold()))
 
 
 def _mesh_output(mesh_format: MeshFormat) -> Output:
     name, suffixes = mesh_format.name, mesh_format.suffixes
-    if mesh_format is OBJ:
+    if mesh_format.written is obj_text:
         return Output(name, suffixes, write_obj, mesh_format.holds | {SURFACES})
     if mesh_format.written is not None:
         return Output(name, suffixes, partial(_write_file, mesh_format), mesh_format.holds)

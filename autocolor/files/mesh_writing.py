@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from autocolor.errors import InputError, OutputError
-from autocolor.files.meshes.formats import read_mesh
+from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes

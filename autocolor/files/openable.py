@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from autocolor.errors import InputError, reason_of
-from autocolor.files.meshes.formats import format_of_folder, mesh_suffixes
-from autocolor.files.scenes.formats import scene_format_named, scene_formats
+from autocolor.files.formats import format_named, format_of_folder, mesh_suffixes
+from autocolor.files.scene_sources import SCENE_FORMATS
 
 FOLDER: Final = "folder"
 MESH: Final = "mesh"
@@ -59,7 +59,7 @@ def kind_of(path: Path) -> str:
             return ""
     except OSError:
         return ""
-    scene_format = scene_format_named(path)
+    scene_format = format_named(path, SCENE_FORMATS)
     if scene_format is not None:
         return scene_format.name.removesuffix(" file")
     return MESH if path.suffix.lower() in mesh_suffixes() else ""
@@ -71,7 +71,7 @@ def stays_within(path: Path, folder: Path) -> bool:
     read = [path]
     if path.is_dir():
         found = format_of_folder(path)
-        names = [each.in_folder for each in scene_formats() if each.in_folder]
+        names = [each.in_folder for each in SCENE_FORMATS if each.in_folder]
         names += found.in_folder if found is not None else ()
         read += [path / name for name in names]
     return all(Path(os.path.realpath(each)).is_relative_to(real) for each in read)
@@ -79,7 +79,7 @@ def stays_within(path: Path, folder: Path) -> bool:
 
 def _scene_file_in(folder: Path) -> str | None:
     """The name of the scene file in a folder; None if there is none."""
-    names = (each.in_folder for each in scene_formats())
+    names = (each.in_folder for each in SCENE_FORMATS)
     return next((name for name in names if name and (folder / name).is_file()), None)
 
 

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import Any, BinaryIO, Final, NoReturn
 
 from autocolor.errors import InputError, MissingInputError, reason_of
 
 LARGEST_MESH_FILE: Final = 256 * 1024 * 1024
-"""Assumed: in bytes, about three million polygons as OBJ; it bounds the memory that a reader needs."""
+"""Limit: in bytes, about three million polygons as OBJ; it bounds the memory that a reader needs."""
 
 LARGEST_BINARY_MESH_FILE: Final = 1024 * 1024 * 1024
-"""Assumed: in bytes, twenty million triangles as STL or fifty million polygons as PLY. A binary file is read
+"""Limit: in bytes, twenty million triangles as STL or fifty million polygons as PLY. A binary file is read
 at a hundred megabytes a second and more, and in about six times its size of memory."""
 
 LEAST_READ: Final = 1 << 20
@@ -102,6 +103,22 @@ def unreadable(path: Path, error: OSError) -> InputError:
     if error.errno in (errno.ENOENT, errno.ENOTDIR):
         return MissingInputError(f"{path}: there is no such file or folder; check the name")
     return InputError(f"{path}: it cannot be read ({reason_of(error)}); check the name and its permissions")
+
+
+def bounded_json(data: bytes, most_values: int) -> Any:
+    """The value that JSON text describes. Raises ValueError if it is wrong or has too many values."""
+
+    def refuse(constant: str) -> NoReturn:
+        raise ValueError(f"the number {constant}")
+
+    if sum(map(data.count, (b",", b"[", b"{"))) > most_values:
+        raise ValueError(f"more than {most_values:,} values")
+    try:
+        return json.loads(data.decode("utf-8"), parse_constant=refuse)
+    except json.JSONDecodeError as error:
+        raise ValueError(f"{error.msg} at line {error.lineno}, column {error.colno}") from None
+    except RecursionError:
+        raise ValueError("lists in lists without end") from None
 
 
 def text_problem(data: bytes) -> str | None:

@@ -3,29 +3,80 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
-from autocolor.files.meshes.formats import (
+from autocolor.files.formats import (
+    MESH_FORMATS,
+    Format,
     MeshFormat,
     file_formats,
     files_of_folder,
     format_of_folder,
-    mesh_formats,
     read_mesh,
+    recognized,
+    suffix_rule,
+    suffixes_of,
 )
 from autocolor.files.meshes.repair import SCALES, UPS, Placement
+from autocolor.files.picture_file import read_picture
 from autocolor.files.reading import status_of
-from autocolor.files.registry import recognized, suffix_rule, suffixes_of
-from autocolor.files.scenes.formats import SceneFormat, scene_formats
+from autocolor.files.scenes.scene_file import read_scene_file
 from autocolor.files.scenes.scene_meshes import MeshSource, keep_source
 from autocolor.files.scenes.scene_report import SceneReport, scene_report
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.scene import Scene
 
 PathLike = str | os.PathLike[str]
+
+SceneReader = Callable[..., SceneReport]
+"""A function that reads the scene of a path. It raises InputError.
+
+With `outside`, the scene may name files outside its folder. `surfaces` tells where the surfaces of parts come
+from that the scene gives none.
+"""
+
+
+@dataclass(frozen=True)
+class SceneFormat(Format):
+    """A file format that holds a whole scene. A folder that contains `in_folder` is a scene of it."""
+
+    read: SceneReader
+    in_folder: str | None = None
+
+
+def _read_picture_scene(path: Path, **_: object) -> SceneReport:
+    """The scene of a picture file, which is complete: the options have no effect. Raises InputError."""
+    return SceneReport(read_picture(path).scene)
+
+
+def _read_store(path: Path, *, outside: bool, surfaces: SurfaceSource) -> SceneReport:
+    """The scene of a store, which names no other files: `outside` has no effect. Raises InputError."""
+    # SQLite is loaded for stores alone.
+    from autocolor.files.store.store_file import read_store
+
+    return read_store(path, surfaces=surfaces)
+
+
+STORE: Final = SceneFormat(
+    "store", (".sqlite", ".db"), _read_store, begins=lambda head: head.startswith(b"SQLite format 3\0")
+)
+
+SCENE_FORMATS: Final = (
+    SceneFormat(
+        "picture file",
+        (".npz",),
+        _read_picture_scene,
+        begins=lambda head: head.startswith(b"PK\x03\x04"),
+    ),
+    SceneFormat("scene file", (".toml",), read_scene_file, in_folder="scene.toml"),
+    STORE,
+)
+"""All formats of whole scenes. Their order is that in which a folder is looked through for a scene."""
 
 
 def read_scene(
@@ -107,7 +158,7 @@ def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
     """
     found: SceneFormat | MeshFormat | None
     if path.is_dir():
-        for each in scene_formats():
+        for each in SCENE_FORMATS:
             if each.in_folder is not None and (path / each.in_folder).exists():
                 return path / each.in_folder, each
         found = format_of_folder(path)
@@ -117,7 +168,7 @@ def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
                 " not; name a mesh file to read it alone"
             )
         return path, found
-    known: tuple[SceneFormat | MeshFormat, ...] = (*scene_formats(), *file_formats())
+    known: tuple[SceneFormat | MeshFormat, ...] = (*SCENE_FORMATS, *file_formats())
     found = recognized(path, known)
     if found is not None:
         return path, found
@@ -132,13 +183,13 @@ def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
 
 def scene_and_mesh_suffixes() -> tuple[str, ...]:
     """The suffixes of all files that are scenes or meshes, sorted."""
-    return suffixes_of((*scene_formats(), *file_formats()))
+    return suffixes_of((*SCENE_FORMATS, *file_formats()))
 
 
 def folder_contents() -> tuple[str, ...]:
     """What a folder contains that is a scene or a mesh, as part of a message."""
-    scenes = [f"a {each.in_folder}" for each in scene_formats() if each.in_folder]
-    return (*scenes, *(" and ".join(each.in_folder) for each in mesh_formats() if each.in_folder))
+    scenes = [f"a {each.in_folder}" for each in SCENE_FORMATS if each.in_folder]
+    return (*scenes, *(" and ".join(each.in_folder) for each in MESH_FORMATS if each.in_folder))
 
 
 def _bare_mesh(

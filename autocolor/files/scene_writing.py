@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import InputError, OutputError, UsageError, reason_of
+from autocolor.files.formats import mesh_suffixes, suffixes_of
 from autocolor.files.mesh_writing import Meshes, entries_of, meshes_there, reports_of, written_mesh
-from autocolor.files.meshes.formats import mesh_suffixes
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
-from autocolor.files.scenes.formats import scene_suffixes
+from autocolor.files.scene_sources import SCENE_FORMATS
 from autocolor.files.scenes.scene_edit import (
     completed,
     edited_to,
@@ -97,7 +97,7 @@ def _target(path: str | os.PathLike[str]) -> Path:
         is_other = target.exists() and suffix != ".toml"
     except (OSError, ValueError):
         is_other = False
-    if is_other or suffix in {*scene_suffixes(), *mesh_suffixes()} - {".toml"}:
+    if is_other or suffix in {*suffixes_of(SCENE_FORMATS), *mesh_suffixes()} - {".toml"}:
         raise UsageError(
             f"a scene must be written to a folder or to a file that ends in .toml,"
             f" {' or '.join(STORE_SUFFIXES)}, not to {target}; choose another name"

@@ -1,7 +1,7 @@
-"""What was used lately: colors and files, newest first, in small lists that outlast the program.
+"""The state folder of the program, the locks in it, and the lists of recent colors and files.
 
-Each list is a JSON file in the state folder. They are a convenience: a list that is damaged, or that cannot
-be read or written, is an empty one, and never an error. Programs that run at the same time add to one list.
+Each list is a JSON file, the newest entry first. The lists are a convenience: a list that is damaged, or that
+cannot be read or written, is empty, and never an error. Programs that run at the same time share the lists.
 """
 
 from __future__ import annotations
@@ -21,8 +21,21 @@ from autocolor.files.reading import read_bytes
 from autocolor.files.writing import write_atomically
 from autocolor.scene.kinds import SIX_DIGITS, ColorKind, in_digits
 
-# -------------------- state_folder
-# The folder in which a program keeps what must outlast it, such as journals, on each system.
+MOST_COLORS: Final = 12
+MOST_FILES: Final = 10
+
+COLORS: Final = "recent-colors.json"
+FILES: Final = "recent-files.json"
+LOCK: Final = "recent.lock"
+
+LONGEST_PATH: Final = 4096
+"""Letters; no system has longer paths."""
+
+LARGEST: Final = 1 << 18
+"""Bytes: more than MOST_FILES paths of LONGEST_PATH letters, each letter written in six bytes."""
+
+LONGEST_WAIT: Final = 0.2
+"""Limit: seconds to wait for another program, which holds the lock for a few milliseconds."""
 
 
 def state_folder() -> Path:
@@ -47,14 +60,11 @@ def state_folder() -> Path:
         ) from None
 
 
-# -------------------- file_lock
-# Locks on files: one program has each, and it goes when that program ends, in whatever way it does.
-
-
 def lock_file(path: Path) -> int | None:
-    """A descriptor that holds the lock on a file, which is made if there is none; None if another has it.
+    """A descriptor that has the lock on a file; None if another program has the lock.
 
-    The lock lasts until `os.close`, or until the program ends. Raises OSError if the file cannot be opened.
+    The file is created if there is none. The lock lasts until `os.close`, or until the program ends, however
+    it ends. Raises OSError if the file cannot be opened.
     """
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
     try:
@@ -75,23 +85,6 @@ else:
 
     def _lock(descriptor: int) -> None:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
-MOST_COLORS: Final = 12
-MOST_FILES: Final = 10
-
-COLORS: Final = "recent-colors.json"
-FILES: Final = "recent-files.json"
-LOCK: Final = "recent.lock"
-
-LONGEST_PATH: Final = 4096
-"""Letters; systems have no longer ones."""
-
-LARGEST: Final = 1 << 18
-"""In bytes: more than MOST_FILES paths of LONGEST_PATH letters, each written in six bytes."""
-
-LONGEST_WAIT: Final = 0.2
-"""Assumed: seconds to wait for another program, which holds the lock for a few milliseconds."""
 
 
 def recent_colors() -> tuple[Color, ...]:
@@ -122,34 +115,34 @@ def _is_path(entry: str) -> bool:
     return os.path.isabs(entry) and "\0" not in entry and len(entry) <= LONGEST_PATH
 
 
-def _entries(name: str, most: int, is_right: Callable[[str], bool]) -> list[str]:
-    """The entries of a list; those that are damaged, or there twice, are left out."""
+def _entries(name: str, most: int, is_valid: Callable[[str], bool]) -> list[str]:
+    """The entries of a list, without damaged and repeated entries."""
     try:
-        found = json.loads(read_bytes(state_folder() / name, LARGEST))
+        entries = json.loads(read_bytes(state_folder() / name, LARGEST))
     except (AutocolorError, ValueError, RecursionError):
         return []
-    if not isinstance(found, list):
+    if not isinstance(entries, list):
         return []
-    right = [each for each in found if isinstance(each, str) and is_right(each)]
-    return list(dict.fromkeys(right))[:most]
+    valid = [each for each in entries if isinstance(each, str) and is_valid(each)]
+    return list(dict.fromkeys(valid))[:most]
 
 
-def _note(name: str, entry: str, most: int, is_right: Callable[[str], bool]) -> None:
-    """Put an entry first in a list; nothing happens if it is not right, or the list cannot be written."""
-    if not is_right(entry):
+def _note(name: str, entry: str, most: int, is_valid: Callable[[str], bool]) -> None:
+    """Put an entry first in a list; nothing happens if it is invalid, or the list cannot be written."""
+    if not is_valid(entry):
         return
     with suppress(AutocolorError, OSError):
         folder = state_folder()
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with _lock_held(folder):
-            others = [each for each in _entries(name, most, is_right) if each != entry]
+        with _lists_locked(folder):
+            others = [each for each in _entries(name, most, is_valid) if each != entry]
             data = json.dumps([entry, *others][:most], indent=1).encode()
             write_atomically(folder / name, data, overwrite=True)
 
 
 @contextmanager
-def _lock_held(folder: Path) -> Iterator[None]:
-    """Hold the lock of the lists; go on without it where another program does not release it in time."""
+def _lists_locked(folder: Path) -> Iterator[None]:
+    """Hold the lock of the lists; go on without it if another program does not release it in time."""
     give_up = time.monotonic() + LONGEST_WAIT
     descriptor = lock_file(folder / LOCK)
     while descriptor is None and time.monotonic() < give_up:

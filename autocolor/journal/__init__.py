@@ -1,4 +1,4 @@
-"""The session as a journal: its steps, the script that tells them, and the copy that is kept of it.
+"""The session of a studio: its history, its journal in the state folder, its script, and saving.
 
 Uses the scene and the files.
 """

@@ -1,9 +1,10 @@
-"""The journal of a session that is kept in the state folder until the session ends orderly.
+"""Autosaving: the journal of a session stays in the state folder until the session ends in order.
 
-Each session has a folder of its own there: the journal, a lock, the first scene if that is in no file, and
-the meshes that were changed.
-The journal is written anew in one piece, so that whatever ends the program leaves a whole one. The lock goes
-with the program: a session whose lock is free is one that did not end orderly.
+Each session has a folder of its own there. It has the journal, a lock, the first scene if that is in no file,
+and the meshes that edits changed. However the program ends, its lock ends with it. A session whose lock is
+free did not end in order: it was left, and can be recovered or forgotten.
+
+Versions before the journal left a Python script. It is listed and can be forgotten, but not recovered.
 """
 
 from __future__ import annotations
@@ -20,88 +21,99 @@ from autocolor.errors import AutocolorError, WriteError, reason_of
 from autocolor.files.scene_writing import write_scene
 from autocolor.files.state import lock_file, state_folder
 from autocolor.files.writing import write_atomically
-from autocolor.journal.history import History, Step
+from autocolor.journal.history import Edit, History, Step
+from autocolor.journal.journal import MeshesBeside, first_line, step_line
 from autocolor.journal.places import Source
-from autocolor.journal.script import MeshesBeside, first_lines, step_line
 
 SESSIONS: Final = "sessions"
-JOURNAL: Final = "session.py"
+JOURNAL: Final = "session.jsonl"
+OLD_SCRIPT: Final = "session.py"
 LOCK: Final = "lock"
 FIRST_SCENE: Final = "scene"
 
 SECONDS_BETWEEN: Final = 1.0
-"""Assumed: half of the two seconds of work that may be lost; the other half is for writing."""
+"""Limit: half of the two seconds of work that may be lost; the other half is for writing."""
 
 
 class Autosave:
-    """Keeps the journal of one running session; nothing is written before its first step.
+    """The journal of one running session; nothing is written before its first step.
 
-    `folder` is that of a session that was left, which is gone on with.
+    `folder` is the folder of a left session that goes on. Raises WriteError if another program has it.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
         self._folder = folder
-        self._lock = None if folder is None else _locked(folder)
-        self._first_lines: list[str] = []
-        self._lines: list[tuple[Step, str]] = []
-        self._beside = MeshesBeside(folder)
-        self._written: tuple[int, Step | None] = 0, None
+        self._lock = None if folder is None else _lock(folder)
+        self._meshes = MeshesBeside(folder)
+        self._count = 0
+        """The number of steps in the journal file; 0 until the whole file was written."""
+        self._last: Step | None = None
+        """The last step in the file."""
         self._written_at = -SECONDS_BETWEEN
 
     def update(self, history: History, at_once: bool = False) -> None:
-        """Write the journal if there were steps since it was written, at most once a second unless `at_once`.
+        """Append the steps since the last update to the journal, at most once a second unless `at_once`.
 
-        The history is always that of the same session: a file that is opened is a step of it. Raises
-        AutocolorError if it cannot be written; the session goes on, and the next update tries again.
+        The history is always that of the same session. Raises AutocolorError if the journal cannot be
+        written; the session goes on, and the next update writes the whole journal.
         """
-        steps = history.steps
-        now = len(steps), steps[-1] if steps else None
+        steps, count, last = history.steps, self._count, self._last
+        is_written = not steps or (len(steps) == count and steps[-1] is last)
         is_due = at_once or time.monotonic() - self._written_at >= SECONDS_BETWEEN
-        if now == self._written or not is_due:
+        if is_written or not is_due:
             return
         self._written_at = time.monotonic()
-        with _told():
+        # Until writing succeeds, nothing is taken as written.
+        self._count, self._last = 0, None
+        with _write_errors():
             folder = self._own_folder()
-            if not self._first_lines:
-                self._first_lines = first_lines(history.start, _source_of(history, folder))
-            text = "\n".join([*self._first_lines, *self._step_lines(history), ""])
-            write_atomically(folder / JOURNAL, text.encode(), overwrite=True)
-        self._written = now
+            new = steps[count:]
+            extended = steps[count - 1]
+            if isinstance(last, Edit) and isinstance(extended, Edit) and extended is not last:
+                # The last edit was a drag that went on since it was written.
+                new.insert(0, Edit(last.after, extended.after, joins=True))
+            lines = [step_line(step, history.start, self._meshes) for step in new]
+            if count:
+                _append(folder / JOURNAL, "".join(lines).encode())
+            else:
+                lines.insert(0, first_line(history.start, _source_of(history, folder)))
+                write_atomically(folder / JOURNAL, "".join(lines).encode(), overwrite=True)
+        self._count, self._last = len(steps), steps[-1]
 
     def end(self) -> None:
-        """Remove what was kept, as the session ended orderly."""
+        """Remove the folder of the session, because the session ended in order."""
         folder, self._folder = self._folder, None
         if folder is not None:
-            with suppress(OSError):
-                os.unlink(folder / JOURNAL)
+            for name in (JOURNAL, OLD_SCRIPT):
+                with suppress(OSError):
+                    os.unlink(folder / name)
             if self._lock is not None:
                 os.close(self._lock)
             shutil.rmtree(folder, ignore_errors=True)
 
     def _own_folder(self) -> Path:
-        """The folder of this session, which is made if there is none. Raises OSError."""
+        """The folder of this session, which is created if there is none. Raises OSError."""
         if self._folder is None:
             sessions = state_folder() / SESSIONS
             sessions.mkdir(mode=0o700, parents=True, exist_ok=True)
             folder = sessions / f"{time.strftime('%Y-%m-%d-%H%M%S')}-{os.getpid()}-{time.time_ns():x}"
             folder.mkdir(mode=0o700)
             self._folder, self._lock = folder, lock_file(folder / LOCK)
-            self._beside = MeshesBeside(folder)
+            self._meshes = MeshesBeside(folder)
         return self._folder
 
-    def _step_lines(self, history: History) -> list[str]:
-        """The lines of the steps; only those of steps that are new are made."""
-        kept, steps = self._lines, history.steps
-        while kept and (len(kept) > len(steps) or kept[-1][0] is not steps[len(kept) - 1]):
-            kept.pop()
-        # One by one: if a mesh cannot be saved, the lines before are not made again.
-        for step in steps[len(kept) :]:
-            kept.append((step, step_line(step, history.start, self._beside)))
-        return [line for _, line in kept]
+
+def _append(path: Path, data: bytes) -> None:
+    """Append bytes to a file, which must be there, and sync it. Raises OSError."""
+    with open(path, "r+b") as file:
+        file.seek(0, os.SEEK_END)
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
 
 
 def _source_of(history: History, folder: Path) -> Source:
-    """What the first scene can be read from; it is saved beside the journal if it is in no file."""
+    """The source of the first scene, which is saved beside the journal if it has none."""
     source = history.first_place.source
     if source is None:
         source = Source(str(folder / FIRST_SCENE))
@@ -110,13 +122,19 @@ def _source_of(history: History, folder: Path) -> Source:
 
 
 def left_sessions() -> list[Path]:
-    """The folders of sessions that did not end orderly, the last one first."""
+    """The folders of sessions that did not end in order, the last session first."""
     try:
-        folders = [path for path in (state_folder() / SESSIONS).iterdir() if (path / JOURNAL).is_file()]
-        folders.sort(key=lambda path: (path / JOURNAL).stat().st_mtime, reverse=True)
+        folders = [path for path in (state_folder() / SESSIONS).iterdir() if journal_in(path).is_file()]
+        folders.sort(key=lambda path: journal_in(path).stat().st_mtime, reverse=True)
         return [folder for folder in folders if _is_left(folder)]
     except (OSError, AutocolorError):
         return []
+
+
+def journal_in(folder: Path) -> Path:
+    """The journal in the folder of a session, or the script that an older version left there."""
+    script = folder / OLD_SCRIPT
+    return script if script.is_file() and not (folder / JOURNAL).is_file() else folder / JOURNAL
 
 
 def forget(folder: Path) -> None:
@@ -135,9 +153,9 @@ def _is_left(folder: Path) -> bool:
     return descriptor is not None
 
 
-def _locked(folder: Path) -> int:
-    """The lock on the folder of a session that was left. Raises WriteError if another program took it."""
-    with _told():
+def _lock(folder: Path) -> int:
+    """The lock on the folder of a session that was left. Raises WriteError if another program has it."""
+    with _write_errors():
         descriptor = lock_file(folder / LOCK)
     if descriptor is None:
         raise WriteError("a session must be recovered by one program, and another one does; try again later")
@@ -145,7 +163,7 @@ def _locked(folder: Path) -> int:
 
 
 @contextmanager
-def _told() -> Iterator[None]:
+def _write_errors() -> Iterator[None]:
     """Raise OSError as WriteError."""
     try:
         yield

@@ -1,43 +1,54 @@
-"""The light controls: what they leave of a light at a point, from nothing to all of it.
+"""The light controls: the share of a light that reaches a point, from none to all of it.
 
-Paper: "Light Controls". They modify what a reflection model gives at a point and know nothing of it, so they
-work with any.
+Paper: "Light Controls". Controls modify the result of a reflection model at a point and know nothing of the
+model, so they work with any.
 
-Each control is one class in a module of this package, registered where it is defined. It is found there, and
-nothing else names it: `shading` asks every control of a light the same three questions, each with a default
-that leaves the light as it is.
+Each control is one class, named in `CONTROLS` at the foot. `shading` asks every control of a light the same
+three questions, each with a default that leaves the light as it is:
 
-- `lit_points`: which points may be lit, judged by the points alone. Asked first: where it leaves a chunk of
+- `lit_points`: which points may be lit, judged by the points alone. Asked first: if it leaves a chunk of
   points dark, no ray is computed.
-- `least_cosine`: the least cos(L) that is lit. Of several controls the largest counts.
-- `factor`: what is left of the light elsewhere, 0 to 1, as a function of cos(L), of the distance, or of the
-  positions of the points. Factors are multiplied.
+- `least_cosine`: the least cos(L) that is lit. The largest of several controls counts.
+- `factor`: the share of the light that is left elsewhere, 0 to 1, as a function of cos(L), of the distance,
+  or of the positions of the points. Factors are multiplied.
 
-To add one, give `Light` a field and write its class.
+To add a control, give `Light` a field with its column, write its class here, and name it in `CONTROLS`.
 """
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, Literal, NamedTuple, Self
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import Booleans, Floats, PartNumbers, Singles, power
 from autocolor.checks import Vector
 from autocolor.lighting.rays import FARTHEST, camera_light
-from autocolor.scene.following import set_down
+from autocolor.scene.following import detached
 from autocolor.scene.lights import Flap, Light, unit_vector
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints
 
 ROUNDING: Final = float(np.finfo(np.float32).eps)
 
+ABOVE_ZERO: Final = float(np.finfo(np.float32).smallest_subnormal)
+"""The least positive float32."""
+
+FARTHEST_PLANE: Final = 1e30
+"""In units; farther than any point, and float32 can hold it."""
+
+LEAST_WIDTH: Final = 1e-8
+"""In units; far below the rounding of points. Float32 can hold the distance of any plane divided by it."""
+
+LEAST_REACH: Final = 1e-20
+"""In units; float32 can hold any distance as a multiple of it."""
+
 
 class LitPoints(NamedTuple):
-    """What a factor may depend on, at the points that may be lit.
+    """The points that may be lit, as a factor sees them.
 
     `cos_light` is cos(L), (points,), or None if no control of the light is `directed`. `distance()` is the
     distance to the light, (points,); `positions()` are the points in camera space around
@@ -52,8 +63,8 @@ class LitPoints(NamedTuple):
 class LightControl(ABC):
     """One control of one light, ready for the visible points of one view.
 
-    A control that asks for cos(L), in `least_cosine` or in `factor`, is `directed`; it must not be made for a
-    light without a direction.
+    A control that uses cos(L), in `least_cosine` or in `factor`, is `directed`. Only a light with a direction
+    may have one.
     """
 
     directed: bool = False
@@ -62,17 +73,17 @@ class LightControl(ABC):
     @classmethod
     @abstractmethod
     def of(cls, light: Light, points: VisiblePoints) -> LightControl | None:
-        """The control of a light, or None where the light does not use it."""
+        """The control of a light, or None if the light does not use it."""
 
     def lit_points(self, rows: Singles, pixels: slice) -> Booleans | None:
-        """Whether some points may be lit; None for all of them.
+        """Whether each of some points may be lit; None for all of them.
 
         `rows` are the columns `pixels` of `VisiblePoints.rows`.
         """
         return None
 
     def factor(self, lit: LitPoints, out: Singles) -> Singles:
-        """What is left of the light at points that are lit, 0 to 1, written to `out`.
+        """The share of the light that is left at points that are lit, 0 to 1, written to `out`.
 
         It is also computed at points that are not lit, and must be finite there. `out` may be the array of
         the cosines. A control without this method leaves all of the light.
@@ -84,207 +95,6 @@ def controls_of(light: Light, points: VisiblePoints) -> tuple[LightControl, ...]
     """The controls that a light uses, ready for some visible points."""
     ready = (control.of(light, points) for control in CONTROLS)
     return tuple(control for control in ready if control is not None)
-
-
-def ramp(fraction: Singles) -> Singles:
-    """What a soft edge leaves at a fraction t of its width: nothing up to 0, all of it from 1 on.
-
-    Between it is t^2 (3 - 2 t), in place. Assumed: of the polynomials that begin and end with a slope of 0,
-    so that neither end shows as a seam, this has the lowest degree. Infinite fractions are not allowed.
-    """
-    np.clip(fraction, 0, 1, out=fraction)
-    rest = np.multiply(fraction, -2)
-    rest += 3
-    rest *= fraction
-    return np.multiply(fraction, rest, out=fraction)
-
-
-# -------------------- sides
-# Sides of planes, which flaps and half-spaces share.
-
-FARTHEST_PLANE: Final = 1e30
-"""In units; farther than any point, and float32 can hold it."""
-
-
-class Side(NamedTuple):
-    """The side of a plane that is lit: where the product of `row`, (4,), with (P, 1) is at least 0.
-
-    The product is the distance from the plane, and the light is whole at the distance `edge_width`; both are
-    in `VisiblePoints.unit`. An edge of the width 0 is sharp.
-    """
-
-    row: Floats
-    edge_width: float
-
-
-def side_of(points: VisiblePoints, direction: Vector, least: float, edge_width: float) -> Side:
-    """The points of the world whose product with a unit vector, their `direction`, is at least `least`.
-
-    `edge_width` is in units of the world.
-    """
-    coordinates = np.array([points.world_coordinate(axis) for axis in range(3)])
-    in_units = min(max(least / points.unit, -FARTHEST_PLANE), FARTHEST_PLANE)
-    # A surface that lies on a sharp side is lit: allow for the rounding of its points to float32.
-    slack = 0.0 if edge_width > 0 else 4 * ROUNDING * points.radius
-    row = np.array(direction) @ coordinates - np.array([0, 0, 0, in_units - slack])
-    return Side(row, edge_width / points.unit)
-
-
-def is_inside(side: Side, rows: Singles) -> Booleans:
-    """Whether each point is on the inner side of a plane, or on the plane itself."""
-    return _is_inside(side.row.astype(np.float32), rows)
-
-
-@dataclass(frozen=True, eq=False)
-class Sides(LightControl):
-    """A control that leaves nothing beyond some planes; `sides` is (sides, 4), see `Side.row`."""
-
-    sides: Singles
-
-    @classmethod
-    def made_of(cls, sides: Sequence[Side]) -> Self:
-        """The control of one or several sides."""
-        return cls(np.array([side.row for side in sides], np.float32))
-
-    def lit_points(self, rows: Singles, pixels: slice) -> Booleans:
-        """Whether each point is inside all planes."""
-        lit = _is_inside(self.sides[0], rows)
-        for side in self.sides[1:]:
-            np.logical_and(lit, _is_inside(side, rows), out=lit)
-        return lit
-
-
-def _is_inside(row: Singles, rows: Singles) -> Booleans:
-    inside: Booleans = row[:3] @ rows[POINT] >= -row[3]
-    return inside
-
-
-# -------------------- flap_sides
-# Flaps: the sides of ranges of object coordinates.
-#
-# Paper: "Light Flaps and Cones".
-
-Axis = Literal["x", "y", "z"]
-"""The object coordinate that a flap restricts."""
-
-FlapEnd = Literal["minimum", "maximum"]
-"""The fields of a flap that are coordinates."""
-
-
-@dataclass(frozen=True, eq=False)
-class FlapSides(Sides):
-    """The sides of all flaps that are on.
-
-    Paper: "Light Flaps and Cones": a flap is a range of an object coordinate, a box and no shadow. A point on
-    a side is inside. What is left near soft ends is computed in `soft_sides`.
-    """
-
-    @classmethod
-    def of(cls, light: Light, points: VisiblePoints) -> FlapSides | None:
-        """The sides that are not at infinity."""
-        sides = flap_sides(light, points)
-        return cls.made_of(list(sides.values())) if sides else None
-
-
-def flaps_of(light: Light) -> dict[Axis, Flap | None]:
-    """The flap of a light along each axis, on or off; None where there is none."""
-    return {"x": light.flaps.x, "y": light.flaps.y, "z": light.flaps.z}
-
-
-def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd], Side]:
-    """The sides of the flaps that are on, but for those at infinity."""
-    sides: dict[tuple[Axis, FlapEnd], Side] = {}
-    for row, (axis, flap) in enumerate(flaps_of(light).items()):
-        if flap is None or not flap.on:
-            continue
-        ends: dict[FlapEnd, tuple[float, float]] = {
-            "minimum": (1.0, flap.minimum),
-            "maximum": (-1.0, flap.maximum),
-        }
-        for end, (sign, limit) in ends.items():
-            if math.isfinite(limit):
-                x, y, z = (sign if number == row else 0.0 for number in range(3))
-                sides[axis, end] = side_of(points, (x, y, z), sign * limit, flap.edge_width)
-    return sides
-
-
-# -------------------- half_spaces
-# Half-spaces: flaps along any planes.
-#
-# Paper: "Light Flaps and Cones" names flaps that are not parallel to the axes as an addition.
-
-
-@dataclass(frozen=True, eq=False)
-class HalfSpaces(Sides):
-    """The half-spaces that are on: only what is inside all of them is lit.
-
-    Departs: the paper has flaps along the axes alone. A point of a plane is lit, as that of a flap. What is
-    left near soft edges is computed in `soft_sides`.
-    """
-
-    @classmethod
-    def of(cls, light: Light, points: VisiblePoints) -> HalfSpaces | None:
-        """The half-spaces of a light, if any is on."""
-        sides = half_space_sides(light, points)
-        return cls.made_of(list(sides.values())) if sides else None
-
-
-def half_space_sides(light: Light, points: VisiblePoints) -> dict[str, Side]:
-    """The sides of the half-spaces that are on, by name; carried ones are where their light is."""
-    sides: dict[str, Side] = {}
-    for half_space in light.half_spaces:
-        if half_space.on:
-            placed = set_down(half_space, light)
-            direction = unit_vector(placed.direction)
-            least = sum(a * b for a, b in zip(direction, placed.point, strict=True))
-            sides[half_space.name] = side_of(points, direction, least, half_space.edge_width)
-    return sides
-
-
-# -------------------- soft_sides
-# The soft edges of flaps and of half-spaces.
-#
-# Departs: the paper's flaps end at once.
-
-LEAST_WIDTH: Final = 1e-8
-"""In units; far below the rounding of points, and float32 can hold how many of it fit before any plane."""
-
-
-@dataclass(frozen=True, eq=False)
-class SoftSides(LightControl):
-    """The sides of flaps and half-spaces that have an edge width: the product of what each leaves.
-
-    `sides` is (sides, 4); its product with (P, 1) is the distance from a plane as a fraction of its width.
-    """
-
-    sides: Singles
-
-    @classmethod
-    def of(cls, light: Light, points: VisiblePoints) -> SoftSides | None:
-        """The sides with soft edges, if there are any."""
-        sides = [*flap_sides(light, points).values(), *half_space_sides(light, points).values()]
-        soft = [side.row / max(side.edge_width, LEAST_WIDTH) for side in sides if side.edge_width > 0]
-        return cls(np.array(soft, np.float32)) if soft else None
-
-    def factor(self, lit: LitPoints, out: Singles) -> Singles:
-        """Nothing on a plane and all of the light at the width inside; see `ramp`."""
-        positions = lit.positions()
-        for number, side in enumerate(self.sides):
-            fraction = np.matmul(side[:3], positions, out=None if number else out)
-            fraction += side[3]
-            ramp(fraction)
-            if number:
-                out *= fraction
-        return out
-
-
-# -------------------- concentration
-# The concentration of a light around its direction.
-#
-# Paper: "Light Direction and Concentration".
-
-ABOVE_ZERO: Final = float(np.finfo(np.float32).smallest_subnormal)
-"""The least positive float32."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -310,19 +120,13 @@ class Concentration(LightControl):
         return power(lit.cos_light, self.exponent, out=out)
 
 
-# -------------------- cone
-# The cone of a light.
-#
-# Paper: "Light Flaps and Cones".
-
-
 @dataclass(frozen=True, eq=False)
 class Cone(LightControl):
     """The cone: a point is lit where L <= A.
 
-    Departs: the paper prints the test as cos(L) <= cos(A), which would light the outside; the rim itself is
-    lit. With C = 0 nothing is dark behind the light, so a cone of more than 90 degrees lights there too; with
-    C > 0 the hemisphere ends at 90.
+    Paper: "Light Flaps and Cones". Departs: the paper prints the test as cos(L) <= cos(A), which would light
+    the outside; the rim itself is lit. With C = 0 nothing is dark behind the light, so a cone of more than 90
+    degrees lights there too; with C > 0 the hemisphere ends at 90.
     """
 
     least_cosine: float
@@ -336,18 +140,13 @@ class Cone(LightControl):
         return cls(math.cos(math.radians(light.cone_angle)) - ROUNDING)
 
 
-# -------------------- soft_cone
-# The soft edge of a cone, between its inner angle and its rim.
-#
-# Departs: the paper's cones end at once.
-
-
 @dataclass(frozen=True, eq=False)
 class SoftCone(LightControl):
-    """All of the light up to the inner angle, and nothing from the cone angle on; see `ramp`.
+    """All of the light up to the inner angle, and nothing from the cone angle on; see `soften`.
 
-    Assumed: between them it goes with cos(L), not with L. That takes no arc cosine at each pixel, and is
-    smooth on the axis, too, where the inner angle is 0: there cos(L) has a slope of 0, and L a corner.
+    Departs: the paper's cones end at once. Assumed: between the angles the light goes with cos(L), not with
+    L. That takes no arc cosine at each pixel. It is smooth on the axis, too, where the inner angle is 0:
+    there cos(L) has a slope of 0, and L a corner.
     """
 
     rim: float
@@ -360,32 +159,170 @@ class SoftCone(LightControl):
         inner, outer = light.inner_angle, light.cone_angle
         if inner is None or outer is None or inner >= outer:
             return None
-        # Rounded as the cosines are that it is subtracted from.
+        # Rounded like the cosines that it is subtracted from.
         rim = float(np.float32(math.cos(math.radians(outer))))
         return cls(rim, max(math.cos(math.radians(inner)) - rim, ROUNDING))
 
     def factor(self, lit: LitPoints, out: Singles) -> Singles:
-        """What is left of the light between the two angles."""
+        """The share that is left between the two angles."""
         assert lit.cos_light is not None
         np.subtract(lit.cos_light, np.float32(self.rim), out=out)
         out *= np.float32(1 / self.width)
-        return ramp(out)
+        return soften(out)
 
 
-# -------------------- falloff
-# The falloff of a light with the distance.
+def soften(fraction: Singles) -> Singles:
+    """The share that a soft edge leaves at a fraction t of its width: none up to 0, all from 1 on.
 
-LEAST_REACH: Final = 1e-20
-"""In units; float32 can hold any distance as a multiple of it."""
+    Between these it is t^2 (3 - 2 t), in place. Assumed: of the polynomials that begin and end with a slope
+    of 0, so that neither end shows as a seam, this has the lowest degree. Infinite fractions are not allowed.
+    """
+    np.clip(fraction, 0, 1, out=fraction)
+    rest = np.multiply(fraction, -2)
+    rest += 3
+    rest *= fraction
+    return np.multiply(fraction, rest, out=fraction)
+
+
+@dataclass(frozen=True, eq=False)
+class Sides(LightControl):
+    """Flaps and half-spaces: nothing is left beyond the planes at which they end.
+
+    Paper: "Light Flaps and Cones": a flap is a range of an object coordinate, a box and no shadow. Departs:
+    the paper has flaps along the axes alone. A point on a plane is lit.
+
+    `sides` is (sides, 4); see `Side.row`.
+    """
+
+    sides: Singles
+
+    @classmethod
+    def of(cls, light: Light, points: VisiblePoints) -> Sides | None:
+        """The sides of the flaps and the half-spaces of a light, if any is on."""
+        sides = sides_of(light, points)
+        return cls(np.array([side.row for side in sides], np.float32)) if sides else None
+
+    def lit_points(self, rows: Singles, pixels: slice) -> Booleans:
+        """Whether each point is on the lit side of all planes."""
+        lit = is_inside(self.sides[0], rows)
+        for side in self.sides[1:]:
+            np.logical_and(lit, is_inside(side, rows), out=lit)
+        return lit
+
+
+@dataclass(frozen=True, eq=False)
+class SoftSides(LightControl):
+    """The soft edges of flaps and half-spaces: none of the light on a plane, all of it at the edge width.
+
+    Departs: the paper's flaps end at once. `sides` is (sides, 4); its product with (P, 1) is the distance
+    from a plane as a fraction of its edge width. The shares of several edges are multiplied; see `soften`.
+    """
+
+    sides: Singles
+
+    @classmethod
+    def of(cls, light: Light, points: VisiblePoints) -> SoftSides | None:
+        """The sides with soft edges, if there are any."""
+        sides = sides_of(light, points)
+        soft = [side.row / max(side.edge_width, LEAST_WIDTH) for side in sides if side.edge_width > 0]
+        return cls(np.array(soft, np.float32)) if soft else None
+
+    def factor(self, lit: LitPoints, out: Singles) -> Singles:
+        """The product of the shares at all edges."""
+        positions = lit.positions()
+        for number, side in enumerate(self.sides):
+            fraction = np.matmul(side[:3], positions, out=None if number else out)
+            fraction += side[3]
+            soften(fraction)
+            if number:
+                out *= fraction
+        return out
+
+
+Axis = Literal["x", "y", "z"]
+"""The object coordinate that a flap restricts."""
+
+FlapEnd = Literal["minimum", "maximum"]
+"""The fields of a flap that are coordinates."""
+
+
+class Side(NamedTuple):
+    """The lit side of a plane: the points P where the product of `row`, (4,), with (P, 1) is at least 0.
+
+    The product is the distance from the plane, and the light is whole at the distance `edge_width`; both are
+    in `VisiblePoints.unit`. An edge of the width 0 is sharp.
+    """
+
+    row: Floats
+    edge_width: float
+
+
+def is_inside(row: Floats | Singles, rows: Singles) -> Booleans:
+    """Whether each point in `VisiblePoints.rows` is on the lit side of a plane, or on the plane itself."""
+    row = row.astype(np.float32, copy=False)
+    inside: Booleans = row[:3] @ rows[POINT] >= -row[3]
+    return inside
+
+
+def sides_of(light: Light, points: VisiblePoints) -> list[Side]:
+    """The sides of the flaps and the half-spaces of a light that are on."""
+    return [*flap_sides(light, points).values(), *half_space_sides(light, points).values()]
+
+
+def flaps_of(light: Light) -> dict[Axis, Flap | None]:
+    """The flap of a light along each axis, on or off; None where there is none."""
+    return {"x": light.flaps.x, "y": light.flaps.y, "z": light.flaps.z}
+
+
+def flap_sides(light: Light, points: VisiblePoints) -> dict[tuple[Axis, FlapEnd], Side]:
+    """The sides of the flaps that are on, without ends at infinity."""
+    sides: dict[tuple[Axis, FlapEnd], Side] = {}
+    for row, (axis, flap) in enumerate(flaps_of(light).items()):
+        if flap is None or not flap.on:
+            continue
+        ends: dict[FlapEnd, tuple[float, float]] = {
+            "minimum": (1.0, flap.minimum),
+            "maximum": (-1.0, flap.maximum),
+        }
+        for end, (sign, limit) in ends.items():
+            if math.isfinite(limit):
+                x, y, z = (sign if number == row else 0.0 for number in range(3))
+                sides[axis, end] = side_of(points, (x, y, z), sign * limit, flap.edge_width)
+    return sides
+
+
+def half_space_sides(light: Light, points: VisiblePoints) -> dict[str, Side]:
+    """The sides of the half-spaces that are on, by name; a carried half-space is placed with its light."""
+    sides: dict[str, Side] = {}
+    for half_space in light.half_spaces:
+        if half_space.on:
+            placed = detached(half_space, light)
+            direction = unit_vector(placed.direction)
+            least = sum(a * b for a, b in zip(direction, placed.point, strict=True))
+            sides[half_space.name] = side_of(points, direction, least, half_space.edge_width)
+    return sides
+
+
+def side_of(points: VisiblePoints, direction: Vector, least: float, edge_width: float) -> Side:
+    """The points of the world whose product with a unit vector, their `direction`, is at least `least`.
+
+    `edge_width` is in units of the world.
+    """
+    coordinates = np.array([points.world_coordinate(axis) for axis in range(3)])
+    in_units = min(max(least / points.unit, -FARTHEST_PLANE), FARTHEST_PLANE)
+    # A surface that lies on a sharp side is lit: allow for the rounding of its points to float32.
+    slack = 0.0 if edge_width > 0 else 4 * ROUNDING * points.radius
+    row = np.array(direction) @ coordinates - np.array([0, 0, 0, in_units - slack])
+    return Side(row, edge_width / points.unit)
 
 
 @dataclass(frozen=True, eq=False)
 class Falloff(LightControl):
     """Falloff: (1 - f)^n at the distance f as a fraction of the reach, n = 1 or 2, and 0 beyond it.
 
-    Departs: the paper's light at a point does not depend on its distance, nor does one here unless it is
-    given a falloff. 1/d^2 has no upper limit: a point close to the light would take the whole range of levels
-    and leave the others black. This stays within 0 to 1, and ends.
+    Departs: the light of the paper does not depend on the distance, nor does a light without a falloff here.
+    1/d^2 has no upper limit: a point close to the light would take the whole range of levels and leave the
+    others black. This stays within 0 to 1, and ends.
     """
 
     reach: float
@@ -400,7 +337,7 @@ class Falloff(LightControl):
         reach = min(max(light.reach / points.unit, LEAST_REACH), FARTHEST)
         position = camera_light(light, points, directed=False).position
         square = float(position @ position)
-        # Whatever is rounded beyond the reach gets nothing from the factor.
+        # The factor leaves nothing of a point that is rounded beyond the reach.
         slack = 8 * ROUNDING * (square + points.radius**2)
         sphere = np.array([*(-2 * position), 1, square - reach**2 - slack], np.float32)
         return cls(reach, 1 if light.falloff == "linear" else 2, sphere)
@@ -418,18 +355,13 @@ class Falloff(LightControl):
         return out if self.exponent == 1 else np.square(out, out=out)
 
 
-# -------------------- parts
-# The parts that a light shines on.
-#
-# Departs: the paper's lights shine on all parts. That a light shines on some surfaces only is no control
-# but a matter of weights: see `lighting.light_mix`.
-
-
 @dataclass(frozen=True, eq=False)
 class LinkedParts(LightControl):
     """The links of a light to parts: it leaves the points of other parts dark.
 
-    `is_lit` tells by part number whether a part is lit, and `numbers` are the part numbers of all points.
+    Departs: the paper's lights shine on all parts. Links to surfaces are no control but weights: see
+    `shading.LightMix`. `is_lit` has an entry for each part number, and `numbers` are the part numbers of all
+    points.
     """
 
     is_lit: Booleans
@@ -445,11 +377,17 @@ class LinkedParts(LightControl):
         return cls(np.array([False, *(name in lit for name in names)]), points.parts.numbers)
 
     def lit_points(self, rows: Singles, pixels: slice) -> Booleans:
-        """Whether each point is of a part that is lit."""
+        """Whether each point belongs to a part that is lit."""
         return self.is_lit.take(self.numbers[pixels])
 
 
-CONTROLS: Final[list[type[LightControl]]] = [
-    Concentration, Cone, Falloff, FlapSides, HalfSpaces, LinkedParts, SoftCone, SoftSides,
-]  # fmt: skip
+CONTROLS: Final[tuple[type[LightControl], ...]] = (
+    Concentration,
+    Cone,
+    Falloff,
+    Sides,
+    LinkedParts,
+    SoftCone,
+    SoftSides,
+)
 """Every kind of control. Factors are multiplied, and rounded, in this order."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Singles
+from autocolor.immutable import read_only
 from autocolor.lighting.picture import Picture
 from autocolor.lighting.shading import (
     ControlledLight,
@@ -36,10 +36,13 @@ class Previous(NamedTuple):
     picture: Picture
 
 
-def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = None) -> Picture:
+def illuminate(
+    scene: Scene, points: VisiblePoints, previous: Previous | None = None, with_controls: bool = True
+) -> Picture:
     """The picture of the visible points in the light of a scene.
 
-    Raises InputError for intensities that float32 can't hold.
+    Without controls, each light shines in all directions, at all distances and on all parts. Such a picture
+    cannot be a previous one. Raises InputError for intensities that float32 can't hold.
     """
     models = {
         surface.surface_number: scene.surfaces[surface.surface_number - 1].reflectance.model
@@ -50,7 +53,7 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
     changed = _changed_surfaces(models, previous)
     reusable = _reusable_planes(lights, previous)
     updates = {
-        name: _plane_update(lights[name], reusable.get(name), changed, surface_weights, points)
+        name: _plane_update(lights[name], reusable.get(name), changed, surface_weights, points, with_controls)
         for name, surface_weights in weights.lights.items()
     }
 
@@ -69,18 +72,19 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
                 mix(update.planes, chunk, out=mixed)
             sums += mixed
 
-    # A light that does not shine keeps its planes for as long as they are right.
-    kept = {} if changed else reusable
-    kept |= {name: update.planes for name, update in updates.items()}
-    planes = {light.name: kept[light.name] for light in scene.lights if light.name in kept}
+    # A light that does not shine keeps its planes as long as no model changes.
+    valid = {} if changed else reusable
+    valid |= {name: update.planes for name, update in updates.items()}
+    planes = {light.name: valid[light.name] for light in scene.lights if light.name in valid}
     for each in planes.values():
-        _freeze(each.values, each.mixed)
-    _freeze(relative)
-    names = tuple(surface.name for surface in scene.surfaces)
+        read_only(each.values)
+        if each.mixed is not None:
+            read_only(each.mixed)
+    read_only(relative)
     return Picture(
         points.lines,
         points.elements,
-        names,
+        tuple(surface.name for surface in scene.surfaces),
         points.pixels,
         points.slices,
         relative,
@@ -91,7 +95,7 @@ def illuminate(scene: Scene, points: VisiblePoints, previous: Previous | None = 
 
 
 def _changed_surfaces(models: Mapping[int, ReflectionModel], previous: Previous | None) -> Set[int]:
-    """The visible surface numbers whose reflection model is not that of the previous picture."""
+    """The visible surface numbers whose reflection model differs from the previous picture's."""
     if previous is None:
         return set()
     old = previous.scene.surfaces
@@ -99,7 +103,7 @@ def _changed_surfaces(models: Mapping[int, ReflectionModel], previous: Previous 
 
 
 def _reusable_planes(lights: Mapping[str, Light], previous: Previous | None) -> dict[str, LightPlanes]:
-    """The planes of the previous picture that still belong to a light, on surfaces that have not changed."""
+    """The planes of the previous picture that are still right, by light, on surfaces that did not change."""
     if previous is None:
         return {}
     planes = previous.picture.light_planes
@@ -107,15 +111,15 @@ def _reusable_planes(lights: Mapping[str, Light], previous: Previous | None) -> 
     return {
         name: planes[name]
         for name, light in lights.items()
-        if name in planes and _has_same_planes(before[name], light)
+        if name in planes and (cost(before[name], light) or Tier.NOTHING) < Tier.LIGHT
     }
 
 
 class _PlaneUpdate(NamedTuple):
-    """The planes of a light that shines, and what is to be computed of them.
+    """The planes of a light that shines, and the parts of them to compute.
 
-    Where `light` is given, its values are computed on the surfaces `changed_surfaces`. The weighted sum of
-    both planes is computed everywhere if it is `to_mix`.
+    If `light` is given, its values are computed on the surfaces `changed_surfaces`. If `to_mix`, the weighted
+    sum of both planes is computed everywhere.
     """
 
     planes: LightPlanes
@@ -130,32 +134,20 @@ def _plane_update(
     changed: Set[int],
     weights: SurfaceWeights,
     points: VisiblePoints,
+    with_controls: bool,
 ) -> _PlaneUpdate:
-    """What is to be computed for a light that shines, given its reusable planes and the changed surfaces."""
+    """The update of a light that shines, given its reusable planes and the changed surfaces."""
     if old is None:
         values = np.empty((2, len(points.pixels)), np.float32)
-        planes = LightPlanes(values, weights)
-        return _PlaneUpdate(planes, controlled_light(light, points), weights.keys(), to_mix=True)
+        ready = controlled_light(light, points, with_controls)
+        return _PlaneUpdate(LightPlanes(values, weights), ready, weights.keys(), to_mix=True)
     if not changed:
         if old.weights != weights:
             return _PlaneUpdate(LightPlanes(old.values, weights), None, changed, to_mix=True)
         if old.mixed is not None:
             return _PlaneUpdate(old, None, changed, to_mix=False)
         # This light stays while another is edited: keep its mix for the edits to come.
-        kept = dataclasses.replace(old, mixed=np.empty(len(points.pixels), np.float32))
-        return _PlaneUpdate(kept, None, changed, to_mix=True)
+        planes = dataclasses.replace(old, mixed=np.empty(len(points.pixels), np.float32))
+        return _PlaneUpdate(planes, None, changed, to_mix=True)
     planes = LightPlanes(old.values.copy(), weights)
-    return _PlaneUpdate(planes, controlled_light(light, points), changed, to_mix=True)
-
-
-def _has_same_planes(old: Light, new: Light) -> bool:
-    """Whether two lights differ in nothing but what weighs their planes."""
-    costs = None if old is new else cost(old, new)
-    return costs is None or costs < Tier.LIGHT
-
-
-def _freeze(*arrays: Singles | None) -> None:
-    """Make arrays read-only."""
-    for array in arrays:
-        if array is not None:
-            array.flags.writeable = False
+    return _PlaneUpdate(planes, controlled_light(light, points, with_controls), changed, to_mix=True)

@@ -1,8 +1,8 @@
 """The virtual picture array: unscaled floating-point intensities and the surface number at each pixel.
 
 Paper: "The Lighting Model": the intensity at a point is the sum of the contributions of all lights plus an
-ambient term, held as an unscaled floating-point value; the surface number is held in an auxiliary array, and
-minima and maxima are found for the whole picture and for each surface.
+ambient term, an unscaled floating-point value. An auxiliary array has the surface numbers. Minima and maxima
+are found for the whole picture and for each surface.
 """
 
 from __future__ import annotations
@@ -54,11 +54,11 @@ class Picture(Immutable):
     `relative` the intensities in proportion to `scale`, both (n,). `light_planes` has the planes of each
     light that was computed.
 
-    `scalar_values`, (n,) float32 in the order of `pixels` with NaN for missing values, are those of the
-    scalar that colors the scene, and `scalar_limits` are its own range; both are None if there is none.
+    `scalar_values`, (n,) float32 in the order of `pixels` with NaN for missing values, are the values of the
+    scalar that colors the scene, and `scalar_limits` are its own range; both are None without a scalar.
 
-    `visible_parts` has the part at each of `pixels`, None for a picture that does not know them: one made of
-    rasters, or of a file that was written before version 4.
+    `visible_parts` has the part at each of `pixels`. It is None in a picture of rasters without part numbers,
+    or of a file that was written before version 4.
 
     `normals`, (3, n) float32 in the order of `pixels`, are unit vectors in camera space; None unless the
     words of the scene stand for normals.
@@ -147,7 +147,7 @@ class Picture(Immutable):
 
     @cached_property
     def scalar(self) -> Singles | None:
-        """The scalar, (lines, elements) float32, NaN where nothing is visible or no value is; read-only.
+        """The scalar, (lines, elements) float32, NaN where no surface or no value is; read-only.
 
         None for a picture whose scene shows no scalar.
         """
@@ -155,7 +155,7 @@ class Picture(Immutable):
 
     @cached_property
     def relative_ranges(self) -> Mapping[int, IntensityRange]:
-        """Minimum and maximum of `relative` by surface number; those of the whole picture under 0."""
+        """Minimum and maximum of `relative` by surface number; number 0 is the whole picture."""
         ranges = {surface.surface_number: _range(self.relative[surface.pixels]) for surface in self.slices}
         least = min((each.minimum for each in ranges.values()), default=0.0)
         most = max((each.maximum for each in ranges.values()), default=0.0)

@@ -1,6 +1,7 @@
 """The rays from the visible points to a light: lengths, and cosines with normal and reflected view.
 
-Paper: Figures 1 and 3. All are products with `VisiblePoints.rows`, in camera space.
+Paper: Figures 1 and 3. All are products with `VisiblePoints.rows`, in camera space. The last functions take
+light and eye as far away, as words that stand for normals do: then a direction is the same at every point.
 """
 
 from __future__ import annotations
@@ -10,21 +11,23 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import Floats, Indices, Singles
-from autocolor.scene.lights import Light
+from autocolor.checks import Vector
+from autocolor.scene.lights import Light, middle_between, unit_vector
+from autocolor.scene.scene import Scene
 from autocolor.visibility.visible_points import POINT, POINT_SQUARED, VisiblePoints, fill_point_products
 
 CLOSE: Final = 0.02
-"""A point is close to a light where its squared distance is at most this fraction of the squares that it is
-the difference of; there the positions are subtracted before they are squared."""
+"""A point is close to a light if its squared distance is at most this fraction of the squares that it is the
+difference of. The positions of close points are subtracted before they are squared."""
 
 LEAST_SQUARE: Final = 1e-37
-"""The least squared distance; a point that is nearer to the light gets this one, so that none is 0."""
+"""The least squared distance of a point from a light, so that no distance is 0."""
 
 FARTHEST: Final = 1e15
 """In units; the rays to a farther light are parallel, and float32 can hold the square of this."""
 
 GRAZING: Final = np.float32(5e-7)
-"""Above the rounding of a cosine; parallel rays often run along a flat surface, which they do not light."""
+"""Above the rounding of a cosine. Parallel rays often run along a flat surface, and do not light it."""
 
 
 class CameraLight(NamedTuple):
@@ -58,8 +61,8 @@ class Rays(NamedTuple):
     """The rays p - P from points to a light.
 
     `length` is never 0. `cos_light` is the cosine of L, between the light's direction and the ray from the
-    light to the point, or None for a light without a direction. `rows` are those of the points. `close` are
-    the places of the points close to the light, and `close_rows` their rows relative to the light.
+    light to the point, or None for a light without a direction. `rows` are the rows of the points. `close`
+    are the places of the points close to the light, and `close_rows` their rows relative to the light.
     """
 
     length: Singles
@@ -87,8 +90,8 @@ class Rays(NamedTuple):
 def rays_to(light: CameraLight, rows: Singles) -> Rays:
     """The rays to a light from the points in some rows.
 
-    Departs: those to a light at infinity are parallel, which the paper's are not. All are as long, and cos(L)
-    is 1 everywhere, so that concentration and cones leave all of the light.
+    Departs: the rays to a light at infinity are parallel; the paper has no such light. They have the same
+    length, and cos(L) is 1 everywhere, so that concentration and cones leave all of the light.
     """
     direction = light.direction
     close, close_rows = np.empty(0, np.intp), rows[:, :0]
@@ -117,7 +120,7 @@ def _squares_and_ahead(
     """The square of each ray, and how far its point is ahead of the light, along the light's direction.
 
     (p - P)^2 is P.P - 2 p.P + p.p, and both are linear in P and P.P. Measured: a product of two rows with
-    these takes as long as that of one.
+    these takes as long as a product of one row.
     """
     factors = np.zeros((1 if direction is None else 2, 4), np.float32)
     factors[0] = *(-2 * position), 1
@@ -129,3 +132,32 @@ def _squares_and_ahead(
         return products[0], None
     products[1] -= np.float32(direction @ position)
     return products[0], products[1]
+
+
+def middle_of(scene: Scene) -> Vector:
+    """The middle of the object's bounds, from which directions to lights and eye far away are taken."""
+    return middle_between(*scene.object_bounds)
+
+
+def direction_between(start: Vector, end: Vector) -> Vector:
+    """The unit vector from one point to another; zero if they are the same.
+
+    >>> direction_between((1, 1, 1), (1, 1, 3))
+    (0.0, 0.0, 1.0)
+    """
+    x, y, z = (b - a for a, b in zip(start, end, strict=True))
+    return unit_vector((x, y, z)) if x or y or z else (0.0, 0.0, 0.0)
+
+
+def direction_to_eye(scene: Scene) -> Floats:
+    """The unit vector from the middle of the object to the eye, (3,), in camera space."""
+    to_eye: Floats = scene.view.axes @ np.array(direction_between(middle_of(scene), scene.view.eye))
+    return to_eye
+
+
+def direction_to_light(light: Light, middle: Vector) -> Vector:
+    """The unit vector to a light of the world; zero for a light in the middle of the object."""
+    if light.at_infinity and light.axis is not None:
+        x, y, z = light.axis
+        return -x, -y, -z
+    return direction_between(middle, light.position)

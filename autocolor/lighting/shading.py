@@ -1,7 +1,23 @@
-"""One light at the visible points: its two planes, without D, S and the light's intensity.
+"""The light equation: the contribution of each light to the intensity at a visible point.
 
-Paper: "The Lighting Model" and "Light Controls". `illumination` adds up the lights; here is what takes the
-time, and what an edit keeps while only strengths change.
+Paper: Figure 2, and "The Lighting Model". The intensity at a point is
+
+    ambient + sum over the lights j of  light(j)
+    light(j) = intensity(j) x controls(j) x (D cos(I) + S cos^N(E))
+
+I is the angle between the normal and the direction to the light, and E the angle between the direction to the
+light and the reflected view. D, S and N are the surface's; a light gives nothing where cos(I) <= 0. The light
+controls leave a share of the light, 0 to 1 (see `controls`). Another reflection model has its own factor in
+the place of cos^N(E) (see `scene.reflection_models`).
+
+The equation is computed as
+
+    light(j) = (intensity(j) D) x diffuse plane + (intensity(j) S) x specular plane
+    diffuse plane = controls(j) cos(I)
+    specular plane = controls(j) cos^N(E)
+
+`shade` fills in the two planes of a light, which takes the time. `mix` weighs and adds them; an edit of D, S
+or an intensity needs no more. `illumination` adds up the lights.
 
 Measured and rejected: one surface after another (a tenth longer on the coupe, whose smaller surfaces are
 hardly worth the calls); fewer points at once than 131,072 (a tenth more at a quarter of that); two threads,
@@ -31,21 +47,203 @@ from autocolor.scene.reflection_models import Cosines, ReflectionModel
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.visibility.visible_points import NORMAL, POINT, REFLECTED_VIEW, PointChunk, VisiblePoints
 
-# -------------------- light_mix
-# The weights of lights and ambient in the sum that is a picture's intensity.
-#
-# Paper: "The Lighting Model": a light contributes its intensity times (D cos(I) + S cos^N(E)), and the
-# ambient term is added. The weights are relative to the largest of them, the scale, and only the sum is
-# multiplied by it: so lights k times as strong give the same relative sum, and levels that do not change by
-# rounding. Departs: a light that is linked to other surfaces has the weight 0. Its planes are those of all
-# surfaces, so that another link costs no more than the sum.
+DIFFUSE: Final = 0
+SPECULAR: Final = 1
+"""The rows of the two planes."""
+
+FEW: Final = 0.3
+"""Below this fraction of lit points it takes less time to pick them than to compute them all."""
 
 SurfaceWeights = Mapping[int, tuple[np.float32, np.float32]]
 """The weights of a light's diffuse and specular planes, by surface number."""
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class LightPlanes(Immutable):
+    """The contribution of one light to the visible points, in their order; read-only in a picture.
+
+    `values` is (2, n) float32: the diffuse and the specular plane, without D, S and the light's intensity.
+    `weights` are their weights in the picture. `mixed`, (n,) float32, is their weighted sum, or None. A light
+    that stays while others are moved has it: then the sum need only be added.
+    """
+
+    values: Singles
+    weights: SurfaceWeights
+    mixed: Singles | None = None
+
+
+class ControlledLight(NamedTuple):
+    """A light in camera space and its controls, ready for the visible points of one view."""
+
+    light: CameraLight
+    controls: tuple[LightControl, ...]
+
+
+def controlled_light(light: Light, points: VisiblePoints, with_controls: bool = True) -> ControlledLight:
+    """A light ready for some visible points; without its controls if `with_controls` is false."""
+    controls = controls_of(light, points) if with_controls else ()
+    directed = any(control.directed for control in controls)
+    return ControlledLight(camera_light(light, points, directed), controls)
+
+
+def shade(
+    planes: Singles,
+    light: ControlledLight,
+    points: VisiblePoints,
+    chunk: PointChunk,
+    models: Mapping[int, ReflectionModel],
+) -> None:
+    """Fill in the diffuse and the specular plane of a light at a chunk of points.
+
+    `planes` is (2, n) float32, in the order of the points; 0 where the light has no effect. `models` has the
+    reflection model of each visible surface number.
+    """
+    out, rows = planes[:, chunk.pixels], points.rows[:, chunk.pixels]
+    is_lit = _lit_points(light.controls, rows, chunk.pixels)
+    if is_lit is not None and not is_lit.any():
+        out[:] = 0
+        return
+
+    # Find the points that face the light and are within its controls.
+    rays = rays_to(light.light, rows)
+    incidence = rays.cosines_with(NORMAL)
+    facing = incidence > 0
+    is_lit = facing if is_lit is None else np.logical_and(is_lit, facing, out=is_lit)
+    if rays.cos_light is not None:
+        is_lit &= rays.cos_light >= np.float32(max(control.least_cosine for control in light.controls))
+    count = np.count_nonzero(is_lit)
+    if not count:
+        out[:] = 0
+        return
+
+    # Reflect the light there. Where few points are lit, compute only them.
+    at_points = _AtPoints(
+        incidence, rays.cosines_with(REFLECTED_VIEW), rays.cos_light, rays.length, rows, None
+    )
+    ends = [each.stop for each in chunk.slices]
+    of_surfaces = [models[each.surface_number] for each in chunk.slices]
+    if count >= FEW * len(is_lit):
+        flags = is_lit if count < len(is_lit) else None
+        _reflect(out, at_points, flags, light.controls, ends, of_surfaces)
+        return
+    chosen = np.flatnonzero(is_lit)
+    reflected = np.empty((2, count), np.float32)
+    ends = np.searchsorted(chosen, ends).tolist()
+    _reflect(reflected, at_points.chosen(chosen), None, light.controls, ends, of_surfaces)
+    out[:] = 0
+    for plane, values in zip(out, reflected, strict=True):
+        plane[chosen] = values
+
+
+def _lit_points(controls: Sequence[LightControl], rows: Singles, pixels: slice) -> Booleans | None:
+    """Whether each point may be lit under all controls; None where no control decides by the points."""
+    lit: Booleans | None = None
+    for control in controls:
+        allowed = control.lit_points(rows, pixels)
+        if allowed is not None:
+            lit = allowed if lit is None else np.logical_and(lit, allowed, out=lit)
+    return lit
+
+
+class _AtPoints(NamedTuple):
+    """cos(I), cos(E) and, for a directed light, cos(L) at some points, (points,) float32 each.
+
+    `length` and `rows` belong to the whole chunk. `places` are the places of the points in it; None for all.
+    """
+
+    incidence: Singles
+    eye: Singles
+    light: Singles | None
+    length: Singles
+    rows: Singles
+    places: Indices | None
+
+    def chosen(self, places: Indices) -> _AtPoints:
+        """Some points of the whole chunk."""
+        light = None if self.light is None else self.light.take(places)
+        return self._replace(
+            incidence=self.incidence.take(places), eye=self.eye.take(places), light=light, places=places
+        )
+
+    def lit(self) -> LitPoints:
+        """The points as a light control sees them."""
+
+        def distance() -> Singles:
+            return self.length if self.places is None else self.length.take(self.places)
+
+        def positions() -> Singles:
+            return self.rows[POINT] if self.places is None else self.rows[POINT].take(self.places, axis=1)
+
+        return LitPoints(self.light, distance, positions)
+
+    def cosines(self, start: int, end: int) -> Cosines:
+        """The cosines for a reflection model at a slice of the points."""
+
+        def view() -> Singles:
+            places = slice(start, end) if self.places is None else self.places[start:end]
+            # N.V = N . R for the reflected view R.
+            return dot(self.rows[NORMAL, places], self.rows[REFLECTED_VIEW, places])
+
+        return Cosines(self.incidence[start:end], self.eye[start:end], view)
+
+
+def _reflect(
+    out: Singles,
+    at_points: _AtPoints,
+    is_lit: Booleans | None,
+    controls: Sequence[LightControl],
+    ends: Sequence[int],
+    models: Sequence[ReflectionModel],
+) -> None:
+    """Fill in both planes at some points: the reflected light times the shares that the controls leave.
+
+    If `is_lit` is given, points that are not lit become 0. The surfaces of the points end at `ends` and have
+    these `models`. The arrays of the cosines are overwritten.
+    """
+    multiplier = _multiplier(controls, at_points)
+    if is_lit is not None:
+        lit = is_lit.astype(np.float32)
+        multiplier = lit if multiplier is None else np.multiply(multiplier, lit, out=multiplier)
+    # The specular factor takes the place of cos(E), surface by surface.
+    for (start, end), model in zip(pairwise([0, *ends]), models, strict=True):
+        cosines = at_points.cosines(start, end)
+        model.specular(cosines, out=cosines.eye)
+    for plane, factor in ((DIFFUSE, at_points.incidence), (SPECULAR, at_points.eye)):
+        if multiplier is None:
+            out[plane] = factor
+        else:
+            np.multiply(factor, multiplier, out=out[plane])
+
+
+def _multiplier(controls: Sequence[LightControl], at_points: _AtPoints) -> Singles | None:
+    """The product of the factors of all controls, or None if there is none; cos(L) may be overwritten."""
+    shaping = [control for control in controls if type(control).factor is not LightControl.factor]
+    lit = at_points.lit()
+    multiplier: Singles | None = None
+    for control in shaping:
+        # The last control may overwrite the cosines.
+        spare = lit.cos_light if control is shaping[-1] else None
+        factor = control.factor(lit, np.empty_like(at_points.incidence) if spare is None else spare)
+        multiplier = factor if multiplier is None else np.multiply(multiplier, factor, out=multiplier)
+    return multiplier
+
+
+def mix(planes: LightPlanes, chunk: PointChunk, out: Singles) -> None:
+    """Write the weighted sum of a light's two planes at a chunk of points to `out`."""
+    values = planes.values[:, chunk.pixels]
+    for surface in chunk.slices:
+        pair = np.array(planes.weights[surface.surface_number])
+        np.matmul(pair, values[:, surface.pixels], out=out[surface.pixels])
+
+
 class LightMix(NamedTuple):
-    """The weights of the ambient term and of the planes of each light that shines, relative to `scale`."""
+    """The weights of the ambient term and of the planes of each light that shines, relative to `scale`.
+
+    The scale is the largest of them, and only the sum is multiplied by it. So lights k times as strong give
+    the same relative sum, and levels that do not change by rounding. Departs: a light that is linked to other
+    surfaces has the weight 0. Its planes are computed on all surfaces, so another link costs no more than the
+    sum.
+    """
 
     scale: float
     ambient: np.float32
@@ -61,8 +259,8 @@ def light_mix(
 ) -> LightMix:
     """The mix of the lights that shine; `models` has the reflection model of each visible surface number.
 
-    `parts` are those of the scene: a light that is linked to parts shines on their surfaces only. Raises
-    InputError where the sum would leave the range of float32: such an intensity is refused by name, never
+    `parts` are the parts of the scene: a light that is linked to parts shines on their surfaces only. Raises
+    InputError if the sum would leave the range of float32: such an intensity is refused by name, never
     clipped into a level.
     """
     if not ambient < LARGEST_SINGLE:
@@ -108,7 +306,7 @@ def _strengths(
 
 
 def _refuse_overflow(surface: str, peaks: Mapping[str, float], ambient: float) -> None:
-    """Refuse lights whose peaks have a sum float32 can't hold, naming the light that contributes most."""
+    """Raise InputError if float32 can't hold the sum of the peaks; it names the light that adds most."""
     total = ambient + sum(peaks.values())
     if math.isfinite(total) and total < LARGEST_SINGLE:
         return
@@ -117,193 +315,3 @@ def _refuse_overflow(surface: str, peaks: Mapping[str, float], ambient: float) -
         f"surface {surface!r} under light {light!r}: intensities must stay below {LARGEST_SINGLE:.3g}, not"
         f" reach {total:g}; lower the light's intensity or the surface's diffuse and specular"
     )
-
-
-# -------------------- light_planes
-# The contribution of one light to the visible points: two planes, and how they are mixed.
-
-DIFFUSE: Final = 0
-SPECULAR: Final = 1
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LightPlanes(Immutable):
-    """The contribution of one light to the visible points, in their order; read-only in a picture.
-
-    `values` is (2, n) float32: the diffuse and the specular plane, without D, S and the light's intensity.
-    `weights` are their weights in the picture. `mixed`, (n,) float32, is their weighted sum where it is kept:
-    that of a light that stays while others are moved need then only be added.
-    """
-
-    values: Singles
-    weights: SurfaceWeights
-    mixed: Singles | None = None
-
-
-def mix(planes: LightPlanes, chunk: PointChunk, out: Singles) -> None:
-    """Write the weighted sum of a light's two planes at a chunk of points to `out`."""
-    values = planes.values[:, chunk.pixels]
-    for surface in chunk.slices:
-        pair = np.array(planes.weights[surface.surface_number])
-        np.matmul(pair, values[:, surface.pixels], out=out[surface.pixels])
-
-
-FEW: Final = 0.3
-"""Below this fraction of lit points it takes less time to pick them than to compute them all."""
-
-
-class ControlledLight(NamedTuple):
-    """A light in camera space and its controls, ready for the visible points of one view."""
-
-    light: CameraLight
-    controls: tuple[LightControl, ...]
-
-
-def controlled_light(light: Light, points: VisiblePoints) -> ControlledLight:
-    """A light ready for some visible points."""
-    controls = controls_of(light, points)
-    directed = any(control.directed for control in controls)
-    return ControlledLight(camera_light(light, points, directed), controls)
-
-
-def shade(
-    planes: Singles,
-    light: ControlledLight,
-    points: VisiblePoints,
-    chunk: PointChunk,
-    models: Mapping[int, ReflectionModel],
-) -> None:
-    """Fill in the diffuse and the specular plane of a light at a chunk of points.
-
-    `planes` is (2, n) float32, in the order of the points; 0 where the light has no effect. `models` has the
-    reflection model of each visible surface number.
-    """
-    out, rows = planes[:, chunk.pixels], points.rows[:, chunk.pixels]
-    is_lit = _lit_points(light.controls, rows, chunk.pixels)
-    if is_lit is not None and not is_lit.any():
-        out[:] = 0
-        return
-
-    # Find what faces the light and is within its controls.
-    rays = rays_to(light.light, rows)
-    incidence = rays.cosines_with(NORMAL)
-    facing = incidence > 0
-    is_lit = facing if is_lit is None else np.logical_and(is_lit, facing, out=is_lit)
-    if rays.cos_light is not None:
-        is_lit &= rays.cos_light >= np.float32(max(control.least_cosine for control in light.controls))
-    count = np.count_nonzero(is_lit)
-    if not count:
-        out[:] = 0
-        return
-
-    # Reflect the light there; where few points are lit, compute those alone.
-    at_points = _AtPoints(
-        incidence, rays.cosines_with(REFLECTED_VIEW), rays.cos_light, rays.length, rows, None
-    )
-    ends = [each.stop for each in chunk.slices]
-    of_surfaces = [models[each.surface_number] for each in chunk.slices]
-    if count >= FEW * len(is_lit):
-        flags = is_lit if count < len(is_lit) else None
-        _reflect(out, at_points, flags, light.controls, ends, of_surfaces)
-        return
-    chosen = np.flatnonzero(is_lit)
-    reflected = np.empty((2, count), np.float32)
-    ends = np.searchsorted(chosen, ends).tolist()
-    _reflect(reflected, at_points.chosen(chosen), None, light.controls, ends, of_surfaces)
-    out[:] = 0
-    for plane, values in zip(out, reflected, strict=True):
-        plane[chosen] = values
-
-
-def _lit_points(controls: Sequence[LightControl], rows: Singles, pixels: slice) -> Booleans | None:
-    """Whether each point may be lit under all controls; None where no control decides by the points."""
-    lit: Booleans | None = None
-    for control in controls:
-        allowed = control.lit_points(rows, pixels)
-        if allowed is not None:
-            lit = allowed if lit is None else np.logical_and(lit, allowed, out=lit)
-    return lit
-
-
-class _AtPoints(NamedTuple):
-    """cos(I), cos(E) and, for a directed light, cos(L) at some points, (points,) float32 each.
-
-    `length` and `rows` are those of the whole chunk, and `places` the places of the points there, None for
-    all of it.
-    """
-
-    incidence: Singles
-    eye: Singles
-    light: Singles | None
-    length: Singles
-    rows: Singles
-    places: Indices | None
-
-    def chosen(self, places: Indices) -> _AtPoints:
-        """Some points of the whole chunk."""
-        light = None if self.light is None else self.light.take(places)
-        return self._replace(
-            incidence=self.incidence.take(places), eye=self.eye.take(places), light=light, places=places
-        )
-
-    def lit(self) -> LitPoints:
-        """What a light control may ask about the points."""
-
-        def distance() -> Singles:
-            return self.length if self.places is None else self.length.take(self.places)
-
-        def positions() -> Singles:
-            return self.rows[POINT] if self.places is None else self.rows[POINT].take(self.places, axis=1)
-
-        return LitPoints(self.light, distance, positions)
-
-    def cosines(self, start: int, end: int) -> Cosines:
-        """What a reflection model needs at a slice of the points."""
-
-        def view() -> Singles:
-            places = slice(start, end) if self.places is None else self.places[start:end]
-            # N.V = N . R for the reflected view R.
-            return dot(self.rows[NORMAL, places], self.rows[REFLECTED_VIEW, places])
-
-        return Cosines(self.incidence[start:end], self.eye[start:end], view)
-
-
-def _reflect(
-    out: Singles,
-    at_points: _AtPoints,
-    is_lit: Booleans | None,
-    controls: Sequence[LightControl],
-    ends: Sequence[int],
-    models: Sequence[ReflectionModel],
-) -> None:
-    """Fill in both planes at some points: what is reflected to the eye, times what the controls leave.
-
-    Where `is_lit` is given, the other points become 0. The surfaces of the points end at `ends` and have
-    these `models`. The arrays of the cosines are overwritten.
-    """
-    multiplier = _multiplier(controls, at_points)
-    if is_lit is not None:
-        lit = is_lit.astype(np.float32)
-        multiplier = lit if multiplier is None else np.multiply(multiplier, lit, out=multiplier)
-    # The specular factor takes the place of cos(E), surface by surface.
-    for (start, end), model in zip(pairwise([0, *ends]), models, strict=True):
-        cosines = at_points.cosines(start, end)
-        model.specular(cosines, out=cosines.eye)
-    for plane, factor in ((DIFFUSE, at_points.incidence), (SPECULAR, at_points.eye)):
-        if multiplier is None:
-            out[plane] = factor
-        else:
-            np.multiply(factor, multiplier, out=out[plane])
-
-
-def _multiplier(controls: Sequence[LightControl], at_points: _AtPoints) -> Singles | None:
-    """The product of the factors of all controls, or None if there is none; cos(L) may be overwritten."""
-    shaping = [control for control in controls if type(control).factor is not LightControl.factor]
-    lit = at_points.lit()
-    multiplier: Singles | None = None
-    for control in shaping:
-        # The last control may overwrite the cosines.
-        spare = lit.cos_light if control is shaping[-1] else None
-        factor = control.factor(lit, np.empty_like(at_points.incidence) if spare is None else spare)
-        multiplier = factor if multiplier is None else np.multiply(multiplier, factor, out=multiplier)
-    return multiplier

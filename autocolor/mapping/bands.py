@@ -5,9 +5,9 @@ of such a surface is divided into bands, one a color, and each band into shades 
 
     word = first + band * shades + shade
 
-So both can be read from a word, another color scale is entries alone, and a scalar that is shown in flat
-color codes has one shade. Assumed: beyond the limits are the first and the last band, unless these have
-colors of their own; then, as where there is no value, further bands follow.
+So both can be read from a word, and another color scale changes entries alone. A scalar that is shown in flat
+color codes has one shade. Assumed: values beyond the limits have the first and the last band. If they have
+colors of their own, further bands follow for them, and another band for missing values.
 """
 
 from __future__ import annotations
@@ -32,17 +32,20 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Surface
 
 DARKEST: Final = 0.5
-"""Assumed: what the darkest shade keeps of a color, so that its band can be told; with less, most of
-a shiny surface is too dark for that."""
+"""Assumed: the brightness of the darkest shade as a fraction of its color. With less, most of a
+shiny surface is too dark to recognize its band."""
 
 ROUNDING: Final = 2.0**-20
-"""Assumed: what interpolation may be off by, as a fraction of the larger limit."""
+"""Assumed: the error of interpolation, as a fraction of the larger limit."""
+
+MOST_SHADES: Final = 8
+"""Assumed: the shades of each band if no number is asked for; more are hardly visible within a band."""
 
 
 class Bands(NamedTuple):
-    """How the levels of a surface are divided: `bands` of `shades` from one limit to the other.
+    """The division of a surface's levels: `bands` bands of `shades` levels from one limit to the other.
 
-    After them come those of values below, above and missing, where they have their own.
+    After them come the bands of values below, above and missing, if these have their own.
     """
 
     low: float
@@ -75,7 +78,7 @@ class Bands(NamedTuple):
 
     @property
     def missing(self) -> int:
-        """The band where there is no value, of those that have one."""
+        """The band number for missing values, if they have a band."""
         return self.bands + self.has_below + self.has_above
 
     def brightest(self, band: int) -> int:
@@ -86,8 +89,8 @@ class Bands(NamedTuple):
 def band_numbers(values: Singles, bands: Bands) -> Words:
     """The band of each value: floor((value - low) / (high - low) * bands) between the limits.
 
-    A value at the upper limit is in the last band. Assumed: what is beyond a limit by no more than rounding
-    is not beyond it, or single pixels would be where a value only reaches the limit.
+    A value at the upper limit is in the last band. Assumed: a value that is beyond a limit by no more than
+    rounding counts as the limit; otherwise single pixels would have the color of values beyond it.
 
     >>> band_numbers(np.array([0, 2.4, 2.5, 10, 11], np.float32), Bands(0, 10, 4, 1)).tolist()
     [0, 0, 1, 3, 3]
@@ -98,7 +101,7 @@ def band_numbers(values: Singles, bands: Bands) -> Words:
     exact[is_missing] = low
     rounding = ROUNDING * max(abs(low), abs(high))
     is_below, is_above = exact < low - rounding, exact > high + rounding
-    # What is far beyond the limits would be beyond the integers, too.
+    # Values far beyond the limits would be beyond the integers, too.
     np.clip(exact, low, high, out=exact)
     numbers = np.minimum(np.floor((exact - low) / (high - low) * count), count - 1).astype(np.uint16)
     numbers[is_below] = bands.below
@@ -117,8 +120,8 @@ def band_entries(
 ) -> Bytes:
     """The entries of a surface with bands, (levels, 3) uint8, read-only.
 
-    The colors of the bands are those of the scale, and `ends` those below and above the limits, if they have
-    some. A band's highest shade has its color; `floor` is the brightness of the lowest as a fraction of that.
+    The bands have the colors of the scale; `ends` are the colors below and above the limits, or None. The
+    highest shade of a band has its color; `floor` is the brightness of the lowest as a fraction of that.
     """
     beyond = [color for color in ends if color is not None]
     colors = np.vstack([scale_colors(scale, bands.bands), *beyond, *[missing] * bands.has_missing])
@@ -128,17 +131,10 @@ def band_entries(
     return read_only(entries.astype(np.uint8).reshape(-1, 3))
 
 
-# -------------------- band_division
-# The division of the words among the surfaces that a scalar colors, in bands and shades.
-
-MOST_SHADES: Final = 8
-"""Assumed: the shades of each band where none are asked for; more are hardly seen within a band."""
-
-
 def bands_by_surface(scene: Scene, picture: Picture) -> Mapping[str, Bands]:
     """The bands of each surface in use that the scalar colors, by name; none without a scalar.
 
-    All have as many shades. Raises InputError if the words do not suffice for them.
+    All bands have the same number of shades. Raises InputError if the words do not suffice for them.
     """
     scalar, values = scene.scalar, picture.scalar_values
     if scalar is None or values is None:
@@ -152,7 +148,7 @@ def bands_by_surface(scene: Scene, picture: Picture) -> Mapping[str, Bands]:
         if np.isnan(values[each.pixels]).any()
     }
     rows = [surface for surface in scene.surfaces if surface.name in used]
-    # Nothing of the object is beyond the scalar's own range; what is of the stage has the color of its ends.
+    # Nothing of the object is beyond the scalar's own range; the stage has the colors of its ends there.
     has_ends = scalar.limits is not None
     has_below, has_above = has_ends and scalar.below is not None, has_ends and scalar.above is not None
     bands = {
@@ -165,7 +161,7 @@ def bands_by_surface(scene: Scene, picture: Picture) -> Mapping[str, Bands]:
 
 
 def colored_surfaces(scene: Scene) -> Sequence[str]:
-    """The names of the surfaces that the scalar colors: those it tells, else all but those of the stage."""
+    """The names of the surfaces that the scalar colors; by default all but the surfaces of the stage."""
     if scene.scalar is None:
         return ()
     if scene.scalar.surfaces is not None:
@@ -174,10 +170,10 @@ def colored_surfaces(scene: Scene) -> Sequence[str]:
 
 
 def own_limits(picture: Picture) -> tuple[float, float]:
-    """The own range of the scalar of a picture, where its first band begins and its last one ends.
+    """The own range of the scalar of a picture, where its first band begins and its last band ends.
 
-    It does not depend on the color scale, such as by being symmetric for a diverging one, or another scale
-    would change words. A picture that was made of rasters may have a range without extent; it is `widened`.
+    It does not depend on the color scale: if it were symmetric for a diverging scale, another scale would
+    change words. A picture that was made of rasters may have a range without extent; it is `widened`.
     """
     return widened(*(picture.scalar_limits or UNIT))
 
@@ -185,9 +181,9 @@ def own_limits(picture: Picture) -> tuple[float, float]:
 def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Bands]) -> int:
     """The shades of each band: as many as are asked for, else as many as the words suffice for.
 
-    Assumed: the levels that a colored surface asks for are those for its paint, and its bands take what they
-    need. The other surfaces have the levels that they ask for, and those that ask for none at least
-    FEWEST_LEVELS, or USEFUL_LEVELS where the shades can be chosen. Raises InputError if there are too few
+    Assumed: the levels that a colored surface asks for are meant for its paint, and its bands take the levels
+    that they need. The other surfaces have the levels that they ask for. A surface that asks for none has at
+    least FEWEST_LEVELS, or USEFUL_LEVELS if the shades can be chosen. Raises InputError if there are too few
     words.
     """
     others = [surface.levels for surface in surfaces if surface.name not in bands]
@@ -205,10 +201,10 @@ def _shades(scalar: Scalar, surfaces: Sequence[Surface], bands: Mapping[str, Ban
 
 
 def _refusal(scalar: Scalar, name: str, others: int, total: int, shades: int, room: int) -> str:
-    """What is said of bands and shades for which there are too few words.
+    """The message about bands and shades for which there are too few words.
 
-    `total` bands are those of all surfaces that the scalar colors; `others` is how many these are besides the
-    named one, and `room` the number of words.
+    `total` is the number of bands of all surfaces that the scalar colors, `others` the number of these
+    surfaces besides the named one, and `room` the number of words.
     """
     label = f"surface {name!r}" + (f" and {others} more" if others else "")
     most = room // total

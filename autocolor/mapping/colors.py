@@ -1,4 +1,4 @@
-"""The lookup table entries of a surface: its object color, blended with the light color.
+"""The lookup table entries of a surface: its object color, blended with the light color; and tints of colors.
 
 Paper: "Light Source Color Blending", Figure 12. Levels up to the blend level are taken as
 purely diffuse; above it the color shifts to the specular color in N equal steps. The method assumes that the
@@ -21,6 +21,12 @@ HALVES_UP: Final = (HALF + 1e-9,) * 3
 
 The small excess makes up for floating-point error, which may leave a half just below a half.
 """
+
+FULL: Final = 255
+"""The largest component of a color."""
+
+AMOUNTS: Final = np.arange(-FULL, FULL + 1)
+"""The amounts that can be added to the components."""
 
 
 def blend_level(blend: float, levels: int) -> int:
@@ -58,7 +64,7 @@ def entries_of(paint: Paint, levels: int, floor: float = 0.0) -> Bytes:
 def entries_at(paint: Paint, fractions: Singles, levels: int, floor: float = 0.0) -> Bytes:
     """The entries of a paint at fractions of a range of so many levels, (n, 3) uint8, read-only.
 
-    They are those of `entries_of` at the level of each fraction, which need not be a whole one.
+    The fractions give levels between the whole levels of `entries_of`, and colors in the same way.
     """
     level = fractions.astype(np.float64) * (levels - 1)
     return _blended(paint, _shares_at(level, paint.blend, paint.light_percentage, levels, floor))
@@ -93,23 +99,12 @@ def _shares_at(level: Floats, blend: float, percentage: float, levels: int, floo
     return shares
 
 
-# -------------------- tints
-# Tints and shades of a color: its three components raised or lowered together.
-#
-# Paper: Figure 13. "The white bar can be used to quickly increase or decrease all three color components
-# equally to generate tints or shades." Assumed: the white of a color is the mean of its components, so that
-# the bar is empty for black alone and full for white alone. A component that reaches an end stays there
-# while the others go on; otherwise a full red would have no tints.
-
-FULL: Final = 255
-"""The most that a component can be."""
-
-AMOUNTS: Final = np.arange(-FULL, FULL + 1)
-"""What can be added to the components."""
-
-
 def white_of(color: Color) -> int:
-    """The mean of the components, 0 to 255.
+    """The white of a color: the mean of its components, 0 to 255.
+
+    Paper: Figure 13. "The white bar can be used to quickly increase or decrease all three color components
+    equally to generate tints or shades." Assumed: with the mean, the bar is empty for black alone and full
+    for white alone.
 
     >>> white_of((255, 0, 0)), white_of((10, 20, 31))
     (85, 20)
@@ -120,7 +115,8 @@ def white_of(color: Color) -> int:
 def with_white(color: Color, white: int) -> Color:
     """The color with the same amount added to each component, such that their mean is `white`, 0 to 255.
 
-    A component that would go beyond 0 or 255 stays there. Of two amounts that come as near, it is the lower.
+    Assumed: a component that reaches 0 or 255 stays there while the others go on; otherwise a full red would
+    have no tints. Ties go to the lower amount.
 
     >>> with_white((255, 0, 0), 135), with_white((100, 60, 20), 40)
     ((255, 75, 75), (80, 40, 0))

@@ -1,8 +1,10 @@
 """From intensities to levels, and from levels to words.
 
-Paper: "The Lighting Model": the unscaled intensities are mapped to integer intensities for the display,
-by the range of each surface or of the entire object; nonlinear mappings can be tried. "Light Source Color
-Blending", Figure 11: a word is the first word of the surface's range plus the level.
+Paper: "The Lighting Model": the unscaled intensities are mapped to integer intensities for the display. The
+minimum and the maximum intensity of each surface, or of the entire object, become the lowest and the highest
+level; nonlinear mappings can be tried. "Light Source Color Blending", Figure 11: a word is the first word of
+the surface's range plus the level. Departs: a scene can hold ranges of intensities, which then do not follow
+the picture, so that less light looks darker. Intensities beyond a held range are shown as its nearest end.
 """
 
 from __future__ import annotations
@@ -23,18 +25,11 @@ from autocolor.scene.curves import CurvePoints, Fractions, mapping_curve
 from autocolor.scene.scene import AUTO, OBJECT, Exposure
 from autocolor.visibility.visible_points import point_chunks
 
-# -------------------- exposure
-# Exposure: the range of intensities that the levels of each surface show.
-#
-# Paper: "The Lighting Model": the minimum and the maximum intensity of each surface, or of the entire
-# object, are mapped to the display. Departs: a scene can hold ranges, which then do not follow the picture,
-# so that less light looks darker; intensities beyond a held range are shown as its nearest end.
-
 WHOLE: Final = 0
 """The number of the whole object's range, beside those of the surfaces."""
 
 ROUNDING: Final = 2.0**-20
-"""Assumed: eight units in the last place of float32, which a sum of lights may be off by."""
+"""Assumed: eight units in the last place of float32, the rounding of a sum of lights."""
 
 
 def has_extent(extent: IntensityRange) -> bool:
@@ -50,24 +45,24 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
     """The range that is mapped to the levels of each visible surface, by number; the whole object's is WHOLE.
 
     Intensities are relative to the picture's scale. A surface has its held range; else the object's, if that
-    is held or the scaling is "object"; else its own in the picture. One without extent has the object's.
-    Assumed: an unlit floor has the intensity of the ambient light all over, and should look as dark as that
-    is beside the rest.
+    is held or the scaling is "object"; else its own in the picture. A surface without extent has the object's
+    range. Assumed: an unlit floor has the intensity of the ambient light all over, and should look as dark as
+    that is beside the rest.
     """
     held: dict[str, IntensityRange] = {}
     if not isinstance(exposure, str):
         for name, limits in exposure:
-            # As exact as intensities are, so that what is too narrow for them has no extent.
+            # As exact as intensities: a range that is too narrow for them has no extent.
             low, high = (min(limit / picture.scale, LARGEST_SINGLE) for limit in limits)
             held[name] = IntensityRange(float(np.float32(low)), float(np.float32(high)))
-    found = picture.relative_ranges
-    whole = held.get(OBJECT, found[WHOLE])
+    of_picture = picture.relative_ranges
+    whole = held.get(OBJECT, of_picture[WHOLE])
     shares_whole = scaling == "object" or OBJECT in held
     ranges = {WHOLE: whole}
     for surface in picture.slices:
         number = surface.surface_number
         name = picture.surfaces[number - 1]
-        own = whole if shares_whole else found[number]
+        own = whole if shares_whole else of_picture[number]
         if name != OBJECT:
             own = held.get(name, own)
         ranges[number] = own if has_extent(own) else whole
@@ -77,7 +72,7 @@ def mapped_ranges(picture: Picture, scaling: str, exposure: Exposure) -> Mapping
 def held_exposure(picture: Picture, scaling: str, exposure: Exposure = AUTO) -> Exposure:
     """The exposure that holds the ranges that are mapped now, so that no word changes.
 
-    A range without extent is not held; the result is AUTO if none has one.
+    A range without extent is not held; the result is AUTO if no range has an extent.
     """
     held = {} if isinstance(exposure, str) else dict(exposure)
     each_has_its_own = scaling == "surface" and OBJECT not in held
@@ -102,10 +97,10 @@ def words_of(
     """The words of a picture, (lines, elements) uint16, read-only; BACKGROUND where nothing is visible.
 
     The minimum and the maximum of the range that is mapped for a surface (see `mapped_ranges`) become its
-    lowest and its highest level; intensities beyond it become the nearest of these. Where no range has an
-    extent, as with all lights off, every pixel gets the middle level, which is neither black nor a highlight.
-    On a surface with `bands`, the intensity tells the shade and the scalar the band. Raises InputError if an
-    intensity is not finite.
+    lowest and its highest level; intensities beyond it become the nearest of these. If no range has an
+    extent, such as with all lights off, every pixel gets the middle level, which is neither black nor a
+    highlight. On a surface with `bands`, the intensity gives the shade and the scalar the band. Raises
+    InputError if an intensity is not finite.
     """
     words = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
     for surface in picture.slices:
@@ -147,24 +142,23 @@ def fractions_by_surface(
 ) -> Mapping[int, Fractions]:
     """The function from the intensities of each visible surface to fractions, 0 to 1, by surface number.
 
-    `extents` are those of `mapped_ranges`; intensities are relative to the picture's scale. With `only`, the
-    function of that surface alone is made, if it is visible.
+    `extents` is the result of `mapped_ranges`; intensities are relative to the picture's scale. With `only`,
+    the result has the function of that surface alone, if it is visible.
     """
     intensities_of = {
         surface.surface_number: picture.relative[surface.pixels]
         for surface in picture.slices
         if only in (None, surface.surface_number)
     }
-    made: dict[int, Fractions] = {}
-    found: dict[int, Fractions] = {}
+    functions: dict[int, Fractions] = {}
     for number in intensities_of:
         # Surfaces that are mapped by the whole object's range share one function.
         of = WHOLE if extents[number] is extents[WHOLE] else number
-        if of not in made:
+        if of not in functions:
             everything = picture.relative if of == WHOLE else intensities_of[number]
-            made[of] = fraction_of(extents[of], mapping, everything, picture.relative_ranges[of])
-        found[number] = made[of]
-    return found
+            functions[of] = fraction_of(extents[of], mapping, everything, picture.relative_ranges[of])
+        functions[number] = functions[of]
+    return {number: functions[number] for number in intensities_of}
 
 
 def levels_of(fractions: Singles, levels: int, out: Singles | None = None) -> Singles:
@@ -203,17 +197,17 @@ def ordered_thresholds(lines: int, elements: int) -> Singles:
 
 
 def fraction_of(
-    mapped: IntensityRange, mapping: str | CurvePoints, everything: Singles, found: IntensityRange
+    mapped: IntensityRange, mapping: str | CurvePoints, everything: Singles, own: IntensityRange
 ) -> Fractions:
     """The function from intensities to fractions of a range, 0 to 1; a half for a range without extent.
 
-    `everything` holds all intensities that are mapped with this range, and `found` is their own range; those
-    beyond the range that is mapped have the fractions of its ends.
+    `everything` has all intensities that are mapped with this range, and `own` is their own range.
+    Intensities beyond the range that is mapped have the fractions of its ends.
     """
     if not has_extent(mapped):
         return lambda intensities: np.full_like(intensities, HALF)
     low, high = np.float32(mapped.minimum), np.float32(mapped.maximum)
-    if low <= found.minimum and found.maximum <= high:
+    if low <= own.minimum and own.maximum <= high:
         return mapping_curve(mapping)(low, high, everything)
     curve = mapping_curve(mapping)(low, high, np.clip(everything, low, high))
     return lambda intensities: curve(np.clip(intensities, low, high))

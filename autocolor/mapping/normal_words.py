@@ -1,36 +1,42 @@
 """Words that stand for normals, and their entries.
 
-Paper: reference 2, D. H. Bass, 1981: the frame buffer holds quantized normals, and the table what they
-reflect. Each surface has its level range as ever; its words stand for normals instead of levels:
+Paper: reference 2, D. H. Bass, 1981, "Using the video lookup table for reflectivity calculations": the frame
+buffer holds quantized normals, and the table the light that they reflect. Each surface has its level range as
+ever, but its words stand for normals instead of levels:
 
     word = first + number of the normal's cell
 
-A word's intensity is mapped to a fraction of the range as ever, and its entry is the color that the paint has
-there. Assumed: the range that is mapped is that of the bins of normals that are seen, which are finer than
-the words. Measured and rejected: the range of the words in use. A narrow highlight falls between the normals
-of words, now nearer to one and then farther, and the whole surface would become brighter and darker with
-that as a light moves: for N = 100 the mean error on a ball is up to 10 of 255 instead of 3.
+The intensity at a word's normal is mapped to a fraction of the range as ever, and the word's entry is the
+color that the paint has there. Assumed: the range that is mapped is the range of the bins of visible normals,
+which are finer than the words. Measured and rejected: the range of the words in use. A narrow highlight falls
+between the normals of words, now nearer to one and then farther, and the whole surface would become brighter
+and darker with that as a light moves: for N = 100 the mean error on a ball is up to 10 of 255 instead of 3.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Real, RealArray, Singles, Words, chunks, dot
+from autocolor.arrays import Bytes, Floats, Indices, Real, RealArray, Singles, Words, chunks, dot
 from autocolor.checks import Vector
 from autocolor.immutable import read_only
 from autocolor.lighting.illumination import illuminate
-from autocolor.lighting.picking import ORIGIN, direction_to_eye, direction_to_light, middle_of
 from autocolor.lighting.picture import Picture
+from autocolor.lighting.rays import direction_to_eye, direction_to_light, middle_of
+from autocolor.mapping.colors import entries_at, entries_of
+from autocolor.mapping.display_image import DisplayImage, image_ranges, in_blocks
 from autocolor.mapping.intensity import fractions_by_surface, mapped_ranges
 from autocolor.mapping.ranges import BACKGROUND, WORDS, LevelRange
 from autocolor.scene.columns import with_values
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Surface
 from autocolor.visibility.visible_points import (
     NORMAL,
     REFLECTED_VIEW,
@@ -40,12 +46,240 @@ from autocolor.visibility.visible_points import (
     VisiblePoints,
 )
 
-# -------------------- cells
-# Cells: the visible normals of a surface divided into few groups, each with one normal that stands for it.
+
+@dataclass(frozen=True, eq=False)
+class NormalImage(DisplayImage):
+    """A display image whose words stand for normals; a light changes entries alone.
+
+    Nothing but the visible points is taken from the picture, whose intensities may be those of an earlier
+    light.
+    """
+
+    normals: WordNormals = field(kw_only=True)
+    lit: NormalLight = field(kw_only=True)
+
+    meaning = "normal"
+    has_light_in_words = False
+
+    @classmethod
+    def of(cls, scene: Scene, picture: Picture, before: DisplayImage | None, block: int) -> NormalImage:
+        """The image of a scene and its picture, which has normals.
+
+        Words and normals are shared with an earlier image of the same visible points, whatever lights them.
+        Raises InputError for intensities that float32 can't hold.
+        """
+        assert picture.normals is not None
+        visible = picture.normals
+
+        def size(surface: SurfaceSlice) -> int:
+            # A floor needs few words, as all its normals are alike. Assumed: so a surface gets words in
+            # proportion to the square roots of its pixels and of the part of the sphere its normals take.
+            return (surface.stop - surface.start) * spread_of(visible[:, surface.pixels])
+
+        ranges = image_ranges(scene, picture, {}, before, block, size)
+        if (
+            isinstance(before, NormalImage)
+            and before.picture.normals is picture.normals
+            and before.ranges is ranges
+        ):
+            words, normals = before.words, before.normals
+        else:
+            words, normals = words_of_normals(picture, ranges)
+            words = in_blocks(words, block)
+        lit = normal_light(scene, normals)
+        return cls(scene, picture, ranges, words, block, normals=normals, lit=lit)
+
+    @property
+    def mapped(self) -> Picture:
+        """The light at the visible normals, which are more than the words."""
+        return self.lit.at_samples
+
+    def entries_of(self, surface: Surface) -> Bytes:
+        """The entries of one surface's words, (levels, 3) uint8, read-only.
+
+        Words that stand for no normal have the color of their level.
+        """
+        name, floor = surface.name, self.floor_of(surface.name)
+        levels = self.ranges[name].levels
+        entries = entries_of(surface.paint, levels, floor)
+        if name not in self._fractions:
+            return entries
+        at_normals = entries_at(surface.paint, self._fractions[name], levels, floor)
+        return read_only(np.concatenate([at_normals, entries[len(at_normals) :]]))
+
+    def words_at_levels(self, name: str) -> Words:
+        """The word that comes nearest to each level of a surface in use, (levels,) uint16."""
+        first, levels = self.ranges[name]
+        if name not in self._fractions:
+            return np.arange(first, first + levels, dtype=np.uint16)
+        return words_at_levels(first, self._fractions[name], levels)
+
+    @cached_property
+    def _fractions(self) -> Mapping[str, Singles]:
+        """The fraction of the range at each word that stands for a normal, by surface name."""
+        return fractions_at_words(self.scene, self.lit)
+
+
+class WordNormals(NamedTuple):
+    """The words in use, (n,), sorted by surface as `slices` tells, and their normals, (3, n), read-only.
+
+    `samples`, (3, m), sorted by surface as `sample_slices` tells, are normals that are seen, more of them
+    than words. All are unit vectors in camera space.
+    """
+
+    words: Indices
+    normals: Singles
+    slices: tuple[SurfaceSlice, ...]
+    samples: Singles
+    sample_slices: tuple[SurfaceSlice, ...]
+
+
+class NormalLight(NamedTuple):
+    """The light of a scene at normals: pictures of one line.
+
+    The elements of `at_words` are words; those of `at_samples` are the samples, whose range is mapped.
+    """
+
+    at_words: Picture
+    at_samples: Picture
+
+
+def words_of_normals(picture: Picture, ranges: Mapping[str, LevelRange]) -> tuple[Words, WordNormals]:
+    """The words of a picture that has normals, (lines, elements) uint16, read-only, and what they stand for.
+
+    The normals of each visible surface are divided into as many cells as its range has words, or fewer;
+    BACKGROUND is where nothing is visible.
+    """
+    assert picture.normals is not None
+    raster = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
+    nothing = np.empty((3, 0), np.float32)
+    words, normals, samples = [np.empty(0, np.intp)], [nothing], [nothing]
+    slices, sample_slices = [], []
+    start = sample_start = 0
+    for surface in picture.slices:
+        first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
+        cells = cells_of(picture.normals[:, surface.pixels], levels)
+        number, count = surface.surface_number, cells.normals.shape[1]
+        raster[picture.pixels[surface.pixels]] = first + cells.numbers
+        words.append(np.arange(first, first + count))
+        normals.append(cells.normals)
+        samples.append(cells.samples)
+        slices.append(SurfaceSlice(number, start, start + count))
+        start += count
+        sample_slices.append(SurfaceSlice(number, sample_start, sample_start + cells.samples.shape[1]))
+        sample_start = sample_slices[-1].stop
+    stand_for = WordNormals(
+        read_only(np.concatenate(words)),
+        read_only(np.concatenate(normals, axis=1)),
+        tuple(slices),
+        read_only(np.concatenate(samples, axis=1)),
+        tuple(sample_slices),
+    )
+    return read_only(raster).reshape(picture.lines, picture.elements), stand_for
+
+
+def normal_light(scene: Scene, stand_for: WordNormals) -> NormalLight:
+    """The light of a scene at the normals of words, and at the samples.
+
+    Raises InputError for intensities that float32 can't hold.
+    """
+    count = stand_for.samples.shape[1]
+    return NormalLight(
+        light_at_normals(scene, stand_for.normals, stand_for.slices, stand_for.words, WORDS),
+        light_at_normals(scene, stand_for.samples, stand_for.sample_slices, np.arange(count), count),
+    )
+
+
+def fractions_at_words(scene: Scene, lit: NormalLight) -> Mapping[str, Singles]:
+    """The fraction of the range, 0 to 1, at each word in use of each visible surface, by name."""
+    extents = mapped_ranges(lit.at_samples, scene.scaling, scene.exposure)
+    fractions_of = fractions_by_surface(lit.at_samples, extents, scene.mapping)
+    fractions = {}
+    for each in lit.at_words.slices:
+        # A word may be nearer to a highlight than any sample.
+        low, high = map(np.float32, extents[each.surface_number])
+        intensities = lit.at_words.relative[each.pixels].clip(low, high)
+        name = scene.surfaces[each.surface_number - 1].name
+        fractions[name] = fractions_of[each.surface_number](intensities)
+    return fractions
+
+
+def words_at_levels(first: int, fractions: Singles, levels: int) -> Words:
+    """For each level of a range, the word whose fraction is nearest to that of the level, (levels,) uint16.
+
+    `fractions` are those of the words from `first` on.
+    """
+    order = np.argsort(fractions, kind="stable")
+    between = (fractions[order[1:]] + fractions[order[:-1]]) / 2
+    nearest = np.searchsorted(between, np.arange(levels) / (levels - 1))
+    return read_only((first + order[nearest]).astype(np.uint16))
+
+
+# -------------------- The light at normals
 #
-# The sphere of normals is laid out flat around the direction to the eye, by Lambert's azimuthal map, which
-# keeps areas, and divided into bins. Seeds are spread over the bins that are seen, along a curve that fills
-# the plane; each bin joins the nearest seed, and the seeds move to the middle of their bins a few times (S.
+# Paper: reference 2: the light that is reflected is a function of the normal where light and eye are far from
+# the object. Assumed: the direction to a light, and to the eye, starts in the middle of the object; the
+# direction of a light at infinity is its axis. A normal does not tell the place of a point. So light controls
+# and links to parts are left out, because they depend on the place. All else is as in the picture: strengths,
+# links to surfaces, reflection models, the ambient light.
+
+
+def light_at_normals(
+    scene: Scene, normals: Singles, slices: tuple[SurfaceSlice, ...], numbers: Indices, count: int
+) -> Picture:
+    """A picture of one line of `count` elements, in which the light of a scene falls on some normals.
+
+    `normals` are unit vectors in camera space, (3, n) float32, sorted by surface as `slices` tells, and
+    `numbers`, (n,), are their elements. All normals are at one point, the middle of the object, and each
+    light is in its direction at a distance of 1: so `illuminate` computes the reflected light. A light at the
+    middle itself gives nothing. Raises InputError for intensities that float32 can't hold.
+    """
+    nothing = np.empty(0, np.intp)
+    middle = middle_of(scene)
+    view = scene.view.replace(eye=(0.0, 0.0, 0.0), direction=tuple(scene.view.axes[2].tolist()))
+    to_eye = direction_to_eye(scene).astype(np.float32)[:, None]
+    rows = np.zeros((ROW_COUNT, normals.shape[1]), np.float32)
+    rows[NORMAL] = normals
+    rows[REFLECTED_VIEW] = 2 * dot(normals, to_eye) * normals - to_eye
+    points = VisiblePoints(
+        view=view,
+        lines=1,
+        elements=count,
+        unit=1.0,
+        middle=np.zeros(3),
+        pixels=numbers,
+        slices=slices,
+        span_polygons=nothing,
+        span_lengths=nothing,
+        parts=VisibleParts((), nothing, nothing, nothing),
+        rows=rows,
+    )
+    lights = tuple(far_light(light, middle) for light in scene.lights_in_world)
+    far_scene = with_values(scene, {"view": view, "lights": lights})
+    return illuminate(far_scene, points, with_controls=False)
+
+
+def far_light(light: Light, middle: Vector) -> Light:
+    """A light of the world as a point at a distance of 1 from the origin, in its direction from the middle.
+
+    Its links to parts are left out. It must be used without its controls.
+    """
+    return with_values(
+        light,
+        {
+            "position": direction_to_light(light, middle),
+            "at_infinity": False,
+            "links": with_values(light.links, {"only_parts": None, "except_parts": None}),
+        },
+    )
+
+
+# -------------------- Cells
+#
+# The visible normals of a surface are divided into few cells, each with one normal that stands for it. The
+# sphere of normals is laid out flat around the direction to the eye, by Lambert's azimuthal map, which keeps
+# areas, and divided into bins. Seeds are spread over the bins that are seen, along a curve that fills the
+# plane; each bin joins the nearest seed, and the seeds move to the middle of their bins a few times (S.
 # Lloyd, 1982, "Least squares quantization in PCM").
 #
 # Measured on a sphere, 1,007 normals, 126,000 pixels, N = 20: 12 ms; the mean error of the picture is 2.1
@@ -185,154 +419,3 @@ def _normalized(sums: Floats) -> Singles:
     lengths = np.sqrt((sums * sums).sum(axis=0))
     normalized: Singles = (sums / np.where(lengths > 0, lengths, 1.0)).astype(np.float32)
     return normalized
-
-
-# -------------------- far_light
-# The light at normals alone: every light and the eye are far away, so that places do not matter.
-#
-# Paper: reference 2, D. H. Bass, 1981, "Using the video lookup table for reflectivity calculations": the
-# light that is reflected is a function of the normal where light and eye are far from the object. Assumed:
-# the direction to a light, and to the eye, is that from the middle of the object; that of a light at
-# infinity is its axis. What depends on the place of a point cannot be told from its normal: concentration,
-# cones, flaps, half-spaces, falloff and the links to parts are left out. All else is as in the picture:
-# strengths, links to surfaces, reflection models, the ambient light.
-
-NOTHING: Final[Indices] = np.empty(0, np.intp)
-
-
-def light_at_normals(
-    scene: Scene, normals: Singles, slices: tuple[SurfaceSlice, ...], numbers: Indices, count: int
-) -> Picture:
-    """A picture of one line of `count` elements, in which the light of a scene falls on some normals.
-
-    `normals` are unit vectors in camera space, (3, n) float32, by surface as `slices` tells, and `numbers`,
-    (n,), their elements. All of them are at one point, the middle of the object, and each light is in its
-    direction at a distance of 1: so `illuminate` computes what is reflected. A light at the middle itself
-    gives nothing. Raises InputError for intensities that float32 can't hold.
-    """
-    middle = middle_of(scene)
-    view = scene.view.replace(eye=ORIGIN, direction=tuple(scene.view.axes[2].tolist()))
-    to_eye = direction_to_eye(scene).astype(np.float32)[:, None]
-    rows = np.zeros((ROW_COUNT, normals.shape[1]), np.float32)
-    rows[NORMAL] = normals
-    rows[REFLECTED_VIEW] = 2 * dot(normals, to_eye) * normals - to_eye
-    points = VisiblePoints(
-        view=view,
-        lines=1,
-        elements=count,
-        unit=1.0,
-        middle=np.zeros(3),
-        pixels=numbers,
-        slices=slices,
-        span_polygons=NOTHING,
-        span_lengths=NOTHING,
-        parts=VisibleParts((), NOTHING, NOTHING, NOTHING),
-        rows=rows,
-    )
-    lights = tuple(far_light(light, middle) for light in scene.lights_in_world)
-    return illuminate(with_values(scene, {"view": view, "lights": lights}), points)
-
-
-def far_light(light: Light, middle: Vector) -> Light:
-    """A light of the world as a point at a distance of 1 from the origin, in its direction from the middle.
-
-    It has no controls; its strength and its links to surfaces stay.
-    """
-    links = with_values(light.links, {"only_parts": None, "except_parts": None})
-    plain = Light(light.name, direction_to_light(light, middle))
-    return with_values(plain, {"intensity": light.intensity, "on": light.on, "links": links})
-
-
-class WordNormals(NamedTuple):
-    """The words in use, (n,), sorted by surface as `slices` tells, and their normals, (3, n), read-only.
-
-    `samples`, (3, m), sorted by surface as `sample_slices` tells, are normals that are seen, more of them
-    than words. All are unit vectors in camera space.
-    """
-
-    words: Indices
-    normals: Singles
-    slices: tuple[SurfaceSlice, ...]
-    samples: Singles
-    sample_slices: tuple[SurfaceSlice, ...]
-
-
-class NormalLight(NamedTuple):
-    """The light of a scene at normals: pictures of one line.
-
-    The elements of `at_words` are words; those of `at_samples` are the samples, whose range is mapped.
-    """
-
-    at_words: Picture
-    at_samples: Picture
-
-
-def words_of_normals(picture: Picture, ranges: Mapping[str, LevelRange]) -> tuple[Words, WordNormals]:
-    """The words of a picture that has normals, (lines, elements) uint16, read-only, and what they stand for.
-
-    The normals of each visible surface are divided into as many cells as its range has words, or fewer;
-    BACKGROUND is where nothing is visible.
-    """
-    assert picture.normals is not None
-    raster = np.full(picture.lines * picture.elements, BACKGROUND, np.uint16)
-    nothing = np.empty((3, 0), np.float32)
-    words, normals, samples = [np.empty(0, np.intp)], [nothing], [nothing]
-    slices, sample_slices = [], []
-    start = sample_start = 0
-    for surface in picture.slices:
-        first, levels = ranges[picture.surfaces[surface.surface_number - 1]]
-        cells = cells_of(picture.normals[:, surface.pixels], levels)
-        number, count = surface.surface_number, cells.normals.shape[1]
-        raster[picture.pixels[surface.pixels]] = first + cells.numbers
-        words.append(np.arange(first, first + count))
-        normals.append(cells.normals)
-        samples.append(cells.samples)
-        slices.append(SurfaceSlice(number, start, start + count))
-        start += count
-        sample_slices.append(SurfaceSlice(number, sample_start, sample_start + cells.samples.shape[1]))
-        sample_start = sample_slices[-1].stop
-    stand_for = WordNormals(
-        read_only(np.concatenate(words)),
-        read_only(np.concatenate(normals, axis=1)),
-        tuple(slices),
-        read_only(np.concatenate(samples, axis=1)),
-        tuple(sample_slices),
-    )
-    return read_only(raster).reshape(picture.lines, picture.elements), stand_for
-
-
-def normal_light(scene: Scene, stand_for: WordNormals) -> NormalLight:
-    """The light of a scene at the normals of words, and at the samples.
-
-    Raises InputError for intensities that float32 can't hold.
-    """
-    count = stand_for.samples.shape[1]
-    return NormalLight(
-        light_at_normals(scene, stand_for.normals, stand_for.slices, stand_for.words, WORDS),
-        light_at_normals(scene, stand_for.samples, stand_for.sample_slices, np.arange(count), count),
-    )
-
-
-def fractions_at_words(scene: Scene, lit: NormalLight) -> Mapping[str, Singles]:
-    """The fraction of the range, 0 to 1, at each word in use of each visible surface, by name."""
-    extents = mapped_ranges(lit.at_samples, scene.scaling, scene.exposure)
-    fractions_of = fractions_by_surface(lit.at_samples, extents, scene.mapping)
-    found = {}
-    for each in lit.at_words.slices:
-        # A word may be nearer to a highlight than any sample.
-        low, high = map(np.float32, extents[each.surface_number])
-        intensities = lit.at_words.relative[each.pixels].clip(low, high)
-        name = scene.surfaces[each.surface_number - 1].name
-        found[name] = fractions_of[each.surface_number](intensities)
-    return found
-
-
-def words_at_levels(first: int, fractions: Singles, levels: int) -> Words:
-    """For each level of a range, the word whose fraction is nearest to that of the level, (levels,) uint16.
-
-    `fractions` are those of the words from `first` on.
-    """
-    order = np.argsort(fractions, kind="stable")
-    between = (fractions[order[1:]] + fractions[order[:-1]]) / 2
-    nearest = np.searchsorted(between, np.arange(levels) / (levels - 1))
-    return read_only((first + order[nearest]).astype(np.uint16))

@@ -1,4 +1,4 @@
-"""Palettes: the colors of a small picture reduced to few, by median cut.
+"""Thumbnails: small pictures of a display image, and their colors reduced to few, by median cut.
 
 P. Heckbert, 1982, "Color image quantization for frame buffer display": the box of all colors is cut in two at
 the median of its longest side, then the largest of the boxes, until there are enough of them.
@@ -12,6 +12,10 @@ import numpy as np
 
 from autocolor.arrays import Bytes, Indices, Words, halves_up
 from autocolor.mapping.display_image import DisplayImage
+
+LINES: Final = 48
+ELEMENTS: Final = 64
+"""The size of a thumbnail."""
 
 
 def in_palette(colors: Bytes, most: int) -> tuple[Words, Bytes]:
@@ -41,7 +45,7 @@ def in_palette(colors: Bytes, most: int) -> tuple[Words, Bytes]:
 
 
 def _size(colors: Indices) -> int:
-    """How much is gained by cutting the box of some colors: its longest side, times their number."""
+    """The gain of cutting the box of some colors: its longest side, times their number."""
     return int((colors.max(axis=0) - colors.min(axis=0)).max()) * len(colors)
 
 
@@ -54,13 +58,6 @@ def _halves(distinct: Indices, counts: Indices, box: Indices) -> list[Indices]:
     middle = int(np.searchsorted(passed, passed[-1] / 2)) + 1
     middle = min(max(middle, 1), len(order) - 1)
     return [order[:middle], order[middle:]]
-
-
-# -------------------- thumbnail
-# Thumbnails: small pictures of a display image, such as for a strip of kept variants.
-
-LINES: Final = 48
-ELEMENTS: Final = 64
 
 
 def thumbnail(image: DisplayImage, lines: int = LINES, elements: int = ELEMENTS) -> Bytes:

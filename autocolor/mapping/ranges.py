@@ -7,6 +7,10 @@ the interactive screens, and the words between are divided among the surfaces in
 Assumed: they are divided in proportion to the square root of the pixels that a surface covers, which is its
 size in the picture: a gradient across twice the size is as smooth with twice the levels. In proportion to the
 pixels themselves, small surfaces would get too few levels.
+
+A screen that needs more colors than its own sixteen words borrows words of surfaces. A surface may own nearly
+all words, so that there are none between the surfaces: then the borrowed words are spread over the surfaces
+that stay visible, whose pixels show the neighboring level.
 """
 
 from __future__ import annotations
@@ -67,10 +71,10 @@ def level_ranges(
 ) -> Mapping[str, LevelRange]:
     """The level range of each surface in use, by name.
 
-    `covered` has the number of pixels that each surface in use covers in the picture, 0 for one that is not
-    seen. A surface gets the number of levels that is `fixed` for it, as by its bands, else the number that it
-    asks for; the others share the rest, equally or by what they cover. Raises InputError if that would leave
-    fewer than two levels for one of them.
+    `covered` has the number of pixels that each surface in use covers in the picture, 0 if it is not visible.
+    A surface gets the number of levels that is `fixed` for it, such as by its bands, else the number that it
+    asks for. The other surfaces share the rest, equally or by the pixels that they cover. Raises InputError
+    if that would leave fewer than two levels for a surface.
     """
     used = [surface for surface in surfaces if surface.name in covered]
     levels_of = {surface.name: fixed.get(surface.name, surface.levels) for surface in used}
@@ -101,9 +105,8 @@ def level_ranges(
 def shares_of_words(words: int, pixels: Sequence[int]) -> list[int]:
     """The words, divided in proportion to the square roots of some numbers of pixels.
 
-    Each share is at least USEFUL_LEVELS, or an equal share where the words do not suffice for that. Shares
-    are rounded down; the words that are left go, one each, to those that lost most, of equal ones to the
-    first.
+    Each share is at least USEFUL_LEVELS, or an equal share if the words do not suffice for that. Shares are
+    rounded down; the words that are left go, one each, to the shares that lost most. Ties go to the first.
 
     >>> shares_of_words(1007, [160_000, 40_000, 100, 0])
     [650, 325, 16, 16]
@@ -114,7 +117,7 @@ def shares_of_words(words: int, pixels: Sequence[int]) -> list[int]:
     weights = [math.sqrt(count) for count in pixels]
     if not any(weights):
         weights = [1.0] * len(pixels)
-    # Give the least share to those whose part of the words is smaller, until there is no such.
+    # Give the least share to every row whose part of the words is smaller, until no part is.
     sharing = list(range(len(pixels)))
     while True:
         rest = words - fewest * (len(pixels) - len(sharing))
@@ -133,25 +136,17 @@ def shares_of_words(words: int, pixels: Sequence[int]) -> list[int]:
     return shares
 
 
-# -------------------- borrowed_words
-# Words that a screen borrows from surfaces, for more colors than its own sixteen words have.
-#
-# A surface may own nearly all words, so that there are none between the surfaces. A screen takes the words
-# of surfaces that it does not show, and, where these do not suffice, words spread over those that it shows;
-# their pixels then show the neighboring level. The words of the background and of the screens are never
-# borrowed.
+def borrowed_words(ranges: Mapping[str, LevelRange], visible: Collection[str], count: int) -> Words:
+    """Words to borrow, (count,) uint16, rising, read-only, while the surfaces in `visible` stay visible.
 
-
-def borrowed_words(ranges: Mapping[str, LevelRange], kept: Collection[str], count: int) -> Words:
-    """Words to borrow, (count,) uint16, rising, read-only, while the surfaces named in `kept` stay visible.
-
-    Words of no surface and of those that are not kept come first. Others are spread evenly over the surfaces
-    that are: no two of them are neighbors unless more than half of all are borrowed, and each of these
-    surfaces has at least one left. Raises UsageError where there are not so many.
+    Words of no surface and of the other surfaces come first. If these do not suffice, words are spread evenly
+    over the visible surfaces: no two borrowed words are neighbors unless more than half of all are borrowed,
+    and each visible surface keeps at least one. The words of the background and of the screens are never
+    borrowed. Raises UsageError if there are not so many words.
     """
     is_free = np.ones(WORDS, bool)
     is_free[[BACKGROUND, *range(SCREENS.first, WORDS)]] = False
-    staying = [_words_of(each) for name, each in ranges.items() if name in kept]
+    staying = [_words_of(each) for name, each in ranges.items() if name in visible]
     for words in staying:
         is_free[words] = False
     free = np.flatnonzero(is_free)
@@ -161,7 +156,7 @@ def borrowed_words(ranges: Mapping[str, LevelRange], kept: Collection[str], coun
     lent = np.sort(np.concatenate([np.empty(0, np.int64), *lending]))
     needed = count - len(free)
     if 2 * needed > len(lent):
-        # Then some neighbors are borrowed both: keep the lowest level of each surface.
+        # Some neighbors are both borrowed: keep the lowest level of each surface.
         lent = np.setdiff1d(lent, [words[0] for words in lending])
     if not 0 <= needed <= len(lent):
         most = len(free) + sum(len(words) - 1 for words in lending)
@@ -176,8 +171,8 @@ def borrowed_words(ranges: Mapping[str, LevelRange], kept: Collection[str], coun
 def without_words(words: Words, borrowed: Words, ranges: Mapping[str, LevelRange]) -> Words:
     """The raster with each borrowed word replaced by the nearest word of the same surface that is not.
 
-    Of two that are as near, it is the lower one. `words` may have any shape; the result has the same, and is
-    read-only. A surface that lent all its words, as one that is not shown does, keeps them.
+    Ties go to the lower word. `words` may have any shape; the result has the same shape and is read-only. The
+    words of a surface that lent all its words stay, because such a surface is not visible.
     """
     other = np.arange(WORDS, dtype=np.uint16)
     is_borrowed = np.zeros(WORDS, bool)

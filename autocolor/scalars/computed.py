@@ -1,6 +1,7 @@
-"""The scalars that are computed of any mesh, by name.
+"""The scalars that are computed for any mesh: coordinates, angles, curvatures and stripes, and their ranges.
 
-One more is one function, a line here, and its name in `scene.scalars.computed_names`.
+To add a scalar, write its function, add it to the table COMPUTING below, and its name to
+`scene.scalar.COMPUTED`.
 """
 
 from __future__ import annotations
@@ -13,16 +14,16 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices, Singles, chunks, lengths
+from autocolor.arrays import Floats, Indices, Singles, chunks, lengths, used_rows
 from autocolor.scalars.interpolation import interpolated, weighted_points
 from autocolor.scene.geometry.curvature import Curvatures
-from autocolor.scene.geometry.normals import used_rows
+from autocolor.scene.lights import unit_vector
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import LARGEST_SCALAR, Scalar
 from autocolor.visibility.visible_points import PIXELS_AT_ONCE, POINT, REFLECTED_VIEW, VisiblePoints
 
 # -------------------- ranges
-# The own range of a scalar, which is shown where `[scalar]` gives no limits.
+# If the table `[scalar]` of a scene gives no limits, the range of the scalar itself is shown.
 
 Limits = tuple[float, float]
 
@@ -30,13 +31,13 @@ UNIT: Final = (0.0, 1.0)
 """Assumed: the range of a scalar without any value."""
 
 LEAST_EXTENT: Final = 1e-6
-"""Assumed: a range that is shorter than this share of its numbers is noise of float32, and has no extent."""
+"""Assumed: a range that is shorter than this fraction of its numbers is noise of float32."""
 
 SMALLEST: Final = 1e-36
-"""Below this, float32 has no room for the half of a number."""
+"""The least number whose half is exact enough in float32."""
 
-MOST_KEPT: Final = 64
-"""Assumed: ranges that are kept of one mesh; while a direction is dragged, each has one of its own."""
+MOST_RANGES: Final = 64
+"""Limit: cached ranges of one mesh; while a direction is dragged, every direction has its own range."""
 
 
 def size_of(mesh: Mesh) -> float:
@@ -53,16 +54,16 @@ class ScalarValues(NamedTuple):
 
 
 def within(values: Singles, limits: Limits) -> ScalarValues:
-    """The values, in their own array, with those that rounding put beyond the limits put on them."""
+    """The values, clipped in their own array: rounding may have put some beyond the limits."""
     return ScalarValues(np.clip(values, *limits, out=values), limits)
 
 
 def widened(low: float, high: float, least: float = 0.0) -> Limits:
-    """The range from `low` to `high` as numbers of float32, since those at the pixels are.
+    """The range from `low` to `high` in float32, as the values at the pixels are.
 
-    Assumed: one without extent, as of a constant, is widened on both sides by half of its number, or by
-    `least` if that is more, and by a half where both are 0; so the value is in the middle of the colors. An
-    extent of at most `least` is none.
+    Assumed: if the extent is at most `least`, as of a constant, the range is widened on both sides, so that
+    the value is in the middle of the colors: by half of its number, or by `least` if that is more, or by a
+    half if both are 0.
 
     >>> widened(1.0, 3.0), widened(8.0, 8.0), widened(0.0, 0.0)
     ((1.0, 3.0), (4.0, 12.0), (-0.5, 0.5))
@@ -77,73 +78,69 @@ def widened(low: float, high: float, least: float = 0.0) -> Limits:
 
 
 def range_of(values: Floats, cut: float = 0, least: float = 0.0) -> Limits:
-    """The least and the largest of the values that are not missing, `widened`; UNIT if all are.
+    """The least and the largest value, `widened`; UNIT if all values are missing.
 
     `cut` percent of the values are beyond either end.
     """
-    found = values[np.isfinite(values)]
-    if not len(found):
+    finite = values[np.isfinite(values)]
+    if not len(finite):
         return UNIT
     if cut:
-        low, high = np.percentile(found, [cut, 100 - cut]).tolist()
+        low, high = np.percentile(finite, [cut, 100 - cut]).tolist()
         return widened(low, high, least)
-    return widened(float(found.min()), float(found.max()), least)
+    return widened(float(finite.min()), float(finite.max()), least)
 
 
-_KEPT: Final[WeakKeyDictionary[Mesh, dict[Hashable, Limits]]] = WeakKeyDictionary()
+_RANGES: Final[WeakKeyDictionary[Mesh, dict[Hashable, Limits]]] = WeakKeyDictionary()
 
 
-def kept(mesh: Mesh, key: Hashable, compute: Callable[[], Limits]) -> Limits:
-    """A range that depends on nothing but the mesh and the key; computed once, and not for each picture."""
-    ranges = _KEPT.setdefault(mesh, {})
+def cached_range(mesh: Mesh, key: Hashable, compute: Callable[[], Limits]) -> Limits:
+    """A range that depends on the mesh and the key alone, computed once and not for each picture."""
+    ranges = _RANGES.setdefault(mesh, {})
     if key not in ranges:
-        if len(ranges) >= MOST_KEPT:
+        if len(ranges) >= MOST_RANGES:
             ranges.clear()
         ranges[key] = compute()
     return ranges[key]
 
 
-# -------------------- places
-# Scalars of where a point is: its coordinates, and its distance along a direction.
+# -------------------- coordinates and distances
 
-LEAST: Final = 1e-6
-"""Assumed: the share of an object's size that is rounding, as in the height of a level plate."""
+LEAST_SIZE: Final = 1e-6
+"""Assumed: the fraction of an object's size that is rounding, as in the height of a level plate."""
 
 
 def coordinate(axis: int, mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
-    """A world coordinate; the range is that of the nodes that polygons use."""
+    """A world coordinate, and its range over the nodes that polygons use."""
     low, high = mesh.bounds
-    limits = widened(float(low[axis]), float(high[axis]), LEAST * size_of(mesh))
+    limits = widened(float(low[axis]), float(high[axis]), LEAST_SIZE * size_of(mesh))
     return within(_along(np.eye(3)[axis], points), limits)
 
 
 def distance(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
     """The distance from the origin along the scalar's direction; the range is that of the nodes in use."""
-    direction = unit_vector(scalar)
+    direction = direction_of(scalar)
     key = ("distance", *direction.tolist())
-    return within(_along(direction, points), kept(mesh, key, partial(_range_along, direction, mesh)))
+    return within(_along(direction, points), cached_range(mesh, key, partial(_range_along, direction, mesh)))
 
 
 def limits_of_object(scalar: Scalar, coordinates: Floats) -> Limits | None:
-    """The range of a scalar that tells where a point is, over the nodes of an object, (nodes, 3).
+    """The range of a coordinate or a distance over the nodes of an object, (nodes, 3).
 
     None for any other scalar.
     """
     if scalar.name not in ("x", "y", "z", "distance") or not len(coordinates):
         return None
-    direction = unit_vector(scalar) if scalar.name == "distance" else np.eye(3)["xyz".index(scalar.name)]
+    is_distance = scalar.name == "distance"
+    direction = direction_of(scalar) if is_distance else np.eye(3)["xyz".index(scalar.name)]
     values = coordinates @ direction
     size = float(np.linalg.norm(np.ptp(coordinates, axis=0)))
-    return widened(float(values.min()), float(values.max()), LEAST * size)
+    return widened(float(values.min()), float(values.max()), LEAST_SIZE * size)
 
 
-def unit_vector(scalar: Scalar) -> Floats:
-    """The direction of a scalar in unit length."""
-    direction = np.array(scalar.direction)
-    # Measure in the largest component, so that no square is too large or too small.
-    direction /= np.abs(direction).max()
-    unit: Floats = direction / np.linalg.norm(direction)
-    return unit
+def direction_of(scalar: Scalar) -> Floats:
+    """The direction of a scalar as a unit vector."""
+    return np.array(unit_vector(scalar.direction))
 
 
 def _along(direction: Floats, points: VisiblePoints) -> Singles:
@@ -165,12 +162,10 @@ def _range_along(direction: Floats, mesh: Mesh) -> Limits:
         values = (direction @ mesh.coordinates.T[:, chunk])[used[chunk]]
         if len(values):
             ends.append((float(values.min()), float(values.max())))
-    return widened(min(low for low, _ in ends), max(high for _, high in ends), LEAST * size_of(mesh))
+    return widened(min(low for low, _ in ends), max(high for _, high in ends), LEAST_SIZE * size_of(mesh))
 
 
-# -------------------- angles
-# Scalars of how the surface lies: its slope, and its draft angle.
-#
+# -------------------- slope and draft angle
 # Assumed: the normal is that of the mesh, interpolated between the corners as scalars are. It is not turned
 # to the eye, so both are the same from every view: the front of a polygon, where its corners run
 # counterclockwise, is the outside.
@@ -180,9 +175,9 @@ DRAFT_ANGLES: Final = (-90.0, 90.0)
 
 
 def slope(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
-    """The angle in degrees between the surface and what is level: 0 lies flat, 90 stands.
+    """The angle in degrees between the surface and the level: 0 lies flat, 90 stands upright.
 
-    Level is across the scalar's direction. Assumed: an overhang has the slope of its upper side.
+    The scalar's direction is upward. Assumed: an overhang has the slope of its upper side.
     """
     return ScalarValues(np.abs(_elevations(mesh, scalar, points, of_surface=True)), SLOPES)
 
@@ -191,14 +186,14 @@ def draft_angle(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValu
     """The draft angle in degrees for a mold that is pulled off along the scalar's direction.
 
     It is the angle of the normal above the plane across the pull: 90 faces the pull, 0 is a wall along it,
-    and what is negative holds the mold.
+    and a side with a negative angle holds the mold.
     """
     return ScalarValues(_elevations(mesh, scalar, points, of_surface=False), DRAFT_ANGLES)
 
 
 def _elevations(mesh: Mesh, scalar: Scalar, points: VisiblePoints, *, of_surface: bool) -> Singles:
-    """The angle in degrees of the normal above the plane across the direction; 90 less it `of_surface`."""
-    pull = unit_vector(scalar)
+    """The angle in degrees of the normal above the plane across the direction; 90 minus that `of_surface`."""
+    pull = direction_of(scalar)
     vectors, numbers = mesh.normals.vectors.T, mesh.normals.numbers.T
     values = np.empty(len(points.pixels), np.float32)
     for chunk in weighted_points(mesh, points):
@@ -213,29 +208,28 @@ def _elevations(mesh: Mesh, scalar: Scalar, points: VisiblePoints, *, of_surface
     return values
 
 
-# -------------------- bending
-# Scalars of how much the surface bends: its curvatures.
-#
+# -------------------- curvatures
 # The sign is that of `Mesh.curvatures`: positive where the surface bends away from its normal, as a ball
 # does. The largest and the smallest curvature are the principal ones.
 
 CUT: Final = 2.0
-"""Assumed: percent of the normals whose curvature is beyond either end of the range; a few sharp bends would
-take all of the colors."""
+"""Assumed: percent of the normals whose curvature is beyond either end of the range.
 
-LEAST_2: Final = 1e-2
-"""Assumed: the range of what is as good as flat, such as rounding on a plate: curvatures in proportion to the
-inverse of the object's size."""
+Without it a few sharp bends would take all of the colors.
+"""
+
+LEAST_BEND: Final = 1e-2
+"""Assumed: curvatures up to this, in the inverse of the object's size, are rounding, as on a plate."""
 
 
 def mean_curvature(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
     """The mean of the principal curvatures, in the inverse of the world unit."""
-    return _bending(lambda found: found.mean, "mean", mesh, points)
+    return _bending(lambda both: both.mean, "mean", mesh, points)
 
 
 def gaussian_curvature(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
     """The product of the principal curvatures: positive on a ball, negative on a saddle, 0 on a cylinder."""
-    return _bending(lambda found: found.gaussian, "gaussian", mesh, points, power=2)
+    return _bending(lambda both: both.gaussian, "gaussian", mesh, points, power=2)
 
 
 def largest_curvature(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
@@ -248,40 +242,39 @@ def smallest_curvature(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> Sca
     return _bending(partial(_principal, -1.0), "smallest", mesh, points)
 
 
-def _principal(sign: float, found: Curvatures) -> Floats:
-    values: Floats = found.mean + sign * np.sqrt(np.maximum(found.mean**2 - found.gaussian, 0))
+def _principal(sign: float, both: Curvatures) -> Floats:
+    values: Floats = both.mean + sign * np.sqrt(np.maximum(both.mean**2 - both.gaussian, 0))
     return values
 
 
 def _bending(
     choose: Callable[[Curvatures], Floats], name: str, mesh: Mesh, points: VisiblePoints, power: int = 1
 ) -> ScalarValues:
-    """Values between those at the normals of the corners; their unit is the inverse world unit to a power."""
+    """Curvatures interpolated from the normals at the corners, in the inverse world unit to a power."""
     numbers = mesh.normals.numbers.T
     at_normals = np.clip(choose(mesh.curvatures), -LARGEST_SCALAR, LARGEST_SCALAR)
 
     def corner_values(polygons: Indices) -> Floats:
         return at_normals.take(np.take(numbers, polygons, axis=1))
 
-    least = (LEAST_2 / (size_of(mesh) or 1.0)) ** power
-    limits = kept(mesh, ("bending", name), lambda: range_of(at_normals, CUT, least))
+    least = (LEAST_BEND / (size_of(mesh) or 1.0)) ** power
+    limits = cached_range(mesh, ("bending", name), lambda: range_of(at_normals, CUT, least))
     return ScalarValues(interpolated(mesh, points, corner_values), limits)
 
 
-# -------------------- stripes
-# Zebra stripes: how a row of long lamps would be reflected, which shows where a surface is not smooth.
+# -------------------- zebra stripes
+# The stripes are reflections of long lamps, which show where a surface is not smooth.
 #
 # Assumed: the lamps are infinitely far, run along the scalar's direction and stand around it, as many in a
-# half turn as the scalar has stripes. A value is the phase from 0 to below 1 within the lamp and the gap
-# after it that the reflected ray meets. It is continuous around a full turn where the stripes of one are
-# whole.
+# half turn as the scalar has stripes. The reflected ray meets a lamp and the gap after it at a phase from 0
+# to below 1. The phase is continuous around a full turn if the number of stripes in it is whole.
 
 BELOW_ONE: Final = float(np.nextafter(np.float32(1), np.float32(0)))
 
 
 def zebra(mesh: Mesh, scalar: Scalar, points: VisiblePoints) -> ScalarValues:
     """The phase of the lamp that the reflected ray meets, in [0, 1), by the normals of the picture."""
-    run = unit_vector(scalar)
+    run = direction_of(scalar)
     # The angle about the run is counted from the world axis that is most across it.
     across = np.eye(3)[np.abs(run).argmin()]
     across -= run * (run @ across)

@@ -1,4 +1,4 @@
-"""The visible points in chunks, with the polygon that each is in and the weights of its corners."""
+"""Interpolation: numbers at the visible points, by the weights of the corners of their polygons."""
 
 from __future__ import annotations
 
@@ -11,35 +11,104 @@ from autocolor.arrays import Floats, Indices, Real, RealArray, Singles, chunks_o
 from autocolor.scene.mesh import Mesh
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 
-# -------------------- corner_weights
-# The weights of a polygon's corners at points in it, by which numbers at the corners are interpolated.
-#
-# Assumed: in a triangle they are the barycentric coordinates, and in a convex quad the generalized ones of
-# Wachspress, which are linear where the numbers at the four corners are. Nothing is divided but by the sum,
-# and no weight is negative, so a value is never beyond those of the corners. A quad with a notch is split
-# at it into two triangles. A warped quad counts as its projection along the normal of its diagonals, and a
-# quad that crosses itself, or a polygon without area, has weights that are merely not negative.
-#
-# Measured: what is the same for all points of a polygon is computed for the polygon, in float64, and
-# repeated row by row. A repetition of several rows at once takes three times as long.
+POINTS_AT_ONCE: Final = 1 << 14
 
 ROUNDING: Final = 1e-9
 """How much a corner may turn inward, of the largest turn, and still be straight."""
 
 
+class PolygonRuns(NamedTuple):
+    """The polygons that the visible points see: rows of the polygon table, and how many points see each.
+
+    Both are (runs,) intp, in the order of the points; neighbors differ.
+    """
+
+    polygons: Indices
+    counts: Indices
+
+
+class WeightedPoints(NamedTuple):
+    """A chunk of the visible points, the slice `pixels`: its polygons, and the weights of corners, (4, n)."""
+
+    pixels: slice
+    polygons: Indices
+    counts: Indices
+    weights: Singles
+
+    def interpolated(self, corner_values: Floats) -> Singles:
+        """Values at the points, (n,), interpolated from the corners of the polygons, (4, polygons).
+
+        NaN is a missing value. If a corner has no value, neither has its polygon.
+        """
+        # The weights are rounded: weigh differences from one corner, so that a constant stays constant.
+        first = corner_values[0].astype(np.float32)
+        values = np.repeat(first, self.counts)
+        for weight, difference in zip(self.weights[1:], corner_values[1:] - first, strict=True):
+            part = np.repeat(difference.astype(np.float32), self.counts)
+            part *= weight
+            values += part
+        return values
+
+
+def polygon_runs(points: VisiblePoints) -> PolygonRuns:
+    """The runs of visible points that see the same polygon."""
+    polygons = points.span_polygons
+    heads = np.flatnonzero(np.diff(polygons, prepend=-1))
+    counts = np.add.reduceat(points.span_lengths, heads) if len(heads) else heads
+    return PolygonRuns(polygons[heads], counts)
+
+
+def weighted_points(mesh: Mesh, points: VisiblePoints) -> Iterator[WeightedPoints]:
+    """The visible points in chunks, with the weights of the corners of their polygons.
+
+    Rather than all points to the world, the corners are transformed to camera space.
+    """
+    polygons, counts = polygon_runs(points)
+    coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
+    eye, middle = np.array(points.view.eye)[:, None], points.middle[:, None]
+    for part, pixels in chunks_of_runs(counts, POINTS_AT_ONCE):
+        nodes = np.take(node_rows, polygons[part], axis=1)
+        world = np.take(coordinate_rows, nodes.ravel(), axis=1) - eye
+        corners = (points.view.axes @ world / points.unit - middle).reshape(3, 4, -1)
+        weights = corner_weights(corners, counts[part], points.rows[POINT, pixels])
+        yield WeightedPoints(pixels, polygons[part], counts[part], weights)
+
+
+def interpolated(mesh: Mesh, points: VisiblePoints, corner_values: Callable[[Indices], Floats]) -> Singles:
+    """Values at the visible points, (n,) float32, interpolated from the corners of their polygons.
+
+    `corner_values` returns the values at the corners of some rows of the polygon table, (4, polygons).
+    """
+    values = np.empty(len(points.pixels), np.float32)
+    for chunk in weighted_points(mesh, points):
+        values[chunk.pixels] = chunk.interpolated(corner_values(chunk.polygons))
+    return values
+
+
+# -------------------- the weights of corners
+# Assumed: in a triangle the weights are the barycentric coordinates, and in a convex quad the generalized
+# ones of Wachspress, which reproduce linear functions. Weights are divided by their sum alone and never
+# negative, so a value is never beyond those of the corners. A quad with a notch is split there into two
+# triangles. A warped quad counts as its projection along the normal of its diagonals. A quad that crosses
+# itself, or a polygon without area, has weights that are merely not negative.
+#
+# Numbers that all points of a polygon share are computed for the polygon, in float64, and repeated row by
+# row. Measured: a repetition of several rows at once takes three times as long.
+
+
 def corner_weights(corners: Floats, counts: Indices, points: RealArray[Real]) -> RealArray[Real]:
     """The weights of the four corners at each point, (4, points); each column adds up to 1.
 
-    `corners` is (3, 4, polygons), and a triangle repeats a corner; `points`, (3, points), has those in each
-    polygon one after the other, as many as `counts`, (polygons,), says. The weights are of their type.
+    `corners` is (3, 4, polygons), and a triangle repeats a corner. `points`, (3, points), are sorted by
+    polygon; `counts`, (polygons,), has the number of points in each. The weights are of the points' type.
     """
     weights = np.zeros((4, points.shape[1]), points.dtype)
-    # A side without length makes a triangle; it should be the one between the last two corners.
+    # A side without length makes a triangle; usually it is the side between the last two corners.
     no_side = (corners == np.roll(corners, -1, axis=1)).all(axis=0)
     if no_side[2].all():
         _weigh_in_triangles(corners[:, :3], counts, points, weights)
         return _normalized(weights)
-    # Measured: where some are triangles, to weigh these once more takes less than to keep them apart.
+    # Measured: if some are triangles, weighing them twice takes less time than dividing the polygons.
     _weigh_in_quads(corners, counts, points, weights)
     triangles = np.flatnonzero(no_side.any(axis=0))
     if len(triangles):
@@ -98,7 +167,7 @@ def _weigh_in_quads(
 
 
 def _weights_at_notches(corners: Floats, notch: Indices, points: RealArray[Real]) -> RealArray[Real]:
-    """The weights of four corners at a point in each of some quads that are split at their corner `notch`."""
+    """The weights of the corners at one point in each quad; the quads are split at their corner `notch`."""
     column = np.arange(len(notch))
     turned = (notch + np.arange(4)[:, None]) % 4
     from_notch = corners[:, turned, column]
@@ -123,9 +192,9 @@ def _unit(normals: Floats) -> Floats:
 
 
 class _Outline(NamedTuple):
-    """The outlines of polygons: an origin near each, and its size; corners and sides in that measure.
+    """The outlines of polygons: an origin near each polygon, its size, and corners and sides in sizes.
 
-    The origin is of the type of the points, so that it is subtracted from them without rounding.
+    The origin has the type of the points, so that it is subtracted from them without rounding.
     """
 
     origin: Floats
@@ -163,74 +232,3 @@ def _areas(
         np.maximum(area, 0, out=area)
         areas.append(area)
     return areas
-
-
-POINTS_AT_ONCE: Final = 1 << 14
-
-
-class PolygonRuns(NamedTuple):
-    """The polygons that the visible points see: rows of the polygon table, and how many points see each.
-
-    Both are (runs,) intp, in the order of the points; neighbors differ.
-    """
-
-    polygons: Indices
-    counts: Indices
-
-
-class WeightedPoints(NamedTuple):
-    """A chunk of visible points: its slice of them, its polygons, and the weights of the corners, (4, n)."""
-
-    pixels: slice
-    polygons: Indices
-    counts: Indices
-    weights: Singles
-
-    def interpolated(self, corner_values: Floats) -> Singles:
-        """Values at the points, (n,), of those at the corners of the polygons, (4, polygons).
-
-        NaN is a missing value: a polygon with a corner that has none has none itself.
-        """
-        # The weights are rounded: weigh differences from one corner, so that what is constant stays so.
-        first = corner_values[0].astype(np.float32)
-        values = np.repeat(first, self.counts)
-        for weight, difference in zip(self.weights[1:], corner_values[1:] - first, strict=True):
-            part = np.repeat(difference.astype(np.float32), self.counts)
-            part *= weight
-            values += part
-        return values
-
-
-def polygon_runs(points: VisiblePoints) -> PolygonRuns:
-    """The polygons that the visible points see, one after the other."""
-    polygons = points.span_polygons
-    heads = np.flatnonzero(np.diff(polygons, prepend=-1))
-    counts = np.add.reduceat(points.span_lengths, heads) if len(heads) else heads
-    return PolygonRuns(polygons[heads], counts)
-
-
-def weighted_points(mesh: Mesh, points: VisiblePoints) -> Iterator[WeightedPoints]:
-    """The visible points in chunks, with the weights of the corners of the polygons that they are in.
-
-    The corners are taken to where the points are, in camera space, and not the points to the world.
-    """
-    polygons, counts = polygon_runs(points)
-    coordinate_rows, node_rows = mesh.coordinates.T, mesh.node_numbers.T
-    eye, middle = np.array(points.view.eye)[:, None], points.middle[:, None]
-    for part, pixels in chunks_of_runs(counts, POINTS_AT_ONCE):
-        nodes = np.take(node_rows, polygons[part], axis=1)
-        world = np.take(coordinate_rows, nodes.ravel(), axis=1) - eye
-        corners = (points.view.axes @ world / points.unit - middle).reshape(3, 4, -1)
-        weights = corner_weights(corners, counts[part], points.rows[POINT, pixels])
-        yield WeightedPoints(pixels, polygons[part], counts[part], weights)
-
-
-def interpolated(mesh: Mesh, points: VisiblePoints, corner_values: Callable[[Indices], Floats]) -> Singles:
-    """Values at the visible points, (n,) float32, of those at the corners of polygons.
-
-    `corner_values` gives those of some rows of the polygon table, (4, polygons).
-    """
-    values = np.empty(len(points.pixels), np.float32)
-    for chunk in weighted_points(mesh, points):
-        values[chunk.pixels] = chunk.interpolated(corner_values(chunk.polygons))
-    return values

@@ -1,4 +1,4 @@
-"""The value of the scalar of a scene at each visible point, and its own range."""
+"""The values of a scene's scalar at the visible points, and its range: of the mesh, or computed."""
 
 from __future__ import annotations
 
@@ -6,19 +6,18 @@ from functools import partial
 
 import numpy as np
 
-from autocolor.arrays import Floats, Indices
+from autocolor.arrays import Floats, Indices, used_rows
 from autocolor.immutable import read_only
 from autocolor.scalars.computed import (
     COMPUTING,
     Limits,
     ScalarValues,
-    kept,
+    cached_range,
     limits_of_object,
     range_of,
     within,
 )
 from autocolor.scalars.interpolation import interpolated
-from autocolor.scene.geometry.normals import used_rows
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import POLYGON, MeshScalar, Scalar
 from autocolor.visibility.visible_points import VisiblePoints
@@ -27,10 +26,10 @@ from autocolor.visibility.visible_points import VisiblePoints
 def scalar_values(
     mesh: Mesh, scalar: Scalar, points: VisiblePoints, object_coordinates: Floats | None = None
 ) -> ScalarValues:
-    """The values of a scalar at the visible points; the scalars of the mesh come before computed ones.
+    """The values of a scalar at the visible points; a scalar of the mesh hides a computed one of its name.
 
-    Where the object is a part of the mesh, the range of a coordinate or a distance is that of the
-    `object_coordinates`, (nodes, 3): a wide floor would leave it few colors.
+    If the object is a part of the mesh, the range of a coordinate or a distance is that of the
+    `object_coordinates`, (nodes, 3): a wide floor would leave the object few colors.
     """
     of_mesh = {each.name: each for each in mesh.scalars}.get(scalar.name)
     if of_mesh is None:
@@ -43,20 +42,20 @@ def scalar_values(
 
 
 def _of_polygons(mesh: Mesh, scalar: MeshScalar, points: VisiblePoints) -> ScalarValues:
-    """The values of the polygons that are seen; the range is that of all polygons."""
+    """The values of the visible polygons, and the range of all polygons."""
     values = scalar.values.take(points.span_polygons).astype(np.float32)
-    limits = kept(mesh, ("of mesh", scalar.name), partial(range_of, scalar.values))
+    limits = cached_range(mesh, ("of mesh", scalar.name), partial(range_of, scalar.values))
     return ScalarValues(np.repeat(values, points.span_lengths), limits)
 
 
 def _of_nodes(mesh: Mesh, scalar: MeshScalar, points: VisiblePoints) -> ScalarValues:
-    """The values between those of the nodes; the range is that of the nodes that polygons use."""
+    """The values interpolated between nodes, and the range of the nodes that polygons use."""
     node_rows = mesh.node_numbers.T
 
     def corner_values(polygons: Indices) -> Floats:
         return scalar.values.take(np.take(node_rows, polygons, axis=1))
 
-    limits = kept(mesh, ("of mesh", scalar.name), partial(_range_of_nodes, mesh, scalar))
+    limits = cached_range(mesh, ("of mesh", scalar.name), partial(_range_of_nodes, mesh, scalar))
     return within(interpolated(mesh, points, corner_values), limits)
 
 

@@ -28,8 +28,7 @@ from autocolor.scene.defaults import (
     sphere_around,
     studio_axes,
 )
-from autocolor.scene.following import free_name
-from autocolor.scene.lights import Light
+from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface

@@ -1,9 +1,11 @@
 """Mapping curves: the functions from intensities to fractions of the range of levels.
 
-Paper: "The Lighting Model": nonlinear mappings of intensities can be tried. A curve is called with the
-minimum, the maximum, and the array of all intensities to map; it returns a nondecreasing function from
-intensities to fractions of the range, 0 to 1. To add a curve, define it here and register it: a function of
-fractions with `curve_of_fractions`, or a function of intensities with `curve`.
+Paper: "The Lighting Model": nonlinear mappings of intensities can be tried. A mapping curve is called with
+the minimum and the maximum of a range and the array of all intensities to map. It returns a nondecreasing
+function from intensities to fractions of the range, 0 to 1.
+
+To add a curve, define it here and name it in `CURVES` at the foot: a function of the linear fraction of the
+range goes through `along_range`, any other is a mapping curve itself.
 """
 
 from __future__ import annotations
@@ -16,10 +18,10 @@ import numpy as np
 from autocolor.arrays import Singles
 
 Fractions = Callable[[Singles], Singles]
-"""A function of a float32 array: it may work in place and return its argument, or return a new array."""
+"""A function of a float32 array. It may work in place and return its argument, or return a new array."""
 
 MappingCurve = Callable[[np.float32, np.float32, Singles], Fractions]
-"""A function of the minimum, the maximum and all intensities; returns the function to fractions."""
+"""A function of the minimum, the maximum and all intensities that returns the function to fractions."""
 
 CurvePoints = tuple[tuple[float, float], ...]
 """Points (x, y) of a nondecreasing curve, from x = 0 to x = 1."""
@@ -30,28 +32,10 @@ GAMMA: Final = 2.2
 LOGARITHM: Final = 15.0
 """Assumed: the range is mapped to the logarithms of 1 to 16, four doublings."""
 
-CURVES: Final[dict[str, MappingCurve]] = {}
-"""The registered curves, by the names that scenes use."""
 
-
-def curve(name: str) -> Callable[[MappingCurve], MappingCurve]:
-    """A decorator that registers a mapping curve under a name."""
-
-    def register(function: MappingCurve) -> MappingCurve:
-        CURVES[name] = function
-        return function
-
-    return register
-
-
-def curve_of_fractions(name: str) -> Callable[[Fractions], Fractions]:
-    """A decorator that registers a function of the linear fraction of the range."""
-
-    def register(function: Fractions) -> Fractions:
-        CURVES[name] = along_range(function)
-        return function
-
-    return register
+def mapping_curve(mapping: str | CurvePoints) -> MappingCurve:
+    """The curve of a scene's `mapping`: a name in `CURVES`, or the curve through points."""
+    return CURVES[mapping] if isinstance(mapping, str) else through_points(mapping)
 
 
 def along_range(function: Fractions) -> MappingCurve:
@@ -71,48 +55,47 @@ def along_range(function: Fractions) -> MappingCurve:
     return curve_of_range
 
 
-def through_points(points: CurvePoints) -> MappingCurve:
-    """The piecewise linear mapping curve through points."""
-    xs, ys = zip(*points, strict=True)
-    return along_range(lambda fractions: np.interp(fractions, xs, ys).astype(np.float32))
-
-
-def mapping_curve(mapping: str | CurvePoints) -> MappingCurve:
-    """The curve of a scene's `mapping`: one of `CURVES` by name, or the one through points."""
-    return CURVES[mapping] if isinstance(mapping, str) else through_points(mapping)
-
-
-@curve_of_fractions("linear")
 def linear(fractions: Singles) -> Singles:
     """Levels proportional to intensity above the minimum."""
     return fractions
 
 
-@curve_of_fractions("gamma")
 def gamma(fractions: Singles) -> Singles:
     """The inverse of a monitor's power-law response."""
     return np.power(fractions, np.float32(1 / GAMMA))
 
 
-@curve_of_fractions("logarithm")
 def logarithm(fractions: Singles) -> Singles:
     """Dark intensities spread out and bright ones compressed, logarithmically."""
     mapped: Singles = np.log1p(fractions * np.float32(LOGARITHM)) / np.float32(np.log1p(LOGARITHM))
     return mapped
 
 
-@curve("equalize")
+def through_points(points: CurvePoints) -> MappingCurve:
+    """The piecewise linear mapping curve through points."""
+    xs, ys = zip(*points, strict=True)
+    return along_range(lambda fractions: np.interp(fractions, xs, ys).astype(np.float32))
+
+
 def equalize(minimum: np.float32, maximum: np.float32, intensities: Singles) -> Fractions:
     """Histogram equalization: levels become equally frequent.
 
     The fraction of an intensity is its cumulative share of all intensities above the minimum. It is 0 at the
-    minimum and 1 at the maximum, also where no intensity reaches them. Where ranges are held, what is within
-    them is still spread evenly, so that less light hardly looks darker.
+    minimum and 1 at the maximum, even if no intensity reaches them. Intensities within a held range are
+    spread evenly too, so that less light hardly looks darker.
     """
-    ends = [
-        end for end, found in ((minimum, intensities.min()), (maximum, intensities.max())) if end != found
-    ]
+    pairs = ((minimum, intensities.min()), (maximum, intensities.max()))
+    ends = [end for end, reached in pairs if end != reached]
     values, counts = np.unique(np.append(intensities, ends), return_counts=True)
     below = np.cumsum(counts) - counts[0]
     shares: Singles = (below / max(below[-1], 1)).astype(np.float32)
     return lambda given: shares[np.searchsorted(values, given)]
+
+
+CURVES: Final[dict[str, MappingCurve]] = {
+    "linear": along_range(linear),
+    "gamma": along_range(gamma),
+    "logarithm": along_range(logarithm),
+    "equalize": equalize,
+}
+"""Every mapping curve by the name that scenes use."""

@@ -1,45 +1,43 @@
-"""Lights that follow: where a light is that is fixed to the eye, or to the aim of another light.
+"""Lights that follow the eye or the aim of another light, and half-spaces that follow their light.
 
 Paper: Figure 7 has one point light at the eye. Such a light stays there in every view. The position, the aim
-and the direction of a light that follows something are told in the coordinates of a frame:
+and the direction of a light that follows something are coordinates of a frame:
 
-- that of the eye: its origin is the eye; x is to the right in the picture, y the view direction, z up in the
-  picture. A light at (0, 0, 0) is at the eye itself.
-- that of another light: its origin is the point at which that is aimed; its axes are those of the world.
+- The frame of the eye: its origin is the eye. X points to the right in the picture, y is the view direction,
+  and z points up in the picture. A light at (0, 0, 0) is at the eye itself.
+- The frame of another light: its origin is the aim of that light. Its axes are the axes of the world.
 
-A light of a scene may be named like the eye; it can follow others, but what follows "eye" follows the eye.
-Flaps stay in object coordinates. Departs: the paper's lights are all fixed to the object.
+A half-space that its light carries, like a barn door, is in the frame of the light: its origin is the light.
+Flaps stay in object coordinates. A light may be named "eye", and may follow others; but no light follows it,
+because `follows` = "eye" means the eye. Departs: the paper's lights are all fixed to the object.
 """
 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Collection, Container, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import Floats
-from autocolor.checks import Vector, either
-from autocolor.errors import UsageError
-from autocolor.scene.columns import REFUSED, Problem, with_values
+from autocolor.checks import Vector
+from autocolor.scene.columns import REFUSED, Problem, Row, fields_of, with_values
 from autocolor.scene.kinds import VectorKind
-from autocolor.scene.lights import EYE, Flap, HalfSpace, Light
+from autocolor.scene.lights import EYE, HalfSpace, Light
 from autocolor.scene.view import View
 
 DOWN_TO_UP: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """From the axes of camera space, right, down and forward, to right, forward and up."""
 
 NEAREST_AIM: Final = 1e-9
-"""Assumed: of the largest coordinate; an aim nearer than that has too few digits to tell a direction."""
+"""Assumed: a fraction of the largest coordinate. A nearer aim has too few digits to give a direction."""
 
 LEAST_COORDINATE: Final = 1e-30
-"""Coordinates below this count as large as this, so that a fraction of them is not 0."""
+"""Smaller coordinates count as this one, so that a fraction of them is not 0."""
 
-MOST_TOLD: Final = 8
-"""Assumed: names of a circle that a message has room for."""
+MOST_NAMES: Final = 8
+"""Limit: the names of a circle in a message."""
 
 
 class Frame(NamedTuple):
@@ -60,12 +58,37 @@ class Frame(NamedTuple):
         return _vector(self.axes @ (np.array(point) - self.origin))
 
     def direction_to_world(self, direction: Vector) -> Vector:
-        """The direction in world axes of one in those of the frame."""
+        """The direction in world axes, given in the axes of the frame."""
         return _vector(np.array(direction) @ self.axes)
 
     def direction_from_world(self, direction: Vector) -> Vector:
-        """The direction in the axes of the frame of one in world axes."""
+        """The direction in the axes of the frame, given in world axes."""
         return _vector(self.axes @ np.array(direction))
+
+    def to_world(self, row: Row) -> dict[str, Vector]:
+        """The points and directions of a row in world coordinates, by column; None values are left out."""
+        return moved_vectors(row, self.point_to_world, self.direction_to_world)
+
+    def from_world(self, row: Row) -> dict[str, Vector]:
+        """The points and directions of a row of the world in the frame, by column, without None values."""
+        return moved_vectors(row, self.point_from_world, self.direction_from_world)
+
+
+def moved_vectors(
+    row: Row, point: Callable[[Vector], Vector], direction: Callable[[Vector], Vector]
+) -> dict[str, Vector]:
+    """The vectors of a row by column, its points and its directions moved; None values are left out."""
+    return {
+        name: (direction if is_direction else point)(vars(row)[name])
+        for name, is_direction in vector_columns(type(row)).items()
+        if vars(row)[name] is not None
+    }
+
+
+def vector_columns(row_class: type[Row]) -> Mapping[str, bool]:
+    """The names of the columns of a row class that are vectors, and whether each is a direction."""
+    kinds = {name: field.column.kind for name, field in fields_of(row_class).items()}
+    return {name: kind.has_length for name, kind in kinds.items() if isinstance(kind, VectorKind)}
 
 
 def eye_frame(view: View) -> Frame:
@@ -74,10 +97,10 @@ def eye_frame(view: View) -> Frame:
 
 
 def light_frame(light: Light) -> Frame:
-    """The frame of a light that is in world coordinates, for what it carries.
+    """The frame of a light that is in world coordinates, for the half-spaces that it carries.
 
     Its origin is the light. Y is the light's direction, x horizontal to the right of it, and z up. A point
-    source has the axes of the world. Assumed: for a vertical direction, what `View.axes` has.
+    source has the axes of the world. Assumed: a vertical direction has the axes of such a view.
     """
     axis = light.axis
     if axis is None:
@@ -87,7 +110,7 @@ def light_frame(light: Light) -> Frame:
 
 
 def frame_of(light: Light, world: Mapping[str, Light], view: View) -> Frame | None:
-    """The frame in which a light of a scene is told; None for the world's.
+    """The frame that a light of a scene follows; None for the world.
 
     `world` has the light that it follows, if any, in world coordinates.
     """
@@ -104,37 +127,29 @@ def in_world(light: Light, frame: Frame | None) -> Light:
     """The light of a frame in world coordinates, where it follows nothing."""
     if frame is None:
         return light
-    position = frame.point_to_world(light.position)
-    return with_values(
-        light,
-        {
-            "position": position,
-            "aim": None if light.aim is None else _aim_in_world(light, light.aim, position, frame),
-            "direction": None if light.direction is None else frame.direction_to_world(light.direction),
-            "follows": None,
-        },
-    )
+    vectors = frame.to_world(light)
+    if light.aim is not None:
+        vectors["aim"] = _distant_aim(vectors["aim"], vectors["position"], light, frame)
+    return with_values(light, {**vectors, "follows": None})
 
 
-def _aim_in_world(light: Light, aim: Vector, position: Vector, frame: Frame) -> Vector:
-    """The aim of a light of a frame in world coordinates, in which the light is at a position.
+def _distant_aim(aim: Vector, position: Vector, light: Light, frame: Frame) -> Vector:
+    """The aim of a light of a frame, given in world coordinates with its position.
 
-    One that rounding moves onto the position, or close to it, is farther ahead.
+    An aim that rounding moves onto the position, or close to it, is moved ahead.
     """
-    there = frame.point_to_world(aim)
     nearest = NEAREST_AIM * max(*map(abs, position), LEAST_COORDINATE)
-    if math.dist(there, position) >= nearest or light.axis is None:
-        return there
+    if math.dist(aim, position) >= nearest or light.axis is None:
+        return aim
     x, y, z = (a + nearest * b for a, b in zip(position, frame.direction_to_world(light.axis), strict=True))
     return x, y, z
 
 
 def in_frame(light: Light, frame: Frame | None, follows: str | None) -> Light:
-    """A light of the world in the coordinates of the frame of what it is to follow; inverse of `in_world`."""
+    """A light of the world in the frame that it is to follow; the inverse of `in_world`."""
     if frame is None:
         return light
-    told = {name: vars(light)[name] for name in ("position", "aim", "direction")}
-    return with_values(light, {**changes_in_frame(told, frame), "follows": follows})
+    return with_values(light, {**frame.from_world(light), "follows": follows})
 
 
 def lights_in_world(lights: tuple[Light, ...], view: View) -> tuple[Light, ...]:
@@ -144,7 +159,7 @@ def lights_in_world(lights: tuple[Light, ...], view: View) -> tuple[Light, ...]:
     by_name = {light.name: light for light in lights}
     world: dict[str, Light] = {}
     for light in lights:
-        # Walk to what follows nothing else that is to be found, and come back.
+        # Walk to a light whose frame is there, and come back.
         chain = [light]
         while chain[-1].follows not in (None, EYE) and chain[-1].follows not in world:
             chain.append(by_name[str(chain[-1].follows)])
@@ -154,26 +169,37 @@ def lights_in_world(lights: tuple[Light, ...], view: View) -> tuple[Light, ...]:
 
 
 def changes_in_frame(changes: Mapping[str, Any], frame: Frame | None) -> dict[str, Any]:
-    """Changes of a light whose places and directions are in world coordinates, as changes in a frame.
+    """Changes of a light whose points and directions are in world coordinates, as changes in a frame.
 
-    What is no vector stays, to be refused by the row.
+    A value that is no vector stays, to be refused by the row.
     """
     turned = dict(changes)
     if frame is not None:
-        turns = {
-            "position": frame.point_from_world,
-            "aim": frame.point_from_world,
-            "direction": frame.direction_from_world,
-        }
-        for name in turns.keys() & turned.keys():
-            vector: Any = VectorKind().validated(turned[name], (name,), [])
+        columns = vector_columns(Light)
+        for name in columns.keys() & changes.keys():
+            vector: Any = VectorKind().validated(changes[name], (name,), [])
             if vector is not REFUSED:
-                turned[name] = turns[name](vector)
+                turn = frame.direction_from_world if columns[name] else frame.point_from_world
+                turned[name] = turn(vector)
     return turned
 
 
+def detached(half_space: HalfSpace, light: Light) -> HalfSpace:
+    """The half-space of a light of the world in world coordinates; the same if it is not carried."""
+    if not half_space.carried:
+        return half_space
+    return with_values(half_space, {**light_frame(light).to_world(half_space), "carried": False})
+
+
+def attached(half_space: HalfSpace, light: Light) -> HalfSpace:
+    """The half-space carried by its light, which is in world coordinates; its plane stays where it is."""
+    if half_space.carried:
+        return half_space
+    return with_values(half_space, {**light_frame(light).from_world(half_space), "carried": True})
+
+
 def followers_of(name: str, lights: Sequence[Light]) -> list[str]:
-    """The names of the lights that follow the light of a name, not those that follow them in turn."""
+    """The names of the lights that follow the light of a name directly."""
     return [light.name for light in lights if light.follows == name != EYE]
 
 
@@ -188,9 +214,9 @@ def names_to_follow(light: Light, lights: Sequence[Light]) -> list[str]:
 
 
 def following_problems(lights: Sequence[Light]) -> Iterator[Problem]:
-    """The problems of lights that follow each other in a circle, each told once, or one that has no aim.
+    """A problem for each circle of lights that follow each other, and for each light followed without an aim.
 
-    Names that are not in the table are left to the check of references.
+    The check of references finds names that are not in the table.
     """
     by_name = {light.name: light for light in lights}
     clear: set[str] = set()
@@ -200,7 +226,7 @@ def following_problems(lights: Sequence[Light]) -> Iterator[Problem]:
         path = _path(light, by_name, clear)
         circle, followed = path[path.index(path[-1]) :], by_name[str(light.follows)]
         if len(circle) > 1:
-            rule = f"must not lead back to it, as {_told(circle)} does; change one of them"
+            rule = f"must not lead back to it, as {_in_words(circle)} does; change one of them"
             yield Problem((), f"light {circle[0]!r}: follows {rule}")
         elif followed.aim is None:
             rule = f"must be a light with an aim, not {followed.name!r} without one; give it an aim"
@@ -209,7 +235,10 @@ def following_problems(lights: Sequence[Light]) -> Iterator[Problem]:
 
 
 def _path(light: Light, by_name: Mapping[str, Light], clear: Container[str] = ()) -> list[str]:
-    """The names from a light to what follows no other light, is `clear`, or is on the path already."""
+    """The names of a light, the light that it follows, and so on.
+
+    The path ends at a light that follows no other light, is `clear`, or is on the path already.
+    """
     path = {light.name: None}
     while True:
         follows = by_name[next(reversed(path))].follows
@@ -222,134 +251,18 @@ def _path(light: Light, by_name: Mapping[str, Light], clear: Container[str] = ()
         path[follows] = None
 
 
-def _told(path: Sequence[str]) -> str:
-    """A path in words; of a long one, its beginning and its end.
+def _in_words(path: Sequence[str]) -> str:
+    """A path in words; the middle of a long path is left out.
 
-    >>> _told(["key", "fill", "key"])
+    >>> _in_words(["key", "fill", "key"])
     "'key' to 'fill' to 'key'"
     """
     names = [repr(name) for name in path]
-    if len(names) > MOST_TOLD:
-        names = [*names[: MOST_TOLD - 2], "...", names[-1]]
+    if len(names) > MOST_NAMES:
+        names = [*names[: MOST_NAMES - 2], "...", names[-1]]
     return " to ".join(names)
 
 
 def _vector(components: Floats) -> Vector:
     x, y, z = components.tolist()
-    return x, y, z
-
-
-# -------------------- carried
-# What a light carries, as barn doors are: half-spaces in the frame of the light, and in the world.
-#
-# The lights are in world coordinates here, where they follow nothing; see `following.lights_in_world`.
-
-
-def set_down(half_space: HalfSpace, light: Light) -> HalfSpace:
-    """The half-space of a light in world coordinates; the same one if it is not carried."""
-    if not half_space.carried:
-        return half_space
-    frame = light_frame(light)
-    return with_values(
-        half_space,
-        {
-            "point": frame.point_to_world(half_space.point),
-            "direction": frame.direction_to_world(half_space.direction),
-            "carried": False,
-        },
-    )
-
-
-def taken_up(half_space: HalfSpace, light: Light) -> HalfSpace:
-    """The half-space in the frame of its light, carried from now on; its plane stays where it is."""
-    if half_space.carried:
-        return half_space
-    frame = light_frame(light)
-    return with_values(
-        half_space,
-        {
-            "point": frame.point_from_world(half_space.point),
-            "direction": frame.direction_from_world(half_space.direction),
-            "carried": True,
-        },
-    )
-
-
-# -------------------- light_copies
-# Copies of a light: under a free name, and mirrored to the other side of the object.
-
-AXES: Final = ("x", "y", "z")
-"""The axes of the world in the order of coordinates."""
-
-NUMBER_AT_END: Final = re.compile(r" [0-9]{1,9}\Z")
-
-
-def free_name(name: str, taken: Collection[str]) -> str:
-    """The name if it is free, else with the lowest number from 2 that makes it free.
-
-    >>> free_name("key", ["key", "key 2"]), free_name("key 2", ["key", "key 2"]), free_name("rim", ["key"])
-    ('key 3', 'key 3', 'rim')
-    """
-    if name not in taken:
-        return name
-    stem, number = NUMBER_AT_END.sub("", name), 2
-    while f"{stem} {number}" in taken:
-        number += 1
-    return f"{stem} {number}"
-
-
-def mirrored(light: Light, name: str, axis: str, about: float) -> Light:
-    """The light mirrored in the plane where the coordinate of an axis is `about`, under another name.
-
-    Its position, its aim or direction, its half-spaces and the flap of that axis are mirrored. Raises
-    UsageError for an axis that is not x, y or z, InputError where a coordinate would be too large.
-    """
-    place = axis_number(axis)
-    direction = light.direction
-    if direction is not None:
-        direction = _reflected(direction, place, 0.0)
-    flap: Flap | None = getattr(light.flaps, axis)
-    if flap is not None:
-        flap = flap.replace(minimum=2 * about - flap.maximum, maximum=2 * about - flap.minimum)
-    copy = light.replace(
-        name=name,
-        position=_reflected(light.position, place, about),
-        direction=direction,
-        aim=None if light.aim is None else _reflected(light.aim, place, about),
-        flaps=replace(light.flaps, **{axis: flap}),
-    )
-    return copy.replace(half_spaces=_mirrored_half_spaces(light, copy, place, about))
-
-
-def _mirrored_half_spaces(light: Light, copy: Light, place: int, about: float) -> list[HalfSpace]:
-    """The half-spaces of a light for its mirrored copy; those that are carried in the frame of the copy."""
-    if not light.half_spaces:
-        return []
-    mirror = np.eye(3)
-    mirror[place, place] = -1
-    # Mirrored axes are left-handed: the frame of the copy has the opposite of one of them.
-    turned = np.diag(light_frame(copy).axes @ mirror @ light_frame(light).axes.T) < 0
-    found = []
-    for half_space in light.half_spaces:
-        point, direction = half_space.point, half_space.direction
-        for axis in np.flatnonzero(turned).tolist() if half_space.carried else [place]:
-            point = _reflected(point, axis, 0.0 if half_space.carried else about)
-            direction = _reflected(direction, axis, 0.0)
-        found.append(half_space.replace(point=point, direction=direction))
-    return found
-
-
-def axis_number(axis: str) -> int:
-    """The number of an axis, 0 to 2. Raises UsageError if there is none of that name."""
-    if axis not in AXES:
-        raise UsageError(f"an axis must be {either(AXES)}, not {axis!r}")
-    return AXES.index(axis)
-
-
-def _reflected(point: Vector, place: int, about: float) -> Vector:
-    return _with_component(point, place, 2 * about - point[place])
-
-
-def _with_component(vector: Vector, place: int, component: float) -> Vector:
-    x, y, z = (component if number == place else each for number, each in enumerate(vector))
     return x, y, z

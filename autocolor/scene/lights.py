@@ -1,13 +1,17 @@
 """Lights and their controls, as data.
 
 Paper: "Light Controls". A light has a position and an intensity. With a direction or an aim it is a directed
-light, which concentration and a cone can narrow; flaps can restrict any light. The effect of these controls
-is computed in `lighting/light_controls`. What a light follows is worked out in `following`.
+light, which concentration and a cone can narrow. Flaps, half-spaces and links to surfaces and parts can
+restrict any light. The effect of these controls is computed in `lighting.controls`, and the place of a light
+that follows something in `following`.
+
+To add a light control, give `Light` a field with its column, and write its formula in `lighting.controls`.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, ClassVar, Final, Unpack
@@ -27,16 +31,27 @@ from autocolor.scene.columns import (
     Row,
     RowError,
     Tier,
+    fields_of,
     replaced,
 )
 from autocolor.scene.kinds import Boolean, Number, OneOf, Text, VectorKind
 from autocolor.scene.row_kinds import NamedRows, Nested, Reference, References
 
-# -------------------- flaps
-# Flaps: ranges of object coordinates outside of which a light has no effect.
-#
-# Paper: "Light Flaps and Cones", Figure 9. Their effect is computed in
-# `lighting.light_controls.flap_sides`.
+AXES: Final = ("x", "y", "z")
+"""The axes of the world in the order of coordinates."""
+
+FALLOFFS: Final = ("none", "linear", "quadratic")
+"""The part of a light that is left at a fraction f of its reach: all of it, 1 - f, or (1 - f)^2."""
+
+EYE: Final = "eye"
+"""The value of `follows` of a light that is fixed to the eye."""
+
+LEAST_TURN: Final = 1e-9
+"""Assumed: the least sine of the angle between two sides of a triangle; below it, rounding would decide."""
+
+NUMBER_AT_END: Final = re.compile(r" [0-9]{1,9}\Z")
+
+Names = tuple[str, ...]
 
 
 @dataclass(frozen=True, repr=False)
@@ -94,23 +109,14 @@ class Flaps(Row):
         return replaced(self, changes)
 
 
-# -------------------- half_spaces
-# Half-spaces: flaps along any planes, of which a light may have any number.
-#
-# Paper: "Light Flaps and Cones" names flaps that are not parallel to the axes as an addition. Their effect
-# is computed in `lighting.light_controls.half_spaces`.
-
-LEAST_TURN: Final = 1e-9
-"""Assumed: the least sine of the angle between two sides of a triangle; below it, rounding would decide."""
-
-
 @dataclass(frozen=True, repr=False)
 class HalfSpace(Row):
     """The points on one side of a plane, outside of which a light has no effect, and a switch.
 
-    A point of the plane is lit. With an edge width, the light goes from nothing at the plane to all of it at
-    this distance inside. One that is carried by its light, as barn doors are, is told in the coordinates of
-    the light (see `following.light_frame`).
+    Paper: "Light Flaps and Cones" names flaps that are not parallel to the axes as an addition. A point of
+    the plane is lit. With an edge width, the light goes from nothing at the plane to all of it at this
+    distance inside. A carried half-space moves and turns with its light, like a barn door: its point and its
+    direction are coordinates of `following.light_frame`.
     """
 
     noun: ClassVar[str] = "half-space"
@@ -178,10 +184,10 @@ class HalfSpace(Row):
 def _checked_points(name: str, *points: Sequence[float]) -> Floats:
     """Three points that are finite, (3, 3)."""
     kind, problems = VectorKind(), list[Problem]()
-    held = [kind.validated(point, (key,), problems) for key, point in zip("abc", points, strict=True)]
-    if any(each is REFUSED for each in held):
+    vectors = [kind.validated(point, (key,), problems) for key, point in zip("abc", points, strict=True)]
+    if any(each is REFUSED for each in vectors):
         raise RowError(problems, f"half-space {name!r}")
-    return np.array(held, np.float64)
+    return np.array(vectors, np.float64)
 
 
 def _scaled(vector: Floats) -> Floats:
@@ -190,18 +196,13 @@ def _scaled(vector: Floats) -> Floats:
     return scaled
 
 
-# -------------------- links
-# The links of a light: which surfaces and parts it shines on.
-#
-# Departs: the paper's lights shine on everything. A point is lit if its surface is one that the light
-# shines on, and its part is, too.
-
-Names = tuple[str, ...]
-
-
 @dataclass(frozen=True, repr=False)
 class Links(Row):
-    """The names of surfaces and of parts; None where all are meant."""
+    """The surfaces and parts that a light shines on, by name; None for all.
+
+    Departs: the paper's lights shine on everything. A point is lit if the light shines on its surface and on
+    its part.
+    """
 
     noun: ClassVar[str] = "links"
 
@@ -237,74 +238,36 @@ class Links(Row):
 
     @property
     def depend_on_parts(self) -> bool:
-        """Whether it depends on the part if a point is lit."""
+        """Whether the part of a point decides whether it is lit."""
         return self.only_parts is not None or self.except_parts is not None
 
     def shines_on_surface(self, surface: str) -> bool:
         """Whether the light shines on the surface of that name."""
-        return bool(_meant([surface], self.only_surfaces, self.except_surfaces))
+        return bool(_selected([surface], self.only_surfaces, self.except_surfaces))
 
     def lit_parts(self, parts: Iterable[str]) -> set[str]:
-        """Those of the parts of these names that the light shines on, as far as their surfaces are lit."""
-        return _meant(parts, self.only_parts, self.except_parts)
+        """The names of the parts that the light shines on, if it shines on their surfaces."""
+        return _selected(parts, self.only_parts, self.except_parts)
 
     def within(self, surfaces: Collection[str], parts: Collection[str]) -> Links:
-        """The links without the names that are not among some surfaces and parts.
+        """The links without names that are not among some surfaces and parts.
 
-        Assumed: where none of the names of a list is left, there is no list: a light for what is not there
-        shines on everything, as no picture would show a light that shines on nothing.
+        Assumed: a list of which no name is left is removed, so that the light shines on everything. No
+        picture would show a light that shines on nothing.
         """
-        kept = {
-            field: _kept(names, known)
-            for known, fields in (
-                (surfaces, ("only_surfaces", "except_surfaces")),
-                (parts, ("only_parts", "except_parts")),
-            )
-            for field in fields
-            if (names := vars(self)[field])
-        }
-        return replaced(self, kept) if any(kept[field] != vars(self)[field] for field in kept) else self
+        remaining = {}
+        for name, (column, _, _) in fields_of(Links).items():
+            existing = surfaces if column.kind == References("surfaces") else parts
+            if vars(self)[name]:
+                remaining[name] = tuple(each for each in vars(self)[name] if each in existing) or None
+        is_same = all(remaining[name] == vars(self)[name] for name in remaining)
+        return self if is_same else replaced(self, remaining)
 
 
-def _meant(names: Iterable[str], only: Names | None, excepted: Names | None) -> set[str]:
-    """Those of the names that are among `only`, or not among the excepted ones."""
-    # A mesh may have many thousands of parts: no name is looked for in a list.
+def _selected(names: Iterable[str], only: Names | None, excepted: Names | None) -> set[str]:
+    """The names that are among `only`, if that is given, and not among the excepted names."""
+    # A mesh may have many thousands of parts: search no list for a name.
     return (set(names) if only is None else set(names).intersection(only)).difference(excepted or ())
-
-
-def _kept(names: Names, known: Collection[str]) -> Names | None:
-    """The names that are known; None if there is none."""
-    return tuple(name for name in names if name in known) or None
-
-
-# -------------------- vectors
-# Unit vectors of directions of any length, and points between others.
-
-
-def unit_vector(direction: Vector) -> Vector:
-    """The direction with the length 1; it must not be zero.
-
-    >>> unit_vector((0.0, 3e36, 4e36))
-    (0.0, 0.6, 0.8)
-    """
-    # Scale by the largest component first, as squares of very large or small ones over- or underflow.
-    largest = max(abs(component) for component in direction)
-    scaled = tuple(component / largest for component in direction)
-    length = math.hypot(*scaled)
-    return (scaled[0] / length, scaled[1] / length, scaled[2] / length)
-
-
-def middle_between(one: Vector, other: Vector) -> Vector:
-    """The point halfway between two points, however large their coordinates are."""
-    x, y, z = (a / 2 + b / 2 for a, b in zip(one, other, strict=True))
-    return x, y, z
-
-
-FALLOFFS: Final = ("none", "linear", "quadratic")
-"""What is left of a light at a distance, as a fraction f of its reach: all of it, 1 - f, or (1 - f)^2."""
-
-EYE: Final = "eye"
-"""What a light that is fixed to the eye follows."""
 
 
 AXIS_CONTROLS: Final = ("concentration", "cone_angle", "inner_angle", "at_infinity")
@@ -478,3 +441,36 @@ class Light(Row):
         Raises InputError for an unknown field or an invalid value.
         """
         return replaced(self, changes)
+
+
+def unit_vector(direction: Vector) -> Vector:
+    """The direction with the length 1; it must not be zero.
+
+    >>> unit_vector((0.0, 3e36, 4e36))
+    (0.0, 0.6, 0.8)
+    """
+    # Scale by the largest component first, as squares of very large or small ones over- or underflow.
+    largest = max(abs(component) for component in direction)
+    scaled = tuple(component / largest for component in direction)
+    length = math.hypot(*scaled)
+    return (scaled[0] / length, scaled[1] / length, scaled[2] / length)
+
+
+def middle_between(one: Vector, other: Vector) -> Vector:
+    """The point halfway between two points, however large their coordinates are."""
+    x, y, z = (a / 2 + b / 2 for a, b in zip(one, other, strict=True))
+    return x, y, z
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """The name if it is free, else with the lowest number from 2 that makes it free.
+
+    >>> free_name("key", ["key", "key 2"]), free_name("key 2", ["key", "key 2"]), free_name("rim", ["key"])
+    ('key 3', 'key 3', 'rim')
+    """
+    if name not in taken:
+        return name
+    stem, number = NUMBER_AT_END.sub("", name), 2
+    while f"{stem} {number}" in taken:
+        number += 1
+    return f"{stem} {number}"

@@ -1,8 +1,8 @@
 """The mesh: the node table and the polygon table.
 
 Paper: "Introduction". The shape of an object is a mesh of polygons with three or four sides, defined by two
-tables: nodes with their coordinates, and polygons with the numbers of their nodes. Both are checked when they
-are made and never change afterwards.
+tables: nodes with their coordinates, and polygons with the numbers of their nodes. A `Mesh` checks both, and
+they never change afterwards.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Indices, chunks
+from autocolor.arrays import AnyArray, Floats, Indices, chunks, used_bounds, used_rows
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.immutable import Immutable, read_only
@@ -23,7 +23,7 @@ from autocolor.logs import logger_of, timed
 from autocolor.scene.columns import Problem
 from autocolor.scene.geometry.curvature import Curvatures, curvatures
 from autocolor.scene.geometry.foreign_meshes import foreign_tables
-from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, node_normals, used_bounds, used_rows
+from autocolor.scene.geometry.normals import CREASE_ANGLE, NodeNormals, node_normals
 from autocolor.scene.geometry.planes import SharedPlanes, shared_planes
 from autocolor.scene.kinds import Number
 from autocolor.scene.scalar import MeshScalar, joined_scalars, scalar_problems
@@ -31,8 +31,7 @@ from autocolor.scene.scalar import MeshScalar, joined_scalars, scalar_problems
 LOG: Final = logger_of(__name__)
 
 CREASE_ANGLES: Final = Number(at_least=0, at_most=180)
-"""The crease angles that there may be, in degrees."""
-
+"""The kind of a crease angle, in degrees."""
 
 PART: Final = "mesh"
 """The name of the part of a mesh without parts."""
@@ -45,11 +44,11 @@ class Mesh(Immutable):
     """The node table and the polygon table.
 
     `coordinates` is (nodes, 3) float64. `node_numbers` is (polygons, 4) intp, rows of the node table counted
-    from 0; a triangle repeats its last node, and (polygons, 3) is accepted where all are triangles.
+    from 0; a triangle repeats its last node, and (polygons, 3) is accepted if all are triangles.
     `part_numbers` is (polygons,) intp, rows of `part_names` counted from 0; without them all polygons are of
     the first part. Polygons that meet at more than `crease_angle` degrees keep a sharp edge. The tables are
     copied and stored by columns (Fortran order), so that `.T` is the contiguous array that the renderer works
-    on. `scalars` are those of its nodes and its polygons. `Mesh.of` takes meshes of other programs.
+    on. `scalars` are numbers at the nodes or polygons. `Mesh.of` converts meshes of other programs.
     """
 
     coordinates: Floats
@@ -75,9 +74,9 @@ class Mesh(Immutable):
                 f"part table: part names must be strings, one for each part, not {self.part_names!r}"
             )
             names = tuple(map(repr, names))
-        found: list[Problem] = []
-        angle = CREASE_ANGLES.validated(self.crease_angle, ("crease_angle",), found)
-        problems.extend(f"mesh: {problem.sentence}" for problem in found)
+        of_angle: list[Problem] = []
+        angle = CREASE_ANGLES.validated(self.crease_angle, ("crease_angle",), of_angle)
+        problems.extend(f"mesh: {problem.sentence}" for problem in of_angle)
         if coordinate_rows.size and not (
             coordinate_rows.min() >= -LARGEST_COORDINATE and coordinate_rows.max() <= LARGEST_COORDINATE
         ):
@@ -167,7 +166,7 @@ class Mesh(Immutable):
             start = self.node_numbers.T[:, chunk]
             end = np.roll(start, -1, axis=0)
             keys[:, chunk] = np.minimum(start, end) * len(self.coordinates) + np.maximum(start, end)
-            # A triangle repeats a node: count that once, and not at all in the end.
+            # The edge from a node to itself in a triangle does not count.
             keys[:, chunk][start == end] = -1
         in_order = keys.ravel()
         in_order.sort()
@@ -185,9 +184,9 @@ class Mesh(Immutable):
     ) -> Mesh:
         """The mesh, of one part, of a mesh of trimesh, PyVista or meshio, or of nodes and polygons.
 
-        Polygons may have any number of sides from three on; those of more than four are split. Data of one
-        component at the points or the cells of PyVista and meshio are its scalars. A Mesh is returned as it
-        is. Raises InputError, and UsageError for a source that is none of these.
+        Polygons may have any number of sides from three on; polygons of more than four are split. Data of one
+        component at the points or the cells of PyVista and meshio become scalars. A Mesh is returned
+        unchanged. Raises InputError, and UsageError for any other source.
 
         >>> Mesh.of([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 1, 2, 3]])
         Mesh(nodes 4, polygons 2, parts 1)
@@ -210,10 +209,10 @@ class Mesh(Immutable):
         normals: NodeNormals | None = None,
         shared_planes: SharedPlanes | EllipsisType | None = ...,
     ) -> Mesh:
-        """The mesh that holds these tables themselves, such as files that are mapped into memory.
+        """The mesh with these tables themselves, without checks or copies: they may be mapped files.
 
-        For readers that have checked them: they are of the types of the fields, stored by columns and
-        read-only, and so are the normals. What is given of normals and planes is not computed.
+        The tables must have the types of the fields, be stored by columns and read-only, and so must the
+        normals. Normals and planes that are given are not computed.
         """
         mesh = object.__new__(cls)
         vars(mesh).update(
@@ -231,9 +230,9 @@ class Mesh(Immutable):
         return mesh
 
     def with_scalars(self, *scalars: MeshScalar) -> Mesh:
-        """The mesh with these scalars and no others; the tables, and what was computed of them, are shared.
+        """The mesh with these scalars and no others; both share the tables and everything computed from them.
 
-        Raises InputError if one does not fit the mesh.
+        Raises InputError if a scalar does not fit the mesh.
         """
         problems = list(scalar_problems(scalars, len(self.coordinates), len(self.node_numbers)))
         if problems:
@@ -244,7 +243,7 @@ class Mesh(Immutable):
 
     @staticmethod
     def joined(meshes: Sequence[Mesh]) -> Mesh:
-        """One mesh of several; parts of the same name become one part. The first crease angle is kept."""
+        """One mesh of several; parts of the same name become one part. The first crease angle counts."""
         if len(meshes) == 1:
             return meshes[0]
         names = tuple(dict.fromkeys(name for mesh in meshes for name in mesh.part_names))
@@ -279,8 +278,8 @@ def _numbers(problems: list[str], what: str, value: object, dtype: type) -> AnyA
         array = np.array(None)
     if array.size and array.dtype.kind not in ("iu" if dtype is np.intp else "iuf"):
         kind = "whole numbers" if dtype is np.intp else "numbers"
-        found = f"of {array.dtype}" if array.dtype.kind in "bcf" else type(value).__name__
-        problems.append(f"{what}: it must be an array of {kind}, not {found}; convert it")
+        given = f"of {array.dtype}" if array.dtype.kind in "bcf" else type(value).__name__
+        problems.append(f"{what}: it must be an array of {kind}, not {given}; convert it")
         array = np.empty(0)
     return array.astype(dtype, copy=False)
 
@@ -307,21 +306,17 @@ def _check_rows(problems: list[str], what: str, numbers: Indices, count: int, ta
     problems.append(f"{rule}, not {numbers[..., row].tolist()} (row {row})")
 
 
-# -------------------- same_meshes
-# Whether two meshes are the same, such as one in memory and the one that its file holds.
-
-TABLES: Final = ("coordinates", "node_numbers", "part_numbers")
-
-
 def has_same_tables(one: Mesh, other: Mesh) -> bool:
-    """Whether all tables and scalars of two meshes are equal; the crease angle is not one of them."""
+    """Whether all tables and scalars of two meshes are equal, whatever their crease angles."""
     if one is other:
         return True
     return (
         one.part_names == other.part_names
         and [(scalar.name, scalar.of) for scalar in one.scalars]
         == [(scalar.name, scalar.of) for scalar in other.scalars]
-        and all(np.array_equal(vars(one)[name], vars(other)[name]) for name in TABLES)
+        and np.array_equal(one.coordinates, other.coordinates)
+        and np.array_equal(one.node_numbers, other.node_numbers)
+        and np.array_equal(one.part_numbers, other.part_numbers)
         and all(
             np.array_equal(scalar.values, same.values, equal_nan=True)
             for scalar, same in zip(one.scalars, other.scalars, strict=True)

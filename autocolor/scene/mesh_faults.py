@@ -1,6 +1,6 @@
-"""The faults of a mesh: what may be wrong with it though it can be rendered, with the rows concerned.
+"""The faults of a mesh that can be rendered nevertheless, with the rows of the tables that have them.
 
-The renderer draws them all. They matter to whoever made the mesh, and to programs that compute with it.
+They matter to whoever made the mesh, and to programs that compute with it.
 """
 
 from __future__ import annotations
@@ -11,23 +11,112 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Booleans, Floats, Indices, chunks, cross, dot, lengths, runs
+from autocolor.arrays import AnyArray, Booleans, Floats, Indices, chunks, cross, dot, lengths, runs, used_rows
 from autocolor.immutable import read_only
-from autocolor.scene.geometry.normals import group_numbers, unite
+from autocolor.scene.geometry.normals import MIXER, group_numbers, unite
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 
-# -------------------- edge_faults
-# The edges of a mesh that polygons do not share as those of a closed surface do.
+EDGE: Final = "edge"
+
+KINDS: Final = {
+    "border": "edges of one polygon alone, around holes and along rims",
+    "unwelded": "nodes at the same place as another node",
+    "unused": "nodes that no polygon uses",
+    "warped": "quads that are not flat",
+    "concave": "quads with a corner that points inwards",
+    "crossed": "quads whose sides cross",
+    "turned": "edges that two polygons run along in the same direction, so that one of them is turned over",
+    "repeated": "polygons with the same nodes as another polygon",
+    "crowded": "edges of more than two polygons",
+    "without area": "polygons without area",
+}
+"""The kinds of faults and their descriptions, from the lightest to the gravest, which are numbered from 1."""
+
+FAULT: Final = "fault"
+"""The name of the scalar that has the number of the gravest fault of each polygon."""
+
+WARPED: Final = 0.01
+"""Assumed: a quad is warped if the distance of its diagonals exceeds this fraction of its size."""
+
+FLAT: Final = 1e-12
+"""Assumed: a polygon has no area if twice its area is below this fraction of its squared size."""
+
+AT_A_TIME: Final = 1 << 14
+"""Polygons in a chunk, so that the arrays fit in the processor cache."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fault:
+    """All faults of one kind in a mesh.
+
+    `of` is EDGE, NODE or POLYGON. `rows` are the rows of the nodes or polygons that have the fault, (rows,),
+    or of the two nodes of each edge, (edges, 2). `polygons` are the rows of the polygons concerned.
+    """
+
+    kind: str
+    of: str
+    rows: Indices
+    polygons: Indices
+    holes: tuple[Hole, ...] = ()
+
+    @property
+    def number(self) -> int:
+        """The number of the kind, as in the scalar."""
+        return list(KINDS).index(self.kind) + 1
+
+
+def mesh_faults(mesh: Mesh) -> tuple[Fault, ...]:
+    """The faults of a mesh, in the order of KINDS, without kinds that the mesh does not have."""
+    coordinates, node_numbers = mesh.coordinates, mesh.node_numbers
+    edges = edge_faults(node_numbers, len(coordinates))
+    shapes = polygon_shapes(coordinates, node_numbers)
+    unwelded = nodes_at_one_place(coordinates, node_numbers)
+    is_unwelded = np.zeros(len(coordinates), np.bool_)
+    is_unwelded[unwelded] = True
+    unused = np.flatnonzero(~used_rows(node_numbers.T, len(coordinates)))
+    repeated = repeated_polygons(node_numbers)
+    faults = {
+        "border": Fault(
+            "border",
+            EDGE,
+            edges.borders,
+            edges.border_polygons,
+            tuple(holes_of(coordinates, edges.borders)),
+        ),
+        "unwelded": Fault(
+            "unwelded", NODE, unwelded, np.flatnonzero(is_unwelded[node_numbers.T].any(axis=0))
+        ),
+        "unused": Fault("unused", NODE, unused, np.empty(0, np.intp)),
+        "warped": Fault("warped", POLYGON, shapes.warped, shapes.warped),
+        "concave": Fault("concave", POLYGON, shapes.concave, shapes.concave),
+        "crossed": Fault("crossed", POLYGON, shapes.crossed, shapes.crossed),
+        "turned": Fault("turned", EDGE, edges.turned, edges.turned_polygons),
+        "repeated": Fault("repeated", POLYGON, repeated, repeated),
+        "crowded": Fault("crowded", EDGE, edges.crowded, edges.crowded_polygons),
+        "without area": Fault("without area", POLYGON, shapes.without_area, shapes.without_area),
+    }
+    return tuple(faults[kind] for kind in KINDS if len(faults[kind].rows))
+
+
+def fault_scalar(mesh: Mesh, faults: Sequence[Fault]) -> MeshScalar:
+    """The number of the gravest fault of each polygon of a mesh; 0 where it has none."""
+    values = np.zeros(len(mesh.node_numbers))
+    for fault in sorted(faults, key=lambda each: each.number):
+        values[fault.polygons] = fault.number
+    return MeshScalar(FAULT, read_only(values), POLYGON)
+
+
+# -------------------- edges and holes
 
 
 @dataclass(frozen=True, eq=False)
 class EdgeFaults:
     """Edges, each (edges, 2) rows of nodes, and the rows of the polygons that have them, ascending.
 
-    A border has one polygon, a shared edge two, and a crowded one three or more. Where the polygons of a
-    shared edge are turned to one side, they run along it in opposite directions; a turned edge is run twice
-    in the same one. Polygons are looked at by their nodes alone: two nodes at one place are not joined.
+    A border has one polygon, a shared edge two, and a crowded edge three or more. If the polygons of a shared
+    edge face the same side, they run along it in opposite directions. Along a turned edge both run in the
+    same direction. Edges are compared by their nodes alone: two nodes at one place are not joined.
     """
 
     borders: Indices
@@ -42,7 +131,7 @@ def edge_faults(node_numbers: Indices, node_count: int) -> EdgeFaults:
     """The edges of a polygon table, (polygons, 4), that are borders, turned or crowded."""
     starts = np.ascontiguousarray(node_numbers.T)
     ends = np.roll(starts, -1, axis=0)
-    # An edge from a node to itself closes a triangle, and is none.
+    # An edge from a node to itself closes a triangle: leave it out.
     places = np.flatnonzero(starts.ravel() != ends.ravel())
     start, end = starts.ravel()[places], ends.ravel()[places]
     keys = np.minimum(start, end) * node_count + np.maximum(start, end)
@@ -72,15 +161,12 @@ def edge_faults(node_numbers: Indices, node_count: int) -> EdgeFaults:
     )
 
 
-# -------------------- holes
-# Holes: the closed loops that the border edges of a mesh form. The rim of an open surface is one, too.
-
-
 @dataclass(frozen=True)
 class Hole:
-    """A loop of border edges: how many, how long together, the middle of its bounds, and one of its nodes.
+    """A closed loop of border edges, or the rim of an open surface.
 
-    A loop that is not `is_closed` branches, as where two holes share a node.
+    `edges` is their number and `length` their sum; `center` is the middle of the bounds, and `node` one of
+    the nodes. A loop that is not `is_closed` has branches, as where two holes share a node.
     """
 
     edges: int
@@ -125,22 +211,12 @@ def holes_of(coordinates: Floats, borders: Indices) -> list[Hole]:
     ]
 
 
-# -------------------- quad_shapes
-# The polygons that are warped, concave or crossed quads, or have no area; the renderer accepts them all.
-
-WARPED: Final = 0.01
-"""Assumed: a quad is warped if the distance of its diagonals exceeds this fraction of its size."""
-
-FLAT: Final = 1e-12
-"""Assumed: a polygon has no area if twice its area is below this fraction of its squared size."""
-
-AT_A_TIME: Final = 1 << 14
-"""Quads to look at at once, so that the arrays fit in the processor cache."""
+# -------------------- the shapes of polygons
 
 
 @dataclass(frozen=True)
 class QuadShapes:
-    """Counts of quads: all, non-planar ones, ones with one reflex corner, and bow-ties."""
+    """Counts of quads: all, quads that are not flat, quads with one reflex corner, and bow-ties."""
 
     quads: int
     warped: int
@@ -150,7 +226,7 @@ class QuadShapes:
 
 @dataclass(frozen=True, eq=False)
 class Shapes:
-    """The rows of polygons of each shape; one may be in several of them."""
+    """The rows of the polygons of each shape; a polygon may have several."""
 
     warped: Indices
     concave: Indices
@@ -160,21 +236,21 @@ class Shapes:
 
 def quad_shapes(mesh: Mesh) -> QuadShapes:
     """The counts for a mesh; a concave or crossed quad may also count as warped."""
-    found = polygon_shapes(mesh.coordinates, mesh.node_numbers)
+    shapes = polygon_shapes(mesh.coordinates, mesh.node_numbers)
     quads = len(mesh.node_numbers) - mesh.triangle_count
-    return QuadShapes(quads, len(found.warped), len(found.concave), len(found.crossed))
+    return QuadShapes(quads, len(shapes.warped), len(shapes.concave), len(shapes.crossed))
 
 
 def polygon_shapes(coordinates: Floats, node_numbers: Indices) -> Shapes:
     """The rows of warped, concave and crossed quads, and of polygons without area."""
-    found: tuple[list[Indices], ...] = ([], [], [], [])
+    rows_of_shapes: tuple[list[Indices], ...] = ([], [], [], [])
     for chunk in chunks(len(node_numbers), AT_A_TIME):
         rows = node_numbers[chunk]
         shapes = _shapes(np.ascontiguousarray(coordinates[rows].T), rows[:, 2] != rows[:, 3])
-        for each, mask in zip(found, shapes, strict=True):
-            each.append(np.flatnonzero(mask) + chunk.start)
+        for parts, mask in zip(rows_of_shapes, shapes, strict=True):
+            parts.append(np.flatnonzero(mask) + chunk.start)
     none = np.empty(0, np.intp)
-    return Shapes(*(np.concatenate([none, *each]) for each in found))
+    return Shapes(*(np.concatenate([none, *parts]) for parts in rows_of_shapes))
 
 
 def _shapes(corners: Floats, is_quad: Booleans) -> tuple[Booleans, Booleans, Booleans, Booleans]:
@@ -196,7 +272,7 @@ def _shapes(corners: Floats, is_quad: Booleans) -> tuple[Booleans, Booleans, Boo
     for corner in range(4):
         turned += dot(cross(edges[:, corner - 1], edges[:, corner]), normals) < -1e-9
 
-    # Neither diagonal divides a polygon without area into a triangle that has some.
+    # A polygon has no area if neither diagonal divides off a triangle that has some.
     halves = ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))
     has_area = np.zeros(corners.shape[2], np.bool_)
     for first, second, third in halves:
@@ -206,27 +282,21 @@ def _shapes(corners: Floats, is_quad: Booleans) -> tuple[Booleans, Booleans, Boo
     return quads & (apart > WARPED), quads & (turned == 1), quads & ((turned > 1) | ~has_normal), ~has_area
 
 
-# -------------------- repeats
-# Rows of a table that equal another row: polygons with the same nodes, nodes at the same place.
-
-MIXED: Final = np.uint64(0x9E3779B97F4A7C15)
-"""An odd number by which the columns are mixed, that of the golden ratio."""
+# -------------------- rows that repeat
 
 
 def repeated_polygons(node_numbers: Indices) -> Indices:
-    """The rows of polygons that have the same nodes as another one, in any order, ascending."""
+    """The rows of polygons that have the same nodes as another polygon, in any order; ascending."""
     nodes = np.array(node_numbers)
-    # A triangle repeats its last node, whichever that is.
+    # A triangle repeats its last node: leave it out.
     nodes[nodes[:, 2] == nodes[:, 3], 3] = -1
     nodes.sort(axis=1)
     return repeated_rows(nodes)
 
 
 def nodes_at_one_place(coordinates: Floats, node_numbers: Indices) -> Indices:
-    """The rows of used nodes that have the same place as another used one, ascending."""
-    used = np.zeros(len(coordinates), np.bool_)
-    used[node_numbers.T] = True
-    rows = np.flatnonzero(used)
+    """The rows of used nodes that have the same place as another used node, ascending."""
+    rows = np.flatnonzero(used_rows(node_numbers.T, len(coordinates)))
     # Adding zero makes -0.0 and 0.0 the same bits.
     places = np.ascontiguousarray(coordinates[rows] + 0.0)
     repeated: Indices = rows[repeated_rows(places.view(np.int64).reshape(len(rows), 3))]
@@ -240,7 +310,7 @@ def repeated_rows(table: AnyArray) -> Indices:
     # Rows that are equal have equal sums of their mixed columns: only those are compared.
     sums = np.zeros(len(table), np.uint64)
     for column in table.astype(np.int64, copy=False).T:
-        sums = (sums ^ np.ascontiguousarray(column).view(np.uint64)) * MIXED
+        sums = (sums ^ np.ascontiguousarray(column).view(np.uint64)) * MIXER
         sums ^= sums >> np.uint64(29)
     order = np.argsort(sums, kind="stable")
     is_next_equal = sums[order[1:]] == sums[order[:-1]]
@@ -252,86 +322,3 @@ def repeated_rows(table: AnyArray) -> Indices:
     is_same = (rows[by_value[1:]] == rows[by_value[:-1]]).all(axis=1)
     repeats = by_value[np.append(is_same, False) | np.append([False], is_same)]
     return np.sort(candidates[repeats])
-
-
-EDGE: Final = "edge"
-
-KINDS: Final = {
-    "border": "edges of one polygon alone, around holes and along rims",
-    "unwelded": "nodes at the same place as another node",
-    "unused": "nodes that no polygon uses",
-    "warped": "quads that are not flat",
-    "concave": "quads with a corner that points inwards",
-    "crossed": "quads whose sides cross",
-    "turned": "edges that two polygons run along in the same direction, so that one of them is turned over",
-    "repeated": "polygons with the same nodes as another polygon",
-    "crowded": "edges of more than two polygons",
-    "without area": "polygons without area",
-}
-"""The kinds of faults, from the lightest to the gravest, and what they are. A kind's number is its place from
-1 on."""
-
-FAULT: Final = "fault"
-"""The name of the scalar that tells the gravest fault of each polygon."""
-
-
-@dataclass(frozen=True, eq=False)
-class Fault:
-    """All faults of one kind in a mesh.
-
-    `rows` are the rows of what has it, which is an edge, a node or a polygon as `of` tells: (rows,), or
-    (edges, 2) rows of nodes. `polygons` are the rows of the polygons concerned. Rows count from 0.
-    """
-
-    kind: str
-    of: str
-    rows: Indices
-    polygons: Indices
-    holes: tuple[Hole, ...] = ()
-
-    @property
-    def number(self) -> int:
-        """The number of the kind, as the scalar has it."""
-        return list(KINDS).index(self.kind) + 1
-
-
-def mesh_faults(mesh: Mesh) -> tuple[Fault, ...]:
-    """The faults of a mesh, in the order of KINDS; kinds of which there is none are left out."""
-    coordinates, node_numbers = mesh.coordinates, mesh.node_numbers
-    edges = edge_faults(node_numbers, len(coordinates))
-    shapes = polygon_shapes(coordinates, node_numbers)
-    unwelded = nodes_at_one_place(coordinates, node_numbers)
-    is_unwelded = np.zeros(len(coordinates), np.bool_)
-    is_unwelded[unwelded] = True
-    unused = np.ones(len(coordinates), np.bool_)
-    unused[node_numbers.T] = False
-    repeated = repeated_polygons(node_numbers)
-    found = {
-        "border": Fault(
-            "border",
-            EDGE,
-            edges.borders,
-            edges.border_polygons,
-            tuple(holes_of(coordinates, edges.borders)),
-        ),
-        "unwelded": Fault(
-            "unwelded", NODE, unwelded, np.flatnonzero(is_unwelded[node_numbers.T].any(axis=0))
-        ),
-        "unused": Fault("unused", NODE, np.flatnonzero(unused), np.empty(0, np.intp)),
-        "warped": Fault("warped", POLYGON, shapes.warped, shapes.warped),
-        "concave": Fault("concave", POLYGON, shapes.concave, shapes.concave),
-        "crossed": Fault("crossed", POLYGON, shapes.crossed, shapes.crossed),
-        "turned": Fault("turned", EDGE, edges.turned, edges.turned_polygons),
-        "repeated": Fault("repeated", POLYGON, repeated, repeated),
-        "crowded": Fault("crowded", EDGE, edges.crowded, edges.crowded_polygons),
-        "without area": Fault("without area", POLYGON, shapes.without_area, shapes.without_area),
-    }
-    return tuple(found[kind] for kind in KINDS if len(found[kind].rows))
-
-
-def fault_scalar(mesh: Mesh, faults: Sequence[Fault]) -> MeshScalar:
-    """The number of the gravest fault of each polygon of a mesh; 0 where it has none."""
-    values = np.zeros(len(mesh.node_numbers))
-    for fault in sorted(faults, key=lambda each: each.number):
-        values[fault.polygons] = fault.number
-    return MeshScalar(FAULT, read_only(values), POLYGON)

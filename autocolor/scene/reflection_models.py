@@ -4,7 +4,8 @@ Paper: Figure 2. light(j) = intensity(j) (D cos(I) + S cos^N(E)). The diffuse te
 model. The specular factor takes the place of cos^N(E), without S. It is 1 where light and eye are both in the
 direction of the normal, so that S means the same under every model.
 
-A model is a row: its parameters and one function of cosines. To add one, write its class and register it.
+A model is a row: its parameters and one function of cosines. To add a model, write its class and name it in
+`MODELS` at the foot.
 
 N is the normal, L the direction to the light, V the direction to the eye, R = 2 (N.V) N - V the reflected
 view, and H the unit vector halfway between L and V. Given N.L, N.V and cos(E) = L.R, the other cosines are
@@ -21,7 +22,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Annotated, ClassVar, Final, NamedTuple, TypeVar
+from typing import Annotated, ClassVar, Final, NamedTuple
 
 import numpy as np
 
@@ -30,34 +31,58 @@ from autocolor.scene.columns import BarRange, Column, Problem, Row, Tier
 from autocolor.scene.kinds import AngleCurve, AngleCurveKind, Number
 from autocolor.scene.row_kinds import Nested
 
-# -------------------- specular_growth
-# How S grows with the angle of incidence I: a factor of the specular plane, 1 at normal incidence.
-#
-# Paper: "The Lighting Model". For a more accurate rendering, S should be a function of the angle of
-# incidence as well as of the material.
-#
-# Departs: S is constant, as in Figure 2, unless a surface asks for more. Then it is multiplied by F(I) /
-# F(0), where F is Schlick's F0 + (1 - F0) (1 - cos(I))^5 (C. Schlick, Computer Graphics Forum, 1994), or a
-# curve through points. F is divided by F(0) so that S means the same under every model, and light from
-# straight ahead is reflected as without growth: with Schlick's F alone, the 0.04 of glass would leave no
-# highlight there.
-#
-# F0 is what the material reflects at normal incidence: given, or ((n - 1) / (n + 1))^2 for its refractive
-# index n. The factor belongs to the plane, not to S: S stays a weight, and its edit a weighted sum.
+
+class Cosines(NamedTuple):
+    """The cosines at some points, (points,) float32 each, -1 to 1 up to rounding.
+
+    `incidence` is N.L, `eye` is cos(E). `view()` computes N.V, which not every model needs.
+    """
+
+    incidence: Singles
+    eye: Singles
+    view: Callable[[], Singles]
+
+
+class ReflectionModel(Row):
+    """A reflection model with its parameters; equal values give equal pictures."""
+
+    @property
+    def largest(self) -> float:
+        """An upper bound of the specular factor."""
+        return 1.0
+
+    def specular(self, cosines: Cosines, out: Singles) -> Singles:
+        """The specular factor, written to `out`, which may be one of the arrays of cosines.
+
+        It is finite and at least 0 for any cosines, and used where N.L > 0.
+        """
+        raise NotImplementedError
+
 
 LEAST_REFLECTANCE: Final = 0.001
-"""Assumed: the least F(0) to divide by; it is that of a refractive index of 1.065."""
+"""Assumed: the least F(0) to divide by; a refractive index of 1.065 has it."""
 
 LEAST_INDEX: Final = 1.07
 """The least refractive index, rounded to where F(0) is above the least."""
 
 START_CURVE: Final = ((0.0, 0.04), (50.0, 0.06), (70.0, 0.17), (80.0, 0.39), (90.0, 1.0))
-"""What a curve begins with: that of glass, whose refractive index is 1.5."""
+"""The curve to begin with: that of glass, whose refractive index is 1.5."""
 
 
 @dataclass(frozen=True, repr=False)
 class SpecularGrowth(Row):
-    """What a material reflects at each angle of incidence, in one of three ways; without, S is constant."""
+    """How S grows with the angle of incidence I: a factor of the specular plane, 1 at normal incidence.
+
+    Paper: "The Lighting Model". For a more accurate rendering, S should be a function of the angle of
+    incidence as well as of the material. Departs: S is constant, as in Figure 2, unless a surface asks for
+    more. Then it is multiplied by F(I) / F(0), where F is a curve through points, or Schlick's F0 + (1 - F0)
+    (1 - cos(I))^5 (C. Schlick, Computer Graphics Forum, 1994). F0 is the share that the material reflects at
+    normal incidence: given, or ((n - 1) / (n + 1))^2 for its refractive index n.
+
+    F is divided by F(0) so that S means the same under every model, and light from straight ahead is
+    reflected as without growth: with Schlick's F alone, the 0.04 of glass would leave no highlight there. The
+    factor belongs to the plane, not to S: S stays a weight, and its edit a weighted sum.
+    """
 
     alternatives: ClassVar[tuple[str, ...]] = ("base_reflectance", "refractive_index", "fresnel_curve")
 
@@ -140,68 +165,13 @@ def _schlick(incidence: Singles, f0: float) -> Singles:
     return factor
 
 
-LEAST_FACING: Final = 0.3
-"""Assumed: the least N.V to divide by, so that no silhouette outshines its surface by far.
-
-Measured on a sphere and on the coupe, roughness 0.3: with light from the front and from the side the largest
-factor is 1.0 and 2.8, at N.V above 0.5 whatever the bound. With light from behind to one side it is 47 at N.V
-0.1 without a bound, 21 with this one, and 19 among points with N.V above 0.3; from straight behind 1005, 59
-and 18.
-"""
-
-LEAST_SQUARE: Final = np.float32(1e-6)
-"""The least |L + V|^2, above the rounding of float32; only where L and V are opposite is it less."""
-
-
-class Cosines(NamedTuple):
-    """The cosines at some points, (points,) float32 each, -1 to 1 up to rounding.
-
-    `incidence` is N.L, `eye` is cos(E). `view()` computes N.V, which not every model needs.
-    """
-
-    incidence: Singles
-    eye: Singles
-    view: Callable[[], Singles]
-
-
-class ReflectionModel(Row):
-    """A reflection model with its parameters; equal values give equal pictures."""
-
-    @property
-    def largest(self) -> float:
-        """An upper bound of the specular factor."""
-        return 1.0
-
-    def specular(self, cosines: Cosines, out: Singles) -> Singles:
-        """The specular factor, written to `out`, which may be one of the arrays of cosines.
-
-        It is finite and at least 0 for any cosines, and used where N.L > 0.
-        """
-        raise NotImplementedError
-
-
 CONSTANT: Final = SpecularGrowth()
 """An S that does not depend on the angle of incidence."""
-
-Model = TypeVar("Model", bound=type[ReflectionModel])
-
-MODELS: Final[dict[str, type[ReflectionModel]]] = {}
-"""Every reflection model by the name that a scene gives it."""
-
-
-def registered(name: str) -> Callable[[Model], Model]:
-    """Add a class to `MODELS` under a name."""
-
-    def register(model: Model) -> Model:
-        MODELS[name] = model
-        return model
-
-    return register
 
 
 @dataclass(frozen=True, repr=False)
 class _PowerOfCosine(ReflectionModel):
-    """What the models have in common that raise a cosine to N: S may grow with the angle of incidence."""
+    """The models that raise a cosine to N. S may grow with the angle of incidence."""
 
     exponent: Annotated[
         float,
@@ -220,11 +190,10 @@ class _PowerOfCosine(ReflectionModel):
 
     @property
     def largest(self) -> float:
-        """That of the growth."""
+        """The largest factor of the growth; the power of a cosine is at most 1."""
         return self.growth.largest
 
 
-@registered("phong")
 @dataclass(frozen=True, repr=False)
 class Phong(_PowerOfCosine):
     """cos^N(E). Paper: Figure 2."""
@@ -239,7 +208,6 @@ class Phong(_PowerOfCosine):
         return _grown(power(cosines.eye, self.exponent, out=out), growth)
 
 
-@registered("blinn")
 @dataclass(frozen=True, repr=False)
 class BlinnPhong(_PowerOfCosine):
     """cos^N of the angle between normal and half vector. Departs: J. Blinn, SIGGRAPH 1977, not Figure 2."""
@@ -251,7 +219,19 @@ class BlinnPhong(_PowerOfCosine):
         return _grown(power(half.normal, self.exponent, out=out), growth)
 
 
-@registered("cook-torrance")
+LEAST_FACING: Final = 0.3
+"""Assumed: the least N.V to divide by, so that no silhouette outshines its surface by far.
+
+Measured on a sphere and on the coupe, roughness 0.3: with light from the front and from the side the largest
+factor is 1.0 and 2.8, at N.V above 0.5 whatever the bound. With light from behind to one side it is 47 at N.V
+0.1 without a bound, 21 with this one, and 19 among points with N.V above 0.3; from straight behind 1005, 59
+and 18.
+"""
+
+LEAST_SQUARE: Final = np.float32(1e-6)
+"""The least |L + V|^2, above the rounding of float32; only where L and V are opposite is it less."""
+
+
 @dataclass(frozen=True, repr=False)
 class CookTorrance(ReflectionModel):
     """F D G / (N.V) over its value at normal incidence and view.
@@ -349,9 +329,17 @@ def _half_vector(incidence: Singles, view: Singles, eye: Singles) -> _HalfVector
 
 
 def _attenuation(incidence: Singles, view: Singles, half: _HalfVector) -> Singles:
-    """G, what the microfacets leave unshadowed: min(1, 2 (N.H) (N.V) / V.H, 2 (N.H) (N.L) / V.H)."""
+    """G, the share that no microfacet shadows: min(1, 2 (N.H) (N.V) / V.H, 2 (N.H) (N.L) / V.H)."""
     attenuation: Singles = np.minimum(incidence, view)
     attenuation *= half.normal
     attenuation *= 2
     attenuation /= half.view
     return np.clip(attenuation, np.float32(0), np.float32(1), out=attenuation)
+
+
+MODELS: Final[dict[str, type[ReflectionModel]]] = {
+    "phong": Phong,
+    "blinn": BlinnPhong,
+    "cook-torrance": CookTorrance,
+}
+"""Every reflection model by the name that a scene gives it."""

@@ -1,23 +1,27 @@
-"""Rigs: the lights of a scene with the size of its object, to light another one in the same way.
+"""Lights moved as a whole: rigs, which light another object in the same way, and mirrored lights.
 
-Assumed: lights keep their directions and their places relative to the object. They are moved with the middle
-of its box, and are nearer or farther as the diagonal of the box is shorter or longer; those that follow
-something, from what they follow. Widths and reaches are scaled with it. Their intensities stay, as the light
-at a point does not depend on its distance.
+A rig is the lights of a scene with the size of its object. Assumed: the lights keep their directions and
+their places relative to the object. They are moved with the middle of its box, and are nearer or farther as
+the diagonal of the box is shorter or longer. Lights that follow something keep their place relative to that,
+nearer or farther. Widths and reaches are scaled with the diagonal. Intensities stay, as the light at a point
+does not depend on its distance.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from autocolor.checks import Vector
-from autocolor.scene.columns import REFUSED, WORLD_UNITS, Column, Problem, Row, Tier
-from autocolor.scene.following import AXES
-from autocolor.scene.kinds import VectorKind
-from autocolor.scene.lights import Flaps, HalfSpace, Light, middle_between
+import numpy as np
+
+from autocolor.checks import Vector, either
+from autocolor.errors import UsageError
+from autocolor.scene.columns import REFUSED, WORLD_UNITS, Column, Problem, Row, Tier, fields_of, replaced
+from autocolor.scene.following import light_frame, moved_vectors
+from autocolor.scene.kinds import Number, VectorKind
+from autocolor.scene.lights import AXES, Flap, HalfSpace, Light, middle_between
 from autocolor.scene.row_kinds import RowList
 
 
@@ -46,9 +50,9 @@ class Rig(Row):
                     )
 
     def fitted(self, minimum: Vector, maximum: Vector) -> tuple[Light, ...]:
-        """The lights as they light an object with other least and largest coordinates.
+        """The lights fitted to an object with other least and largest coordinates.
 
-        For the same object they are the same lights, exactly. An object that is a point has no size: then
+        For the same object they are exactly the same lights. An object that is a point has no size: then
         distances stay. Raises InputError if a coordinate would be too large, or a light and its aim too close
         to each other.
         """
@@ -64,36 +68,97 @@ class Rig(Row):
 def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
     """The light with each coordinate scaled about one point and moved with it to another.
 
-    The places of a light that follows something are scaled from there.
+    The places of a light that follows something are scaled about the origin of its frame, and those of
+    carried half-spaces about their light.
     """
 
-    def point(coordinates: Vector) -> list[float]:
-        return [coordinate(number, value) for number, value in enumerate(coordinates)]
-
-    def coordinate(axis: int, value: float) -> float:
+    def moved(axis: int, value: float) -> float:
         return new[axis] + scale * (value - old[axis])
 
-    def place(coordinates: Vector) -> list[float]:
-        return point(coordinates) if light.follows is None else [scale * each for each in coordinates]
+    def moved_point(point: Vector) -> Vector:
+        return moved(0, point[0]), moved(1, point[1]), moved(2, point[2])
+
+    def scaled_point(point: Vector) -> Vector:
+        x, y, z = (scale * component for component in point)
+        return x, y, z
 
     def half_space(row: HalfSpace) -> HalfSpace:
-        moved = [scale * value for value in row.point] if row.carried else point(row.point)
-        return row.replace(point=moved, edge_width=scale * row.edge_width)
+        vectors = moved_vectors(row, scaled_point if row.carried else moved_point, _same)
+        return replaced(row, {**vectors, **_scaled_lengths(row, scale)})
 
-    flaps = {
-        axis: flap.replace(
-            minimum=coordinate(number, flap.minimum),
-            maximum=coordinate(number, flap.maximum),
-            edge_width=scale * flap.edge_width,
-        )
-        for number, axis in enumerate(AXES)
-        if (flap := getattr(light.flaps, axis)) is not None
-    }
-    return light.replace(
-        position=place(light.position),
-        direction=light.direction,
-        aim=None if light.aim is None else place(light.aim),
-        flaps=Flaps(**flaps),
-        half_spaces=[half_space(row) for row in light.half_spaces],
-        reach=None if light.reach is None else scale * light.reach,
+    flaps = {}
+    for axis, name in enumerate(AXES):
+        flap: Flap | None = vars(light.flaps)[name]
+        if flap is not None:
+            ends = {"minimum": moved(axis, flap.minimum), "maximum": moved(axis, flap.maximum)}
+            flaps[name] = replaced(flap, {**_scaled_lengths(flap, scale), **ends})
+    vectors = moved_vectors(light, moved_point if light.follows is None else scaled_point, _same)
+    return replaced(
+        light,
+        {
+            **vectors,
+            **_scaled_lengths(light, scale),
+            "flaps": flaps,
+            "half_spaces": [half_space(row) for row in light.half_spaces],
+        },
     )
+
+
+def _same(direction: Vector) -> Vector:
+    return direction
+
+
+def _scaled_lengths(row: Row, scale: float) -> dict[str, float]:
+    """The numbers of a row that are in world units, by column, times a scale; None values are left out."""
+    return {
+        name: scale * vars(row)[name]
+        for name, (column, _, _) in fields_of(type(row)).items()
+        if isinstance(column.kind, Number) and column.unit == WORLD_UNITS and vars(row)[name] is not None
+    }
+
+
+def mirrored(light: Light, name: str, axis: str, about: float) -> Light:
+    """The light mirrored in the plane where the coordinate of an axis is `about`, under another name.
+
+    Its position, its aim or direction, its half-spaces and the flap of that axis are mirrored. Raises
+    UsageError for an axis that is not x, y or z, InputError if a coordinate would be too large.
+    """
+    number = axis_number(axis)
+    flap: Flap | None = vars(light.flaps)[axis]
+    if flap is not None:
+        flap = flap.replace(minimum=2 * about - flap.maximum, maximum=2 * about - flap.minimum)
+    vectors = moved_vectors(light, _reflection(number, about), _reflection(number, 0.0))
+    copy = replaced(light, {**vectors, "name": name, "flaps": {axis: flap}})
+    if not light.half_spaces:
+        return copy
+    mirror = np.eye(3)
+    mirror[number, number] = -1
+    # Mirrored axes are left-handed: the frame of the copy has the opposite of one of them.
+    turned = np.diag(light_frame(copy).axes @ mirror @ light_frame(light).axes.T) < 0
+    half_spaces = []
+    for row in light.half_spaces:
+        copied = row
+        for each in np.flatnonzero(turned).tolist() if row.carried else [number]:
+            point = _reflection(each, 0.0 if row.carried else about)
+            copied = replaced(copied, moved_vectors(copied, point, _reflection(each, 0.0)))
+        half_spaces.append(copied)
+    return copy.replace(half_spaces=half_spaces)
+
+
+def axis_number(axis: str) -> int:
+    """The number of an axis, 0 to 2. Raises UsageError if there is none of that name."""
+    if axis not in AXES:
+        raise UsageError(f"an axis must be {either(AXES)}, not {axis!r}")
+    return AXES.index(axis)
+
+
+def _reflection(axis: int, about: float) -> Callable[[Vector], Vector]:
+    """The function that mirrors points in the plane where the coordinate of an axis is `about`."""
+
+    def reflected(point: Vector) -> Vector:
+        x, y, z = (
+            2 * about - component if number == axis else component for number, component in enumerate(point)
+        )
+        return x, y, z
+
+    return reflected

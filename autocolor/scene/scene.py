@@ -43,20 +43,18 @@ from autocolor.scene.curves import CURVES, CurvePoints
 from autocolor.scene.defaults import object_bounds, object_coordinates
 from autocolor.scene.following import (
     Frame,
-    axis_number,
     changes_in_frame,
     followers_of,
     following_problems,
     frame_of,
-    free_name,
     in_frame,
     lights_in_world,
-    mirrored,
+    vector_columns,
 )
 from autocolor.scene.kinds import ColorKind, CurveKind, Instance, Number, OneOf, Text
-from autocolor.scene.lights import Light
+from autocolor.scene.lights import Light, free_name
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.rigs import Rig
+from autocolor.scene.rigs import Rig, axis_number, mirrored
 from autocolor.scene.row_kinds import Nested, RangesByName, ReferenceAt, RowList, references_of
 from autocolor.scene.scalar import COMPUTED, Scalar, name_problems
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
@@ -255,7 +253,7 @@ class Scene(Row):
         Raises UsageError if no light has that name, InputError if the light cannot follow `follows`.
         """
         world = self.light_in_world(name)
-        places = {each: vars(world)[each] for each in ("position", "aim", "direction")}
+        places = {each: vars(world)[each] for each in vector_columns(Light)}
         followed = self.with_light(name, follows=follows)
         return followed.with_light(name, **changes_in_frame(places, followed._frame_of(name)))
 

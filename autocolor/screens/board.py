@@ -1,7 +1,8 @@
 """The board: the screen that is shown with its menu and the message line, and what is pointed at on it.
 
-It hands each gesture to the widget, the handle or the screen at its place, and makes the page that the sheet
-shows. It knows screens by their interface alone.
+What can be pointed at is one `Layout`: it is made once for an event, drawn, and asked by the next event what
+is under the pointer. The board hands each gesture to the widget, the handle or the screen at its place. It
+knows screens by their interface alone.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from operator import itemgetter
 from typing import Final
 
 import numpy as np
@@ -38,12 +40,9 @@ from autocolor.widgets.items import (
 from autocolor.widgets.menu import (
     MENU,
     MESSAGE_LINES,
-    MOST_LINES,
     WIDE_BAR,
-    laid_out,
-    lines_of,
     menu_items,
-    pages_of,
+    page_of_menu,
 )
 from autocolor.widgets.sheet import Page
 from autocolor.widgets.widget import (
@@ -59,8 +58,8 @@ from autocolor.widgets.widget import (
     Widget,
 )
 
-# -------------------- layout
-# The layout of the board: what can be pointed at on a screen at one moment, and what covers what.
+EDGE: Final = 4
+"""Assumed: elements at the right edge of the screen that bring the menu."""
 
 REACH: Final = 7
 """Assumed: elements or lines from a handle within which it is grabbed."""
@@ -68,86 +67,437 @@ REACH: Final = 7
 
 @dataclass(frozen=True)
 class Layout:
-    """The rows of the menu on a screen, and the areas of the menu and the message line, if they are shown.
-
-    What the screen has is asked for once, and only if it is needed.
-    """
+    """What can be pointed at on a screen at one moment. The screen is asked only for what is needed."""
 
     screen: Screen
-    rows: Sequence[Widget]
-    wide_key: str
-    """The key of the row whose wide bar is shown, if it is on this page of the menu."""
-    covers: Sequence[Area]
+    rows: Sequence[Widget] = ()
+    """The rows of the menu with their areas; none while the menu is away."""
     over: Sequence[Widget] = ()
     """The widgets over every screen, the topmost first."""
-
-    @property
-    def has_menu(self) -> bool:
-        """Whether the menu is shown."""
-        return bool(self.rows)
+    wide_key: str = ""
+    """The key of the row whose wide bar is shown, if that row is on this page of the menu."""
 
     @cached_property
     def wide(self) -> Widget | None:
         """The wide bar of a row, if it is shown."""
+        if not self.wide_key:
+            return None
         bars = (row for row in self.rows if isinstance(row, Bar) and row.key == self.wide_key)
         return next((row.at(WIDE_BAR) for row in bars), None)
 
     @cached_property
-    def others(self) -> Sequence[Widget]:
+    def beside(self) -> Sequence[Widget]:
         """The widgets of the screen beside the menu."""
         return self.screen.widgets()
 
     @cached_property
     def handles(self) -> Sequence[Handle]:
-        """The handles that nothing covers."""
-        return [each for each in self.screen.handles() if not self.is_covered(each.element, each.line)]
+        """The handles of the screen, also where something covers them."""
+        return self.screen.handles()
 
-    @property
-    def widgets(self) -> list[Widget]:
+    @cached_property
+    def widgets(self) -> Sequence[Widget]:
         """Everything that can be pointed at, the topmost first."""
-        wide = [self.wide] if self.wide is not None else []
-        return [*wide, *self.over, *self.rows, *self.others]
+        wide = () if self.wide is None else (self.wide,)
+        return (*wide, *self.over, *self.rows, *self.beside)
+
+    @cached_property
+    def by_key(self) -> Mapping[str, Sequence[Widget]]:
+        """The widgets that have a key, the topmost first."""
+        by_key: dict[str, list[Widget]] = {}
+        for widget in self.widgets:
+            by_key.setdefault(widget.key, []).append(widget)
+        return by_key
 
     def is_covered(self, element: int, line: int) -> bool:
-        """Whether the menu, its wide bar or the message line is at a place."""
-        covers = self.covers if self.wide is None else (*self.covers, WIDE_BAR)
-        return any(area.has(element, line) for area in covers)
+        """Whether the menu, its wide bar or a panel over every screen is at a place of the screen."""
+        if self.rows and MENU.has(element, line):
+            return True
+        if self.wide is not None and WIDE_BAR.has(element, line):
+            return True
+        return any(widget.area.has(element, line) for widget in self.over)
 
     def widget_at(self, element: int, line: int) -> Widget | None:
-        """The widget at a place; headings and gaps are none."""
-        at = (each for each in self.widgets if each.area.has(element, line))
-        return next((each for each in at if not isinstance(each, (Heading, Gap))), None)
-
-    def handle_at(self, element: int, line: int) -> Handle | None:
-        """The nearest handle within reach of a place, the last of several at the same distance."""
-        if self.is_covered(element, line):
-            return None
-        best, least = None, REACH
-        for handle in self.handles:
-            distance = max(abs(handle.element - element), abs(handle.line - line))
-            if distance <= least:
-                best, least = handle, distance
-        return best
+        """The topmost widget at a place; headings and gaps are left out."""
+        for widget in self.widgets:
+            left, top, right, bottom = widget.area
+            is_there = left <= element <= right and top <= line <= bottom
+            if is_there and not isinstance(widget, (Heading, Gap)):
+                return widget
+        return None
 
     def lit(self, key: str, area: Area) -> Widget | None:
-        """The row or widget that has a key; of several, the one at an area."""
-        found = [each for each in (*self.over, *self.rows, *self.others) if each.key == key]
-        return next((each for each in found if each.area == area), found[0] if found else None)
+        """The row or widget that has a key; of several, the one at an area. A wide bar lights its row."""
+        widgets = [widget for widget in self.by_key.get(key, ()) if widget is not self.wide]
+        return next((widget for widget in widgets if widget.area == area), widgets[0] if widgets else None)
 
     def now(self, grabbed: Widget) -> Widget | None:
-        """What a widget, made before, is now, where it was then; None if there is no such one any more."""
-        found = [each for each in self.widgets if each.key == grabbed.key and type(each) is type(grabbed)]
-        if not found:
+        """A widget of an earlier layout as it is now, in its earlier area; None if it is gone."""
+        widgets = [each for each in self.by_key.get(grabbed.key, ()) if type(each) is type(grabbed)]
+        if not widgets:
             return None
-        return next((each for each in found if each.area == grabbed.area), found[0]).at(grabbed.area)
-
-    def handle_now(self, handle: Handle) -> Handle:
-        """A handle that was picked before, where it is now if it is seen."""
-        return next((each for each in self.screen.handles() if each.key == handle.key), handle)
+        return next((each for each in widgets if each.area == grabbed.area), widgets[0]).at(grabbed.area)
 
 
-# -------------------- message_line
-# The message line: the bottom lines of every screen, where errors, results and hints stand.
+def handles_near(handles: Sequence[Handle], element: int, line: int) -> list[Handle]:
+    """The handles within reach of a place, the nearest first; of several at one distance, the last first."""
+    near = []
+    for handle in handles:
+        distance = max(abs(handle.element - element), abs(handle.line - line))
+        if distance <= REACH:
+            near.append((distance, handle))
+    return [handle for _, handle in sorted(reversed(near), key=itemgetter(0))]
+
+
+class Board:
+    """What is on the display, and what is pointed at. `screens` are those that can be shown, by name."""
+
+    def __init__(self, session: Session, screens: Mapping[str, Screen]) -> None:
+        self.session = session
+        self.screens = screens
+        self.typing = TypingLine(session)
+        self.over: Callable[[], Sequence[Widget]] = tuple
+        """What stands over every screen, the topmost first: a panel that is there for a while."""
+        self.is_pinned = False
+        """Whether the menu was asked for; else it goes when the pointer leaves it."""
+        self.has_focus = False
+        """Whether keys go to the menu."""
+        self.held: Handle | None = None
+        """The handle that was picked, and goes where the next pick is."""
+        self._shown = session.screen
+        self._is_open = False
+        self._lit, self._lit_area = "", NOWHERE
+        """The key and the area of the widget that is lit."""
+        self._wide = ""
+        """The key of the number whose wide bar is shown."""
+        self._menu_page = 0
+        self._has_message = False
+        """Whether the message line covers the screen below it."""
+        self._grabbed: Widget | Handle | Screen | None = None
+        """What is dragged, from the grab to the drop."""
+        self._start = self._last = Gesture("grab", -1, -1)
+        """The gesture that began the drag, and the last one."""
+        self._pointer = Place(-1, -1)
+        self._layout: tuple[object, Layout] | None = None
+        """The layout, and the state of the board that it was made for."""
+
+    # The screen and its widgets.
+
+    @property
+    def screen(self) -> Screen:
+        """The screen that is shown."""
+        return self.screens[self.session.screen]
+
+    @property
+    def has_menu(self) -> bool:
+        """Whether the menu is shown."""
+        return self.screen.has_menu or self._is_open or self.is_pinned
+
+    @property
+    def is_dragging(self) -> bool:
+        """Whether something is grabbed."""
+        return self._grabbed is not None
+
+    @property
+    def lit(self) -> str:
+        """The key of the widget that is lit; empty if there is none."""
+        return self._lit
+
+    @property
+    def layout(self) -> Layout:
+        """What can be pointed at: the layout that is shown, until `forget` or another state of the board."""
+        session, has_menu = self.session, self.has_menu
+        state = session.screen, session.moving, has_menu, self._menu_page, self._wide, self.over
+        if self._layout is None or self._layout[0] != state:
+            rows = self._menu_rows() if has_menu else ()
+            self._layout = state, Layout(self.screen, rows, self.over(), self._wide)
+        return self._layout[1]
+
+    def forget(self) -> None:
+        """Make the layout anew when it is needed, because the scene or the screen may have changed."""
+        self._layout = None
+
+    def _menu_rows(self) -> list[Widget]:
+        """The rows of this page of the menu, laid out."""
+        rows = rows_of_menu(self.session, self.screen, self.screens.values())
+        last = last_rows(self.session, self.screen)
+        return page_of_menu(rows, last, self._menu_page, partial(setattr, self, "_menu_page"))
+
+    def widgets(self) -> Sequence[Widget]:
+        """Everything that can be pointed at, the topmost first."""
+        return self.layout.widgets
+
+    def is_covered(self, element: int, line: int) -> bool:
+        """Whether the menu, its wide bar, a panel or the message line covers the screen at a place."""
+        return (self._has_message and MESSAGE.has(element, line)) or self.layout.is_covered(element, line)
+
+    def handle_at(self, element: int, line: int) -> Handle | None:
+        """The nearest handle within reach of a place; None if something covers the handle or the place."""
+        if self.is_covered(element, line):
+            return None
+        near = handles_near(self.layout.handles, element, line)
+        return next((each for each in near if not self.is_covered(each.element, each.line)), None)
+
+    def turn(self) -> bool:
+        """Leave and enter screens if the session asked for another one; returns whether it did."""
+        wanted = self.session.screen
+        if wanted == self._shown:
+            return False
+        self.release()
+        self.screens[self._shown].leave()
+        self._shown, self._wide, self._menu_page = wanted, "", 0
+        self._light(None)
+        self.close()
+        self.screens[wanted].enter()
+        # Beside this screen no menu stands, which would tell what to do, and the way back.
+        screen = self.screen
+        is_reached_by_menu = screen.is_in_menu and screen.name != PICTURE
+        if is_reached_by_menu and not screen.has_menu and not self.session.has_news:
+            self.session.tell(f"{screen.help}; the right edge: the menu")
+        return True
+
+    # Gestures.
+
+    def take(self, gesture: Gesture) -> None:
+        """Do what a gesture asks for."""
+        self._pointer = Place(gesture.element, gesture.line)
+        getattr(self, f"_{gesture.kind}")(gesture)
+
+    def point_at(self, gesture: Gesture) -> None:
+        """Move the pointer to the place of a gesture, and do nothing else."""
+        self._pointer = Place(gesture.element, gesture.line)
+        self._hover(gesture)
+
+    def release(self) -> None:
+        """Let go of what is grabbed, held or typed."""
+        self._let_go()
+        self.typing.end()
+
+    def _let_go(self) -> None:
+        self.held = self._grabbed = None
+        self.screens[self._shown].release()
+
+    def _light(self, widget: Widget | None) -> None:
+        self._lit, self._lit_area = ("", NOWHERE) if widget is None else (widget.key, widget.area)
+
+    def _lit_widget(self) -> Widget | None:
+        return self.layout.lit(self._lit, self._lit_area)
+
+    def _hover(self, gesture: Gesture) -> None:
+        element, line = self._pointer
+        if not self.screen.has_menu:
+            was_open = self._is_open
+            if WIDTH - EDGE <= element < WIDTH and line <= MENU.bottom:
+                self._is_open = True
+            elif not MENU.left <= element < WIDTH and self.layout.wide is None:
+                self._is_open = False
+            if self._is_open and not was_open and self.session.news.persistent:
+                # Beside the menu, hints stand in its place.
+                self.session.tell("")
+        widget = self.layout.widget_at(element, line)
+        self._light(widget)
+        if widget is None:
+            self.has_focus = False
+
+    def _pick(self, gesture: Gesture) -> None:
+        self._hover(gesture)
+        element, line = self._pointer
+        widget = self.layout.widget_at(element, line)
+        if widget is not None:
+            self._let_go()
+            self.pick_widget(widget, self._pointer)
+        elif self.is_covered(element, line):
+            return
+        elif self.held is not None:
+            # A handle whose place is refused is still held.
+            self.screen.place(self.held, element, line)
+            self._let_go()
+        else:
+            handle = self.handle_at(element, line)
+            if handle is None:
+                self.screen.pick(gesture)
+                return
+            self.held = handle
+            self.screen.hold(handle)
+            self.session.tell(f"{handle.label}: pick its new place")
+
+    def pick_widget(self, widget: Widget, place: Place | None = None) -> None:
+        """Pick a widget at a place; without a place, at the widget's middle."""
+        if widget.why_not:
+            self.session.tell(f"{widget.label}: {widget.why_not}", is_warning=True)
+            return
+        if place is None:
+            place = Place((widget.area.left + widget.area.right) // 2, widget.area.top)
+        if isinstance(widget, Bar) and MENU.covers(widget.area) and not widget.is_switched_at(place):
+            self._wide = "" if self._wide == widget.key else widget.key
+        elif widget.typed is not None and not isinstance(widget, Bar):
+            self.typing.begin(widget)
+        else:
+            widget.pick(place)
+
+    def _grab(self, gesture: Gesture) -> None:
+        self._let_go()
+        self._start = self._last = gesture
+        widget = self.layout.widget_at(*self._pointer)
+        self._light(widget)
+        # Modifiers and the middle button are for the screen.
+        is_plain = not gesture.shift and not gesture.control and gesture.button != MIDDLE
+        handle = self.handle_at(*self._pointer) if is_plain else None
+        if widget is not None:
+            self._grabbed = None if widget.why_not else widget
+        elif handle is not None:
+            self._grabbed = handle
+            self.screen.hold(handle)
+        elif not self.is_covered(*self._pointer):
+            self._grabbed = self.screen
+
+    def _drag(self, gesture: Gesture) -> None:
+        last, self._last = self._last, gesture
+        if isinstance(self._grabbed, Widget):
+            # The scene has changed since the grab, and the widget may be gone.
+            self._grabbed = self.layout.now(self._grabbed)
+            if self._grabbed is not None:
+                start = Place(self._start.element, self._start.line)
+                self._grabbed.drag(start, Place(last.element, last.line), self._pointer)
+        elif isinstance(self._grabbed, Handle):
+            self.screen.place(self._grabbed, gesture.element, gesture.line)
+        elif self._grabbed is not None:
+            self._grabbed.drag(self._start, last, gesture)
+
+    def _drop(self, gesture: Gesture) -> None:
+        self._let_go()
+
+    def _wheel(self, gesture: Gesture) -> None:
+        widget = self.layout.widget_at(*self._pointer)
+        if widget is not None:
+            if not widget.why_not:
+                widget.nudge(gesture.steps)
+        elif not self.is_covered(*self._pointer):
+            self.screen.wheel(gesture)
+
+    # Keys.
+
+    def close(self) -> None:
+        """Take the menu away where it comes on demand."""
+        self.is_pinned = self._is_open = self.has_focus = False
+        if not self.screen.has_menu:
+            self._wide = ""
+
+    def toggle_menu(self) -> None:
+        """Bring the menu and give it the keys, or take it away."""
+        if self.has_focus or (self.is_pinned and not self.screen.has_menu):
+            self.close()
+            return
+        self.is_pinned = self.has_focus = True
+        if self._lit_widget() is None:
+            self._move_light(1)
+
+    def escape(self) -> bool:
+        """Let go of what is held, or close what is open; returns False if there is nothing."""
+        comes_and_goes = not self.screen.has_menu
+        if self.held is not None:
+            self._let_go()
+        elif self.layout.wide is not None:
+            self._wide = ""
+        elif self.has_focus or (comes_and_goes and (self.is_pinned or self._is_open)):
+            self.close()
+        else:
+            return self.screen.escape()
+        return True
+
+    def key(self, name: str, typed: str) -> bool:
+        """Take a key that is typed into the widget under the pointer, or moves in the menu."""
+        row = self._lit_widget()
+        if row is not None and row.typed is not None and self.typing.would_begin(row, typed):
+            self.typing.begin(row, typed)
+            return True
+        if not self.has_focus:
+            return False
+        if name in ("up", "down"):
+            self._move_light(1 if name == "down" else -1)
+        elif row is not None and name in ("left", "right") and not row.why_not:
+            row.nudge(1 if name == "right" else -1)
+        elif row is not None and name in ("return", "space", "enter"):
+            self.pick_widget(row)
+        else:
+            return False
+        return True
+
+    def _move_light(self, step: int) -> None:
+        lit = self._lit_widget()
+        rows = [each for each in self.layout.rows if not isinstance(each, (Heading, Gap))]
+        if rows:
+            start = next((n for n, each in enumerate(rows) if each is lit), -1 if step > 0 else 0)
+            self._light(rows[(start + step) % len(rows)])
+
+    # What is shown.
+
+    @property
+    def mark(self) -> tuple[int, int] | None:
+        """The place of the handle that is held, or can be grabbed where the pointer is."""
+        handle = self.held
+        if handle is not None:
+            key = handle.key
+            handle = next((each for each in self.layout.handles if each.key == key), handle)
+        elif self._grabbed is None and self.layout.widget_at(*self._pointer) is None:
+            handle = self.handle_at(*self._pointer)
+        place = None if handle is None else Place(handle.element, handle.line)
+        # Cursors invert what is below them: of two at one place nothing would be seen.
+        return None if place == self._pointer else place
+
+    def page(self) -> Page:
+        """The page to show now: the screen, its widgets, the message line and the menu, bottom to top."""
+        screen = self.screen
+        screen.is_under_menu = self.has_menu and not screen.has_menu
+        layout, lit = self.layout, self._lit_widget()
+        items = list(screen.items())
+        for widget in (*layout.beside, *reversed(layout.over)):
+            items += widget.items(widget is lit and not widget.why_not)
+        (line, ink), has_menu = self.message, bool(layout.rows)
+        self._has_message = has_menu or self.typing.is_on or self.session.has_news
+        if self._has_message:
+            items += message_items(line, ink, ends=self.typing.is_on)
+        if has_menu:
+            items += menu_items(layout.rows, lit)
+        if layout.wide is not None:
+            items += layout.wide.items(lit=False)
+        return Page(screen.base(), items, with_loads(self.session.studio.entries, screen.loads()))
+
+    @property
+    def message(self) -> tuple[str, int]:
+        """What the message line says, and the word it is written with."""
+        session = self.session
+        has_news = session.has_news
+        is_warned = has_news and session.news.is_warning
+        if self.typing.is_on and not is_warned:
+            return self.typing.shown, YELLOW
+        if has_news:
+            return session.message, ORANGE if is_warned else WHITE
+        return (self._hint() if self.layout.rows else "", WHITE)
+
+    def _hint(self) -> str:
+        lit, (element, line) = self._lit_widget(), self._pointer
+        if lit is not None:
+            return lit.why_not or lit.help or lit.label
+        if self.held is not None:
+            return f"{self.held.label}: pick its new place"
+        if min(element, line) < 0 or self.is_covered(element, line):
+            return self.screen.help
+        handle = self.handle_at(element, line)
+        return handle.label if handle is not None else self.screen.hint(element, line)
+
+
+def with_loads(entries: Bytes, loads: Sequence[tuple[int, Bytes]]) -> Bytes:
+    """The lookup table with some runs of entries replaced; the same array if there are none."""
+    if not loads:
+        return entries
+    table = np.array(entries)
+    for first, colors in loads:
+        table[first : first + len(colors)] = colors
+    return table
+
+
+# The message line: the bottom lines of every screen, for errors, results, hints and what is typed.
 
 MESSAGE: Final = Area(0, HEIGHT - MESSAGE_LINES, WIDTH - 1, HEIGHT - 1)
 MOST_CHARACTERS: Final = (WIDTH - 16) // CHARACTER
@@ -155,16 +505,13 @@ MOST_CHARACTERS: Final = (WIDTH - 16) // CHARACTER
 
 def message_items(line: str, ink: int, ends: bool = False) -> list[Item]:
     """A message, or an empty line. One that is too long is cut; with `ends`, so that its end is seen."""
-    found = [filled(MESSAGE, BLACK)]
+    items = [filled(MESSAGE, BLACK)]
     if ends and len(line) > MOST_CHARACTERS:
         line = f"..{line[2 - MOST_CHARACTERS :]}"
     if line:
-        found.append(text(fitted(line, MOST_CHARACTERS), 8, MESSAGE.top + 3, ink, BLACK))
-    return found
+        items.append(text(fitted(line, MOST_CHARACTERS), 8, MESSAGE.top + 3, ink, BLACK))
+    return items
 
-
-# -------------------- typing_line
-# Typing: a text that is typed into a widget, and stands in the message line until it is taken.
 
 NUMBERS: Final = "0123456789.-+"
 """What begins a number."""
@@ -226,129 +573,6 @@ class TypingLine:
             self._text, self._is_fresh = (typed if self._is_fresh else self._text + typed), False
 
 
-# -------------------- composition
-# The composition of the page: the screen, its widgets, the message line and the menu, one over the other.
-
-
-@dataclass(frozen=True)
-class Composition:
-    """What a page is made of: `lit` is the widget that is lit, `held` the handle that was picked."""
-
-    session: Session
-    layout: Layout
-    lit: Widget | None
-    held: Handle | None
-    pointer: Place
-    typing: TypingLine
-
-    def page(self) -> Page:
-        """The page."""
-        layout, screen = self.layout, self.layout.screen
-        items = list(screen.items())
-        for widget in (*layout.others, *reversed(layout.over)):
-            items += widget.items(widget is self.lit and not widget.why_not)
-        if self.has_message:
-            line, ink = self.message
-            items += message_items(line, ink, ends=self.typing.is_on)
-        if layout.has_menu:
-            items += menu_items(layout.rows, self.lit)
-        if layout.wide is not None:
-            items += layout.wide.items(lit=False)
-        return Page(screen.base(), items, with_loads(self.session.studio.entries, screen.loads()))
-
-    @property
-    def has_message(self) -> bool:
-        """Whether the message line is shown: always beside a menu, else if there is something to say."""
-        return self.layout.has_menu or self.typing.is_on or self.session.has_news
-
-    @property
-    def message(self) -> tuple[str, int]:
-        """What the message line says, and the word it is written with."""
-        session = self.session
-        is_warned = session.has_news and session.news.is_warning
-        if self.typing.is_on and not is_warned:
-            return self.typing.shown, YELLOW
-        if session.has_news:
-            return session.message, ORANGE if is_warned else WHITE
-        return (self._hint() if self.layout.has_menu else "", WHITE)
-
-    def _hint(self) -> str:
-        if self.lit is not None:
-            return self.lit.why_not or self.lit.help or self.lit.label
-        layout, (element, line) = self.layout, self.pointer
-        if self.held is not None:
-            return f"{self.held.label}: pick its new place"
-        if min(element, line) < 0 or layout.is_covered(element, line):
-            return layout.screen.help
-        handle = layout.handle_at(element, line)
-        return handle.label if handle is not None else layout.screen.hint(element, line)
-
-
-def with_loads(entries: Bytes, loads: Sequence[tuple[int, Bytes]]) -> Bytes:
-    """The lookup table with some runs of entries replaced; the same array if there are none."""
-    if not loads:
-        return entries
-    table = np.array(entries)
-    for first, colors in loads:
-        table[first : first + len(colors)] = colors
-    return table
-
-
-# -------------------- grip
-# The grip: the widget, the handle or the screen that is dragged, from the grab to the drop.
-
-
-class Grip:
-    """What is dragged, if anything."""
-
-    def __init__(self) -> None:
-        self._grabbed: Widget | Handle | Screen | None = None
-        self._start = self._last = Gesture("grab", -1, -1)
-
-    @property
-    def is_on(self) -> bool:
-        """Whether something is dragged."""
-        return self._grabbed is not None
-
-    def release(self) -> None:
-        """Let go."""
-        self._grabbed = None
-
-    def grab(self, layout: Layout, gesture: Gesture) -> None:
-        """Grab what is at the place of a gesture: a widget that can be used, a handle, or the screen."""
-        self._start = self._last = gesture
-        place = gesture.element, gesture.line
-        # Modifiers and the middle button are for the screen.
-        is_plain = not gesture.shift and not gesture.control and gesture.button != MIDDLE
-        widget, handle = layout.widget_at(*place), layout.handle_at(*place) if is_plain else None
-        if widget is not None:
-            self._grabbed = None if widget.why_not else widget
-        elif handle is not None:
-            self._grabbed = handle
-            layout.screen.hold(handle)
-        else:
-            self._grabbed = None if layout.is_covered(*place) else layout.screen
-
-    def drag(self, layout: Layout, gesture: Gesture) -> None:
-        """Drag to the place of a gesture."""
-        last, self._last = self._last, gesture
-        if isinstance(self._grabbed, Widget):
-            # The scene has changed since the widget was made; and it may be gone.
-            self._grabbed = layout.now(self._grabbed)
-            if self._grabbed is not None:
-                self._grabbed.drag(place_of(self._start), place_of(last), place_of(gesture))
-        elif isinstance(self._grabbed, Handle):
-            layout.screen.place(self._grabbed, gesture.element, gesture.line)
-        elif self._grabbed is not None:
-            self._grabbed.drag(self._start, last, gesture)
-
-
-def place_of(gesture: Gesture) -> Place:
-    """The place of a gesture."""
-    return Place(gesture.element, gesture.line)
-
-
-# -------------------- main_menu
 # The main menu: the rows that every menu has beside those of its screen.
 
 
@@ -417,314 +641,3 @@ def compare_row(session: Session) -> Widget:
         run=session.switch_comparing,
         is_chosen=session.comparing.is_on,
     )
-
-
-def page_of_menu(
-    rows: Sequence[Widget], last: Sequence[Widget], number: int, turn: Callable[[int], object]
-) -> list[Widget]:
-    """The rows of a page of the menu, counted from 0, laid out; the last page if there are not so many.
-
-    Each page ends with the `last` rows. If there are several, the row before them calls `turn` with the
-    number of the next one.
-    """
-    pages = pages_of(rows, MOST_LINES - sum(map(lines_of, last)))
-    number = min(number, len(pages) - 1)
-    if len(pages) == 1:
-        return laid_out([*pages[0], *last])
-    more = Button(
-        "more",
-        "The other rows of this menu.",
-        run=partial(turn, (number + 1) % len(pages)),
-        value=f"{number + 1} of {len(pages)}",
-    )
-    return laid_out([*pages[number], more, *last])
-
-
-EDGE: Final = 4
-"""Assumed: elements at the right edge of the screen that bring the menu."""
-
-
-class Board:
-    """What is on the display, and what is pointed at. `screens` are those that can be shown, by name."""
-
-    def __init__(self, session: Session, screens: Mapping[str, Screen]) -> None:
-        self.session = session
-        self.screens = screens
-        self.typing = TypingLine(session)
-        self.over: Callable[[], Sequence[Widget]] = tuple
-        """What stands over every screen, the topmost first: a panel that is there for a while."""
-        self.is_pinned = False
-        """Whether the menu was asked for; else it goes when the pointer leaves it."""
-        self.has_focus = False
-        """Whether keys go to the menu."""
-        self.held: Handle | None = None
-        """The handle that was picked, and goes where the next pick is."""
-        self._shown = session.screen
-        self._is_open = False
-        self._lit, self._lit_area = "", NOWHERE
-        """The key and the area of what is lit."""
-        self._wide = ""
-        """The key of the number whose wide bar is shown."""
-        self._menu_page = 0
-        self._has_message = False
-        """Whether the message line covers what is below it."""
-        self._grip = Grip()
-        self._pointer = Place(-1, -1)
-
-    # The screen and its widgets.
-
-    @property
-    def screen(self) -> Screen:
-        """The screen that is shown."""
-        return self.screens[self.session.screen]
-
-    @property
-    def has_menu(self) -> bool:
-        """Whether the menu is shown."""
-        return self.screen.has_menu or self._is_open or self.is_pinned
-
-    @property
-    def is_dragging(self) -> bool:
-        """Whether something is grabbed."""
-        return self._grip.is_on
-
-    @property
-    def lit(self) -> str:
-        """The key of the widget that is lit; empty if there is none."""
-        return self._lit
-
-    def turn(self) -> bool:
-        """Leave and enter screens if the session asked for another one; returns whether it did."""
-        wanted = self.session.screen
-        if wanted == self._shown:
-            return False
-        self.release()
-        self.screens[self._shown].leave()
-        self._shown, self._wide, self._menu_page = wanted, "", 0
-        self._light(None)
-        self.close()
-        self.screens[wanted].enter()
-        self._tell_the_way()
-        return True
-
-    def _tell_the_way(self) -> None:
-        """Tell what to do on a screen beside which no menu stands, and how to come back from it."""
-        screen = self.screen
-        is_reached_by_menu = screen.is_in_menu and screen.name != PICTURE
-        if is_reached_by_menu and not screen.has_menu and not self.session.has_news:
-            self.session.tell(f"{screen.help}; the right edge: the menu")
-
-    def layout(self) -> Layout:
-        """What can be pointed at now."""
-        over = self.over()
-        covers = ([MENU] if self.has_menu else []) + ([MESSAGE] if self._has_message else [])
-        covers += [each.area for each in over]
-        return Layout(self.screen, self.menu_rows(), self._wide, covers, over)
-
-    def menu_rows(self) -> list[Widget]:
-        """The rows of the menu, laid out."""
-        if not self.has_menu:
-            return []
-        rows = rows_of_menu(self.session, self.screen, self.screens.values())
-        last = last_rows(self.session, self.screen)
-        return page_of_menu(rows, last, self._menu_page, partial(setattr, self, "_menu_page"))
-
-    def widgets(self) -> list[Widget]:
-        """Everything that can be pointed at, the topmost first."""
-        return self.layout().widgets
-
-    def widget_at(self, element: int, line: int) -> Widget | None:
-        """The widget at a place."""
-        return self.layout().widget_at(element, line)
-
-    def handle_at(self, element: int, line: int) -> Handle | None:
-        """The nearest handle within reach of a place, if nothing covers it."""
-        return self.layout().handle_at(element, line)
-
-    # Gestures.
-
-    def take(self, gesture: Gesture) -> None:
-        """Do what a gesture asks for."""
-        self._pointer = place_of(gesture)
-        getattr(self, f"_{gesture.kind}")(gesture)
-
-    def point_at(self, gesture: Gesture) -> None:
-        """Take note of the place of a gesture."""
-        self._pointer = place_of(gesture)
-        self._hover(gesture)
-
-    def release(self) -> None:
-        """Let go of what is grabbed, held or typed."""
-        self._let_go()
-        self.typing.end()
-
-    def _let_go(self) -> None:
-        self.held = None
-        self._grip.release()
-        self.screens[self._shown].release()
-
-    def _light(self, widget: Widget | None) -> None:
-        self._lit, self._lit_area = ("", NOWHERE) if widget is None else (widget.key, widget.area)
-
-    def _hover(self, gesture: Gesture) -> Layout:
-        element, line = self._pointer
-        layout = self.layout()
-        if not self.screen.has_menu:
-            was_open = self._is_open
-            if WIDTH - EDGE <= element < WIDTH and line <= MENU.bottom:
-                self._is_open = True
-            elif not MENU.left <= element < WIDTH and layout.wide is None:
-                self._is_open = False
-            if self._is_open and not was_open and self.session.news.stands:
-                # Beside the menu, hints stand in its place.
-                self.session.tell("")
-            layout = layout if self._is_open == was_open else self.layout()
-        widget = layout.widget_at(element, line)
-        self._light(widget)
-        if widget is None:
-            self.has_focus = False
-        return layout
-
-    def _pick(self, gesture: Gesture) -> None:
-        layout = self._hover(gesture)
-        element, line = self._pointer
-        widget = layout.widget_at(element, line)
-        if widget is not None:
-            self._let_go()
-            self.pick_widget(widget, self._pointer)
-        elif layout.is_covered(element, line):
-            return
-        elif self.held is not None:
-            # One that is refused is still held.
-            self.screen.place(self.held, element, line)
-            self._let_go()
-        else:
-            handle = layout.handle_at(element, line)
-            if handle is None:
-                self.screen.pick(gesture)
-                return
-            self.held = handle
-            self.screen.hold(handle)
-            self.session.tell(f"{handle.label}: pick its new place")
-
-    def pick_widget(self, widget: Widget, place: Place | None = None) -> None:
-        """Pick a widget at a place, without one at its middle."""
-        if widget.why_not:
-            self.session.tell(f"{widget.label}: {widget.why_not}", is_warning=True)
-            return
-        if place is None:
-            place = Place((widget.area.left + widget.area.right) // 2, widget.area.top)
-        if isinstance(widget, Bar) and MENU.covers(widget.area) and not widget.is_switched_at(place):
-            self._wide = "" if self._wide == widget.key else widget.key
-        elif widget.typed is not None and not isinstance(widget, Bar):
-            self.typing.begin(widget)
-        else:
-            widget.pick(place)
-
-    def _grab(self, gesture: Gesture) -> None:
-        self._let_go()
-        layout = self.layout()
-        self._light(layout.widget_at(*self._pointer))
-        self._grip.grab(layout, gesture)
-
-    def _drag(self, gesture: Gesture) -> None:
-        self._grip.drag(self.layout(), gesture)
-
-    def _drop(self, gesture: Gesture) -> None:
-        self._let_go()
-
-    def _wheel(self, gesture: Gesture) -> None:
-        layout = self.layout()
-        widget = layout.widget_at(*self._pointer)
-        if widget is not None:
-            if not widget.why_not:
-                widget.nudge(gesture.steps)
-        elif not layout.is_covered(*self._pointer):
-            self.screen.wheel(gesture)
-
-    # Keys.
-
-    def close(self) -> None:
-        """Take the menu away where it comes on demand."""
-        self.is_pinned = self._is_open = self.has_focus = False
-        if not self.screen.has_menu:
-            self._wide = ""
-
-    def toggle_menu(self) -> None:
-        """Bring the menu and give it the keys, or take it away."""
-        if self.has_focus or (self.is_pinned and not self.screen.has_menu):
-            self.close()
-            return
-        self.is_pinned = self.has_focus = True
-        if self.layout().lit(self._lit, self._lit_area) is None:
-            self._move_light(1)
-
-    def escape(self) -> bool:
-        """Let go of what is held, or close what is open; returns False if there is nothing."""
-        comes_and_goes = not self.screen.has_menu
-        if self.held is not None:
-            self._let_go()
-        elif self.layout().wide is not None:
-            self._wide = ""
-        elif self.has_focus or (comes_and_goes and (self.is_pinned or self._is_open)):
-            self.close()
-        else:
-            return self.screen.escape()
-        return True
-
-    def key(self, name: str, typed: str) -> bool:
-        """Take a key that is typed into the widget under the pointer, or moves in the menu."""
-        row = self.layout().lit(self._lit, self._lit_area)
-        if row is not None and row.typed is not None and self.typing.would_begin(row, typed):
-            self.typing.begin(row, typed)
-            return True
-        if not self.has_focus:
-            return False
-        if name in ("up", "down"):
-            self._move_light(1 if name == "down" else -1)
-        elif row is not None and name in ("left", "right") and not row.why_not:
-            row.nudge(1 if name == "right" else -1)
-        elif row is not None and name in ("return", "space", "enter"):
-            self.pick_widget(row)
-        else:
-            return False
-        return True
-
-    def _move_light(self, step: int) -> None:
-        layout = self.layout()
-        lit = layout.lit(self._lit, self._lit_area)
-        rows = [each for each in layout.rows if not isinstance(each, (Heading, Gap))]
-        if rows:
-            start = next((n for n, each in enumerate(rows) if each is lit), -1 if step > 0 else 0)
-            self._light(rows[(start + step) % len(rows)])
-
-    # What is shown.
-
-    @property
-    def mark(self) -> tuple[int, int] | None:
-        """The place of the handle that is held, or can be grabbed where the pointer is."""
-        layout, handle = self.layout(), self.held
-        if handle is not None:
-            handle = layout.handle_now(handle)
-        elif not self._grip.is_on and layout.widget_at(*self._pointer) is None:
-            handle = layout.handle_at(*self._pointer)
-        place = None if handle is None else Place(handle.element, handle.line)
-        # Cursors invert what is below them: of two at one place nothing would be seen.
-        return None if place == self._pointer else place
-
-    def page(self) -> Page:
-        """The page to show now."""
-        self.screen.is_under_menu = self.has_menu and not self.screen.has_menu
-        composition = self._composition()
-        self._has_message = composition.has_message
-        return composition.page()
-
-    @property
-    def message(self) -> tuple[str, int]:
-        """What the message line says, and the word it is written with."""
-        return self._composition().message
-
-    def _composition(self) -> Composition:
-        layout = self.layout()
-        lit = layout.lit(self._lit, self._lit_area)
-        return Composition(self.session, layout, lit, self.held, self._pointer, self.typing)

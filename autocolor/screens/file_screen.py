@@ -86,8 +86,8 @@ class FileScreen(Screen):
         """Whether the pointer of this session may open a file or a folder."""
         return self.session.is_at_hand or stays_within(path, self._root)
 
-    def _told(self, path: Path) -> str:
-        """A path as it is shown: beside the session's folder where the user is elsewhere."""
+    def _shown_path(self, path: Path) -> str:
+        """A path as text; without the folders above the session's where the user is elsewhere."""
         if self.session.is_at_hand:
             return str(path)
         below = path.relative_to(self._root) if path.is_relative_to(self._root) else path.name
@@ -97,17 +97,17 @@ class FileScreen(Screen):
 
     def items(self) -> Sequence[Item]:
         down, left = LEFT.top + TEXT_DOWN, LEFT.left + MARGIN
-        found = [
+        items = [
             text("OPEN", left, TEXT_DOWN, YELLOW),
             text("RECENT", RIGHT.left + MARGIN, TEXT_DOWN, YELLOW),
-            text(short_name(self._told(self._folder), ACROSS), left, ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
+            text(short_name(self._shown_path(self._folder), ACROSS), left, ROW_LINES + TEXT_DOWN, LIGHT_GRAY),
             filled(Area(251, LEFT.top, 251, LEFT.bottom), SLATE),
         ]
         if not self._files:
-            found.append(text("no scene, mesh or picture", left, down + ROW_LINES * self._has_way_up, GRAY))
+            items.append(text("no scene, mesh or picture", left, down + ROW_LINES * self._has_way_up, GRAY))
         if not self._recent:
-            found.append(text("nothing was opened yet", RIGHT.left + MARGIN, down, GRAY))
-        return found
+            items.append(text("nothing was opened yet", RIGHT.left + MARGIN, down, GRAY))
+        return items
 
     @property
     def _has_way_up(self) -> bool:
@@ -142,9 +142,9 @@ class FileScreen(Screen):
     def _row(self, openable: Openable, shown: str = "", key: str = "") -> Widget:
         path, kind = openable
         if kind == FOLDER:
-            help, run = f"Look into {self._told(path)}", partial(self._go_to, path)
+            help, run = f"Look into {self._shown_path(path)}", partial(self._go_to, path)
         else:
-            help, run = f"Open {self._told(path)}", partial(self._open, path)
+            help, run = f"Open {self._shown_path(path)}", partial(self._open, path)
         if path.suffix.lower() == RIG_SUFFIX and path.name != SCENE_FILE:
             if path not in self._rigs:
                 self._rigs[path] = is_rig(path)
@@ -227,11 +227,11 @@ class FileScreen(Screen):
 
 def _placed(rows: Sequence[Widget], area: Area) -> list[Widget]:
     """Rows one below the other, as far as they fit."""
-    found = []
+    placed = []
     for number, row in enumerate(rows[:MOST_ROWS]):
         top = area.top + ROW_LINES * number
-        found.append(row.at(Area(area.left, top, area.right, top + ROW_LINES - 1)))
-    return found
+        placed.append(row.at(Area(area.left, top, area.right, top + ROW_LINES - 1)))
+    return placed
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from autocolor.screens.pointing import rows_of_help
 from autocolor.screens.screen import Screen
 from autocolor.widgets.items import LIGHT_GRAY, ORANGE, WHITE, YELLOW, Item, text
 
@@ -32,13 +31,13 @@ class HelpScreen(Screen):
     shows_scene = False
 
     def items(self) -> Sequence[Item]:
-        return help_items(TITLE, rows_of_help())
+        return help_items(TITLE, self.session.keys)
 
 
 def help_items(title: str, rows: Sequence[tuple[str, str]]) -> list[Item]:
     """A title, a line for each row (keys, what they do), and the limits of the method."""
-    found = [text(title, LEFT, 22, YELLOW, size=2)]
+    items = [text(title, LEFT, 22, YELLOW, size=2)]
     for number, (keys, does) in enumerate(rows):
         top = TOP + STEP * number
-        found += [text(keys, LEFT, top, ORANGE), text(does, MIDDLE, top, WHITE)]
-    return found + [text(line, LEFT, 438 + 12 * number, LIGHT_GRAY) for number, line in enumerate(LIMITS)]
+        items += [text(keys, LEFT, top, ORANGE), text(does, MIDDLE, top, WHITE)]
+    return items + [text(line, LEFT, 438 + 12 * number, LIGHT_GRAY) for number, line in enumerate(LIMITS)]

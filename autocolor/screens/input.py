@@ -1,4 +1,4 @@
-"""Gestures: what a user does with the pointer, told in the same way by the mouse and by the joystick unit.
+"""Input: the gestures of the pointer, which the mouse and the joystick unit both make, and key bindings.
 
 A hover is a movement, a pick a click or ENTER. A drag begins with a grab, and ends with a drop. The unit has
 a place, ENTER and TRACK alone; TRACK is held for a drag. The mouse also has other buttons, a wheel and
@@ -29,9 +29,9 @@ STEP_CLOSER: Final = 0.92
 
 
 class Gesture(NamedTuple):
-    """One thing that the pointer did at an element and a line.
+    """A movement, click or turn of the wheel at an element and a line.
 
-    `kind` is "hover", "pick", "grab", "drag", "drop" or "wheel"; `steps` are those of the wheel, up positive.
+    `kind` is "hover", "pick", "grab", "drag", "drop" or "wheel"; `steps` is for the wheel, up positive.
     """
 
     kind: str
@@ -44,15 +44,15 @@ class Gesture(NamedTuple):
 
 
 class Mouse:
-    """Makes gestures of what the mouse does: a click is a pick, a movement with a button down is a drag."""
+    """The mouse, whose actions become gestures: a click a pick, a movement with a button down a drag."""
 
     def __init__(self) -> None:
         self._pressed: Gesture | None = None
-        """The press of the button that is down."""
+        """The press of the button that is down; None if all are up."""
         self._drags = False
 
     def forget(self) -> None:
-        """Take the button for released."""
+        """Forget the button that is down."""
         self._pressed, self._drags = None, False
 
     def gestures(
@@ -103,19 +103,17 @@ def turn_between(element: int, line: int, other_element: int, other_line: int) -
 
 
 def wheel_ratio(steps: float) -> float:
-    """The ratio of distances for some steps of the wheel; those up move closer."""
+    """The ratio of distances for some steps of the wheel; steps up move closer."""
     return float(STEP_CLOSER**steps)
 
 
-# -------------------- keys
-# Keys and key bindings, from which the viewer and its help page work.
-
-Viewer = TypeVar("Viewer")
+Driven = TypeVar("Driven")
+"""The system that keys drive."""
 
 
 @dataclass(frozen=True)
 class Chord:
-    """A key and its modifiers. `shift` is significant for letters, but not for digits and signs."""
+    """A key and its modifiers. `shift` matters for letters, but not for digits and signs."""
 
     name: str
     control: bool = False
@@ -127,7 +125,7 @@ class Chord:
         return len(self.name) == 1 and not self.name.isalpha()
 
     def __str__(self) -> str:
-        held = ["Ctrl"] * self.control + ["Shift"] * self.shift
+        modifiers = ["Ctrl"] * self.control + ["Shift"] * self.shift
         names = {
             "escape": "Esc",
             "up": "Up",
@@ -137,34 +135,34 @@ class Chord:
             "space": "Space",
             "tab": "Tab",
         }
-        return "+".join([*held, names.get(self.name, self.name.upper())])
+        return "+".join([*modifiers, names.get(self.name, self.name.upper())])
 
 
 @dataclass(frozen=True)
-class Binding(Generic[Viewer]):
+class Binding(Generic[Driven]):
     """Keys that are bound to an action.
 
-    `run` is called with the viewer and the index in `chords` of the key that was pressed. While the key is
-    held down, it is called again and again only with `held`, where all is undone as one step, or with
-    `repeats`, where each is a step. `release` is called when one of the keys is let go.
-    `does` describes the action on the help page; `label` replaces the names of the keys there.
+    `run` is called with the viewer and the index in `chords` of the key that was pressed. While the key stays
+    down, `run` is called again and again only with `held`, as one step to undo, or with `repeats`, as a step
+    for each call. `release` is called when one of the keys is let go. `does` describes the action on the help
+    page; `label` replaces the names of the keys there.
     """
 
     chords: tuple[Chord, ...]
     does: str
-    run: Callable[[Viewer, int], object]
+    run: Callable[[Driven, int], object]
     label: str | None = None
     held: bool = False
     repeats: bool = False
-    release: Callable[[Viewer], object] | None = None
+    release: Callable[[Driven], object] | None = None
 
     def __str__(self) -> str:
         return self.label or ", ".join(map(str, self.chords))
 
 
 def bound_to(
-    bindings: Sequence[Binding[Viewer]], name: str, control: bool, shift: bool, typed: str
-) -> tuple[Binding[Viewer], int] | None:
+    bindings: Sequence[Binding[Driven]], name: str, control: bool, shift: bool, typed: str
+) -> tuple[Binding[Driven], int] | None:
     """The binding of a key that was pressed, and the index of its chord; None if it has none.
 
     Signs are matched by the typed character, as keyboards place them differently, letters by the key's name.
@@ -180,12 +178,11 @@ def bound_to(
     return next(((binding, number) for binding, number, _ in by_sign or by_name), None)
 
 
-# -------------------- unit
-# The joystick unit of the display, as a host uses it: it reads the cursor, and makes gestures of that.
+# The joystick unit of the display, as a host uses it: the host reads the cursor and makes gestures of it.
 #
-# Hardware: the cursor's word has its place, TRACK while that switch is on, and ENTER once for each press;
-# there is no other input. So ENTER is a pick, and a drag lasts as long as TRACK. The cursor is the pointer;
-# a second one marks what it can grab.
+# Hardware: the cursor's words have its place, TRACK while that switch is on, and ENTER once for each press;
+# there is no other input. So ENTER is a pick, and a drag lasts as long as TRACK. The cursor is the pointer; a
+# second cursor marks what the pointer can grab.
 
 POINTER: Final = 0
 MARK: Final = 1
@@ -202,7 +199,7 @@ ENTER: Final = 1 << 13
 
 
 class Unit:
-    """The unit of a display."""
+    """The joystick unit of a display."""
 
     def __init__(self, display: HostPort) -> None:
         self._display = display
@@ -222,7 +219,7 @@ class Unit:
         self._mark = None
 
     def mark(self, place: tuple[int, int] | None) -> None:
-        """Put the mark at an element and a line, at most at an edge; or hide it."""
+        """Put the mark at an element and a line, within the reach of a cursor; None hides it."""
         if place != self._mark:
             element, line = place or (0, 0)
             element, line = min(max(element, 0), ELEMENT_BITS), min(max(line, 0), LINE_BITS)
@@ -230,24 +227,24 @@ class Unit:
             self._mark = place
 
     def poll(self) -> list[Gesture]:
-        """What was done since the last poll. Raises PortError if the display cannot be reached."""
+        """The gestures since the last poll. Raises PortError if the display cannot be reached."""
         element, line, state = self._read()
         place, before = (element, line), self._place
         tracks, tracked = bool(state & TRACK), self._tracks
         self._place, self._tracks = place, tracks
-        found = []
+        gestures = []
         if tracks and not tracked:
-            found.append(Gesture("grab", *(before if before is not None else place)))
+            gestures.append(Gesture("grab", *(before if before is not None else place)))
         if before is not None and place != before:
-            found.append(Gesture("drag" if tracks or tracked else "hover", *place))
+            gestures.append(Gesture("drag" if tracks or tracked else "hover", *place))
         if tracked and not tracks:
-            found.append(Gesture("drop", *place))
+            gestures.append(Gesture("drop", *place))
         if state & ENTER:
-            found.append(Gesture("pick", *place))
-        return found
+            gestures.append(Gesture("pick", *place))
+        return gestures
 
     def _read(self) -> tuple[int, int, int]:
-        """The element and line of the pointer, and the word of its state."""
+        """The element and line of the pointer, and the word with its switches."""
         self._display.send(instructions.read_cursor(POINTER))
         element, line = self._display.receive(2).tolist()
         return element, line & LINE_BITS, line

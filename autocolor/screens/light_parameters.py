@@ -51,9 +51,9 @@ def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()
     rows = rows_of(light, partial(_put_with_reach, session, light), session.world, leave_out)
     # What a light follows is chosen among what it can follow, and it stays where it is.
     if "follows" not in leave_out:
-        found = [row for row in rows if row.label != "follows"]
-        place = next((number for number, row in enumerate(rows) if row.label == "follows"), len(found))
-        rows = [*found[:place], _follows_row(session, light), *found[place:]]
+        others = [row for row in rows if row.label != "follows"]
+        place = next((number for number, row in enumerate(rows) if row.label == "follows"), len(others))
+        rows = [*others[:place], _follows_row(session, light), *others[place:]]
     # A point source has no axis: what needs one cannot be used, and says so.
     if kind_of(light) == POINT:
         needing = [name.replace("_", " ") for name in AXIS_CONTROLS]

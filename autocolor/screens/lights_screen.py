@@ -14,8 +14,8 @@ from autocolor.checks import Vector
 from autocolor.errors import InputError
 from autocolor.scene.columns import fields_of
 from autocolor.scene.creation import new_light_of
-from autocolor.scene.following import free_name, set_down, taken_up
-from autocolor.scene.lights import HalfSpace, Light
+from autocolor.scene.following import attached, detached
+from autocolor.scene.lights import HalfSpace, Light, free_name
 from autocolor.scene.view import View
 from autocolor.screens.input import Gesture
 from autocolor.screens.light_parameters import parameter_rows
@@ -29,7 +29,6 @@ from autocolor.widgets.items import SCREEN, YELLOW, Area, Item, area_of, lines
 from autocolor.widgets.menu import WORK
 from autocolor.widgets.widget import Button, Choice, Gap, Pair, Switch, Widget
 
-# -------------------- plane_picking
 # Three points of the object are picked, one after the other, for the plane of a new half-space.
 
 NAME: Final = "plane"
@@ -54,14 +53,14 @@ class PlanePicking:
         return len(self._points)
 
     @property
-    def told(self) -> str:
+    def prompt(self) -> str:
         """What the message line says: which point is next."""
         return f"pick the {ORDINALS[self.count]} point of the plane on the object; Esc ends"
 
     def begin(self) -> None:
         """Ask for the first point."""
         self.is_on, self._points = True, []
-        self.session.tell(self.told, stands=True)
+        self.session.tell(self.prompt, persistent=True)
 
     def end(self) -> bool:
         """Ask for no more points; returns False if none was asked for."""
@@ -77,11 +76,11 @@ class PlanePicking:
         """
         session, seen = self.session, self.session.studio.seen_at(line, element)
         if seen is None:
-            session.tell(f"no point is seen there; {self.told}", is_warning=True, stands=True)
+            session.tell(f"no point is seen there; {self.prompt}", is_warning=True, persistent=True)
             return
         self._points.append(seen.point)
         if self.count < POINTS:
-            session.tell(self.told, stands=True)
+            session.tell(self.prompt, persistent=True)
             return
         try:
             self._add()
@@ -93,10 +92,10 @@ class PlanePicking:
     def items(self) -> Sequence[Item]:
         """A cross at each point, and lines between them."""
         places = places_of(np.array(self._points).reshape(-1, 3), self.session.scene.view)
-        found = [lines([places], YELLOW, area_of(places, limit=self._area))] if len(places) > 1 else []
+        items = [lines([places], YELLOW, area_of(places, limit=self._area))] if len(places) > 1 else []
         for element, line in np.floor(places + 0.5).astype(int).tolist():
-            found += highlight_items(element, line, self._area)
-        return found
+            items += highlight_items(element, line, self._area)
+        return items
 
     def _add(self) -> None:
         session, scene = self.session, self.session.scene
@@ -138,7 +137,6 @@ def places_of(points: Floats, view: View) -> Floats:
     return places
 
 
-# -------------------- half_space_rows
 # The rows of a light's half-spaces: of each its switch, its edge width, who carries it, turn and remove.
 
 
@@ -208,7 +206,7 @@ def _rows_of(session: Session, light: Light, half_space: HalfSpace) -> list[Widg
 def _carry(session: Session, light: Light, half_space: HalfSpace) -> None:
     """Let a light carry a half-space, or no more; its plane stays where it is."""
     there = session.scene.light_in_world(light.name)
-    carry = set_down if half_space.carried else taken_up
+    carry = detached if half_space.carried else attached
     _put_row(session, light, carry(half_space, there))
 
 

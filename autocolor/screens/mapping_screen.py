@@ -43,7 +43,6 @@ from autocolor.widgets.menu import WORK
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Button, Choice, Gap, Widget, short_name
 
-# -------------------- curve_panel
 # The panel of a mapping curve: intensity rises to the right, the level upward.
 #
 # Behind the curve stands how often each intensity is seen, and on it its points.
@@ -81,7 +80,7 @@ def panel_items(curve: Curve) -> list[Item]:
     """How the panel looks."""
     name = short_name(curve.surface, MOST_CHARACTERS)
     top = PANEL.top + 4
-    found = [
+    items = [
         filled(PANEL, NIGHT),
         outline(PANEL, SLATE),
         text("level", CURVE.left, top, LIGHT_GRAY),
@@ -90,12 +89,12 @@ def panel_items(curve: Curve) -> list[Item]:
         lines([_places_of(ACROSS, curve.levels)], YELLOW, CURVE),
     ]
     if name:
-        found.append(text(name, CURVE.right + 1 - CHARACTER * len(name), top, GRAY))
+        items.append(text(name, CURVE.right + 1 - CHARACTER * len(name), top, GRAY))
     for number, (x, y) in enumerate(curve.points):
         element, line = place_of(x, y)
         word = YELLOW if number == curve.touched else WHITE
-        found.append(filled(Area(element - 2, line - 2, element + 2, line + 2).within(PANEL), word))
-    return found
+        items.append(filled(Area(element - 2, line - 2, element + 2, line + 2).within(PANEL), word))
+    return items
 
 
 def place_of(x: float, y: float) -> tuple[int, int]:
@@ -135,7 +134,6 @@ def shares_of(intensities: Singles, low: float, high: float) -> Singles:
     return shares
 
 
-# -------------------- curve_points
 # The points of a mapping curve, as they are moved, added and removed: the curve stays a rising one.
 #
 # Its first point is at the fraction 0 of the intensities, its last one at 1; both stay there.
@@ -183,7 +181,6 @@ def removed(points: CurvePoints, number: int) -> CurvePoints:
     return (*points[:number], *points[number + 1 :]) if 0 < number < len(points) - 1 else points
 
 
-# -------------------- held_ranges
 # Held ranges: the rows of the menu for the range of intensities that the exposure holds.
 
 LEAST_SHARE: Final = 1e-3

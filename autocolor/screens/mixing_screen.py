@@ -50,7 +50,6 @@ from autocolor.widgets.items import (
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import MARGIN, ROW_LINES, TEXT_DOWN, Button, Entry, Gap, Place, Widget
 
-# -------------------- color_section
 # A section of the color mixing screen: one of the two colors of the chosen surface, with its ramp and bars.
 #
 # Paper: Figure 13, the light source color above, the object color below.
@@ -116,9 +115,9 @@ class ColorSection:
     def widgets(self, paint: Paint, is_chosen: bool) -> list[Widget]:
         """The heading, and the bars."""
         color = self.color_of(paint)
-        told = f"The {self.title} color: click to pick swatches for it."
+        help = f"The {self.title} color: click to pick swatches for it."
         heading = SectionHeading(
-            self.title, told, run=self._choose, value=in_digits(color), is_chosen=is_chosen
+            self.title, help, run=self._choose, value=in_digits(color), is_chosen=is_chosen
         )
         bars = [
             ComponentBar(
@@ -146,8 +145,8 @@ class ColorSection:
 
     def row(self, paint: Paint) -> Entry:
         """The row of a menu in which the color is typed, by its name or number."""
-        told = f"The {self.title} color by its name or number, such as teal or #b01020."
-        return Entry(self.title.split()[0], told, value=in_digits(self.color_of(paint)), take=self._give)
+        help = f"The {self.title} color by its name or number, such as teal or #b01020."
+        return Entry(self.title.split()[0], help, value=in_digits(self.color_of(paint)), take=self._give)
 
     def _bar_area(self, number: int) -> Area:
         top = self.ramp.top + number * BAR_LINES
@@ -191,7 +190,6 @@ def whole(name: str, value: float) -> int:
     return int(value)
 
 
-# -------------------- mixing_palette
 # The words that the color mixing screen borrows: for the ramps of two colors, and for swatches.
 #
 # A surface may own nearly all words, so there are none for these colors between the surfaces; see
@@ -260,7 +258,6 @@ def ramp_of(color: Color) -> Bytes:
     return entries_of(Paint(color, color, blend=1.0), RAMP_STEPS)
 
 
-# -------------------- swatch_fields
 # Swatch fields: colors to pick from, in rows of cells.
 
 GROUT: Final = 1
@@ -319,7 +316,6 @@ def _cells(data: bytes, area: Area, across: int, width: int, height: int) -> tup
     return (image(cells, area.left, area.top),)
 
 
-# -------------------- paint_choices
 # The choices below the bars of color mixing: finishes and recent colors, or a field of swatches.
 
 TOP: Final = 296
@@ -524,12 +520,12 @@ class MixingScreen(Screen):
         surface = self.session.chosen_surface
         if surface is None:
             return [text("The scene has no surface in use.", LEFT, LIGHT_TOP + TEXT_DOWN, LIGHT_GRAY)]
-        palette, told = self._palette, self._blend_told(surface.paint)
+        palette, blend = self._palette, self._blend_text(surface.paint)
         return [
             *self.light.items(palette.light_ramp),
             *self.object.items(palette.object_ramp),
             text("blend", LEFT + MARGIN, BLEND_TOP + TEXT_DOWN, LIGHT_GRAY),
-            text(told, RIGHT_END + 1 - CHARACTER * len(told), BLEND_TOP + TEXT_DOWN),
+            text(blend, RIGHT_END + 1 - CHARACTER * len(blend), BLEND_TOP + TEXT_DOWN),
             text(
                 fitted(surface.name, SMALL.width // CHARACTER - 1),
                 LEFT + MARGIN,
@@ -555,7 +551,7 @@ class MixingScreen(Screen):
         if down < words.shape[0] and across < words.shape[1]:
             level = int(words[down, across]) - levels.first
             if 0 <= level < levels.levels:
-                what = "level" if self.session.studio.image.normals is None else "normal"
+                what = self.session.studio.image.meaning
                 return f"{self.session.surface_name}, {what} {level} of {levels.levels - 1}"
         return f"Only {self.session.surface_name} is shown here"
 
@@ -576,7 +572,7 @@ class MixingScreen(Screen):
             self._small = words, stand_ins, image(small, SMALL.left, SMALL.top)
         return self._small[2]
 
-    def _blend_told(self, paint: Paint) -> str:
+    def _blend_text(self, paint: Paint) -> str:
         levels = self._levels.levels
         return f"{paint.blend:.2f}, from level {blend_level(paint.blend, levels)} of {levels - 1}"
 

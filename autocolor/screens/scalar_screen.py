@@ -23,7 +23,6 @@ from autocolor.widgets.bars import Bar
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Button, Choice, Gap, Switch, Widget
 
-# -------------------- color_choice
 # A choice of a color by its name, for those beyond the limits and of missing values.
 
 NAMED: Final[Mapping[str, Color]] = {
@@ -43,16 +42,15 @@ NO_COLOR: Final = "none"
 
 
 def color_choice(
-    label: str, told: str, color: Color | None, put: Callable[[Color | None], object], has_none: bool
+    label: str, help: str, color: Color | None, put: Callable[[Color | None], object], has_none: bool
 ) -> Choice:
-    """A row that chooses one of the colors, or none if there can be none; any other is told in digits."""
+    """A row that chooses one of the colors, or none if there can be none; any other is help in digits."""
     names = (*([NO_COLOR] if has_none else []), *NAMED)
     name_of = {each: name for name, each in NAMED.items()}
     present = NO_COLOR if color is None else name_of.get(color, in_digits(color))
-    return Choice(label, told, names=names, present=present, choose=lambda name: put(NAMED.get(name)))
+    return Choice(label, help, names=names, present=present, choose=lambda name: put(NAMED.get(name)))
 
 
-# -------------------- limit_rows
 # The rows of the menu for the limits of a scalar, which are set along its own range.
 
 LEAST_SHARE: Final = 1e-3
@@ -177,18 +175,18 @@ class ScalarScreen(OverPicture):
 
     def _color_rows(self, scalar: Scalar) -> list[Widget]:
         """The colors beyond the limits, and where there is no value."""
-        told = "The color of values {} the limits; none for that of the {} band."
+        help = "The color of values {} the limits; none for that of the {} band."
         return [
             color_choice(
                 "below",
-                told.format("below", "first"),
+                help.format("below", "first"),
                 scalar.below,
                 lambda color: self._put({"below": color}),
                 has_none=True,
             ),
             color_choice(
                 "above",
-                told.format("above", "last"),
+                help.format("above", "last"),
                 scalar.above,
                 lambda color: self._put({"above": color}),
                 has_none=True,

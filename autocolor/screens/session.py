@@ -1,12 +1,13 @@
 """The session on the screens: the studio, what is chosen, which screen is shown, and the message.
 
 Every screen edits the scene through `edit`, so that a gesture is one step to undo, and its pictures may be
-coarse while it moves.
+coarse while it moves. At the foot are the state to compare with and the file on the disk.
 """
 
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, NamedTuple, Unpack
 
@@ -27,172 +28,32 @@ from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Part, Surface
 from autocolor.scene.view import View
 from autocolor.studio import Studio
-from autocolor.widgets.rows import KnownNames, World
+from autocolor.widgets.rows import TableNames, World
 from autocolor.widgets.widget import short_name
 from ramtek_emu import HostPort, instructions
-
-# -------------------- comparing
-# Comparing: another state of the scene is shown in place of the present one, to see what was gained.
-#
-# That is the state before the last step, or a scene that was chosen, such as a kept variant. Nothing is
-# edited meanwhile; who edits ends it first. The words and entries of both are at hand, so that switching
-# sends no more than what differs: where only colors do, no word.
-
-BEFORE: Final = "the state before the last step"
-NOW: Final = "the present state"
-"""What the message line calls what is shown."""
-
-
-class Other(NamedTuple):
-    """A scene to compare with, and what the message line calls it."""
-
-    name: str
-    scene: Scene
-
-
-class Comparing:
-    """What the scene of a studio is compared with, and whether that is shown."""
-
-    def __init__(self, studio: Studio) -> None:
-        self._studio = studio
-        self._chosen: Other | None = None
-        self._kept: tuple[Scene, Scene, DisplayImage] | None = None
-        """A scene that was compared with another, that one, and what that looks like."""
-        self._shown: DisplayImage | None = None
-
-    @property
-    def other(self) -> Other | None:
-        """What is compared with: what was chosen, else the state before the last step, if there is one."""
-        steps = self._studio.history.to_undo
-        return self._chosen or (Other(BEFORE, steps[-1]) if steps else None)
-
-    def choose(self, other: Other | None) -> None:
-        """Choose what to compare with from now on; None for the state before the last step."""
-        self.end()
-        self._chosen = other
-
-    def forget(self, scene: Scene) -> None:
-        """Do not compare with a scene any longer that was chosen."""
-        if self._chosen is not None and self._chosen.scene is scene:
-            self.choose(None)
-
-    @property
-    def image(self) -> DisplayImage | None:
-        """What is shown in place of the present state, if anything."""
-        return self._shown
-
-    @property
-    def is_on(self) -> bool:
-        """Whether another state is shown."""
-        return self._shown is not None
-
-    def begin(self) -> str:
-        """Show the other state; returns what it is called. Raises UsageError if there is none."""
-        other = self.other
-        if other is None:
-            raise UsageError(
-                "to compare, there must be a step to undo or a kept variant; edit something first"
-            )
-        if self._shown is None:
-            self._shown = self._image_of(other.scene)
-        return other.name
-
-    def end(self) -> bool:
-        """Show the present state again; returns False if it was shown."""
-        was_on, self._shown = self.is_on, None
-        return was_on
-
-    def _image_of(self, other: Scene) -> DisplayImage:
-        """What another scene looks like, computed once for each two that are compared."""
-        studio = self._studio
-        studio.refine()
-        if self._kept is None or self._kept[0] is not studio.scene or self._kept[1] is not other:
-            self._kept = studio.scene, other, studio.image_of(other)
-        return self._kept[2]
-
-
-# -------------------- file_on_disk
-# The file that the scene is in: what another program changes there is shown as one step to undo.
-#
-# With edits that are not saved, the user is asked first. A file that is wrong for a while, as half edited
-# ones are, is told, and the scene stays as it was.
-
-SECONDS_BETWEEN: Final = 0.5
-"""Assumed: often enough to see an edit at once, and seldom enough to cost nothing."""
-
-
-class FileOnDisk:
-    """Looks at the file of a studio's scene."""
-
-    def __init__(self, studio: Studio) -> None:
-        self._studio = studio
-        self._changes: FileChanges | None = None
-        self._looked_at = time.monotonic()
-        self._bind()
-
-    def was_changed(self) -> bool:
-        """Whether another program changed the file since it was `seen`; it is looked at twice a second."""
-        now = time.monotonic()
-        if now - self._looked_at < SECONDS_BETWEEN:
-            return False
-        self._looked_at = now
-        self._bind()
-        return self._changes is not None and self._changes.have_come()
-
-    def seen(self) -> None:
-        """Take the file as it is now for seen, as after it was saved or opened."""
-        self._bind()
-        if self._changes is not None:
-            self._changes.seen()
-
-    def take(self) -> str:
-        """Show what the file holds now, or ask whether to; returns what to tell, empty for nothing.
-
-        Raises InputError if it cannot be shown; the scene stays as it was.
-        """
-        assert self._changes is not None
-        name = self._changes.path.name
-        # What is written from now on is another change.
-        self._changes.seen()
-        if self._studio.is_changed:
-            return f"{name} was changed elsewhere: Ctrl+R shows that, Ctrl+S saves yours beside"
-        try:
-            is_other = self._studio.reopen()
-        except InputError as error:
-            raise InputError(f"not shown: {problem}" for problem in error.problems) from None
-        return f"{name} was changed elsewhere; undo goes back" if is_other else ""
-
-    def _bind(self) -> None:
-        """Look at the file that the scene is in now."""
-        path = self._studio.file
-        if path is None:
-            self._changes = None
-        elif self._changes is None or self._changes.path != path:
-            self._changes = FileChanges(path, path.suffix.lower() in STORE_SUFFIXES)
-
 
 PICTURE: Final = "picture"
 """The name of the screen that a session begins with, and comes back to."""
 
 MESSAGE_SECONDS: Final = 5.0
-"""Assumed: how long a message stands."""
+"""Assumed: how long a message is shown."""
 
-LONGEST_SHOWN: Final = 24
-"""Assumed: letters of a scene's name in a message that must also tell what to do."""
+LONGEST_NAME: Final = 24
+"""Assumed: letters of a scene's name in a message that must also say what to do."""
 
 
-class News(NamedTuple):
-    """A message, whether it tells of something that could not be done, and when it was told."""
+class Message(NamedTuple):
+    """A message, whether it is a warning, and when it was shown first."""
 
     text: str
     is_warning: bool
-    told_at: float
-    stands: bool = False
-    """Whether it stands until something is done, or the menu comes."""
+    shown_at: float
+    persistent: bool = False
+    """Whether it is shown until the next action, or until the menu comes."""
 
 
 class Session:
-    """What the screens share. `folder` is where new files are saved."""
+    """The state that the screens share. New files are saved to `folder`."""
 
     def __init__(self, studio: Studio, display: HostPort, folder: Path) -> None:
         self.studio = studio
@@ -201,7 +62,7 @@ class Session:
         self.comparing = Comparing(studio)
         """Another state that is shown in place of the present one."""
         self.screen = PICTURE
-        """The name of the screen that is shown; setting it turns to another one."""
+        """The name of the screen that is shown; setting it turns to another screen."""
         self.watches = False
         """Whether the user asked to see the picture come in line by line."""
         self.leaves = False
@@ -209,25 +70,27 @@ class Session:
         self.same_step = False
         """Whether the next edit is undone together with the one before."""
         self.moving = False
-        """Whether the next edit is one of a movement, whose pictures may be coarse."""
+        """Whether the next edit is part of a movement, whose pictures may be coarse."""
         self.has_keyboard = False
-        """Whether something can be typed."""
+        """Whether the user has a keyboard."""
+        self.keys: Sequence[tuple[str, str]] = ()
+        """Each key and what it does, for the help page."""
         self.is_at_hand = False
         """Whether the user sits at this machine; a pointer from elsewhere keeps to the folder."""
         self.mesh_up, self.mesh_scale = "z", 1.0
         """The up axis and the scale of mesh files that are opened; other files give their own."""
         self.surface = 0
-        """The number of the chosen surface among those in use; see `surface_name`."""
+        """The number of the chosen surface among the surfaces in use; see `surface_name`."""
         self.named_view: tuple[View, str] | None = None
-        """The view from one of the sides that have names that was taken last, and that name."""
+        """The view from a named side that was taken last, and the name of the side."""
         self.part_name = ""
-        """The part that was pointed at last, if any."""
+        """The name of the part that was pointed at last; empty at first."""
         self._light = ""
         self._world: tuple[Mesh, tuple[Part, ...], World] | None = None
-        self._names = KnownNames(self._names_in, {})
+        self._names = TableNames(self._names_in, {})
         self._refused_to_leave: Scene | None = None
-        """The scene whose changes leaving would have discarded, when the user was told so last."""
-        self.news = News("", False, 0.0)
+        """The scene that the user was last warned about when leaving would have discarded its changes."""
+        self.news = Message("", False, 0.0)
         """The last message."""
         self.disk = FileOnDisk(studio)
         """The file that the scene is in, which other programs may change."""
@@ -246,7 +109,7 @@ class Session:
         return self._world[2]
 
     def _names_in(self, table: str) -> tuple[str, ...]:
-        return tuple(row.name for row in vars(self.scene)[table])
+        return tuple([row.name for row in vars(self.scene)[table]])
 
     def turn_to(self, screen: str) -> None:
         """Turn to a screen by its name."""
@@ -274,17 +137,18 @@ class Session:
 
     @property
     def has_news(self) -> bool:
-        """Whether there is a message whose time has not passed; while states are compared, it does not."""
-        is_recent = time.monotonic() - self.news.told_at < MESSAGE_SECONDS
-        return bool(self.news.text) and (is_recent or self.news.stands or self.comparing.is_on)
+        """Whether there is a message whose time has not passed. While states are compared, no time passes."""
+        is_recent = time.monotonic() - self.news.shown_at < MESSAGE_SECONDS
+        return bool(self.news.text) and (is_recent or self.news.persistent or self.comparing.is_on)
 
-    def tell(self, message: str, is_warning: bool = False, stands: bool = False) -> None:
-        """Show a message for some seconds, or one that `stands`; an empty one takes the last one away.
+    def tell(self, message: str, is_warning: bool = False, persistent: bool = False) -> None:
+        """Show a message for some seconds; with `persistent`, until the next action.
 
-        It is one line. Letters that cannot be printed, as in names of files, become question marks.
+        An empty message takes the last message away. Letters that cannot be printed, as in names of files,
+        become question marks.
         """
         line = printable(message)
-        self.news = News(line, is_warning, time.monotonic(), stands)
+        self.news = Message(line, is_warning, time.monotonic(), persistent)
 
     def warn(self, message: object) -> None:
         """Show an error in one line; of several problems, the first one and how many others there are."""
@@ -409,18 +273,18 @@ class Session:
         self.tell("read again; undo goes back" if is_other else "the file holds this scene")
 
     def take_changes(self) -> bool:
-        """Show what another program changed in the scene's file, or ask first; False if that is nothing."""
-        told = self.disk.take()
-        if told:
-            self.tell(told, is_warning=self.studio.is_changed, stands=True)
-        return bool(told)
+        """Show the scene's file that another program changed, or ask first; False if nothing differs."""
+        message = self.disk.take()
+        if message:
+            self.tell(message, is_warning=self.studio.is_changed, persistent=True)
+        return bool(message)
 
     def save(self) -> None:
-        """Save the scene and the picture, under names that the message tells."""
+        """Save the scene and the picture; the message says the names of the files."""
         saved = self.studio.save_session(self.folder)
         self.disk.seen()
         note_file(saved.scene)
-        self.tell(saved.told(self.folder))
+        self.tell(saved.message(self.folder))
 
     def save_rig(self) -> None:
         """Save the lights, to put them on another scene."""
@@ -449,21 +313,157 @@ class Session:
 
     @property
     def unsaved(self) -> str:
-        """What leaving the program would lose, and how that is saved; empty if there is nothing."""
+        """The changes that leaving the program would lose, and how to save them; empty without changes."""
         history = self.studio.history
         if history.is_changed:
             return "not saved: Ctrl+S saves" if self.has_keyboard else "not saved: save it"
         if history.left_unsaved:
-            return f"{short_name(history.left_unsaved[-1], LONGEST_SHOWN)} is not saved: undo goes back to it"
+            return f"{short_name(history.left_unsaved[-1], LONGEST_NAME)} is not saved: undo goes back to it"
         if history.unsaved_variants:
             return f"variant {history.unsaved_variants[-1]} is not saved: come back to it and save it"
         return ""
 
     def leave(self) -> None:
-        """Ask to leave the program; changes that are not saved are told first, and the next time lost."""
+        """Ask to leave the program. Unsaved changes are announced first, and lost at the next attempt."""
         unsaved = self.unsaved
         if unsaved and self._refused_to_leave is not self.scene:
             self._refused_to_leave = self.scene
             self.warn(f"{unsaved}, or leave once more to discard the changes")
         else:
             self.leaves = True
+
+
+# Another state of the scene can be shown in place of the present state, to see what was gained: the state
+# before the last step, or a scene that was chosen, such as a variant. An edit ends the comparison first. The
+# words and entries of both states are at hand, so that switching sends only what differs: where only colors
+# differ, no word.
+
+BEFORE: Final = "the state before the last step"
+NOW: Final = "the present state"
+"""How the message line calls the state that is shown."""
+
+
+class NamedScene(NamedTuple):
+    """A scene to compare with, and its name in the message line."""
+
+    name: str
+    scene: Scene
+
+
+class Comparing:
+    """The state that the scene of a studio is compared with, and whether that state is shown."""
+
+    def __init__(self, studio: Studio) -> None:
+        self._studio = studio
+        self._chosen: NamedScene | None = None
+        self._cached: tuple[Scene, Scene, DisplayImage] | None = None
+        """The present scene, the scene that it was compared with last, and the image of the latter."""
+        self._shown: DisplayImage | None = None
+
+    @property
+    def other(self) -> NamedScene | None:
+        """The chosen scene to compare with, else the state before the last step, if there is one."""
+        steps = self._studio.history.to_undo
+        return self._chosen or (NamedScene(BEFORE, steps[-1]) if steps else None)
+
+    def choose(self, other: NamedScene | None) -> None:
+        """Choose the scene to compare with from now on; None for the state before the last step."""
+        self.end()
+        self._chosen = other
+
+    def forget(self, scene: Scene) -> None:
+        """Compare with the state before the last step again if this scene was chosen."""
+        if self._chosen is not None and self._chosen.scene is scene:
+            self.choose(None)
+
+    @property
+    def image(self) -> DisplayImage | None:
+        """The image that is shown in place of the present state; None while that is shown."""
+        return self._shown
+
+    @property
+    def is_on(self) -> bool:
+        """Whether another state is shown."""
+        return self._shown is not None
+
+    def begin(self) -> str:
+        """Show the other state; returns its name. Raises UsageError if there is none."""
+        other = self.other
+        if other is None:
+            raise UsageError(
+                "to compare, there must be a step to undo or a kept variant; edit something first"
+            )
+        if self._shown is None:
+            self._shown = self._image_of(other.scene)
+        return other.name
+
+    def end(self) -> bool:
+        """Show the present state again; returns False if it was shown."""
+        was_on, self._shown = self.is_on, None
+        return was_on
+
+    def _image_of(self, other: Scene) -> DisplayImage:
+        """The image of another scene, computed once for a pair of scenes."""
+        studio = self._studio
+        studio.refine()
+        if self._cached is None or self._cached[0] is not studio.scene or self._cached[1] is not other:
+            self._cached = studio.scene, other, studio.image_of(other)
+        return self._cached[2]
+
+
+# The scene's file may be edited by another program while the scene is shown: the session shows the change as
+# one step to undo. With unsaved edits, the user is asked first. If the file has an error, as a half edited
+# file does, the message line shows it and the scene stays as it was.
+
+SECONDS_BETWEEN: Final = 0.5
+"""Assumed: the time between two looks at the file. An edit is shown at once, and looking costs nothing."""
+
+
+class FileOnDisk:
+    """The file of a studio's scene, and whether another program changed it."""
+
+    def __init__(self, studio: Studio) -> None:
+        self._studio = studio
+        self._changes: FileChanges | None = None
+        self._looked_at = time.monotonic()
+        self._bind()
+
+    def was_changed(self) -> bool:
+        """Whether another program changed the file since it was `seen`; it is looked at twice a second."""
+        now = time.monotonic()
+        if now - self._looked_at < SECONDS_BETWEEN:
+            return False
+        self._looked_at = now
+        self._bind()
+        return self._changes is not None and self._changes.have_come()
+
+    def seen(self) -> None:
+        """Take note of the file as it is now, as after it was saved or opened."""
+        self._bind()
+        if self._changes is not None:
+            self._changes.seen()
+
+    def take(self) -> str:
+        """Show the file's scene, or ask whether to; returns the message, empty if nothing differs.
+
+        Raises InputError if the file has an error; the scene stays as it was.
+        """
+        assert self._changes is not None
+        name = self._changes.path.name
+        # From now on, another write is another change.
+        self._changes.seen()
+        if self._studio.is_changed:
+            return f"{name} was changed elsewhere: Ctrl+R shows that, Ctrl+S saves yours beside"
+        try:
+            is_other = self._studio.reopen()
+        except InputError as error:
+            raise InputError(f"not shown: {problem}" for problem in error.problems) from None
+        return f"{name} was changed elsewhere; undo goes back" if is_other else ""
+
+    def _bind(self) -> None:
+        """Watch the file that the scene is in now, which may be another than before."""
+        path = self._studio.file
+        if path is None:
+            self._changes = None
+        elif self._changes is None or self._changes.path != path:
+            self._changes = FileChanges(path, path.suffix.lower() in STORE_SUFFIXES)

@@ -32,7 +32,6 @@ from autocolor.widgets.items import (
 from autocolor.widgets.menu import WIDE_BAR, WORK
 from autocolor.widgets.widget import MARGIN, Button, Place, Widget
 
-# -------------------- lessons
 # Lessons: the tasks of the tutorial, each with what tells that a person has done it.
 #
 # What was done is seen in the scene, however it was done: by a screen, a bar, a key or the picture itself.
@@ -252,11 +251,11 @@ class Tutorial:
         if self.lesson is None:
             del buttons[0]
         area = self._area
-        found: list[Widget] = []
+        panel: list[Widget] = []
         right = area.right - 1
-        for label, told, run in buttons:
+        for label, help, run in buttons:
             place = Area(right - BUTTON + 1, area.top + 1, right, area.top + HEAD_LINES - 2)
-            found.append(PanelButton(label, told, area=place, run=run))
+            panel.append(PanelButton(label, help, area=place, run=run))
             right -= BUTTON
         task = Task(
             "tutorial",
@@ -267,7 +266,7 @@ class Tutorial:
             is_done=self._is_done,
             run=self._fold,
         )
-        return [*found, task]
+        return [*panel, task]
 
     @property
     def _head(self) -> str:

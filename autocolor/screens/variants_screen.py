@@ -14,13 +14,13 @@ import numpy as np
 
 from autocolor.arrays import Bytes
 from autocolor.errors import InputError
-from autocolor.mapping.display_image import display_image
+from autocolor.images import display_image
 from autocolor.mapping.palette import in_palette, thumbnail
 from autocolor.mapping.ranges import BACKGROUND, SCREENS
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.scene import Scene
 from autocolor.screens.screen import Screen
-from autocolor.screens.session import BEFORE, PICTURE, Other, Session
+from autocolor.screens.session import BEFORE, PICTURE, NamedScene, Session
 from autocolor.widgets.items import (
     CHARACTER,
     GRAY,
@@ -72,7 +72,7 @@ MOST_COLORS: Final = 200
 """Assumed: the most colors of one; more are not seen at this size."""
 
 
-class KeptScreen(Screen):
+class VariantsScreen(Screen):
     """The kept variants: small pictures of them, which are computed one by one while nothing moves."""
 
     name = "kept"
@@ -112,12 +112,12 @@ class KeptScreen(Screen):
     def _shown(self) -> list[tuple[Area, int, SmallPicture]]:
         """The small pictures of this page that are there: where they stand, and the first of their words."""
         share = self._share()
-        found = []
+        shown = []
         for number, (scene, area) in enumerate(zip(self._scenes(), PLACES, strict=False)):
             small = self._small.get(scene)
             if small is not None and small.most == share:
-                found.append((area, BACKGROUND + 1 + number * share, small))
-        return found
+                shown.append((area, BACKGROUND + 1 + number * share, small))
+        return shown
 
     def loads(self) -> Sequence[tuple[int, Bytes]]:
         return [(first, small.colors) for _, first, small in self._shown()]
@@ -132,7 +132,7 @@ class KeptScreen(Screen):
 
     def widgets(self) -> Sequence[Widget]:
         return [
-            Variant(
+            VariantButton(
                 name,
                 f"Variant {name}: a click chooses it",
                 run=partial(self._choose, name),
@@ -166,8 +166,8 @@ class KeptScreen(Screen):
             self._choose(self._present)
 
     def leave(self) -> None:
-        kept = {variant.scene for variant in self.session.studio.variants.values()}
-        self._small = {scene: small for scene, small in self._small.items() if scene in kept}
+        scenes = {variant.scene for variant in self.session.studio.variants.values()}
+        self._small = {scene: small for scene, small in self._small.items() if scene in scenes}
         self._last = None
 
     # What is done.
@@ -181,7 +181,7 @@ class KeptScreen(Screen):
     def rows(self) -> Sequence[Widget]:
         name = self._present
         why_not = "" if name else "no variant is kept yet"
-        found: list[Widget] = [
+        rows: list[Widget] = [
             Button("keep", "Keep the scene as it is now under a free letter.", run=self._keep),
             Entry("keep as", "Keep the scene under a name of your own.", take=self._keep_as),
             Gap("chosen gap"),
@@ -205,7 +205,7 @@ class KeptScreen(Screen):
         pages = len(self._pages)
         if pages > 1:
             names = tuple(f"{number} of {pages}" for number in range(1, pages + 1))
-            found.append(
+            rows.append(
                 Choice(
                     "page",
                     "The next variants; at the left end, those before.",
@@ -214,7 +214,7 @@ class KeptScreen(Screen):
                     choose=lambda name: setattr(self, "_page", names.index(name)),
                 )
             )
-        return found
+        return rows
 
     def _choose(self, name: str) -> None:
         self._chosen = name
@@ -235,7 +235,7 @@ class KeptScreen(Screen):
 
     def _compare(self) -> None:
         session, name = self.session, self._present
-        session.comparing.choose(Other(f"variant {name}", session.studio.variants[name].scene))
+        session.comparing.choose(NamedScene(f"variant {name}", session.studio.variants[name].scene))
         session.turn_to(PICTURE)
         session.compare()
 
@@ -245,13 +245,13 @@ class KeptScreen(Screen):
 
     def _drop(self) -> None:
         name = self._present
-        kept = self.session.studio.variants[name]
+        variant = self.session.studio.variants[name]
         self.session.studio.drop_variant(name)
-        self.session.comparing.forget(kept.scene)
-        self.session.tell(f"{name} is kept no longer")
+        self.session.comparing.forget(variant.scene)
+        self.session.tell(f"{name} is variant no longer")
 
 
-class Variant(Button):
+class VariantButton(Button):
     """The frame of a small picture with its name below."""
 
     def items(self, lit: bool) -> list[Item]:

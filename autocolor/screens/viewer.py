@@ -1,11 +1,13 @@
 """The viewer: the interactive system on a display, driven by keys, the mouse and the joystick unit.
 
 It gets what was done as plain values, and draws by display instructions, so that it runs with a window or
-without. While something moves, the picture may be coarse; `on_tick` refines it when the movement rests.
+without. While something moves, the picture may be coarse; `on_tick` refines it when the movement rests. The
+tables of the screens and of the keys are at the foot.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final
@@ -14,13 +16,13 @@ from autocolor.arrays import Words
 from autocolor.errors import AutocolorError
 from autocolor.journal.history import History
 from autocolor.scene.columns import Tier
-from autocolor.scene.scene import Scene
+from autocolor.scene.scene import Scene, cost_of_edit
 from autocolor.screens.blending_screen import BlendingScreen
 from autocolor.screens.board import Board
 from autocolor.screens.entries_screen import EntriesScreen
 from autocolor.screens.file_screen import FileScreen
 from autocolor.screens.help_screen import HelpScreen
-from autocolor.screens.input import Gesture, Mouse, Unit
+from autocolor.screens.input import Binding, Chord, Gesture, Mouse, Unit, bound_to
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.lights_screen import LightsScreen
 from autocolor.screens.mapping_screen import MappingScreen
@@ -28,33 +30,93 @@ from autocolor.screens.mixing_screen import MixingScreen
 from autocolor.screens.picture.picture_edits import PictureEdits
 from autocolor.screens.picture.picture_screen import PictureScreen
 from autocolor.screens.picture.watching import ENDING, MESSAGE, Watching
-from autocolor.screens.pointing import WHEEL, Doing, Keyboard, Pointing
 from autocolor.screens.reflectance_screen import ReflectanceScreen
 from autocolor.screens.scalar_screen import ScalarScreen
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
-from autocolor.screens.variants_screen import KeptScreen
+from autocolor.screens.variants_screen import VariantsScreen
 from autocolor.studio import Studio
 from autocolor.widgets.sheet import Sheet
-from ramtek_emu import HostPort, RamtekError
+from ramtek_emu import HostPort, PortError, RamtekError, ReplyError
 
-# -------------------- all_screens
-# Every screen, in the order of the main menu. A new screen is its module, and its line here.
+REST_SECONDS: Final = 0.1
+"""Assumed: the time after which a movement without a release rests: by a key held down, or by the wheel."""
 
-SCREENS: Final[tuple[type[Screen], ...]] = (
-    PictureScreen,
-    LightAndViewScreen,
-    LightsScreen,
-    ReflectanceScreen,
-    MixingScreen,
-    BlendingScreen,
-    MappingScreen,
-    ScalarScreen,
-    KeptScreen,
-    FileScreen,
-    EntriesScreen,
-    HelpScreen,
-)
+WHEEL: Final = "wheel"
+DRAG: Final = "drag"
+"""The kinds of sources of edits by the pointer. The wheel has steps, but no beginning and no end."""
+
+
+class Action:
+    """The last action of a session: the key or movement that made its edit, and when.
+
+    An error of an action becomes a message, and one movement one step to undo.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._source: object = None
+        """The key or the movement of the pointer that made the last edit; None if there is none."""
+        self._edited_at = 0.0
+        self.costs = Tier.NOTHING
+        """The cost of the edit; NOTHING if the action was no edit."""
+        self.is_warned = False
+        """Whether the action announced unsaved changes."""
+
+    def was_by(self, source: object) -> bool:
+        """Whether this key or movement made the last edit."""
+        return self._source == source
+
+    @property
+    def kind(self) -> object:
+        """The kind of key or movement that made the last edit: the first part of its source."""
+        return self._source[0] if isinstance(self._source, tuple) else None
+
+    @property
+    def has_rested(self) -> bool:
+        """Whether the last edit was made a while ago."""
+        return time.monotonic() - self._edited_at > REST_SECONDS
+
+    def warns_of_changes(self, otherwise: str) -> bool:
+        """Whether unsaved changes forbid an attempt. They are announced once; the next attempt succeeds."""
+        unsaved = self._session.unsaved
+        if not unsaved or self.is_warned:
+            return False
+        self.is_warned = True
+        self._session.warn(f"{unsaved}, {otherwise}")
+        return True
+
+    def do(self, source: object, run: Callable[[], object], continues: bool, moving: bool) -> bool:
+        """Run what a key or a gesture of a source asks for; returns False if `run` does, having done nothing.
+
+        With `continues`, edits of the same source are one step to undo.
+        """
+        session, warned = self._session, self.is_warned
+        news, before = session.news, session.scene
+        session.tell("")
+        session.same_step = continues and self._source == source
+        session.moving = moving
+        self.costs = Tier.NOTHING
+        try:
+            if run() is False:
+                session.news = news
+                return False
+        except (PortError, ReplyError):
+            # Without the display and its replies, there is nothing to show a message on.
+            raise
+        except (AutocolorError, RamtekError) as error:
+            session.warn(error)
+        # A warning applies to the next key only.
+        self.is_warned = self.is_warned and not warned
+        costs = None
+        if session.scene is not before:
+            session.comparing.end()
+            costs = cost_of_edit(before, session.scene)
+        if costs is not None:
+            self._source, self._edited_at, self.costs = source, time.monotonic(), costs
+        elif not continues:
+            self._source = None
+        return True
 
 
 class Viewer:
@@ -79,16 +141,17 @@ class Viewer:
         self.board = Board(self.session, self.screens)
         self.edits = PictureEdits(self.session)
         self._watching = Watching(self.display)
-        self._doing = Doing(self.session)
-        self._pointing = Pointing(self.board, self._do)
-        self._keyboard = Keyboard(self.board, self, self._do)
+        self.session.keys = rows_of_help()
+        self._action = Action(self.session)
+        self._drags = 0
+        """How many drags and picks there were."""
         self._had_news = True
         self._base: Words | int | None = None
         """What was below everything when it was shown last."""
         self._mouse.forget()
         self._sheet.forget()
         self._unit.show()
-        self.session.tell("F1: help; Tab or the right edge: the menu", stands=True)
+        self.session.tell("F1: help; Tab or the right edge: the menu", persistent=True)
         self._update()
 
     @property
@@ -126,14 +189,38 @@ class Viewer:
                 self._watching.end()
                 self._update()
             return True
-        taken = self._keyboard.press(name, control, shift, typed, repeated)
+        taken = self._press(name, control, shift, typed, repeated)
         self._update()
         return taken
 
+    def _press(self, name: str, control: bool, shift: bool, typed: str, repeated: bool) -> bool:
+        """Let the typed text, the menu, the screen or the binding of a key take it, in this order."""
+        if not control and self._type(name, typed, repeated):
+            return True
+        chosen = bound_to(BINDINGS, name, control, shift, typed)
+        if chosen is None:
+            return False
+        binding, number = chosen
+        if repeated and not (binding.held or binding.repeats):
+            # A switch would flip for as long as its key is down.
+            return True
+        return self._do(chosen, lambda: binding.run(self, number), repeated and binding.held, binding.held)
+
+    def _type(self, name: str, typed: str, repeated: bool) -> bool:
+        """Let the text that is being typed, the menu or the screen take a key."""
+        board, source = self.board, ("key", name)
+        if board.typing.is_on:
+            return self._do(None, lambda: board.typing.key(name, typed))
+        return self._do(source, lambda: board.key(name, typed), repeated, repeated) or self._do(
+            source, lambda: board.screen.key(name, typed), repeated, repeated
+        )
+
     def on_release(self, name: str) -> None:
         """Handle that a key was let go."""
-        if self._keyboard.release(name):
-            self._update()
+        for binding in BINDINGS:
+            if binding.release is not None and name in [chord.name for chord in binding.chords]:
+                binding.release(self)
+                self._update()
 
     def on_pointer(
         self,
@@ -160,8 +247,26 @@ class Viewer:
 
     def point(self, gesture: Gesture) -> None:
         """Handle a gesture of the mouse or of the joystick unit."""
-        self._pointing.take(gesture)
+        board, kind = self.board, gesture.kind
+        if kind in ("hover", "drop"):
+            board.take(gesture)
+        elif kind == "wheel":
+            # On each widget the wheel makes a step of its own.
+            board.point_at(gesture)
+            self._do((WHEEL, board.lit), lambda: board.take(gesture), True, True)
+        elif kind == "drag":
+            self._do((DRAG, self._drags), lambda: board.take(gesture), True, True)
+        elif not (kind == "pick" and board.is_dragging) and self._has_taken_text():
+            # ENTER during a drag does nothing, or it would end the step.
+            self._drags += 1
+            self._do((DRAG, self._drags), lambda: board.take(gesture))
         self._update()
+
+    def _has_taken_text(self) -> bool:
+        """Take the text that is being typed, if any; False if it is refused, and stays to be corrected."""
+        if self.board.typing.is_on:
+            self._do(None, self.board.typing.take)
+        return not self.board.typing.is_on
 
     def on_tick(self, is_at_rest: bool = True) -> None:
         """Refine a coarse picture when the movement rests, and take a message away when its time has passed.
@@ -171,8 +276,8 @@ class Viewer:
         self._watching.advance()
         if is_at_rest and not (self.board.is_dragging or self._watching.is_on):
             self._take_changes()
-        has_ended = is_at_rest and self._doing.kind != WHEEL and not self.board.is_dragging
-        rests = has_ended or self._doing.has_rested
+        has_ended = is_at_rest and self._action.kind != WHEEL and not self.board.is_dragging
+        rests = has_ended or self._action.has_rested
         if rests and (self.studio.is_coarse or self.session.moving):
             self.session.moving = False
             self._refine()
@@ -185,12 +290,12 @@ class Viewer:
         if self.session.disk.was_changed() and self._do(None, self.session.take_changes):
             self._update()
 
-    def tell(self, message: str, stands: bool = False) -> None:
+    def tell(self, message: str, persistent: bool = False) -> None:
         """Show a message of the window; an empty one takes the last one away at once.
 
         One that `stands` does so until something is done.
         """
-        self.session.tell(message, stands=stands)
+        self.session.tell(message, persistent=persistent)
         self._update()
 
     def _update(self) -> None:
@@ -204,6 +309,7 @@ class Viewer:
         if self.board.turn():
             self._refine()
         self._had_news = self.session.has_news
+        self.board.forget()
         page = self.board.page()
         self._sheet.show(page)
         if page.base is not self._base and not self.board.is_dragging:
@@ -225,8 +331,9 @@ class Viewer:
     ) -> bool:
         """Do what a key or a gesture asks for; returns False if that does nothing here."""
         self._watching.end()
-        taken = self._doing.do(source, run, continues, moving)
-        if self._doing.costs > Tier.ENTRIES and not self.board.screen.shows_scene:
+        taken = self._action.do(source, run, continues, moving)
+        self.board.forget()
+        if self._action.costs > Tier.ENTRIES and not self.board.screen.shows_scene:
             self.session.turn_to(PICTURE)
         return taken
 
@@ -237,7 +344,7 @@ class Viewer:
 
     def on_close(self) -> bool:
         """Whether the window may close: nothing is unsaved, or this is the second attempt in a row."""
-        may_close = not self._doing.warns_of_changes("close again to discard the changes")
+        may_close = not self._action.warns_of_changes("close again to discard the changes")
         self._update()
         return may_close
 
@@ -275,7 +382,7 @@ class Viewer:
         """
         board, session = self.board, self.session
         if board.is_dragging:
-            if self._doing.was_by(self._pointing.source):
+            if self._action.was_by((DRAG, self._drags)):
                 self.studio.undo()
                 session.tell("taken back")
             self._mouse.forget()
@@ -327,3 +434,153 @@ class Viewer:
         self.session.tell("")
         self._update()
         self._unit.hide()
+
+
+SCREENS: Final[tuple[type[Screen], ...]] = (
+    PictureScreen,
+    LightAndViewScreen,
+    LightsScreen,
+    ReflectanceScreen,
+    MixingScreen,
+    BlendingScreen,
+    MappingScreen,
+    ScalarScreen,
+    VariantsScreen,
+    FileScreen,
+    EntriesScreen,
+    HelpScreen,
+)
+"""Every screen, in the order of the main menu. A new screen is its module, and its line here."""
+
+TURN: Final = 5.0
+FINE_TURN: Final = 1.0
+"""Degrees for each press of a key that turns, and with Shift."""
+
+CLOSER: Final = 0.9
+"""The ratio of distances for each press of a key that moves closer."""
+
+BLEND: Final = 0.05
+"""The step of the blend for each press of its keys."""
+
+BINDINGS: Final[tuple[Binding[Viewer], ...]] = (
+    Binding((Chord("f1"),), "this help, and back", lambda viewer, _: viewer.toggle("help")),
+    Binding(
+        (Chord("f4"),),
+        "the 1024 entries of the lookup table, and back",
+        lambda viewer, _: viewer.toggle("entries"),
+    ),
+    Binding(
+        (Chord("tab"),),
+        "the menu (or the right edge); its keys: arrows, Return",
+        lambda viewer, _: viewer.toggle_menu(),
+    ),
+    Binding(
+        (Chord("left"), Chord("right"), Chord("left", shift=True), Chord("right", shift=True)),
+        "turn around the object; finely with Shift",
+        lambda viewer, number: viewer.edits.turn((-TURN, TURN, -FINE_TURN, FINE_TURN)[number], 0),
+        label="Left, Right",
+        held=True,
+    ),
+    Binding(
+        (Chord("up"), Chord("down"), Chord("up", shift=True), Chord("down", shift=True)),
+        "look from above, from below; finely with Shift",
+        lambda viewer, number: viewer.edits.turn(0, (TURN, -TURN, FINE_TURN, -FINE_TURN)[number]),
+        label="Up, Down",
+        held=True,
+    ),
+    Binding(
+        (Chord("+"), Chord("="), Chord("-")),
+        "move closer, farther",
+        lambda viewer, number: viewer.edits.move((CLOSER, CLOSER, 1 / CLOSER)[number]),
+        label="+ and -",
+        held=True,
+    ),
+    Binding(
+        (Chord(","), Chord(".")),
+        "rotate the picture's horizontal axis",
+        lambda viewer, number: viewer.edits.tilt((-TURN, TURN)[number]),
+        label="comma, period",
+        held=True,
+    ),
+    Binding(
+        tuple(Chord(f"f{number}") for number in range(5, 10)),
+        "view from the front, side, back, top, three quarters",
+        lambda viewer, number: viewer.edits.see_from(number),
+        label="F5 to F9",
+    ),
+    Binding(
+        (Chord("r"), Chord("r", shift=True)),
+        "rescale: fill the picture with the object, the surface",
+        lambda viewer, number: viewer.edits.rescale(number == 1),
+    ),
+    Binding(
+        tuple(Chord(str(digit)) for digit in range(1, 10)),
+        "switch a light on or off",
+        lambda viewer, number: viewer.edits.switch_light(number),
+        label="1 to 9",
+    ),
+    Binding(
+        (Chord("s"), Chord("s", shift=True)),
+        "select the next surface, the previous one",
+        lambda viewer, number: viewer.edits.choose_surface((1, -1)[number]),
+        repeats=True,
+    ),
+    Binding(
+        (Chord("["), Chord("]")),
+        "blend: light color from a lower, from a higher level",
+        lambda viewer, number: viewer.edits.blend((-BLEND, BLEND)[number]),
+        label="[ and ]",
+        held=True,
+    ),
+    Binding(
+        (Chord("c"), Chord("c", shift=True)),
+        "the next object color, the previous one",
+        lambda viewer, number: viewer.edits.repaint((1, -1)[number]),
+        repeats=True,
+    ),
+    Binding(
+        (Chord("e"),),
+        "hold the exposure (less light is darker), release it",
+        lambda viewer, _: viewer.edits.switch_exposure(),
+    ),
+    Binding(
+        (Chord("w"),),
+        "watch the picture being computed, line by line",
+        lambda viewer, _: viewer.watch(),
+    ),
+    Binding(
+        (Chord("b"),),
+        "while held: the state before the last step",
+        lambda viewer, _: viewer.compare(),
+        release=lambda viewer: viewer.session.end_comparing(),
+    ),
+    Binding((Chord("z", control=True),), "undo", lambda viewer, _: viewer.undo(), repeats=True),
+    Binding(
+        (Chord("y", control=True), Chord("z", control=True, shift=True)),
+        "redo",
+        lambda viewer, _: viewer.redo(),
+        repeats=True,
+    ),
+    Binding((Chord("s", control=True),), "save the picture with its scene", lambda viewer, _: viewer.save()),
+    Binding((Chord("r", control=True),), "read the scene's file again", lambda viewer, _: viewer.reopen()),
+    Binding(
+        (Chord("escape"),),
+        "leave full screen, a page, and if saved the window",
+        lambda viewer, _: viewer.escape(),
+    ),
+)
+WINDOW_KEYS: Final = (
+    ("F11, Alt+Enter", "full screen, and back"),
+    ("F12", "save a numbered screenshot"),
+    ("Ctrl+Q", "leave"),
+    ("mouse", "drag: turn; Shift, middle: move; Ctrl, wheel: closer"),
+    ("mouse, highlight", "drag it, or click, and click where it goes"),
+    ("joystick unit", "ENTER picks and places; TRACK, held, drags"),
+    ("a file dropped", "open it: a scene, a mesh or a picture file"),
+)
+"""The keys that the window itself handles, and the mouse."""
+
+
+def rows_of_help() -> list[tuple[str, str]]:
+    """Each key and what it does, for the help page."""
+    return [(str(binding), binding.does) for binding in BINDINGS] + list(WINDOW_KEYS)

@@ -1,4 +1,4 @@
-"""Which polygon is visible at each pixel, the point, normal and reflected view there, and what a pixel sees.
+"""Hidden surfaces: the polygon that is visible at each pixel, and its point, normal and reflected view.
 
 Uses `scene` and the ground.
 """

@@ -1,4 +1,4 @@
-"""The polygons in camera space.
+"""Polygons in camera space: transformed, and clipped at the near plane.
 
 Camera space has its origin at the eye and the axes of the view: right, down and forward.
 """
@@ -9,7 +9,7 @@ import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -19,16 +19,16 @@ from autocolor.scene.mesh import Mesh
 from autocolor.scene.view import View
 
 NEAR: Final = 1e-6
-"""Assumed: the near plane where the object reaches behind the eye; what is nearer vanishes.
+"""Assumed: the depth of the near plane if the object reaches behind the eye.
 
-It is a fraction of the depth of the farthest corner.
+It is a fraction of the depth of the farthest corner. Everything nearer vanishes.
 """
 
 LEAST_NEAR: Final = 1e-9
 """Assumed: the least depth of the near plane, in units.
 
-An object wholly before the eye is clipped only here: nothing of it vanishes that is farther, however small
-it is. Closer to the eye, crossings would be rounded by more than a thousandth of a pixel.
+An object wholly before the eye is clipped only here, however small it is. At smaller depths a crossing would
+be rounded by more than a thousandth of a pixel.
 """
 
 LEAST_UNIT: Final = 2.0**-800
@@ -87,16 +87,16 @@ def unit_and_near(mesh: Mesh, view: View) -> tuple[float, float]:
 def near_of(near: float, nearest_corner: float) -> float:
     """The depth of the near plane, given the depth of the nearest corner of a polygon.
 
-    Nothing needs to be clipped where all corners lie before the eye.
+    If all corners lie before the eye, the near plane clips nothing beyond LEAST_NEAR.
     """
     return max(nearest_corner, LEAST_NEAR) if nearest_corner > 0 else near
 
 
 def rotated(axes: Floats, points: RealArray[Real], origin: Vector = (0.0, 0.0, 0.0)) -> RealArray[Real]:
-    """Points, (3, n), relative to an origin and in other axes, the rows of a matrix.
+    """The coordinates of points, (3, n), relative to an origin and along other axes, the rows of a matrix.
 
-    Measured: a matrix product of so few rows takes as long, and up to thirty times as long while another
-    process uses the second processor, because its threads wait for each other.
+    Measured and rejected: a matrix product of so few rows takes as long, and up to thirty times as long while
+    another process uses the second processor, because its threads wait for each other.
     """
     out = np.empty_like(points)
     axes = axes.astype(points.dtype)
@@ -109,15 +109,11 @@ def rotated(axes: Floats, points: RealArray[Real], origin: Vector = (0.0, 0.0, 0
     return out
 
 
-# -------------------- clipping
-# Clipping polygons at the near plane: only what lies beyond it is kept.
-
-
 def clipped_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
     """The polygons with no corner nearer than the near plane; clipping adds nodes and normals.
 
-    A clipped edge is always followed from its lower to its higher node number, and clipped once for all
-    polygons that share it, so that they still share it afterwards.
+    Each edge is clipped once, from its lower to its higher node number. So polygons that share an edge share
+    the clipped edge, too.
     """
     positions, near = polygons.positions, polygons.near
     if positions[2].min(initial=near) >= near:
@@ -125,7 +121,7 @@ def clipped_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
     before = (positions[2] < near).take(polygons.corners)
     all_before = before[0] & before[1] & before[2] & before[3]
     some_before = before[0] | before[1] | before[2] | before[3]
-    kept, crossing = np.flatnonzero(~some_before), np.flatnonzero(some_before & ~all_before)
+    beyond, crossing = np.flatnonzero(~some_before), np.flatnonzero(some_before & ~all_before)
 
     clipped = _Clipped(polygons)
     for column in crossing.tolist():
@@ -135,15 +131,15 @@ def clipped_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
     if clipped.new_positions:
         positions = np.column_stack([positions, *clipped.new_positions])
         normals = np.column_stack([normals, *clipped.new_normals])
-    columns = np.concatenate([kept, np.array(clipped.columns, np.intp)])
-    # Keep the order of the polygon table: of equally near polygons the later one is visible.
+    columns = np.concatenate([beyond, np.array(clipped.columns, np.intp)])
+    # Restore the order of the polygon table: of equally near polygons the later one is visible.
     order = np.argsort(columns, kind="stable")
     return dataclasses.replace(
         polygons,
         positions=positions,
         normals=normals,
-        corners=_merged(polygons.corners, kept, clipped.corners, order),
-        corner_normals=_merged(polygons.corner_normals, kept, clipped.corner_normals, order),
+        corners=_merged(polygons.corners, beyond, clipped.corners, order),
+        corner_normals=_merged(polygons.corner_normals, beyond, clipped.corner_normals, order),
         polygon_numbers=polygons.polygon_numbers[columns[order]],
     )
 
@@ -151,8 +147,8 @@ def clipped_at_near_plane(polygons: CameraPolygons) -> CameraPolygons:
 class _Clipped:
     """Clipped polygons, and the nodes and normals that clipping adds.
 
-    `corners` and `corner_normals` hold four numbers for each polygon that clipping leaves, and `columns` the
-    polygon that it is a part of.
+    `corners` and `corner_normals` have four numbers for each clipped polygon, `columns` the column of the
+    whole polygon.
     """
 
     def __init__(self, polygons: CameraPolygons) -> None:
@@ -165,13 +161,13 @@ class _Clipped:
         self.columns: list[int] = []
 
     def add(self, column: int) -> None:
-        """Clip the polygon in a column, and divide what is left into polygons of four corners."""
+        """Clip the polygon in a column, and divide the rest of it into polygons of four corners."""
         polygons, near = self._polygons, self._polygons.near
         nodes, rows = polygons.corners[:, column].tolist(), polygons.corner_normals[:, column].tolist()
         depths = polygons.positions[2, polygons.corners[:, column]].tolist()
         left_nodes: list[int] = []
         left_rows: list[int] = []
-        # Begin where the polygon comes out of the near plane, whichever corner is written first.
+        # Begin at the edge that comes out of the near plane, whichever corner is written first.
         steps = [(corner, (corner + 1) % 4) for corner in range(4)]
         begin = min(
             (step for step in steps if depths[step[0]] < near <= depths[step[1]]),
@@ -189,7 +185,7 @@ class _Clipped:
                 fraction = (near - depths[low]) / (depths[high] - depths[low])
                 left_nodes.append(self._node_on_edge(nodes[low], nodes[high], fraction))
                 left_rows.append(self._normal_between(rows[low], rows[high], fraction))
-        # Divide a polygon of five or six corners into a quad and what remains.
+        # Divide a polygon of five or six corners into two.
         for first in range(1, len(left_nodes) - 1, 2):
             picked = [0, first, first + 1, min(first + 2, len(left_nodes) - 1)]
             self.corners.append([left_nodes[corner] for corner in picked])
@@ -197,7 +193,7 @@ class _Clipped:
             self.columns.append(column)
 
     def _node_on_edge(self, low: int, high: int, fraction: float) -> int:
-        """The number of the node where an edge meets the near plane, the same for all its polygons."""
+        """The number of the node where an edge meets the near plane, equal for all polygons at the edge."""
         positions = self._polygons.positions
         if (low, high) not in self._node_of_edge:
             self._node_of_edge[low, high] = positions.shape[1] + len(self.new_positions)
@@ -213,61 +209,7 @@ class _Clipped:
         return int(normals.shape[1]) + len(self.new_normals) - 1
 
 
-def _merged(table: Indices, kept: Indices, clipped: list[list[int]], order: Indices) -> Indices:
-    """The columns of the kept polygons and those of the clipped ones, in an order."""
+def _merged(table: Indices, beyond: Indices, clipped: list[list[int]], order: Indices) -> Indices:
+    """The columns `beyond` the near plane and the clipped columns, in an order."""
     columns = np.array(clipped, np.intp).reshape(-1, 4).T
-    return np.take(np.concatenate([np.take(table, kept, axis=1), columns], axis=1), order, axis=1)
-
-
-# -------------------- raster
-# Nodes on the raster: where the perspective puts them, and which lines and pixel centers they are before.
-
-ROUNDING: Final = 1e-6
-"""In pixels, far above the rounding of a crossing."""
-
-NODES_AT_ONCE: Final = 1 << 14
-
-
-class Raster(NamedTuple):
-    """The lines and elements of a raster, and its focal length in pixels."""
-
-    lines: int
-    elements: int
-    focal_length: float
-
-
-class OnRaster(NamedTuple):
-    """Where nodes lie on a raster, each (nodes,): as in `projection.Projection`."""
-
-    x: Floats
-    y: Floats
-    inverse_depth: Floats
-    first_line: Indices
-
-
-def on_raster(positions: Floats, near: float, raster: Raster) -> OnRaster:
-    """Where nodes lie on the raster; those nearer than the near plane are put on it.
-
-    `positions`, (3, nodes), are in camera space.
-    """
-    count = positions.shape[1]
-    x, y, inverse_depth = np.empty(count), np.empty(count), np.empty(count)
-    first_line = np.empty(count, np.intp)
-    for chunk in chunks(count, NODES_AT_ONCE):
-        right, down, depth = positions[:, chunk]
-        np.divide(1.0, np.maximum(depth, near), out=inverse_depth[chunk])
-        scale = raster.focal_length * inverse_depth[chunk]
-        np.add(right * scale, raster.elements / 2, out=x[chunk])
-        np.add(down * scale, raster.lines / 2, out=y[chunk])
-        first_line[chunk] = np.clip(np.ceil(y[chunk] - 0.5), 0, raster.lines)
-    return OnRaster(x, y, inverse_depth, first_line)
-
-
-def left_center(x: Floats) -> Floats:
-    """The first element whose center may be at x or right of it, if a crossing is rounded to the left."""
-    return np.ceil(x - (0.5 + ROUNDING))
-
-
-def right_center(x: Floats) -> Floats:
-    """The first element whose center is right of x, if a crossing is rounded to the right."""
-    return np.ceil(x - (0.5 - ROUNDING))
+    return np.take(np.concatenate([np.take(table, beyond, axis=1), columns], axis=1), order, axis=1)

@@ -1,4 +1,9 @@
-"""Extents: which pixels of a scan line a polygon covers, and its inverse depth along them."""
+"""Edges of polygons, where scan lines cross them, and the extents of polygons between the crossings.
+
+An edge is identified by the corners at its top and its bottom, numbers in the flat corners of a projection:
+number c * polygons + p is corner c of polygon p. It is always followed from top to bottom, whichever way the
+polygon runs, so that polygons that share an edge have the same crossings and leave no crack.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +16,6 @@ import numpy as np
 from autocolor.arrays import Floats, Indices, least_of_four, runs
 from autocolor.visibility.projection import Projection
 
-# -------------------- edges
-# Edges of polygons, and how they step from scan line to scan line.
-#
-# An edge is known by the corners at its top and its bottom, numbers in the flat corners of a projection:
-# number c * polygons + p is corner c of polygon p. It is always followed from top to bottom, whichever way
-# the polygon runs, so that polygons that share an edge have the same crossings and leave no crack.
-
 Side = Literal[1, -1]
 
 DOWN_SIDE: Final[Side] = 1
@@ -25,7 +23,6 @@ DOWN_SIDE: Final[Side] = 1
 
 UP_SIDE: Final[Side] = -1
 """The edges that lead back up."""
-
 
 TOP_CORNERS: Final = {
     side: np.array(
@@ -35,7 +32,7 @@ TOP_CORNERS: Final = {
 }
 """The top corner of the edge of a side that a line crosses.
 
-It is looked up by which corners lie at or above the line: the sum of 2^c of those corners c.
+The index is the sum of 2^c over the corners c that lie at or above the line.
 """
 
 
@@ -90,7 +87,7 @@ def edges(projected: Projection, top: Indices, bottom: Indices) -> Edges:
 def edges_of_sides(projected: Projection, polygons: Indices) -> tuple[Edges, Edges]:
     """The edges of the down side and of the up side of some polygons of the projection.
 
-    They are in the order of the polygons, and those of one polygon from top to bottom, so that each side has
+    They are in the order of the polygons, and within a polygon from top to bottom, so that each side has
     every line of the polygon once and in order. Edges that cross no line are left out.
     """
     lines = projected.first_line.take(projected.corners.take(polygons, axis=1))
@@ -106,9 +103,9 @@ def edges_of_sides(projected: Projection, polygons: Indices) -> tuple[Edges, Edg
         descends = np.zeros((count, 4), np.bool_)
         for step, (upper, lower) in enumerate(pairwise(corners)):
             np.less(line[upper], line[lower], out=descends[:, step])
-        found = np.flatnonzero(descends)
-        row = found >> 2
-        top, polygon = (highest[row] + turn * (found & 3)) & 3, polygons[row]
+        places = np.flatnonzero(descends)
+        row = places >> 2
+        top, polygon = (highest[row] + turn * (places & 3)) & 3, polygons[row]
         return edges(projected, top * all_polygons + polygon, ((top + turn) & 3) * all_polygons + polygon)
 
     return side(DOWN_SIDE, [0, 1, 2, 3]), side(UP_SIDE, [0, 3, 2, 1])
@@ -122,7 +119,7 @@ def edges_on_lines(
     Each polygon must cross its line.
     """
     count = projected.corners.shape[1]
-    # Number the ways in which corners can lie at or above the line.
+    # Look up the top corner by the corners that lie at or above the line.
     corners = np.take(projected.corners, polygons, axis=1)
     above = projected.first_line.take(corners) <= lines
     way = np.packbits(above, axis=0, bitorder="little")[0]
@@ -134,9 +131,9 @@ def edges_on_lines(
 class Extents:
     """Extents of polygons on lines, each with the center of a pixel; every array is (extents,).
 
-    `row` is that of the polygon among those that were asked for. An extent covers `count` elements of its
-    `line` from `first` on. The inverse depth is `start` at the center of the first, and changes by `step` to
-    the next.
+    `row` is the place of the polygon among the given ones. An extent covers `count` elements of its `line`
+    from `first` on. The inverse depth is `start` at the center of the first, and changes by `step` to the
+    next.
     """
 
     row: Indices
@@ -149,27 +146,27 @@ class Extents:
 
 def extents_of_polygons(projected: Projection, polygons: Indices) -> Extents:
     """The extents of some polygons of the projection, in the order of polygons and lines."""
-    # Let the lines cross the edges; both sides have the same polygons and lines in the same order.
+    # Find the crossings; both sides have the same polygons and lines in the same order.
     down_edges, up_edges = edges_of_sides(projected, polygons)
     down_x, down_depth = _crossings(down_edges)
     up_x, up_depth = _crossings(up_edges)
     line = runs(down_edges.first_line, down_edges.count)
     row = np.repeat(np.arange(len(polygons)), projected.line_counts.take(polygons))
 
-    # Pair the crossings, and keep the pairs that cover the center of a pixel: left <= center < right.
+    # Pair the crossings, and select the pairs that cover the center of a pixel: left <= center < right.
     first = _first_center(np.minimum(down_x, up_x), projected.elements)
     end = _first_center(np.maximum(down_x, up_x), projected.elements)
-    kept = np.flatnonzero(end > first)
-    first, end = first.take(kept), end.take(kept)
-    down_x, up_x = down_x.take(kept), up_x.take(kept)
-    down_depth, up_depth = down_depth.take(kept), up_depth.take(kept)
+    pairs = np.flatnonzero(end > first)
+    first, end = first.take(pairs), end.take(pairs)
+    down_x, up_x = down_x.take(pairs), up_x.take(pairs)
+    down_depth, up_depth = down_depth.take(pairs), up_depth.take(pairs)
 
     # Step the depth from the left whichever way the polygon runs, so that coincident polygons of opposite
     # winding are equally near.
     step = (up_depth - down_depth) / (up_x - down_x)
     start = np.where(down_x <= up_x, down_depth, up_depth)
     start += (first + 0.5 - np.minimum(down_x, up_x)) * step
-    return Extents(row.take(kept), line.take(kept), first, end - first, start, step)
+    return Extents(row.take(pairs), line.take(pairs), first, end - first, start, step)
 
 
 def _crossings(edges: Edges) -> tuple[Floats, Floats]:

@@ -1,7 +1,8 @@
 """The visible points: the polygon, the point and the normal at each pixel, in camera space, by surface.
 
 Assumed: points are float32 around the middle of the whole object's bounding box, exact to a sixteen-millionth
-of its size. Lights on a thing of 0.001 units before a plate of 1,000 are off by some 2 % of the brightest.
+of its size. The light on an object of 0.001 units in front of a plate of 1,000 is off by some 2 % of the
+brightest.
 """
 
 from __future__ import annotations
@@ -22,42 +23,8 @@ from autocolor.immutable import Immutable, read_only
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
 
-# -------------------- visible_parts
-# The part that is seen at each visible point, worked out when it is first asked for.
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class VisibleParts(Immutable):
-    """The parts of the visible points, which come in spans that see the same polygon.
-
-    `names` are those of all parts of the mesh, and `part_of_polygon` their rows, (polygons,). `span_polygons`
-    are rows of the polygon table, and `span_lengths` counts of points.
-    """
-
-    names: tuple[str, ...]
-    part_of_polygon: Indices
-    span_polygons: Indices
-    span_lengths: Indices
-
-    def __post_init__(self) -> None:
-        for array in (self.part_of_polygon, self.span_polygons, self.span_lengths):
-            read_only(array)
-
-    @classmethod
-    def of_points(cls, names: tuple[str, ...], numbers: PartNumbers) -> VisibleParts:
-        """The parts of points whose part numbers, (n,), are known, each of them from 1 on."""
-        return cls(names, np.arange(len(names)), numbers.astype(np.intp) - 1, np.ones(len(numbers), np.intp))
-
-    @cached_property
-    def numbers(self) -> PartNumbers:
-        """The part number at each point, (n,) int32: number k is names[k - 1]; read-only."""
-        of_spans = (self.part_of_polygon.take(self.span_polygons) + 1).astype(np.int32)
-        return read_only(np.repeat(of_spans, self.span_lengths))
-
-
 PIXELS_AT_ONCE: Final = 1 << 17
-"""As many as the caches hold of the arrays that one step needs."""
-
+"""As many as the processor's caches hold of the arrays that one step needs."""
 
 # Rows of `VisiblePoints.rows`: point P, normal N and reflected view R, each before its dot product with P.
 POINT: Final = slice(0, 3)
@@ -67,79 +34,13 @@ POINT_SQUARED: Final = POINT.stop
 ROW_COUNT: Final = 12
 
 
-def fill_point_products(rows: Singles) -> None:
-    """Fill in the dot product of each vector in the rows with the point: the row after the vector."""
-    vectors = rows.reshape(3, 4, -1)
-    np.einsum("kij,ij->kj", vectors[:, :3], rows[POINT], out=vectors[:, 3])
-
-
-@dataclass(frozen=True, eq=False)
-class SurfaceSlice:
-    """The pixels `start` to `stop`, all of one surface."""
-
-    surface_number: int
-    start: int
-    stop: int
-
-    @property
-    def pixels(self) -> slice:
-        """The pixels as a slice."""
-        return slice(self.start, self.stop)
-
-
-@dataclass(frozen=True, eq=False)
-class PointChunk:
-    """Visible points that are worked on at once; `slices` are counted from the start of the chunk."""
-
-    pixels: slice
-    slices: tuple[SurfaceSlice, ...]
-
-
-def surface_slices(counts: Numbers) -> tuple[SurfaceSlice, ...]:
-    """The slices of pixels sorted by surface; `counts` has the number of pixels of each surface number."""
-    stops = np.cumsum(counts)
-    return tuple(
-        SurfaceSlice(number, int(stops[number] - counts[number]), int(stops[number]))
-        for number in np.flatnonzero(counts).tolist()
-    )
-
-
-def point_chunks(slices: Sequence[SurfaceSlice]) -> tuple[PointChunk, ...]:
-    """All pixels in chunks of about the same size, which end between two surfaces where that fits.
-
-    The chunks depend only on the slices: so an edit computes a plane in the same steps as a fresh picture,
-    and to the same bits.
-    """
-    total = slices[-1].stop if slices else 0
-    count = -(-total // PIXELS_AT_ONCE)
-    even_ends = [total * number // count for number in range(1, count + 1)]
-    bounds = [0]
-    for end, following in pairwise(even_ends):
-        between = min((each.start for each in slices), key=lambda start: abs(start - end))
-        fits = all(0 < size <= PIXELS_AT_ONCE for size in (between - bounds[-1], following - between))
-        bounds.append(between if fits else end)
-    bounds.extend(even_ends[-1:])
-    return tuple(
-        PointChunk(slice(start, stop), _within(slices, start, stop)) for start, stop in pairwise(bounds)
-    )
-
-
-def _within(slices: Sequence[SurfaceSlice], start: int, stop: int) -> tuple[SurfaceSlice, ...]:
-    """The parts of slices from `start` to `stop`, counted from there."""
-    return tuple(
-        SurfaceSlice(each.surface_number, max(each.start, start) - start, min(each.stop, stop) - start)
-        for each in slices
-        if each.start < stop and each.stop > start
-    )
-
-
 @dataclass(frozen=True, eq=False)
 class VisiblePoints:
     """The visible points of a view, one for each pixel that sees a polygon, sorted by surface.
 
     `pixels`, (n,) intp, are their flat places in the raster. They come in spans of neighbors that see the
     same polygon, and the spans of a polygon mostly follow each other: `span_polygons` are rows of the polygon
-    table, `span_lengths` counts of pixels. `parts` tells the part at each of them.
+    table, `span_lengths` counts of pixels. `parts` has the part at each pixel.
 
     `rows` is (12, n) float32: the point in camera space around `middle`, the unit normal, and the view
     direction reflected at the normal, each with its dot product with the point, so that every cosine to a
@@ -208,20 +109,117 @@ class VisiblePoints:
         return normals
 
 
-# -------------------- sight
-# The sight: what the pixels of a display see of a scene, and what is seen at one of them.
-#
-# It is called at each movement of the pointer. Measured on the coupe: 0.1 ms, most of it for finding the
-# pixel among the visible points; a raster of their places would take 1.2 MB for each picture.
+def fill_point_products(rows: Singles) -> None:
+    """Fill in the dot product of each vector in the rows with the point: the row after the vector."""
+    vectors = rows.reshape(3, 4, -1)
+    np.einsum("kij,ij->kj", vectors[:, :3], rows[POINT], out=vectors[:, 3])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class VisibleParts(Immutable):
+    """The part at each visible point, computed when it is first asked for.
+
+    `names` are the names of all parts of the mesh, and `part_of_polygon` their rows, (polygons,). The points
+    come in spans that see the same polygon: `span_polygons` are rows of the polygon table, and `span_lengths`
+    counts of points.
+    """
+
+    names: tuple[str, ...]
+    part_of_polygon: Indices
+    span_polygons: Indices
+    span_lengths: Indices
+
+    def __post_init__(self) -> None:
+        for array in (self.part_of_polygon, self.span_polygons, self.span_lengths):
+            read_only(array)
+
+    @classmethod
+    def of_points(cls, names: tuple[str, ...], numbers: PartNumbers) -> VisibleParts:
+        """The parts of points with these part numbers, (n,), from 1 on."""
+        return cls(names, np.arange(len(names)), numbers.astype(np.intp) - 1, np.ones(len(numbers), np.intp))
+
+    @cached_property
+    def numbers(self) -> PartNumbers:
+        """The part number at each point, (n,) int32: number k is names[k - 1]; read-only."""
+        of_spans = (self.part_of_polygon.take(self.span_polygons) + 1).astype(np.int32)
+        return read_only(np.repeat(of_spans, self.span_lengths))
+
+
+# -------------------- points by surface, and in chunks
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceSlice:
+    """The pixels of a surface, from `start` to before `stop`."""
+
+    surface_number: int
+    start: int
+    stop: int
+
+    @property
+    def pixels(self) -> slice:
+        """The pixels as a slice."""
+        return slice(self.start, self.stop)
+
+
+@dataclass(frozen=True, eq=False)
+class PointChunk:
+    """Visible points that are worked on at once; `slices` are counted from the start of the chunk."""
+
+    pixels: slice
+    slices: tuple[SurfaceSlice, ...]
+
+
+def surface_slices(counts: Numbers) -> tuple[SurfaceSlice, ...]:
+    """The slices of pixels sorted by surface; `counts` has the number of pixels of each surface number."""
+    stops = np.cumsum(counts)
+    return tuple(
+        SurfaceSlice(number, int(stops[number] - counts[number]), int(stops[number]))
+        for number in np.flatnonzero(counts).tolist()
+    )
+
+
+def point_chunks(slices: Sequence[SurfaceSlice]) -> tuple[PointChunk, ...]:
+    """All pixels in chunks of about the same size, which end between two surfaces where that fits.
+
+    The chunks depend only on the slices: so an edit computes a plane in the same steps as a fresh picture,
+    and to the same bits.
+    """
+    total = slices[-1].stop if slices else 0
+    count = -(-total // PIXELS_AT_ONCE)
+    even_ends = [total * number // count for number in range(1, count + 1)]
+    bounds = [0]
+    for end, following in pairwise(even_ends):
+        between = min((each.start for each in slices), key=lambda start: abs(start - end))
+        fits = all(0 < size <= PIXELS_AT_ONCE for size in (between - bounds[-1], following - between))
+        bounds.append(between if fits else end)
+    bounds.extend(even_ends[-1:])
+    return tuple(
+        PointChunk(slice(start, stop), _within(slices, start, stop)) for start, stop in pairwise(bounds)
+    )
+
+
+def _within(slices: Sequence[SurfaceSlice], start: int, stop: int) -> tuple[SurfaceSlice, ...]:
+    """The parts of slices from `start` to `stop`, counted from there."""
+    return tuple(
+        SurfaceSlice(each.surface_number, max(each.start, start) - start, min(each.stop, stop) - start)
+        for each in slices
+        if each.start < stop and each.stop > start
+    )
+
+
+# -------------------- the sight of a display
+# `seen_at` is called at each movement of the pointer. Measured on the coupe: 0.1 ms, most of it for finding
+# the pixel among the visible points; a raster of their places would take 1.2 MB for each picture.
 
 
 class Seen(NamedTuple):
-    """What is seen at a pixel.
+    """The visible point at a pixel, in the words of the scene.
 
     `surface` and `part` are names, and `polygon` is a row of the polygon table. `point` is P, in object
     coordinates; `normal` is the unit normal N that is used for shading, turned to the eye where the surface
     is two-sided; `reflected_view` is the unit vector R = 2 (N.V) N - V, where V is the direction from P to
-    the eye. N is zero where those of the corners cancel.
+    the eye. N is zero where the normals of the corners cancel.
     """
 
     surface: str
@@ -241,7 +239,7 @@ class Sight:
     block: int = 1
 
     def place_at(self, line: int, element: int) -> int | None:
-        """The place, among the visible points, of what is seen at a pixel; None on the background.
+        """The place of a pixel among the visible points; None on the background.
 
         Raises UsageError if there is no such line or element.
         """
@@ -256,8 +254,8 @@ class Sight:
                 raise UsageError(
                     f"{article} {what} must be 0 to {count * block - 1}, not {shown(number)}; choose another"
                 )
-        found = np.flatnonzero(points.pixels == line // block * points.elements + element // block)
-        return int(found[0]) if len(found) else None
+        places = np.flatnonzero(points.pixels == line // block * points.elements + element // block)
+        return int(places[0]) if len(places) else None
 
     def pixels_of(self, pixels: Indices) -> Indices:
         """The lines and elements, (n, 2), of the middle of the blocks at flat places in the raster, (n,)."""
@@ -266,7 +264,7 @@ class Sight:
 
 
 def seen_at(sight: Sight, line: int, element: int) -> Seen | None:
-    """What is seen at a pixel, None on the background; all pixels of a block see the same.
+    """The visible point at a pixel; None on the background. All pixels of a block see the same point.
 
     Raises UsageError if there is no such line or element.
     """
@@ -283,7 +281,7 @@ def seen_at(sight: Sight, line: int, element: int) -> Seen | None:
     from_eye = (points.rows[POINT, place] + points.middle) @ axes
     point = from_eye * points.unit + np.array(points.view.eye)
     normal = points.rows[NORMAL, place].astype(np.float64) @ axes
-    # Make it as long as float64 can tell, unless it is zero.
+    # Normalize it in float64, unless it is zero.
     normal /= np.linalg.norm(normal) or 1.0
     # Reflect the view direction at the normal.
     ray = from_eye / np.linalg.norm(from_eye)

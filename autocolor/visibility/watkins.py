@@ -31,9 +31,9 @@ from autocolor.visibility.visible_surfaces import interpolated_points
 
 @dataclass
 class Edge:
-    """An active edge: its values at the first line that it crosses, and what each further line adds.
+    """An active edge: its values at the first line that it crosses, and their steps from line to line.
 
-    `number` is that of its polygon, as depth keys have it.
+    `number` is its polygon's, as in depth keys.
     """
 
     number: int
@@ -55,8 +55,8 @@ class Edge:
 class Segment:
     """The extent of a polygon on a line: its pixels from `first` to before `end`.
 
-    The depth key is `start` at the first pixel and `step` more at each further one. `number` is that of the
-    polygon, as depth keys have it.
+    The depth key is `start` at the first pixel and changes by `step` to the next. `number` is the polygon's,
+    as in depth keys.
     """
 
     number: int
@@ -78,17 +78,16 @@ def watkins(
     elements: int = 640,
     one_sided: frozenset[int] = frozenset(),
 ) -> VisiblePoints:
-    """What is visible at each pixel; the arguments are those of `visible_surfaces`."""
+    """The visible points of a mesh in a view; the arguments are as in `visible_surfaces`."""
     projected = projection(mesh, view, lines, elements)
     number_at_pixel = np.concatenate(list(numbers_by_line(projected)))
     return interpolated_points(projected, number_at_pixel, surface_numbers, one_sided)
 
 
 def numbers_by_line(projected: Projection) -> Iterator[Numbers]:
-    """What is visible on one line after the other, from the top; a line is computed when it is asked for.
+    """The number of the visible polygon at each pixel of each line, (elements,) int64, 0 for none.
 
-    For each line, (elements,) int64, the number of the polygon that is visible at each pixel, as depth keys
-    have it, 0 for none.
+    The numbers are as in depth keys. The lines follow from the top; a line is computed when it is asked for.
     """
     scale = depth_scale(projected)
     active: list[Edge] = []
@@ -103,29 +102,28 @@ def numbers_by_line(projected: Projection) -> Iterator[Numbers]:
 
 
 def edges_by_line(projected: Projection) -> Iterator[list[Edge]]:
-    """For each line, from the top, the edges of which it is the first that they cross.
+    """For each line, from the top, the edges that begin there: Watkins' y-buckets.
 
-    These are Watkins' y-buckets. The edges of a line are made when it is asked for, so that the first line
-    does not wait for all of them.
+    The edges of a line are made when it is asked for, so that the first line does not wait for all of them.
     """
     first_lines = projected.first_line[projected.corners]
     polygons = projected.corners.shape[1]
     starts = np.flatnonzero(first_lines != np.roll(first_lines, -1, axis=0))
     ends = (starts + polygons) % max(projected.corners.size, 1)
     descends = first_lines.ravel()[starts] < first_lines.ravel()[ends]
-    found = edges(projected, np.where(descends, starts, ends), np.where(descends, ends, starts))
+    of_lines = edges(projected, np.where(descends, starts, ends), np.where(descends, ends, starts))
     columns = (
         numbers_of_polygons(projected, starts % max(polygons, 1)),
         descends,
-        found.first_line,
-        found.first_line + found.count,
-        found.x,
-        found.x_step,
-        found.inverse_depth,
-        found.inverse_depth_step,
+        of_lines.first_line,
+        of_lines.first_line + of_lines.count,
+        of_lines.x,
+        of_lines.x_step,
+        of_lines.inverse_depth,
+        of_lines.inverse_depth_step,
     )
-    by_first_line = np.argsort(found.first_line, kind="stable")
-    bounds = np.searchsorted(found.first_line[by_first_line], np.arange(projected.lines + 1))
+    by_first_line = np.argsort(of_lines.first_line, kind="stable")
+    bounds = np.searchsorted(of_lines.first_line[by_first_line], np.arange(projected.lines + 1))
     for first, end in pairwise(bounds.tolist()):
         rows = by_first_line[first:end]
         fields = [column[rows].tolist() for column in columns]
@@ -157,7 +155,7 @@ def segments_of_line(
 def key_of_plane(
     projected: Projection, scale: DepthScale, number: int, line: int, element: int
 ) -> tuple[int, int] | None:
-    """The depth key at a pixel and its step, if the polygon shares its plane's."""
+    """The depth key at a pixel and its step, if the polygon has those of a shared plane."""
     if scale.planes is None:
         return None
     plane = scale.planes[polygons_of_numbers(projected, np.array([number]))]
@@ -186,9 +184,9 @@ def visible_spans(segments: list[Segment]) -> Iterator[tuple[Segment, int, int]]
 
 
 def nearest_in_interval(segments: list[Segment], first: int, end: int) -> Iterator[tuple[Segment, int, int]]:
-    """The nearest segment at the pixels of an interval, halved until one is nearest all over."""
+    """The nearest segments at the pixels of an interval, halved until one segment is nearest all over."""
     nearest = max(segments, key=lambda segment: segment.key(first))
-    # Depth is linear: what is nearest at both ends is nearest in between.
+    # Depth is linear: a segment that is nearest at both ends is nearest in between.
     if all(nearest.key(end - 1) >= segment.key(end - 1) for segment in segments):
         yield nearest, first, end
         return

@@ -37,22 +37,21 @@ from autocolor.widgets.widget import (
     Typed,
     Widget,
     box_items,
-    short_label,
 )
 
 THIN: Final = 2
 """Lines of the bar in a row."""
 
 BESIDE_BOX: Final = "  "
-"""What the number leaves to the box at its right."""
+"""The room for the box at the right of a number."""
 
 
 @dataclass(frozen=True)
 class Bar(Widget):
-    """A number with a bar from `low` to `high`, the usual range; it may lie beyond.
+    """A number with a bar over its usual range, `low` to `high`; the number may lie beyond.
 
-    `value` is None where the number is switched off, which `flip` does where it can be; `flip` is None where
-    it cannot. In a row it is a thin bar below the number; a wide one has its number beside it.
+    `value` is None while the number is switched off. `flip` switches it; a number that is always on has none.
+    In a menu, a thin bar is drawn below the number; a wide bar has its number beside it.
     """
 
     value: float | None = 0.0
@@ -83,7 +82,7 @@ class Bar(Widget):
 
     @property
     def share(self) -> float:
-        """Where the value stands in the usual range, 0 to 1."""
+        """The place of the value in the usual range, 0 to 1."""
         if self.value is None or self.high <= self.low:
             return 0.0
         return min(1.0, max(0.0, (self.value - self.low) / (self.high - self.low)))
@@ -94,23 +93,23 @@ class Bar(Widget):
     def _row_items(self, lit: bool) -> list[Item]:
         background = SLATE if lit else NIGHT
         value = self._row_number + ("" if self.flip is None else BESIDE_BOX)
-        room = (self.area.width - 2 * MARGIN) // CHARACTER
-        found = self.row(lit, short_label(self.label, room - len(value) - 1), value)
+        items = self.labeled_row(lit, value)
         if self.flip is not None:
-            found += box_items(self._box, self.value is not None, self.ink, background)
+            items += box_items(self._box, self.value is not None, self.ink, background)
         track = self._track
-        found.append(filled(track, GRAY if lit else SLATE))
+        items.append(filled(track, GRAY if lit else SLATE))
         if self.value is not None and not self.why_not:
             end = track.left + round(self.share * (track.width - 1))
-            found.append(filled(track._replace(right=end), YELLOW if lit else self.word))
-        return found
+            items.append(filled(track._replace(right=end), YELLOW if lit else self.word))
+        return items
 
     @property
     def _row_number(self) -> str:
-        """The number as it stands in a row: to its step if the label would be cut by more digits."""
-        room = (self.area.width - 2 * MARGIN) // CHARACTER - len(self.label) - 1
-        if self.value is None or len(self.number) <= room - (0 if self.flip is None else len(BESIDE_BOX)):
-            return self.number
+        """The number as it stands in a row: rounded to its step if more digits would cut the label."""
+        room = self.characters - len(self.label) - 1
+        number = self.number
+        if self.value is None or len(number) <= room - (0 if self.flip is None else len(BESIDE_BOX)):
+            return number
         return number_text(rounded_to(self.value, self.step), self.step)
 
     def _wide_items(self, lit: bool) -> list[Item]:
@@ -120,17 +119,17 @@ class Bar(Widget):
         middle = (top + bottom) // 2 - 4
         label = fitted(self.label, (track.left - left - MARGIN) // CHARACTER)
         number = fitted(f"{self.number} {self.unit}".rstrip(), (right - track.right - MARGIN) // CHARACTER)
-        found = [
+        items = [
             filled(self.area, NIGHT),
             filled(track, SLATE),
             filled(track._replace(right=end), YELLOW if lit else self.word),
             filled(Area(end, track.top - 2, end, track.bottom + 2), WHITE),
         ]
         if label:
-            found.append(text(label, left + MARGIN, middle, self.ink))
+            items.append(text(label, left + MARGIN, middle, self.ink))
         if number:
-            found.append(text(number, track.right + MARGIN, middle, self.ink))
-        return found
+            items.append(text(number, track.right + MARGIN, middle, self.ink))
+        return items
 
     @property
     def _box(self) -> Area:
@@ -140,7 +139,7 @@ class Bar(Widget):
 
     @property
     def _track(self) -> Area:
-        """Where the bar is drawn."""
+        """The area of the bar itself."""
         left, top, right, bottom = self.area
         if self.area.height <= ROW_LINES:
             return Area(left + MARGIN, bottom - THIN, right - MARGIN, bottom - 1)
@@ -148,7 +147,7 @@ class Bar(Widget):
         return Area(left + beside, top + 4, right - CHARACTER * WIDE_NUMBER - MARGIN, bottom - 4)
 
     def value_at(self, element: int) -> float:
-        """The value at an element, rounded to the step; at the ends, those of the usual range."""
+        """The value at an element, rounded to the step; beyond the bar, an end of the usual range."""
         track = self._track
         share = (element - track.left) / max(1, track.width - 1)
         if not 0 < share < 1:
@@ -190,7 +189,7 @@ def rounded_to(value: float, step: float) -> float:
 
 
 def number_text(value: float, step: float) -> str:
-    """A number with as many digits as its step has, and at most six significant ones where it is large.
+    """A number with as many decimals as its step, or as it needs, up to six significant digits.
 
     >>> number_text(0.5, 0.01), number_text(20.0, 1), number_text(1.5, 1), number_text(1234567.0, 1)
     ('0.50', '20', '1.5', '1.23457e+06')
@@ -214,8 +213,7 @@ def digits_of(step: float) -> int:
     return len(digits) - digits.index(".") - 1
 
 
-# -------------------- component_bars
-# Component bars: red, green, blue and white of a color, each as long as it is, one element a step.
+# Component bars: red, green, blue and white of a color, one element for each value of the component.
 #
 # Paper: Figure 13, the color bars.
 
@@ -260,15 +258,14 @@ class ComponentBar(Bar):
         ]
 
 
-# -------------------- level_bars
 # Level bars: the levels of a surface in its own words, with a handle at the blend level.
 #
 # Paper: Figures 13 and 14. In the horizontal bar of color mixing, intensity rises to the right; in the
-# vertical bar of light blending, upward. Since a bar shows the surface's own words, loading its entries
-# recolors it.
+# vertical bar of light blending, upward. A bar shows the surface's own words, so loading the entries of the
+# surface recolors the bar, too.
 
 LANE: Final = 8
-"""Elements or lines beside the levels, where the handle stands."""
+"""Elements or lines beside the levels, for the handle."""
 
 REACH: Final = 4
 """Elements or lines from the middle of a handle to its ends."""
@@ -277,15 +274,15 @@ RIGHT: Final = 0
 DOWN: Final = 1
 LEFT: Final = 2
 UP: Final = 3
-"""Where a pointer points."""
+"""The directions of a pointer."""
 
 
 @dataclass(frozen=True)
 class LevelBar(Widget):
     """The levels of a surface, from the left or, of an upright bar, from below; a pick or a drag selects one.
 
-    `words` has the word that shows each level. The area has the levels and the lanes of the handle: above and
-    below, or at the left of an upright bar, beyond which stands its number.
+    `words` has the word that shows each level. The area holds the levels and the lanes of the handle: above
+    and below, or at the left of an upright bar. The number stands beyond that lane.
     """
 
     words: Words = field(default_factory=lambda: np.zeros(2, np.uint16))
@@ -296,14 +293,14 @@ class LevelBar(Widget):
 
     @property
     def strip(self) -> Area:
-        """Where the levels are."""
+        """The area of the levels."""
         left, top, right, bottom = self.area
         if self.upright:
             return Area(left + LANE, top, right, bottom)
         return Area(left, top + LANE, right, bottom - LANE)
 
     def level_at(self, place: Place) -> int:
-        """The level at a place; beyond the ends of the bar, the lowest or the highest one."""
+        """The level at a place; beyond the ends of the bar, the lowest or the highest level."""
         levels = levels_along(self._length, len(self.words))
         along = self.strip.bottom - place.line if self.upright else place.element - self.strip.left
         return int(levels[min(max(along, 0), self._length - 1)])
@@ -315,18 +312,18 @@ class LevelBar(Widget):
     def items(self, lit: bool) -> list[Item]:
         strip, ink = self.strip, YELLOW if lit else WHITE
         along = half_up(self.level * (self._length - 1) / (len(self.words) - 1))
-        # A frame that is seen beside dark levels, over a picture whose background is dark, too.
-        found = [filled(strip.inset(-1), GRAY), level_strip(self.words.tobytes(), strip, self.upright)]
+        # The frame is seen beside dark levels, over a dark picture.
+        items = [filled(strip.inset(-1), GRAY), level_strip(self.words.tobytes(), strip, self.upright)]
         if not self.upright:
             element = strip.left + along
             down, up = pointer(element, strip.top - 2, DOWN, ink), pointer(element, strip.bottom + 2, UP, ink)
-            return [*found, down, up]
+            return [*items, down, up]
         line = strip.bottom - along
-        found.append(pointer(strip.left - 2, line, RIGHT, ink))
+        items.append(pointer(strip.left - 2, line, RIGHT, ink))
         if self.number:
             left = self.area.left - CHARACTER * len(self.number)
-            found.append(text(self.number, left, line - REACH, ink, NIGHT))
-        return found
+            items.append(text(self.number, left, line - REACH, ink, NIGHT))
+        return items
 
     def pick(self, place: Place) -> object:
         return self.put(self.level_at(place))
@@ -340,7 +337,7 @@ class LevelBar(Widget):
 
 @dataclass(frozen=True)
 class PercentBar(Widget):
-    """A handle at a percentage of the height of what stands at the left of the area, with its number."""
+    """A handle at a percentage of the height of the area, with its number, beside an upright level bar."""
 
     value: float = 100.0
     put: Callable[[float], object] = lambda _: None
@@ -370,7 +367,7 @@ class PercentBar(Widget):
 
 
 def levels_along(length: int, levels: int) -> Numbers:
-    """The level at each element of a bar, (length,): the ends are the lowest and the highest one."""
+    """The level at each element of a bar, (length,): the ends are the lowest and the highest level."""
     return (np.arange(length) * (levels - 1) * 2 // (length - 1) + 1) // 2
 
 

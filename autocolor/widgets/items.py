@@ -1,8 +1,7 @@
 """Items: the parts of a page, each with the area that it covers and the instructions that draw it.
 
 An item changes no pixel outside its area. Its instructions set every parameter that they depend on, so that
-items can be drawn in any company; two that are equal draw the same. What lies beyond every display draws
-nothing.
+items can be drawn in any company; equal items draw the same. An item beyond every display draws nothing.
 """
 
 from __future__ import annotations
@@ -17,27 +16,27 @@ from autocolor.arrays import Floats, Numbers, Words
 from autocolor.mapping.ranges import SCREENS
 from ramtek_emu import instructions
 
-# -------------------- colors
-# The words that screens draw with, by the names of their colors, and the size that screens are laid out
-# for.
+# The words on a page, and who owns their entries. Word 0, the background, and the words of the surfaces have
+# the entries of the scene. The sixteen highest words, `SCREENS`, have constant entries: the colors below.
 #
-# | words | their entries | |---|---| | 0, the background, and those of the surfaces | the scene's | |
-# `SCREENS`, the sixteen highest | constant: the colors below |
+# Screen                        Words                                            Borrowed entries
+# picture, lights, reflectance, all; SCREENS over the picture                    none
+#   mapping, scalar
+# light and view                SCREENS; all in its small picture                none
+# color mixing                  SCREENS; the chosen surface's in a small         ramps and swatches
+#                               picture and a bar
+# light blending                all; the chosen surface's again in a bar         none
+# kept                          SCREENS                                          small pictures, in the words
+#                                                                                of all surfaces
+# entries                       all, each in its cell                            none
+# file, help                    SCREENS                                          none
 #
-# | screen | words | borrowed entries | |---|---|---| | picture, lights, reflectance, mapping, scalar | all,
-# `SCREENS` over the picture | none | | light and view | `SCREENS`; all in its small picture | none | |
-# color mixing | `SCREENS`; the chosen surface's, in a small picture and a bar | ramps and swatches | |
-# light blending | all, and the chosen surface's again in a bar, and `SCREENS` | none | | kept | `SCREENS` |
-# small pictures, in the words of all surfaces | | entries | all, each in its cell | none | | file, help |
-# `SCREENS` | none |
+# A screen borrows entries by `Screen.loads` alone. Color mixing borrows words of surfaces that it does not
+# show. Where these are too few, it borrows some words of the chosen surface, spread over its levels: each
+# such level is then shown by the level beside it; see `mixing_screen.palette_of`.
 #
-# A screen borrows words by `Screen.loads` alone. Color mixing borrows those of surfaces that it does not
-# show; where these are too few, it borrows some of the chosen surface's, too, spread over its levels, each
-# of which is then shown by its neighbor. `mixing_palette` tells which ones.
-#
-# A page tells its base and all 1024 entries, and a sheet loads the entries that differ from those of the
-# page before, and writes the words of another base whole: so whatever a screen borrows or covers is
-# restored by the page that follows, and none has to clean up.
+# A page has a base and all 1024 entries. A sheet loads the entries that differ from the page before, and
+# writes the words of another base whole. So the next page restores what a screen borrowed or covered.
 
 WIDTH: Final = 640
 HEIGHT: Final = 480
@@ -58,9 +57,6 @@ BLUE: Final = SCREENS.first + 10
 and blue for axes and for components of colors."""
 
 
-# -------------------- areas
-# Areas of the screen: rectangles of pixels.
-#
 # Positions are an element and a line. Whole numbers are the centers of pixels, line 0 on top.
 
 
@@ -131,10 +127,7 @@ class Area(NamedTuple):
 SCREEN: Final = Area(0, 0, WIDTH - 1, HEIGHT - 1)
 
 
-# -------------------- strokes
-# Strokes: straight lines on the screen, each from an element and line to another.
-#
-# Strokes are (n, 4) float64: element and line of the start, element and line of the end.
+# Strokes: straight lines on the screen, (n, 4) float64: element and line of the start, and of the end.
 
 MOST_STROKES: Final = 1 << 14
 """Assumed: of a huge mesh, only so many strokes are drawn in a view, the longest.
@@ -144,9 +137,9 @@ An area of 248 x 224 has three times as many pixels; more strokes would fill it.
 
 
 def clipped(strokes: Floats, area: Area) -> Floats:
-    """What of the strokes is in the area, between the centers of its outer pixels, (kept, 4).
+    """What of the strokes is in the area, between the centers of its outer pixels, (inside, 4).
 
-    A stroke that is not in the area is left out; one that touches its border leaves a point.
+    A stroke outside of the area is left out; a stroke that touches its border leaves a point.
     """
     # Most strokes of most screens are inside.
     if (strokes >= (*area[:2], *area[:2])).all() and (strokes <= (*area[2:], *area[2:])).all():
@@ -165,11 +158,11 @@ def clipped(strokes: Floats, area: Area) -> Floats:
     outside = (along & ((start < low) | (start > high))).any(axis=0)
     enters = np.where(along, 0.0, np.minimum(at_low, at_high)).max(axis=0, initial=0.0)
     leaves = np.where(along, 1.0, np.maximum(at_low, at_high)).min(axis=0, initial=1.0)
-    kept = np.flatnonzero(~outside & (enters <= leaves))
+    inside = np.flatnonzero(~outside & (enters <= leaves))
 
     # Keep the ends that lie in the area as they are, and let no rounding lead outside of it.
-    start, step, end = start[:, kept], step[:, kept], end[:, kept]
-    enters, leaves = enters[kept], leaves[kept]
+    start, step, end = start[:, inside], step[:, inside], end[:, inside]
+    enters, leaves = enters[inside], leaves[inside]
     starts = np.where(enters > 0, start + enters * step, start)
     ends = np.where(leaves < 1, start + leaves * step, end)
     return np.concatenate([np.clip(starts, low, high), np.clip(ends, low, high)]).T
@@ -239,16 +232,16 @@ DRAWABLE: Final = Area(-0x8000, -0x8000, 0x7FFF, 0x7FFF)
 
 
 class Item(NamedTuple):
-    """Something on a page: its area, and the words of its instructions in bytes, as `Words` holds them.
+    """A part of a page: its area, and the words of its instructions in bytes, as in an array of `Words`.
 
-    `is_solid` tells that it draws every pixel of its area, whatever was there.
+    A solid item draws every pixel of its area, whatever was there.
     """
 
     area: Area
     stream: bytes
     is_solid: bool = False
     word: int | None = None
-    """The word that fills it whole, if it is of one."""
+    """The word of every pixel; None if there are several."""
 
 
 @lru_cache(maxsize=4096)

@@ -1,8 +1,9 @@
-"""The rows of a menu for a row of a table, made from the descriptions of its columns.
+"""The rows of a menu for a row of a table, derived from the descriptions of its columns.
 
-So a column that is added to a table appears on the screens by itself: a number as a bar, a switch as a box, a
-choice, a text, a vector as three bars, a row within a row with its name before those of its columns, a list
-of names as a box for each.
+So a column that is added to a table appears on the screens by itself. A number is a bar, a switch a box, a
+vector three bars; a choice and a text are rows of their own. A row within a row has its name before the names
+of its columns. A list of names has a switch that gives the list, and a box for each name of a table; many
+names come in pages, so that they do not fill the menu.
 """
 
 from __future__ import annotations
@@ -31,14 +32,16 @@ from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, Re
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.widget import Choice, Entry, Heading, Switch, Widget, short_label
 
-# -------------------- name_rows
-# The rows of a menu for columns that refer to rows of other tables by name.
-#
-# A list of names has a switch that gives it, and then one for each known name. Many names come in pages, so
-# that they do not fill the menu.
+Put = Callable[[Mapping[str, object]], object]
+"""Changes fields of the row, by name."""
+
+AXES: Final = "xyz"
+
+TakeNames = Callable[[Any], object]
+"""Takes a name, names, or None."""
 
 NAMES_A_PAGE: Final = 12
-"""Assumed: names that are shown at once; two lists of them fit in a menu."""
+"""Assumed: names that are shown at once; two lists of so many fit in a menu."""
 
 LONGEST_LABEL: Final = 14
 """Characters of a label beside a box."""
@@ -48,79 +51,12 @@ INDENT: Final = "  "
 NONE: Final = "none"
 """The choice of no name."""
 
-TakeNames = Callable[[Any], object]
-"""Takes a name, names, or None."""
 
-
-class KnownNames(NamedTuple):
-    """The names that can be chosen: those of a table, and the page of them that is shown, by table."""
+class TableNames(NamedTuple):
+    """The names of the rows of each table, and the number of the page of names that is shown, by table."""
 
     of: Callable[[str], Sequence[str]]
     pages: dict[str, int]
-
-
-def reference_rows(
-    label: str, field: Field, kind: Referring, value: Any, take: TakeNames, known: KnownNames
-) -> Iterator[Widget]:
-    """The rows for names in a column; `take` is called with what they are to be."""
-    column, names = field.column, known.of(kind.table)
-    if isinstance(kind, References):
-        yield from _list_rows(label, column, value, take, known.pages, (kind.table, names))
-    elif isinstance(kind, Reference):
-        first = (NONE,) if field.is_optional else ()
-        word = kind.words
-        yield Choice(
-            label,
-            column.help,
-            names=(*first, *word, *(name for name in names if name not in (*first, *word))),
-            present=NONE if value is None else value,
-            choose=partial(_choose, take, field.is_optional),
-        )
-
-
-def _list_rows(
-    label: str,
-    column: Column,
-    value: Sequence[str] | None,
-    take: TakeNames,
-    pages: dict[str, int],
-    table: tuple[str, Sequence[str]],
-) -> Iterator[Widget]:
-    """A switch that gives a list, without a name at first; below it one for each name of a page."""
-    what, names = table
-    is_given = value is not None
-    short = short_label(label, LONGEST_LABEL)
-    yield Switch(short, column.help, is_on=is_given, flip=partial(take, None if is_given else ()))
-    if value is None:
-        return
-    page = min(pages.get(what, 0), max(0, len(names) - 1) // NAMES_A_PAGE)
-    if len(names) > NAMES_A_PAGE:
-        numbers = range(0, len(names), NAMES_A_PAGE)
-        titles = [f"{first + 1} to {min(first + NAMES_A_PAGE, len(names))}" for first in numbers]
-        yield Choice(
-            what,
-            within=label,
-            help=f"Which of the {len(names)} {what} are shown below; {len(value)} are in the list.",
-            names=titles,
-            present=titles[page],
-            choose=lambda title: pages.__setitem__(what, titles.index(title)),
-        )
-    for name in names[page * NAMES_A_PAGE : (page + 1) * NAMES_A_PAGE]:
-        wanted = {*value} ^ {name}
-        chosen = tuple(each for each in names if each in wanted)
-        is_in = name in value
-        told = f"Take {name} {'from' if is_in else 'into'} the list: {label}."
-        yield Switch(f"{INDENT}{name}", told, within=label, is_on=is_in, flip=partial(take, chosen))
-
-
-def _choose(take: TakeNames, has_none: bool, name: str) -> object:
-    return take(None if has_none and name == NONE else name)
-
-
-Put = Callable[[Mapping[str, object]], object]
-"""Changes fields of the row, by name."""
-
-AXES: Final = "xyz"
 
 
 class World(NamedTuple):
@@ -128,7 +64,7 @@ class World(NamedTuple):
 
     low: Vector
     high: Vector
-    names: KnownNames = KnownNames(lambda _: (), {})
+    names: TableNames = TableNames(lambda _: (), {})
 
     @property
     def size(self) -> float:
@@ -152,9 +88,9 @@ class World(NamedTuple):
 
 
 class _Menu(NamedTuple):
-    """What the rows of a row of a table are made with; `label` stands before the names of its columns.
+    """The context of the rows of a table row; `label` stands before the names of its columns.
 
-    `axis` is the axis of its coordinates, where it is a row for one axis.
+    `axis` is the axis of its coordinates, if it is a row for one axis.
     """
 
     put: Put
@@ -164,9 +100,9 @@ class _Menu(NamedTuple):
 
 
 def rows_of(row: Row, put: Put, world: World, leave_out: Sequence[str] = ()) -> list[Widget]:
-    """The rows for a row of a table, in the order of its columns; `put` is called with what is changed.
+    """The rows for a row of a table, in the order of its columns; `put` is called with the changed fields.
 
-    Columns of `leave_out`, tables, held ranges and absent vectors have none.
+    Columns of `leave_out`, tables, held ranges and absent vectors have no rows.
     """
     return list(_rows_in(_Menu(put, world), row, leave_out))
 
@@ -179,27 +115,27 @@ def _rows_in(menu: _Menu, row: Row, leave_out: Sequence[str] = ()) -> Iterator[W
 
 def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator[Widget]:
     column = field.column
-    kind, told = column.kind, column.help
+    kind, help = column.kind, column.help
     shown = f"{menu.label}{name}".replace("_", " ")
     put = partial(_put, menu.put, name)
     if isinstance(kind, (Number, Whole)):
         yield _bar(menu, shown, name, field, value)
     elif isinstance(kind, Boolean):
-        yield Switch(shown, told, is_on=bool(value), flip=partial(put, not value))
+        yield Switch(shown, help, is_on=bool(value), flip=partial(put, not value))
     elif isinstance(kind, OneOf):
-        yield Choice(shown, told, names=kind.names, present=str(value), choose=put)
+        yield Choice(shown, help, names=kind.names, present=str(value), choose=put)
     elif isinstance(kind, Text):
-        yield Entry(shown, told, value=str(value), take=put)
+        yield Entry(shown, help, value=str(value), take=put)
     elif isinstance(kind, ColorKind):
-        yield Entry(shown, told, value=in_digits(value), take=put)
+        yield Entry(shown, help, value=in_digits(value), take=put)
     elif isinstance(kind, VectorKind) and value is not None:
         yield from _vector_rows(menu, shown, name, column, value)
     elif isinstance(kind, AngleCurveKind):
-        yield from _curve_rows(menu, shown, name, kind, told, value)
+        yield from _curve_rows(menu, shown, name, kind, help, value)
     elif isinstance(kind, Referring):
         yield from reference_rows(shown, field, kind, value, put, menu.world.names)
     elif isinstance(kind, OneRowOf):
-        yield Choice(shown, told, names=tuple(kind.classes), present=kind.name_of(value), choose=put)
+        yield Choice(shown, help, names=tuple(kind.classes), present=kind.name_of(value), choose=put)
         yield from _rows_in(menu, value)
     elif isinstance(kind, Nested) and kind.inline:
         yield from _rows_in(menu, value)
@@ -207,32 +143,32 @@ def _rows_of_field(menu: _Menu, name: str, field: Field, value: Any) -> Iterator
         axis = name if name in AXES else ""
         # In a narrow menu the name of the row itself is enough before those of its fields.
         inside = _Menu(put, menu.world, f"{name} ", axis)
-        yield from _rows_of_row(inside, shown, told, value)
+        yield from _rows_of_row(inside, shown, help, value)
     elif isinstance(kind, NamedRows):
         if value:
             yield Heading(shown)
         for row in value:
             inside = _Menu(partial(_put, put, row.name), menu.world, INDENT)
-            for each in _rows_of_row(inside, row.name, told, row, ("name",)):
+            for each in _rows_of_row(inside, row.name, help, row, ("name",)):
                 # Others have rows of the same labels.
                 yield replace(each, within=f"{name}.{row.name}", help=f"{row.name}: {each.help}")
 
 
 def _rows_of_row(
-    menu: _Menu, label: str, told: str, row: Row | None, leave_out: Sequence[str] = ()
+    menu: _Menu, label: str, help: str, row: Row | None, leave_out: Sequence[str] = ()
 ) -> Iterator[Widget]:
-    """The rows of a row within a row, after its own switch if it has one; of an absent row, what makes it."""
+    """The rows of a row within a row, after its own switch if it has one. An absent row is a switch alone."""
     if row is None:
-        yield Switch(label, told, is_on=False, flip=partial(menu.put, {}))
+        yield Switch(label, help, is_on=False, flip=partial(menu.put, {}))
         return
     if "on" in fields_of(type(row)):
         is_on = vars(row)["on"]
-        yield Switch(label, told, is_on=is_on, flip=partial(_put, menu.put, "on", not is_on))
+        yield Switch(label, help, is_on=is_on, flip=partial(_put, menu.put, "on", not is_on))
     yield from _rows_in(menu, row, (*leave_out, "on"))
 
 
 def _bar(menu: _Menu, label: str, name: str, field: Field, value: float | None) -> Bar:
-    """The bar of a number; one that may be absent, or without a limit, has a box that switches it."""
+    """The bar of a number. A box switches a number that may be absent, or without a limit."""
     column, put, axis = field.column, menu.put, menu.axis
     kind = column.kind
     usual = bar_of(column) or BarRange(0, 1, 0.01)
@@ -280,18 +216,18 @@ def _vector_rows(menu: _Menu, label: str, name: str, column: Column, value: Vect
 
 
 def _curve_rows(
-    menu: _Menu, label: str, name: str, kind: AngleCurveKind, told: str, curve: AngleCurve | None
+    menu: _Menu, label: str, name: str, kind: AngleCurveKind, help: str, curve: AngleCurve | None
 ) -> Iterator[Widget]:
-    """A switch for a curve over angles, and a bar for the share of each of its points."""
+    """A switch for a curve over angles, and a bar for the share at each of its points."""
     begun = kind.start if curve is None else None
-    yield Switch(label, told, is_on=curve is not None, flip=partial(_put, menu.put, name, begun))
+    yield Switch(label, help, is_on=curve is not None, flip=partial(_put, menu.put, name, begun))
     curve = curve or ()
     for number, (angle, share) in enumerate(curve):
         limits = kind.share_kind(number)
         usual = bar_within(limits.at_least, limits.at_most)
         yield Bar(
             f"at {angle:g} degrees",
-            told,
+            help,
             value=share,
             low=usual.low,
             high=usual.high,
@@ -300,8 +236,66 @@ def _curve_rows(
         )
 
 
+def reference_rows(
+    label: str, field: Field, kind: Referring, value: Any, take: TakeNames, tables: TableNames
+) -> Iterator[Widget]:
+    """The rows for a column of names; `take` is called with the new name or names."""
+    column, names = field.column, tables.of(kind.table)
+    if isinstance(kind, References):
+        yield from _list_rows(label, column, value, take, tables.pages, (kind.table, names))
+    elif isinstance(kind, Reference):
+        first = (NONE,) if field.is_optional else ()
+        word = kind.words
+        yield Choice(
+            label,
+            column.help,
+            names=(*first, *word, *(name for name in names if name not in (*first, *word))),
+            present=NONE if value is None else value,
+            choose=partial(_choose, take, field.is_optional),
+        )
+
+
+def _list_rows(
+    label: str,
+    column: Column,
+    value: Sequence[str] | None,
+    take: TakeNames,
+    pages: dict[str, int],
+    table: tuple[str, Sequence[str]],
+) -> Iterator[Widget]:
+    """A switch that gives a list, without a name at first; below it one for each name of a page."""
+    what, names = table
+    is_given = value is not None
+    short = short_label(label, LONGEST_LABEL)
+    yield Switch(short, column.help, is_on=is_given, flip=partial(take, None if is_given else ()))
+    if value is None:
+        return
+    page = min(pages.get(what, 0), max(0, len(names) - 1) // NAMES_A_PAGE)
+    if len(names) > NAMES_A_PAGE:
+        numbers = range(0, len(names), NAMES_A_PAGE)
+        titles = [f"{first + 1} to {min(first + NAMES_A_PAGE, len(names))}" for first in numbers]
+        yield Choice(
+            what,
+            within=label,
+            help=f"Which of the {len(names)} {what} are shown below; {len(value)} are in the list.",
+            names=titles,
+            present=titles[page],
+            choose=lambda title: pages.__setitem__(what, titles.index(title)),
+        )
+    for name in names[page * NAMES_A_PAGE : (page + 1) * NAMES_A_PAGE]:
+        wanted = {*value} ^ {name}
+        chosen = tuple(each for each in names if each in wanted)
+        is_in = name in value
+        help = f"Take {name} {'from' if is_in else 'into'} the list: {label}."
+        yield Switch(f"{INDENT}{name}", help, within=label, is_on=is_in, flip=partial(take, chosen))
+
+
+def _choose(take: TakeNames, has_none: bool, name: str) -> object:
+    return take(None if has_none and name == NONE else name)
+
+
 def _help(column: Column) -> str:
-    """What the message line says of a number: what it is, and its unit."""
+    """The text of the message line for a number, with its unit."""
     return f"{column.help} In {column.unit}." if column.unit else column.help
 
 

@@ -8,13 +8,12 @@ transfer to the display.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from collections.abc import Set as AbstractSet
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from autocolor.arrays import Bytes, Words
+from autocolor.arrays import Booleans, Bytes, Numbers, Words
 from autocolor.mapping.ranges import BACKGROUND
 from autocolor.sending import configuration_of, encoder_of_entries
 from autocolor.widgets.items import Area, Item, filled
@@ -52,34 +51,34 @@ class Sheet:
 
     def show(self, page: Page) -> None:
         """Show a page. Raises ReplyError or PortError if the display cannot be reached."""
-        parts = list(self._changes(page))
+        parts = self._changes(page)
         if parts:
             self._page = None
             self._display.send(np.concatenate(parts))
         self._page = page
 
-    def _changes(self, page: Page) -> Iterator[Words]:
+    def _changes(self, page: Page) -> list[Words]:
         """The instructions that turn what is shown into a page."""
         before = self._page
+        parts: list[Words] = []
         if before is None:
-            yield instructions.reset()
-            yield self._encode_entries(0, page.entries)
+            parts += [instructions.reset(), self._encode_entries(0, page.entries)]
         elif page.entries is not before.entries:
             differing = np.flatnonzero((page.entries != before.entries).any(axis=1))
             if len(differing):
                 first, last = int(differing[0]), int(differing[-1])
-                yield self._encode_entries(first, page.entries[first : last + 1])
+                parts.append(self._encode_entries(first, page.entries[first : last + 1]))
         whole = uncovered(self._whole, page.items)
         if before is None:
-            yield from _restored(page.base, whole)
+            parts += _restored(page.base, whole)
             redrawn = list(page.items)
         else:
             drawn = [area for area in [differing_lines(before.base, page.base, whole)] if not area.is_empty]
             restored, redrawn = changed_items(before.items, page.items, drawn)
             for area in (*drawn, *restored):
-                yield from _restored(page.base, area.within(self._whole))
-        for item in redrawn:
-            yield np.frombuffer(item.stream, np.uint16)
+                parts += _restored(page.base, area.within(self._whole))
+        parts += [np.frombuffer(item.stream, np.uint16) for item in redrawn]
+        return parts
 
 
 def changed_items(
@@ -87,8 +86,8 @@ def changed_items(
 ) -> tuple[list[Area], list[Item]]:
     """The areas whose base must be drawn again, and the items to draw again after that, lowest first.
 
-    Where something goes that stood on an item of one word, that much of the item is drawn, and not all of it.
-    `drawn` are areas whose base is drawn again anyhow.
+    Where an item goes that stood on an item of one word, that much of the lower item is drawn, and not all of
+    it. `drawn` are areas whose base is drawn again anyhow.
     """
     if not drawn and list(before) == list(now):
         return [], []
@@ -96,40 +95,58 @@ def changed_items(
     if [item for item in before if item in new] != [item for item in now if item in old]:
         # What was above something may be below it now.
         old = set()
-    fresh = [item for item in now if item not in old]
-    gone = [item.area for item in before if item not in new and not item.area.is_empty]
-    covers = [*drawn, *(item.area for item in fresh if item.is_solid)]
+    stays = [item in old for item in now]
+    # Hundreds of items are compared at each movement: all at once, by the columns of their areas.
+    areas = _columns([item.area for item in now])
+    grounds = np.array(
+        [stay and item.word is not None for item, stay in zip(now, stays, strict=True)], np.bool_
+    )
+    covers = [item.area for item, stay in zip(now, stays, strict=True) if item.is_solid and not stay]
+    covering = _columns([*drawn, *covers])
     restored: list[Area] = []
     patches: dict[int, list[Item]] = {}
-    for area in gone:
-        if any(each.covers(area) for each in covers):
+    for item in before:
+        area = item.area
+        if item in new or area.is_empty or _covering(covering, area).any():
             continue
-        ground = ground_of(area, now, old)
-        if ground is None:
-            restored.append(area)
+        ground = np.flatnonzero(_covering(areas, area) & grounds)
+        if len(ground):
+            topmost = int(ground[-1])
+            patches.setdefault(topmost, []).append(filled(area, now[topmost].word or 0))
         else:
-            patches.setdefault(ground, []).append(filled(area, now[ground].word or 0))
-    # An item is drawn again if it is new, or if something below it was drawn.
-    dirty, redrawn = [*drawn, *restored], []
+            restored.append(area)
+    # Draw an item again if it is new, or if something below it was drawn.
+    is_dirty = np.zeros(len(now), np.bool_)
+    for area in (*drawn, *restored):
+        is_dirty |= _overlapping(areas, area)
+    redrawn: list[Item] = []
     for number, item in enumerate(now):
-        if item not in old or any(item.area.overlaps(area) for area in dirty):
+        if is_dirty[number] or not stays[number]:
             redrawn.append(item)
-            # Few areas are enough: this is done at each movement, for hundreds of items.
-            if not any(area.covers(item.area) for area in dirty):
-                dirty.append(item.area)
+            is_dirty |= _overlapping(areas, item.area)
         for patch in patches.get(number, ()):
             redrawn.append(patch)
-            dirty.append(patch.area)
+            is_dirty |= _overlapping(areas, patch.area)
     return restored, redrawn
 
 
-def ground_of(area: Area, items: Sequence[Item], kept: AbstractSet[Item]) -> int | None:
-    """The number of the topmost item of one word, among those that are kept, that covers an area."""
-    for number in range(len(items) - 1, -1, -1):
-        item = items[number]
-        if item.word is not None and item.area.covers(area) and item in kept:
-            return number
-    return None
+def _columns(areas: Sequence[Area]) -> Numbers:
+    """The left, top, right and bottom of areas, (4, n)."""
+    return np.array(areas, np.int64).reshape(-1, 4).T.copy()
+
+
+def _covering(columns: Numbers, area: Area) -> Booleans:
+    """Whether each of some areas covers an area, (n,)."""
+    left, top, right, bottom = columns
+    covers: Booleans = (left <= area[0]) & (top <= area[1]) & (right >= area[2]) & (bottom >= area[3])
+    return covers
+
+
+def _overlapping(columns: Numbers, area: Area) -> Booleans:
+    """Whether each of some areas has a pixel in common with an area, (n,)."""
+    left, top, right, bottom = columns
+    overlaps: Booleans = (left <= area[2]) & (top <= area[3]) & (right >= area[0]) & (bottom >= area[1])
+    return overlaps
 
 
 def differing_lines(before: Words | int, now: Words | int, area: Area) -> Area:
@@ -149,22 +166,23 @@ def differing_lines(before: Words | int, now: Words | int, area: Area) -> Area:
     return area._replace(top=area.top + int(lines[0]), bottom=area.top + int(lines[-1]))
 
 
-def _restored(base: Words | int, area: Area) -> Iterator[Words]:
-    """The instruction that draws an area of the base."""
+def _restored(base: Words | int, area: Area) -> list[Words]:
+    """The instructions that draw an area of the base."""
     if area.is_empty:
-        return
+        return []
     if isinstance(base, int):
-        yield instructions.erase(area, base)
-        return
+        return [instructions.erase(area, base)]
     lines, elements = base.shape
     whole = Area(0, 0, elements - 1, lines - 1)
+    parts = []
     if not whole.covers(area):
         # Beside a picture that is smaller than the screen is background.
-        yield instructions.erase(area, BACKGROUND)
+        parts.append(instructions.erase(area, BACKGROUND))
         area = area.within(whole)
     if not area.is_empty:
-        part = base[area.top : area.bottom + 1, area.left : area.right + 1]
-        yield instructions.write_image(part, area.left, area.top)
+        words = base[area.top : area.bottom + 1, area.left : area.right + 1]
+        parts.append(instructions.write_image(words, area.left, area.top))
+    return parts
 
 
 def uncovered(area: Area, items: Sequence[Item]) -> Area:

@@ -1,14 +1,14 @@
 """Widgets: values that stand for what a user can point at on a screen, in a menu or beside it.
 
-A widget knows its area, how it looks, and what a pick or a drag on it does. Screens make their widgets anew
-from the scene whenever they are shown; a widget holds no state of its own.
+A widget knows its area, how it looks, and what a pick or a drag on it does. A widget holds no state of its
+own: screens make their widgets from the scene, once for an event.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple, TypeVar
+from typing import Any, ClassVar, Final, NamedTuple, TypeVar
 
 from autocolor.widgets.items import (
     BLACK,
@@ -26,49 +26,6 @@ from autocolor.widgets.items import (
     text,
 )
 
-# -------------------- labels
-# Labels: the names of numbers and of things, made short enough for a narrow row.
-
-FEWEST: Final = 3
-"""Letters that are left of a shortened word, before its period."""
-
-VOWELS: Final = "aeiou"
-
-
-def short_label(label: str, most: int) -> str:
-    """A label with its longest words shortened, as far as needed for `most` characters, if that is possible.
-
-    A shortened word ends in a consonant and a period.
-
-    >>> short_label("normal reflectance", 12), short_label("x minimum", 7), short_label("cone angle", 10)
-    ('normal refl.', 'x min.', 'cone angle')
-    """
-    words = label.split(" ")
-    for number in sorted(range(len(words)), key=lambda each: -len(words[each])):
-        excess = len(" ".join(words)) - most
-        if excess <= 0:
-            break
-        word = words[number]
-        stem = word[: max(FEWEST, len(word) - excess - 1)]
-        while len(stem) > FEWEST and stem[-1] in VOWELS:
-            stem = stem[:-1]
-        if len(stem) + 1 < len(word):
-            words[number] = f"{stem}."
-    return " ".join(words)
-
-
-def short_name(name: str, most: int) -> str:
-    """A name of at most so many characters; of a longer one the middle is left out, as ends differ.
-
-    >>> short_name("fender of the left door 12.obj", 16)
-    'fender .. 12.obj'
-    """
-    if len(name) <= most:
-        return name
-    end = max(0, (most - 2) // 2)
-    return f"{name[: max(0, most - 2 - end)]}..{name[len(name) - end :]}"[: max(0, most)]
-
-
 ROW_LINES: Final = 16
 """The height of a row of a menu."""
 
@@ -81,7 +38,7 @@ TEXT_DOWN: Final = 3
 BOX: Final = 8
 """Elements and lines of the box of a switch."""
 
-FEWEST_2: Final = 4
+LABEL_LETTERS: Final = 4
 """The fewest characters of a label that is cut."""
 
 NOWHERE: Final = Area(0, 0, -1, -1)
@@ -97,7 +54,7 @@ class Place(NamedTuple):
 
 
 class Typed(NamedTuple):
-    """What can be typed into a widget: the text that stands there, and what takes the new one."""
+    """The text of a widget that can be typed over, and the function that takes the new text."""
 
     text: str
     take: Callable[[str], object]
@@ -105,80 +62,85 @@ class Typed(NamedTuple):
 
 @dataclass(frozen=True)
 class Widget:
-    """Something to point at. `why_not` tells why it cannot be used now; it is dim then."""
+    """Something to point at. With a reason in `why_not` it is dim and cannot be used."""
 
     label: str
     help: str = ""
     why_not: str = ""
     area: Area = NOWHERE
     within: str = ""
-    """What it belongs to, where other things have rows of the same label."""
+    """The list or row that it belongs to, where several have widgets of the same label."""
+    row_lines: ClassVar[int] = ROW_LINES
+    """Its height in a menu."""
 
     @property
     def key(self) -> str:
-        """What tells it from the others of its screen, however often it is made anew."""
+        """The name by which the widget is recognized on its screen when it is made again."""
         return f"{self.within}.{self.label}" if self.within else self.label
 
     @property
     def typed(self) -> Typed | None:
-        """What can be typed into it, if anything."""
+        """The text that can be typed over; None if there is none."""
         return None
 
     def at(self: SomeWidget, area: Area) -> SomeWidget:
-        """The same at an area."""
-        # Everything is placed anew at each change; `replace` would take most of the time of that.
+        """The same widget at an area."""
+        # All widgets are placed for each event; `replace` would take most of that time.
         placed = object.__new__(type(self))
         vars(placed).update(vars(self), area=area)
         return placed
 
     def items(self, lit: bool) -> list[Item]:
-        """How it looks; lit while the pointer is over it."""
+        """The items that draw it; it is lit while the pointer is over it."""
         raise NotImplementedError
 
     def pick(self, place: Place) -> object:
-        """A click on it, or ENTER."""
+        """Do what a click or ENTER asks for."""
 
     def drag(self, start: Place, last: Place, place: Place) -> object:
-        """The pointer has come from `last` to `place` in a drag that began at `start`."""
+        """Follow the pointer from `last` to `place`, in a drag that began at `start`."""
 
     def nudge(self, steps: float) -> object:
-        """A step up or down by a key or the wheel."""
-
-    # How rows look.
+        """Take steps up or down, by a key or the wheel."""
 
     @property
     def ink(self) -> int:
         """The word of its text."""
         return GRAY if self.why_not else WHITE
 
+    @property
+    def characters(self) -> int:
+        """The characters that fit between the margins of its row."""
+        left, _, right, _ = self.area
+        return (right - left + 1 - 2 * MARGIN) // CHARACTER
+
     def row(self, lit: bool, label: str = "", value: str = "", chosen: bool = False) -> list[Item]:
-        """A row with a label at the left and a value at the right."""
+        """The items of a row with a label at the left and a value at the right."""
         left, top, right, _ = self.area
         background = WHITE if chosen else SLATE if lit else NIGHT
         ink = BLACK if chosen else self.ink
-        room = (self.area.width - 2 * MARGIN) // CHARACTER
+        room = self.characters
         shown = short_name(value, room)
-        found = [filled(self.area, background)]
+        items = [filled(self.area, background)]
         if shown:
             start = right + 1 - MARGIN - CHARACTER * len(shown)
-            found.append(text(shown, start, top + TEXT_DOWN, ink, background))
+            items.append(text(shown, start, top + TEXT_DOWN, ink, background))
         beside = room - len(shown) - bool(shown)
-        # A value that needs the row is shown without its label, of which a letter or two would tell nothing.
-        label = short_name(label, beside) if beside >= min(len(label), FEWEST_2) else ""
+        # A value that fills the row is shown without its label: a letter or two of it would say nothing.
+        label = short_name(label, beside) if beside >= min(len(label), LABEL_LETTERS) else ""
         if label:
             quiet = LIGHT_GRAY if value and ink == WHITE else ink
-            found.append(text(label, left + MARGIN, top + TEXT_DOWN, quiet, background))
-        return found
+            items.append(text(label, left + MARGIN, top + TEXT_DOWN, quiet, background))
+        return items
 
     def labeled_row(self, lit: bool, value: str) -> list[Item]:
-        """A row with the widget's own label, whose words are shortened where the value needs the room."""
-        room = (self.area.width - 2 * MARGIN) // CHARACTER
-        return self.row(lit, short_label(self.label, room - len(value) - 1), value)
+        """The items of a row with the widget's own label, shortened where the value needs the room."""
+        return self.row(lit, short_label(self.label, self.characters - len(value) - 1), value)
 
 
 @dataclass(frozen=True)
 class Heading(Widget):
-    """A line of text that does nothing."""
+    """A line of text over some rows."""
 
     def items(self, lit: bool) -> list[Item]:
         left, top, *_ = self.area
@@ -193,13 +155,15 @@ class Heading(Widget):
 class Gap(Widget):
     """Some empty lines between rows."""
 
+    row_lines: ClassVar[int] = ROW_LINES // 2
+
     def items(self, lit: bool) -> list[Item]:
         return [filled(self.area, NIGHT)]
 
 
 @dataclass(frozen=True)
 class Button(Widget):
-    """Does something when it is picked; `value` stands at its right."""
+    """A row that calls `run` when it is picked; `value` stands at its right."""
 
     run: Callable[[], object] = lambda: None
     value: str = ""
@@ -214,18 +178,17 @@ class Button(Widget):
 
 @dataclass(frozen=True)
 class Switch(Widget):
-    """A box that is full when something is on; the rest of its row may choose what it belongs to."""
+    """A box that is full when something is on. Beside the box, a pick calls `choose`, if it is given."""
 
     is_on: bool = False
     flip: Callable[[], object] = lambda: None
     choose: Callable[[], object] | None = None
-    """What a pick beside the box does; without it, the same as the box."""
     is_chosen: bool = False
 
     def items(self, lit: bool) -> list[Item]:
         background = WHITE if self.is_chosen else SLATE if lit else NIGHT
-        found = self.row(lit, self.label, "  ", self.is_chosen)
-        return [*found, *box_items(self._box, self.is_on, BLACK if self.is_chosen else self.ink, background)]
+        items = self.row(lit, self.label, "  ", self.is_chosen)
+        return [*items, *box_items(self._box, self.is_on, BLACK if self.is_chosen else self.ink, background)]
 
     @property
     def _box(self) -> Area:
@@ -244,8 +207,8 @@ class Switch(Widget):
 
 def box_items(area: Area, is_on: bool, word: int, background: int) -> list[Item]:
     """A box, full or empty."""
-    found = [filled(area, word), filled(area.inset(1), background)]
-    return [*found, filled(area.inset(2), word)] if is_on else found
+    items = [filled(area, word), filled(area.inset(1), background)]
+    return [*items, filled(area.inset(2), word)] if is_on else items
 
 
 @dataclass(frozen=True)
@@ -257,7 +220,7 @@ class Steps(Widget):
 
     def items(self, lit: bool) -> list[Item]:
         low, high = self.signs
-        room = (self.area.width - 2 * MARGIN) // CHARACTER - len(low) - len(high) - 2
+        room = self.characters - len(low) - len(high) - 2
         return self.row(lit, f"{low} {fitted(self.label, room)}", high)
 
     def pick(self, place: Place) -> object:
@@ -272,9 +235,9 @@ class Steps(Widget):
 
 @dataclass(frozen=True)
 class Choice(Widget):
-    """One of several names: a pick on the row goes to the next, at its left end to the one before.
+    """One of several names. A pick goes to the next name; at the left end of the row, to the name before.
 
-    A drag along the row runs through all of them, from the first at its left end to the last.
+    A drag along the row runs through all names, from the first at the left end to the last.
     """
 
     names: Sequence[str] = ()
@@ -304,7 +267,7 @@ class Choice(Widget):
 
 @dataclass(frozen=True)
 class Entry(Widget):
-    """A text that is typed where there is a keyboard."""
+    """A text that can be typed over, where there is a keyboard."""
 
     value: str = ""
     take: Callable[[str], Any] = lambda _: None
@@ -317,13 +280,9 @@ class Entry(Widget):
         return self.labeled_row(lit, self.value)
 
 
-# -------------------- pairs
-# Pairs: two buttons in one row of a menu.
-
-
 @dataclass(frozen=True)
 class Pair(Widget):
-    """Two buttons side by side: the label is that of the left one; steps up and down pick them by keys."""
+    """Two buttons in one row: `label` names the left one, `other` the right one. Keys pick them by steps."""
 
     run: Callable[[], object] = lambda: None
     other: str = ""
@@ -333,9 +292,9 @@ class Pair(Widget):
         background = SLATE if lit else NIGHT
         middle = self._middle
         most = (middle - self.area.left - MARGIN) // 7
-        found = self.row(lit, fitted(self.label, most))
+        items = self.row(lit, fitted(self.label, most))
         other = fitted(self.other, most)
-        return [*found, text(other, middle, self.area.top + TEXT_DOWN, self.ink, background)]
+        return [*items, text(other, middle, self.area.top + TEXT_DOWN, self.ink, background)]
 
     @property
     def _middle(self) -> int:
@@ -347,3 +306,45 @@ class Pair(Widget):
 
     def nudge(self, steps: float) -> object:
         return self.run_other() if steps > 0 else self.run()
+
+
+STEM_LETTERS: Final = 3
+"""The fewest letters of a shortened word before its period."""
+
+VOWELS: Final = "aeiou"
+
+
+def short_label(label: str, most: int) -> str:
+    """A label with its longest words shortened, as far as needed for `most` characters, if that is possible.
+
+    A shortened word ends in a consonant and a period.
+
+    >>> short_label("normal reflectance", 12), short_label("x minimum", 7), short_label("cone angle", 10)
+    ('normal refl.', 'x min.', 'cone angle')
+    """
+    if len(label) <= most:
+        return label
+    words = label.split(" ")
+    for number in sorted(range(len(words)), key=lambda each: -len(words[each])):
+        excess = len(" ".join(words)) - most
+        if excess <= 0:
+            break
+        word = words[number]
+        stem = word[: max(STEM_LETTERS, len(word) - excess - 1)]
+        while len(stem) > STEM_LETTERS and stem[-1] in VOWELS:
+            stem = stem[:-1]
+        if len(stem) + 1 < len(word):
+            words[number] = f"{stem}."
+    return " ".join(words)
+
+
+def short_name(name: str, most: int) -> str:
+    """A name of at most so many characters; of a longer one the middle is left out, as ends differ.
+
+    >>> short_name("fender of the left door 12.obj", 16)
+    'fender .. 12.obj'
+    """
+    if len(name) <= most:
+        return name
+    end = max(0, (most - 2) // 2)
+    return f"{name[: max(0, most - 2 - end)]}..{name[len(name) - end :]}"[: max(0, most)]

@@ -16,9 +16,9 @@ import numpy as np
 import autocolor
 from autocolor import Mesh, Scene, View
 from autocolor.arrays import Bytes
-from autocolor.files.meshes.formats import mesh_suffixes
+from autocolor.files.formats import mesh_suffixes
 from autocolor.files.meshes.repair import UPS
-from autocolor.mapping.display_image import display_image
+from autocolor.images import display_image
 from autocolor.rendering import Rendering, rendering
 from autocolor.scene.defaults import default_lights, default_view, framed
 from benchmarks.form.creases import Creases, flat_normals, visible_creases

@@ -1,8 +1,8 @@
 """The fidelity ledger: every line of the sources that says where a formula or a number comes from.
 
 `Paper:` Warn's paper; `Hardware:` a source about the RAMTEK by its key; `Assumed:` our choice where sources
-are silent; `Departs:` where the program knowingly differs. `python -m docs.generate.fidelity >
-docs/FIDELITY.md` writes the document.
+are silent; `Departs:` where the program knowingly differs; `Limit:` a bound that no source asks for, such as
+the largest file that is read. `python -m docs.generate.fidelity > docs/FIDELITY.md` writes the document.
 """
 
 from __future__ import annotations
@@ -24,8 +24,108 @@ KINDS = {
     "Hardware": "What follows a source about the hardware",
     "Assumed": "What is our choice, where the sources are silent",
     "Departs": "Where the program knowingly differs",
+    "Limit": "Bounds of our own on files, sizes and times",
 }
 MARK = re.compile(rf"(?P<bracket>\()?\b(?P<kind>{'|'.join(KINDS)}):\s+")
+
+THE_PAPER = (
+    (
+        "Introduction: mesh, parts, tables",
+        ("scene.mesh", "scene.surfaces", "scene.creation", "files.store.tables"),
+        "test_the_shape_is_a_mesh_of_polygons_with_three_or_four_sides",
+    ),
+    (
+        "Introduction: hidden surfaces",
+        ("visibility.visible_surfaces", "visibility.watkins"),
+        "test_the_hidden_surface_algorithm_sees_what_a_ray_through_each_pixel_meets_first",
+    ),
+    (
+        "Introduction: color coded scalars",
+        ("scalars.computed", "mapping.bands"),
+        "test_scalars_such_as_curvature_are_shown_as_colors",
+    ),
+    (
+        "The Lighting Model: Figures 1 and 2",
+        ("lighting.shading", "lighting.rays"),
+        "test_each_light_gives_its_intensity_times_d_cos_i_plus_s_cos_n_e",
+    ),
+    (
+        "The Lighting Model: node normals",
+        ("scene.geometry.normals", "visibility.visible_points"),
+        "test_normals_are_interpolated_between_the_nodes",
+    ),
+    (
+        "The Lighting Model: unscaled intensities, surface numbers, extremes",
+        ("lighting.picture",),
+        "test_intensities_are_unscaled_floats_without_an_upper_limit",
+    ),
+    (
+        "The Lighting Model: rescaling",
+        ("mapping.intensity", "scene.curves"),
+        "test_intensities_are_rescaled_by_the_range_of_each_surface_or_of_the_object",
+    ),
+    (
+        "Light Direction and Concentration: Figure 3",
+        ("lighting.controls", "scene.lights"),
+        "test_a_directed_light_is_multiplied_by_cos_c_l",
+    ),
+    (
+        "Light Direction and Concentration: Figure 4",
+        ("lighting.controls",),
+        "test_aiming_takes_the_bright_spot_off_the_plane",
+    ),
+    (
+        "Light Direction and Concentration: Figure 5",
+        ("screens.light_and_view.light_and_view_screen", "screens.light_and_view.orthographic_views"),
+        "test_a_light_is_moved_in_two_views_without_typing_coordinates",
+    ),
+    (
+        "Light Direction and Concentration: Figures 6 to 8",
+        ("lighting.illumination",),
+        "test_each_light_can_be_shown_alone_and_the_picture_is_their_sum",
+    ),
+    (
+        "Light Direction and Concentration: reference 2, normals in the table",
+        ("mapping.normal_words",),
+        "test_words_may_stand_for_normals_so_that_a_light_moves_by_entries_alone",
+    ),
+    (
+        "Light Flaps and Cones: flaps, Figure 9",
+        ("lighting.controls",),
+        "test_flaps_leave_light_between_a_minimum_and_a_maximum_of_a_coordinate",
+    ),
+    (
+        "Light Flaps and Cones: cones, Figure 10",
+        ("lighting.controls",),
+        "test_a_cone_lights_what_is_within_its_angle_and_its_rim_is_sharp",
+    ),
+    (
+        "Light Source Color Blending: the frame buffer and the lookup table",
+        ("ramtek_emu.memory.frame_buffer", "ramtek_emu.memory.lookup_table"),
+        "test_the_display_has_words_of_ten_bits_and_one_table_of_1024_entries_of_24_bits",
+    ),
+    (
+        "Light Source Color Blending: Figure 11, a range a surface",
+        ("mapping.ranges", "studio"),
+        "test_recoloring_replaces_one_range_of_entries_and_computes_no_picture",
+    ),
+    (
+        "Light Source Color Blending: Figures 12 and 15, blending",
+        ("mapping.colors",),
+        "test_above_the_blend_intensity_the_color_goes_in_equal_steps_to_the_light_color",
+    ),
+    (
+        "Light Source Color Blending: Figure 13, color mixing",
+        ("screens.mixing_screen",),
+        "test_a_color_is_mixed_by_bars_and_then_the_picture_is_sent_again",
+    ),
+    (
+        "Light Source Color Blending: Figure 14, light blending",
+        ("screens.blending_screen",),
+        "test_the_blend_is_picked_on_a_bar_beside_the_picture_and_shows_at_once",
+    ),
+)
+"""A section or figure of the paper, the modules that are its subject, and the first of its tests."""
 
 
 class Line(NamedTuple):
@@ -114,15 +214,26 @@ def closing(words: str) -> int:
     return len(words)
 
 
+def full_name(module: str) -> str:
+    """The dotted name of a module of `THE_PAPER`, which leaves `autocolor` out."""
+    return module if module.startswith("ramtek_emu.") else f"autocolor.{module}"
+
+
 def document() -> str:
     """The ledger as a document."""
     lines = lines_of_packages()
     parts = [
         "# Fidelity\n\nWhere every formula, number and rule comes from, collected from the sources by"
         ' `python -m docs.generate.fidelity > docs/FIDELITY.md`. The paper is D. R. Warn, "Lighting Controls'
-        ' for Synthetic Images", SIGGRAPH 1983; the keys of the hardware sources stand in `ramtek_emu`.\n'
+        ' for Synthetic Images", SIGGRAPH 1983; the keys of the hardware sources stand in `ramtek_emu`.\n',
+        "\n## The paper: where each section and figure is built and tested\n\nThe tests are those of"
+        " `tests/test_paper.py`, which goes through the paper in its order.\n\n| section or figure | module |"
+        " test |\n|---|---|---|\n",
     ]
-    for kind in ("Departs", "Assumed", "Paper", "Hardware"):
+    for place, modules, test in THE_PAPER:
+        listed = ", ".join(f"`{full_name(module)}`" for module in modules)
+        parts.append(f"| {place} | {listed} | `{test}` |\n")
+    for kind in ("Departs", "Assumed", "Paper", "Hardware", "Limit"):
         parts.append(
             f"\n## {kind}: {KINDS[kind][0].lower()}{KINDS[kind][1:]}\n\n| where | what |\n|---|---|\n"
         )

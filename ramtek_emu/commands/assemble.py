@@ -27,7 +27,7 @@ Examples:
 )
 @click.option("--force", is_flag=True, help="Overwrite what exists.")
 def assemble(listing: str, output: str, force: bool) -> None:
-    """Assemble LISTING, what `ramtek list` printed or a program in the same manner; - is stdin."""
+    """Assemble LISTING, which `ramtek list` printed or you wrote in the same form; - is stdin."""
     if output != "-":
         refuse_outputs(force, output)
     file = io.TextIOWrapper(open_stream(listing), encoding="latin-1")

@@ -1,4 +1,4 @@
-"""What the commands have in common: the display, the streams to read, and the output files."""
+"""The parts that commands share: the display, the streams to read, the output files, the window, signals."""
 
 from __future__ import annotations
 
@@ -19,57 +19,10 @@ from ramtek_emu.writing import Output, refuse_output, write_atomically
 if TYPE_CHECKING:
     from ramtek_emu.display import Ramtek9300
     from ramtek_emu.host.pipe import Read
-
-
-# -------------------- end_signals
-# Ctrl+C and termination signals, which end a server without an error.
-
-
-class EndSignals:
-    """Remembers Ctrl+C or a termination signal."""
-
-    def __init__(self) -> None:
-        self.received = False
-        self._waiting = False
-
-    def receive(self, *_: object) -> None:
-        """Remember the signal, and interrupt a read that is waiting."""
-        self.received = True
-        if self._waiting:
-            raise InterruptedError
-
-    def until_received(self, read: Read) -> Read:
-        """A function like `read` that returns nothing after the signal, or if reading fails."""
-
-        def read_until_received(most: int) -> bytes:
-            try:
-                self._waiting = True
-                return b"" if self.received else read(most)
-            except OSError:
-                # Also raised by a terminal or a socket whose other end was closed.
-                return b""
-            finally:
-                self._waiting = False
-
-        return read_until_received
-
-
-@contextmanager
-def end_signals() -> Iterator[EndSignals]:
-    """Handle Ctrl+C and termination signals within a `with` block."""
-    signals = EndSignals()
-    before = {number: signal.signal(number, signals.receive) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield signals
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+    from ramtek_emu.host.server import HostSession
 
 
 Function = TypeVar("Function", bound=Callable[..., object])
-
-TICK_SECONDS: Final = 0.01
-"""How long a host is served before the window is handled again."""
 
 
 def complete_configurations(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
@@ -101,12 +54,12 @@ def display_options(function: Function) -> Function:
 
 
 def configuration_asked_for(name: str | None) -> Configuration:
-    """The configuration of that name, or that of the paper; ConfigurationError lists all names."""
+    """The configuration of that name, GMR_9300 without a name; ConfigurationError lists all names."""
     return GMR_9300 if name is None else configuration_named(name)
 
 
 def display_asked_for(configuration: str | None, start: str | None) -> Ramtek9300:
-    """A new display of that configuration, or the one of a snapshot."""
+    """A new display of that configuration, or the display of a snapshot."""
     if start is not None:
         if configuration is not None:
             raise click.UsageError("a display must be given by --configuration or --start; leave one out")
@@ -193,6 +146,51 @@ def tell(message: str) -> None:
     click.echo(message, err=True)
 
 
+class EndSignals:
+    """Remembers Ctrl+C or a termination signal, which end a server without an error."""
+
+    def __init__(self) -> None:
+        self.received = False
+        self._waiting = False
+
+    def receive(self, *_: object) -> None:
+        """Remember the signal, and interrupt a read that is waiting."""
+        self.received = True
+        if self._waiting:
+            raise InterruptedError
+
+    def until_received(self, read: Read) -> Read:
+        """A function like `read` that returns nothing after the signal, or if reading fails."""
+
+        def read_until_received(most: int) -> bytes:
+            try:
+                self._waiting = True
+                return b"" if self.received else read(most)
+            except OSError:
+                # Also raised by a terminal or a socket whose other end was closed.
+                return b""
+            finally:
+                self._waiting = False
+
+        return read_until_received
+
+
+@contextmanager
+def end_signals() -> Iterator[EndSignals]:
+    """Handle Ctrl+C and termination signals within a `with` block."""
+    signals = EndSignals()
+    before = {number: signal.signal(number, signals.receive) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield signals
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+TICK_SECONDS: Final = 0.01
+"""How long a host is served before the window is handled again."""
+
+
 def show(
     display: Ramtek9300, serve_for: Callable[[float], None], waits: Callable[[], bool] = lambda: False
 ) -> None:
@@ -220,16 +218,16 @@ def show(
             monitor.close()
 
 
-def tell_the_end(display: Ramtek9300, held_words: int, odd_byte: bytes) -> None:
-    """Report what was not executed: illegal words, instructions without effect, an incomplete end."""
-    illegal = display.processor.illegal_words
+def tell_the_end(session: HostSession) -> None:
+    """Report words that were not executed: illegal words, instructions without effect, an incomplete end."""
+    processor = session.display.processor
+    illegal, unknown = processor.illegal_words, processor.unimplemented
     if illegal:
         tell(f"{illegal} {'word begins' if illegal == 1 else 'words begin'} no instruction: skipped")
-    unknown = display.processor.unimplemented
     if unknown:
         plural = "instruction is" if unknown == 1 else "instructions are"
         tell(f"{unknown} {plural} known by name only: without effect")
-    if held_words:
-        tell(f"the stream ends within an instruction: its {held_words} words were dropped")
-    if odd_byte:
+    if rest := session.display.decoder.pending_words:
+        tell(f"the stream ends within an instruction: its {rest} words were dropped")
+    if session.odd_byte:
         tell("the stream ends within a word: its last byte was dropped")

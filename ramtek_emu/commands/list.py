@@ -26,13 +26,13 @@ PIECE: Final = 1 << 18
     "--configuration",
     metavar="NAME",
     shell_complete=complete_configurations,
-    help="The display that it is for; GMR_9300 if not given.",
+    help="The display for which the stream is; GMR_9300 if not given.",
 )
 @click.option("--json", "as_json", is_flag=True, help="One object for each instruction.")
 def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
     """List STREAM, a file of 16-bit words with the low byte first, as instructions; - is stdin.
 
-    `ramtek assemble` makes the same stream of it again, word for word.
+    `ramtek assemble` turns the listing into the same stream again, word for word.
     """
     chosen = configuration_asked_for(configuration)
     file = open_stream(stream)
@@ -43,13 +43,13 @@ def list_command(stream: str, configuration: str | None, as_json: bool) -> None:
 
     from ramtek_emu.instruction_set.disassembler import items
 
-    found = items(pieces(), chosen)
+    listed = items(pieces(), chosen)
     if not as_json:
-        for item in found:
+        for item in listed:
             click.echo("\n".join(item.lines()))
         return
     separator = "["
-    for item in found:
-        click.echo(f"{separator}{json.dumps(item.plain())}", nl=False)
+    for item in listed:
+        click.echo(f"{separator}{json.dumps(item.to_plain())}", nl=False)
         separator = ",\n "
     click.echo("[]" if separator == "[" else "]")

@@ -50,7 +50,7 @@ def play(
 ) -> None:
     """Run STREAM, a file of 16-bit words with the low byte first; - is stdin.
 
-    Without -o or --snapshot it is shown in a window. What it asks to read back is read by nobody.
+    Without -o or --snapshot it is shown in a window. The replies to instructions that read are dropped.
     """
     in_window = window or (output is None and snapshot is None)
     if loads_per_second is not None and not in_window:
@@ -63,8 +63,8 @@ def play(
     from ramtek_emu.host.server import HostSession
 
     read = reader_of(file)
-    with recording(record, force) as kept:
-        session = HostSession(display, kept)
+    with recording(record, force) as write:
+        session = HostSession(display, write)
         if in_window:
             if loads_per_second is not None:
                 from ramtek_emu.host.pipe import PacedReader
@@ -73,5 +73,5 @@ def play(
             show(display, PolledPipe(session, read).serve_for)
         else:
             serve_pipe(session, read, None)
-            tell_the_end(display, session.held_words, session.odd_byte)
+            tell_the_end(session)
     write_outputs(display, output, snapshot, force)

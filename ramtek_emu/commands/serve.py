@@ -42,8 +42,7 @@ STEP_SECONDS: Final = 0.25
 JOYSTICK_SECONDS: Final = 0.02
 """How long a line for the joystick may wait while nothing else happens."""
 HOST_SECONDS: Final = 0.005
-"""How long the input of a window may wait while a connected host sends nothing; one that polls the joystick
-has its reply at once."""
+"""How long the input of a window may wait while a connected host sends nothing. Its words never wait."""
 PIPE_SECONDS: Final = 0.002
 """How long words on a pipe may wait while there are lines for the joystick, too."""
 
@@ -51,9 +50,9 @@ PIPE_SECONDS: Final = 0.002
 @click.command(epilog=EXAMPLES)
 @click.option("--port", type=click.IntRange(0, 65535), help="Listen here; 0 is any free port.")
 @click.option("--unix", type=click.Path(), metavar="PATH", help="Listen at a Unix socket: whole writes.")
-@click.option("--stdio", is_flag=True, help="Words on stdin, what is read back on stdout.")
+@click.option("--stdio", is_flag=True, help="Words on stdin, replies on stdout.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="The address to listen at.")
-@click.option("--window", is_flag=True, help="Show what is drawn, as it is drawn.")
+@click.option("--window", is_flag=True, help="Show the display in a window.")
 @click.option(
     "--joystick",
     metavar="FILE",
@@ -85,7 +84,7 @@ def serve(
     start: str | None,
     force: bool,
 ) -> None:
-    """Be a display that a program sends words to, low byte first, and receives words from.
+    """Run a display. Programs send and receive 16-bit words, low byte first.
 
     With --port or --unix it serves one host after the other until Ctrl+C; others wait in line meanwhile. At a
     Unix socket each write is rounded down to whole words by itself, as the drivers of the time did. With
@@ -111,16 +110,16 @@ def serve(
             return None
         return JoystickLines(joystick, display.joystick, resettable.reset, tell)
 
-    with recording(record, force) as kept:
+    with recording(record, force) as write:
         if stdio:
-            session = HostSession(display, kept)
+            session = HostSession(display, write)
             serve_stdio(session, window, lines_for(session))
         else:
             server: TcpServer | UnixServer
             if unix is not None:
-                server = UnixServer(display, unix, idle_seconds=idle, record=kept)
+                server = UnixServer(display, unix, idle_seconds=idle, record=write)
             else:
-                server = TcpServer(display, port or 0, host, idle_seconds=idle, record=kept)
+                server = TcpServer(display, port or 0, host, idle_seconds=idle, record=write)
             with server:
                 serve_hosts(server, window, once, lines_for(server))
     write_outputs(display, output, snapshot, force)
@@ -143,7 +142,7 @@ def serve_stdio(session: HostSession, window: bool, lines: JoystickLines | None 
                 lines.obey()
                 if pipe.ended or not pipe.step():
                     time.sleep(PIPE_SECONDS)
-    tell_the_end(session.display, session.held_words, session.odd_byte)
+    tell_the_end(session)
 
 
 def obeying(lines: JoystickLines | None, serve_for: Callable[[float], None]) -> Callable[[float], None]:
@@ -169,16 +168,16 @@ def standard_streams() -> tuple[Read, Write | None]:
         return os.read(number, most)
 
     try:
-        kept = os.dup(sys.stdout.fileno())
-        # Redirect what is printed from here on, so that it does not mix with the words.
-        os.dup2(sys.stderr.fileno() if sys.stderr is not None else kept, sys.stdout.fileno())
+        replies = os.dup(sys.stdout.fileno())
+        # Redirect printed text from here on, so that it does not mix with the words.
+        os.dup2(sys.stderr.fileno() if sys.stderr is not None else replies, sys.stdout.fileno())
     except OSError:
         return read, None
 
     def write(data: bytes) -> None:
         view = memoryview(data)
         while view:
-            view = view[os.write(kept, view) :]
+            view = view[os.write(replies, view) :]
 
     return read, write
 

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Final, NamedTuple, NoReturn
 
 import click
 
-from ramtek_emu.commands.displays import tell
 from ramtek_emu.errors import MissingInputError, OutputError, OutputExistsError, PortError, reason_of
 
 if TYPE_CHECKING:
@@ -57,7 +56,8 @@ def tty(
     and the number of the signal that ended it.
 
     A program that draws with fwrite and putc needs --stream: for a terminal, C's stdio ends a write at each
-    byte 0A, wherever that is in a word.
+    byte 0A, wherever that is in a word. Where the system does not tell one write from the next (Linux 5.5 and
+    later does, unless a sandbox forbids it), nothing is run without --stream.
     """
     refuse_systems_without_pidfd()
     if shutil.which(program) is None:
@@ -70,14 +70,9 @@ def tty(
         ours, device = opened.enter_context(terminal())
         if link is not None:
             opened.enter_context(linked(link, device))
-        command = [each.replace("{}", device) for each in (program, *arguments)]
+        command = [word.replace("{}", device) for word in (program, *arguments)]
         with started(command, {**os.environ, DEVICE: device}, not stream) as running:
-            if running.notices is None and not stream:
-                tell(
-                    "warning: this system does not tell one write of a program from the next "
-                    f"({running.reason}): those in quick succession may be taken as one"
-                )
-            relay = DeviceRelay(port, ours, running.notices, stream)
+            relay = DeviceRelay(port, ours, running.notices)
             relay.relay(running.ended)
             code = os.waitstatus_to_exitcode(os.waitpid(running.process, 0)[1])
         relay.finish()
@@ -138,22 +133,19 @@ class Running(NamedTuple):
     process: int
     ended: int
     notices: WriteNotices | None
-    reason: str
-    """Why there are no notices."""
 
 
 @contextmanager
 def started(command: list[str], environment: dict[str, str], with_notices: bool) -> Iterator[Running]:
-    """Run a program; Ctrl+C is left to it, other signals to end are passed on. It is hung up on an error."""
+    """Run a program, with notices of its writes or without.
+
+    Ctrl+C is left to the program, other signals to end are passed on. It is hung up on an error. Raises
+    PortError if there are no notices of its writes, MissingInputError if it cannot be run.
+    """
     from ramtek_emu.host.device import WriteNotices
 
-    process, reason, number, failure = forked(command, environment, with_notices)
-    if not reason:
-        # Some sandboxes end a process that asks for notices.
-        os.waitpid(process, 0)
-        process, _, number, failure = forked(command, environment, with_notices=False)
-        reason = "asking for it is forbidden"
-    notices = None if number is None else WriteNotices(number)
+    process, notices_file = forked(command, environment, with_notices)
+    notices = None if notices_file is None else WriteNotices(notices_file)
     ended = os.pidfd_open(process)
 
     def pass_on(number: int, _: object = None) -> None:
@@ -166,12 +158,7 @@ def started(command: list[str], environment: dict[str, str], with_notices: bool)
         signal.SIGHUP: signal.signal(signal.SIGHUP, pass_on),
     }
     try:
-        if failure:
-            os.waitpid(process, 0)
-            raise MissingInputError(
-                f"a program must be one that can be run, not {command[0]!r} ({failure}); check it"
-            )
-        yield Running(process, ended, notices, reason)
+        yield Running(process, ended, notices)
     except PortError:
         pass_on(signal.SIGHUP)
         raise
@@ -183,36 +170,56 @@ def started(command: list[str], environment: dict[str, str], with_notices: bool)
             notices.close()
 
 
-def forked(
-    command: list[str], environment: dict[str, str], with_notices: bool
-) -> tuple[int, str, int | None, str]:
-    """A process that becomes the program, what it says of the notices, their file, and why it failed."""
+WITH_NOTICES: Final = b"notices"
+WITHOUT: Final = b"none"
+"""A process that is about to become the program sends one of them, or the reason why it has no notices."""
+
+
+def forked(command: list[str], environment: dict[str, str], with_notices: bool) -> tuple[int, int | None]:
+    """A process that became the program, and the file of the notices of its writes.
+
+    PortError if notices are asked for and the system gives none, MissingInputError if the program cannot be
+    run; then no process is left.
+    """
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with ours:
         process = os.fork()
         if process == 0:
             become(command, environment, theirs, with_notices)
         theirs.close()
-        said, numbers, _, _ = socket.recv_fds(ours, 1 << 10, 1)
-        failure = ours.recv(1 << 10)
-    return process, said.decode(), numbers[0] if numbers else None, failure.decode()
+        sent, files, _, _ = socket.recv_fds(ours, 1 << 10, 1)
+        failure = ours.recv(1 << 10).decode()
+    if sent in (WITH_NOTICES, WITHOUT) and not failure:
+        return process, files[0] if files else None
+    os.waitpid(process, 0)
+    for file in files:
+        os.close(file)
+    if failure:
+        raise MissingInputError(
+            f"a program must be one that can be run, not {command[0]!r} ({failure}); check it"
+        )
+    # Some sandboxes end a process that asks for notices, so that it sends nothing.
+    reason = sent.decode() or "asking for it is forbidden"
+    raise PortError(
+        f"a system must tell one write of a program from the next, and this one does not ({reason}); "
+        "give --stream if the program's writes are one stream of bytes"
+    )
 
 
 def become(
     command: list[str], environment: dict[str, str], parent: socket.socket, with_notices: bool
 ) -> NoReturn:
-    """Become the program, after telling the parent the file of the notices, or why there is none."""
+    """Become the program, after sending the parent the file of the notices; end if there are none."""
     from ramtek_emu.host.device import ask_for_notices
 
     try:
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-        try:
-            socket.send_fds(parent, [b"told of"], [ask_for_notices()] if with_notices else [])
-        except OSError as cause:
-            parent.send(reason_of(cause).encode())
-        try:
-            os.execvpe(command[0], command, environment)
-        except (OSError, ValueError) as cause:
-            parent.send(reason_of(cause).encode())
+        if with_notices:
+            socket.send_fds(parent, [WITH_NOTICES], [ask_for_notices()])
+        else:
+            parent.send(WITHOUT)
+        os.execvpe(command[0], command, environment)
+    except (OSError, ValueError) as cause:
+        parent.send(reason_of(cause).encode())
     finally:
         os._exit(127)

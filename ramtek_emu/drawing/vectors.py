@@ -18,35 +18,12 @@ from ramtek_emu.arrays import Dots, Indices, Numbers
 from ramtek_emu.memory.frame_buffer import FrameBuffer, WriteEnable
 from ramtek_emu.memory.scan_orders import Point, Window
 
-# -------------------- steps
-# Steps: the points of many lines or circles, numbered along each, some thousands at once.
-
-MOST_POINTS: Final = 1 << 15
-"""How many points are computed at once, or those of one row if they are more: a bound on memory."""
-
-
-def steps(counts: Numbers) -> Iterator[tuple[Indices, Numbers]]:
-    """The rows with so many points each, in order: for each point its row, and its number in that row from 0.
-
-    >>> [(rows.tolist(), numbers.tolist()) for rows, numbers in steps(np.array([2, 0, 3]))]
-    [([0, 0, 2, 2, 2], [0, 1, 0, 1, 2])]
-    """
-    done = np.cumsum(counts)
-    rows = np.arange(len(counts))
-    row = before = 0
-    while row < len(counts):
-        until = max(row + 1, int(np.searchsorted(done, before + MOST_POINTS, side="right")))
-        which = np.repeat(rows[row:until], counts[row:until])
-        yield which, np.arange(before, before + len(which)) - (done - counts)[which]
-        row, before = until, int(done[until - 1])
-
-
 FEW: Final = 4
 """Up to this number, lines are drawn faster one by one."""
 
 
 class Ink(NamedTuple):
-    """What a line is written with: a word for the ones of the texture, and one for the zeros."""
+    """The words of a line: a word for the ones of the texture, and another for the zeros."""
 
     word: int
     background: int = 0
@@ -189,3 +166,25 @@ def points(
             for axis in (0, 1)
         )
         yield elements, lines, numbers, which
+
+
+MOST_POINTS: Final = 1 << 15
+"""How many points are computed at once, or one row if it has more. Limit: a bound on memory."""
+
+
+def steps(counts: Numbers) -> Iterator[tuple[Indices, Numbers]]:
+    """Number the points of many lines or circles along each; `counts` are the points of each row.
+
+    Yields some thousands of points at once: the row of each point, and its number in that row from 0.
+
+    >>> [(rows.tolist(), numbers.tolist()) for rows, numbers in steps(np.array([2, 0, 3]))]
+    [([0, 0, 2, 2, 2], [0, 1, 0, 1, 2])]
+    """
+    done = np.cumsum(counts)
+    rows = np.arange(len(counts))
+    row = before = 0
+    while row < len(counts):
+        until = max(row + 1, int(np.searchsorted(done, before + MOST_POINTS, side="right")))
+        which = np.repeat(rows[row:until], counts[row:until])
+        yield which, np.arange(before, before + len(which)) - (done - counts)[which]
+        row, before = until, int(done[until - 1])

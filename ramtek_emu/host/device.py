@@ -1,19 +1,25 @@
 """DeviceRelay: a program's device on a pseudoterminal, whose writes a display gets with their boundaries.
 
 The program opens the pseudoterminal by its path, as it opened the device, and it reads and writes whole
-words there in raw mode. Each of its writes is rounded down to whole words alone, as the driver did (Hardware:
-PRG DRIVER.c, V8K), and goes to the display at a Unix socket; the replies come back.
+words there in raw mode. Each of its writes is rounded down to whole words by itself, as the driver did
+(Hardware: PRG DRIVER.c, V8K), and goes to the display at a Unix socket; the replies come back.
 
-How far a pseudoterminal carries that by itself, measured on Linux 6.18: a write of up to 4,095 bytes is read
-whole if it is read before the next one; of 4,096 bytes a read gives 4,095 and then 1; and 2,000 writes of a
-program that does not wait were read in 80 pieces. Packet mode (TIOCPKT) marks no boundaries. Therefore the
-kernel tells of each write before it begins (`write_notices`); what was read until then is whole. That is
-exact for writes of any size while one process writes at a time. Where there are no notices, a write that
-follows another before this relay has read is taken as a part of it, which shifts what follows if the first
-was of odd length; a piece shorter than 4,095 bytes is taken as the end of a write.
+A terminal hands over bytes, not writes. Measured on Linux 6.18: a write of up to 4,095 bytes is read whole if
+it is read before the next one; of 4,096 bytes a read gives 4,095 and then 1; and 2,000 writes of a program
+that does not wait were read in 80 pieces. Packet mode (TIOCPKT) marks no boundaries. Therefore the kernel
+gives notice of each write before it begins: with a seccomp filter, Linux (5.5 and later) stops each `write`
+of the program and lets it go on when we say so. The bytes that were read until then belong to the writes
+before it. That is exact for writes of any size while one process writes at a time. The program and its
+children need not know: they may be statically linked, or of 32 bits. A write takes about a tenth of a
+millisecond longer.
+
+What notices do **not** tell apart: writes of two processes or threads at the same time, and writes by other
+calls (`io_uring`). With the filter, the program gains no privileges from set-user-ID files; children that
+outlive us cannot write any more, to any file (ENOSYS); and a signal that comes while a write waits to begin
+ends it with EINTR, unless its handler was installed with SA_RESTART.
 
 A terminal is line-buffered in C's stdio: a program that draws with `fwrite` ends a write at each byte 0A,
-wherever that is in a word. What it means is one stream of bytes, and it can be passed on as that.
+wherever that is in a word. Its writes mean one stream of bytes, and are passed on as such without notices.
 """
 
 from __future__ import annotations
@@ -28,21 +34,7 @@ from contextlib import suppress
 from typing import Final, NamedTuple
 
 from ramtek_emu.errors import PortError
-from ramtek_emu.host.port import Sign, UnixPort, read_packet
-
-# -------------------- write_notices
-# WriteNotices: the kernel tells before a program writes, so that one write can be told from the next.
-#
-# A terminal hands over bytes, not writes: what a program wrote twice in quick succession is read at once.
-# With a seccomp filter, Linux (5.5 and later) stops each `write` of the program before it begins and lets
-# it go on when we say so. Everything that arrived until then belongs to the writes before it. The program
-# and its children need not know: they may be statically linked, or of 32 bits. A write takes about a tenth
-# of a millisecond longer.
-#
-# What this does **not** do: writes of two processes or threads at the same time are not told apart, nor
-# those by other calls (`io_uring`). With the filter, the program gains no privileges from set-user-ID
-# files; children that outlive us cannot write any more, to any file (ENOSYS); and a signal that comes while
-# a write waits to begin ends it with EINTR, unless its handler was installed with SA_RESTART.
+from ramtek_emu.host.port import Sign, UnixPort
 
 # linux/filter.h, linux/seccomp.h, linux/prctl.h, linux/audit.h
 INSTRUCTION: Final = struct.Struct("HBBI")
@@ -66,7 +58,7 @@ CONTINUE: Final = 1
 
 
 class Architecture(NamedTuple):
-    """What a program of one kind calls, by number."""
+    """The numbers of an architecture: for the filter, and of the calls `write` and `writev`."""
 
     audit: int
     write: int
@@ -87,14 +79,14 @@ MACHINES: Final = {
 
 
 def filter_of(machine: Machine) -> bytes:
-    """The filter that tells of `write` and `writev` and lets everything else pass."""
+    """The filter that gives notice of `write` and `writev` and lets everything else pass."""
     steps = [(LOAD, 0, 0, ARCHITECTURE_PLACE)]
-    for each in machine.architectures:
+    for architecture in machine.architectures:
         steps += [
-            (JUMP_IF_EQUAL, 0, 5, each.audit),
+            (JUMP_IF_EQUAL, 0, 5, architecture.audit),
             (LOAD, 0, 0, NUMBER_PLACE),
-            (JUMP_IF_EQUAL, 2, 0, each.write),
-            (JUMP_IF_EQUAL, 1, 0, each.writev),
+            (JUMP_IF_EQUAL, 2, 0, architecture.write),
+            (JUMP_IF_EQUAL, 1, 0, architecture.writev),
             (RETURN, 0, 0, ALLOW),
             (RETURN, 0, 0, NOTIFY),
         ]
@@ -103,7 +95,7 @@ def filter_of(machine: Machine) -> bytes:
 
 
 def ask_for_notices() -> int:
-    """Tell of all writes of this process from now on; returns the file to give to WriteNotices.
+    """Ask for notices of all writes of this process from now on; returns the file to give to WriteNotices.
 
     The filter stays when a program is run in this process. OSError where the system does not offer it.
     """
@@ -113,9 +105,9 @@ def ask_for_notices() -> int:
         raise OSError(errno.ENOSYS, f"not on {platform.system()}, {platform.machine()}")
     library = ctypes.CDLL(None, use_errno=True)
     steps = filter_of(machine)
-    kept = ctypes.create_string_buffer(steps, len(steps))
+    filter_bytes = ctypes.create_string_buffer(steps, len(steps))
     program = ctypes.create_string_buffer(
-        PROGRAM.pack(len(steps) // INSTRUCTION.size, ctypes.addressof(kept)), PROGRAM.size
+        PROGRAM.pack(len(steps) // INSTRUCTION.size, ctypes.addressof(filter_bytes)), PROGRAM.size
     )
     zero = ctypes.c_ulong(0)
     if library.prctl(NO_NEW_PRIVILEGES, ctypes.c_ulong(1), zero, zero, zero) == 0:
@@ -138,7 +130,7 @@ class WriteNotices:
         return self._number
 
     def next(self) -> int | None:
-        """What identifies the next write; None if the program has gone meanwhile."""
+        """The number that identifies the next write; None if the program has gone meanwhile."""
         from fcntl import ioctl
 
         notice = bytearray(NOTICE_BYTES)
@@ -166,33 +158,29 @@ PIECE: Final = 1 << 16
 """The most bytes that are read or sent at once."""
 FULL: Final = 1 << 18
 """When this many bytes wait in one direction, no more are read for it."""
-TERMINAL_PIECE: Final = 4095
-"""The most bytes that a pseudoterminal holds for one read."""
 
 
 class DeviceRelay:
     """Passes bytes between the terminal of a program and a display, until the program has ended."""
 
-    def __init__(
-        self, port: UnixPort, terminal: int, notices: WriteNotices | None, as_stream: bool = False
-    ) -> None:
+    def __init__(self, port: UnixPort, terminal: int, notices: WriteNotices | None) -> None:
         """Begin; `terminal` is our side of the pseudoterminal, which is set not to block.
 
-        With `as_stream`, writes are not rounded down: all of them are one stream of bytes.
+        Without notices, writes are not rounded down: all of them are one stream of bytes.
         """
-        self._port, self._terminal, self._notices = port, terminal, notices
-        self._as_stream = as_stream
+        self._port, self._wire = port, port.wire
+        self._terminal, self._notices = terminal, notices
         self._written = bytearray()
-        """What the program wrote and the display has not got; it ends with an odd byte in mid-write."""
+        """Bytes that the program wrote and the display has not got; in mid-write their number may be odd."""
         self._replies = bytearray()
         os.set_blocking(terminal, False)
 
     def relay(self, ended: int) -> None:
         """Relay until the program has ended, so that the file `ended` can be read; PortError if lost.
 
-        The rest of what it wrote is sent by `finish`.
+        `finish` sends the rest of its bytes.
         """
-        display, notices = self._port.socket.fileno(), self._notices
+        display, notices = self._wire.socket.fileno(), self._notices
         while True:
             takes_words, takes_replies = len(self._written) < FULL, len(self._replies) < FULL
             has_words, has_replies = len(self._written) > 1, len(self._replies) > 0
@@ -205,7 +193,8 @@ class DeviceRelay:
             events = dict(polled.poll())
             self._serve_display(events.get(display, 0))
             if events.get(self._terminal, 0) & select.POLLOUT:
-                self._send_replies()
+                with suppress(BlockingIOError):
+                    del self._replies[: os.write(self._terminal, self._replies[:PIECE])]
             if events.get(self._terminal, 0) & select.POLLIN:
                 self._take_written()
             if notices is not None and events.get(notices.fileno(), 0) & select.POLLIN:
@@ -216,19 +205,30 @@ class DeviceRelay:
                 return
 
     def finish(self) -> None:
-        """Send the rest of what the program wrote; replies are dropped. PortError if the display left."""
+        """Send the rest of the program's bytes; replies are dropped. PortError if the display left."""
         while self._written:
             self._replies.clear()
             polled = select.poll()
-            polled.register(self._port.socket, select.POLLIN | select.POLLOUT)
+            polled.register(self._wire.socket, select.POLLIN | select.POLLOUT)
             for _, events in polled.poll():
                 self._serve_display(events)
 
     def _serve_display(self, events: int) -> None:
-        if events & ~select.POLLOUT:
-            self._take_replies()
-        if events & select.POLLOUT:
-            self._send_written()
+        """Take replies and send words, as far as the display is ready for it; PortError if it left."""
+        try:
+            if events & ~select.POLLOUT:
+                data = self._wire.read(PIECE)
+                if data is Sign.END:
+                    raise self._lost()
+                if not isinstance(data, Sign):
+                    self._replies += data
+            if events & select.POLLOUT:
+                whole = len(self._written) & ~1
+                del self._written[: self._wire.send(self._written[: min(PIECE, whole)])]
+        except PortError:
+            raise
+        except OSError as cause:
+            raise self._lost() from cause
 
     def _allow_next_write(self, notices: WriteNotices) -> None:
         identity = notices.next()
@@ -241,42 +241,14 @@ class DeviceRelay:
     def _take_written(self) -> None:
         while len(self._written) < 2 * FULL:
             try:
-                data = os.read(self._terminal, PIECE)
+                self._written += os.read(self._terminal, PIECE)
             except OSError:
                 return
-            self._written += data
-            if self._notices is None and not self._as_stream and len(data) < TERMINAL_PIECE:
-                self._end_write()
 
     def _end_write(self) -> None:
-        """Round what was written down to whole words."""
+        """Round the bytes of a write that has ended down to whole words."""
         if len(self._written) & 1:
             del self._written[-1]
-
-    def _send_written(self) -> None:
-        try:
-            sent = self._port.socket.send(self._written[: min(PIECE, len(self._written) & ~1)])
-        except BlockingIOError:
-            return
-        except OSError as cause:
-            raise self._lost() from cause
-        del self._written[:sent]
-
-    def _take_replies(self) -> None:
-        try:
-            data = read_packet(self._port.socket, PIECE)
-        except BlockingIOError:
-            return
-        except OSError as cause:
-            raise self._lost() from cause
-        if data is Sign.END:
-            raise self._lost()
-        if not isinstance(data, Sign):
-            self._replies += data
-
-    def _send_replies(self) -> None:
-        with suppress(BlockingIOError):
-            del self._replies[: os.write(self._terminal, self._replies[:PIECE])]
 
     def _lost(self) -> PortError:
         return PortError(

@@ -6,8 +6,8 @@
     track on        set the TRACK switch (or: track off)
     reset           press RESET on the control unit
 
-A line may hold several of these, which are done in order: `cursor 100 200 enter`. Empty lines and what
-follows a # are ignored. A line that holds anything else does nothing and is answered with a sentence.
+A line may hold several of these, which are done in order: `cursor 100 200 enter`. Empty lines and comments
+after a # are ignored. A line that holds anything else does nothing and is answered with a sentence.
 """
 
 from __future__ import annotations
@@ -20,46 +20,48 @@ import stat
 import sys
 import threading
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Final
 
 from ramtek_emu.errors import MissingInputError, reason_of
 from ramtek_emu.memory.cursors import Joystick
 
 MOST_BYTES: Final = 1 << 12
-"""The longest line that is read."""
+"""Limit: the longest line that is read."""
 MOST_LINES: Final = 64
-"""How many lines wait to be done before no more are read."""
+"""Limit: how many lines wait to be done before no more are read."""
 NUMBER: Final = re.compile(r"[+-]?[0-9]{1,6}")
 
 Action = Callable[[], object]
 
 
 def actions(line: str, joystick: Joystick, reset: Action) -> list[Action]:
-    """What a line asks for, in order; ValueError with a sentence if it asks for anything else."""
-    words = iter(line.partition("#")[0].split())
-    found: list[Action] = []
-    for word in words:
-        if word == "enter":
-            found.append(joystick.press_enter)
-        elif word == "reset":
-            found.append(reset)
-        elif word in ("cursor", "by"):
-            move = joystick.move_to if word == "cursor" else joystick.move_by
-            found.append(_moving(move, _number(words, line), _number(words, line)))
-        elif word == "track":
-            found.append(_switching(joystick, _one_of(words, line, ("on", "off")) == "on"))
-        else:
-            raise refused(line)
-    return found
+    """The actions that a line asks for, in order; ValueError with a sentence if it asks for anything else."""
+    words = line.partition("#")[0].split()
+    asked: list[Action] = []
+    while words:
+        match words:
+            case ["enter", *rest]:
+                asked.append(joystick.press_enter)
+            case ["reset", *rest]:
+                asked.append(reset)
+            case ["track", "on" | "off" as switch, *rest]:
+                asked.append(partial(setattr, joystick, "track", switch == "on"))
+            case ["cursor" | "by" as kind, element, line_number, *rest] if _are_numbers(element, line_number):
+                move = joystick.move_to if kind == "cursor" else joystick.move_by
+                asked.append(partial(move, int(element), int(line_number)))
+            case _:
+                shown = line if len(line) <= 60 else f"{line[:60]}..."
+                raise ValueError(
+                    "a joystick line must hold cursor X Y, by X Y, enter, track on, track off or reset, "
+                    f"not {shown!r}; write it so"
+                )
+        words = rest
+    return asked
 
 
-def refused(line: str) -> ValueError:
-    """The sentence about a line that cannot be done."""
-    short = line if len(line) <= 60 else f"{line[:60]}..."
-    return ValueError(
-        f"a joystick line must hold cursor X Y, by X Y, enter, track on, track off or reset, not {short!r}; "
-        "write it so"
-    )
+def _are_numbers(*words: str) -> bool:
+    return all(NUMBER.fullmatch(word) for word in words)
 
 
 class JoystickLines:
@@ -111,7 +113,7 @@ def opened(path: str) -> int:
 
 
 def lines_of(number: int) -> Iterator[str]:
-    """The lines of an open file until its end; one that is too long is cut, so that it is refused."""
+    """The lines of an open file until its end; a line that is too long is cut, so that it is refused."""
     rest = b""
     while True:
         try:
@@ -126,25 +128,3 @@ def lines_of(number: int) -> Iterator[str]:
             if rest:
                 yield rest.decode("utf-8", "replace")
             return
-
-
-def _number(words: Iterator[str], line: str) -> int:
-    word = next(words, "")
-    if NUMBER.fullmatch(word) is None:
-        raise refused(line)
-    return int(word)
-
-
-def _one_of(words: Iterator[str], line: str, known: tuple[str, ...]) -> str:
-    word = next(words, "")
-    if word not in known:
-        raise refused(line)
-    return word
-
-
-def _moving(move: Callable[[int, int], None], element: int, line: int) -> Action:
-    return lambda: move(element, line)
-
-
-def _switching(joystick: Joystick, is_on: bool) -> Action:
-    return lambda: setattr(joystick, "track", is_on)

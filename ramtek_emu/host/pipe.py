@@ -2,6 +2,7 @@
 
 `serve_pipe` blocks until the host sends something, as a command does. `PolledPipe` never blocks, so that a
 window can be drawn in between: two threads read and write the pipes, and only the caller uses the display.
+`PacedReader` reads a recorded stream at the pace of a host that loads the table so many times a second.
 
 A host that no longer takes its replies loses them, but its words are still executed (Assumed: a host that
 draws and leaves wants its picture). The session ends with the input; an unfinished instruction and an odd
@@ -15,7 +16,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -114,30 +115,17 @@ class PolledPipe:
             self._replies.task_done()
 
 
-# -------------------- paced_reader
-# PacedReader: a recorded stream at the pace of a host that loads the table so many times a second.
-#
-# What is modeled: no more than the pace of the host. A stream tells no time: what a host sent over a minute
-# is executed in a moment, and an animation of table loads would be over at once. What is **not**: how long
-# any other instruction takes; see `timing` for that.
-#
-# Hardware: none: no source gives the rate of fields, or of transfers (NCAR waits for the vertical retrace
-# before each load, so that at most one came to a field).
-
-LOAD: Final = "LAM"
-
-
-class _Piece(NamedTuple):
-    """Some bytes of a stream; the last of them may end a load of the table, and hold no other load."""
-
-    data: bytes
-    ends_a_load: bool
-
-
 class PacedReader:
-    """A function that reads a stream, like the one it is given, and waits before each load of the table.
+    """A function that reads a stream, like the function it is given, and waits before each load of the table.
 
-    It is to be called by a thread that may wait, such as that of a `PolledPipe`.
+    What is modeled: no more than the pace of the host. A stream has no times: the words that a host sent over
+    a minute are executed in a moment, and an animation of table loads would be over at once. What is **not**:
+    how long any other instruction takes; see `timing` for that.
+
+    Hardware: none: no source gives the rate of fields, or of transfers (NCAR waits for the vertical retrace
+    before each load, so that at most one came to a field).
+
+    Call it from a thread that may block, such as `PolledPipe`'s.
     """
 
     def __init__(
@@ -153,41 +141,42 @@ class PacedReader:
         self._decoder = Decoder(configuration)
         self._clock = clock
         self._sleep = sleep
-        self._pieces: deque[_Piece] = deque()
+        self._pieces: deque[tuple[bytes, bool]] = deque()
+        """Bytes of the stream, and whether their end is that of a load; they hold no other load."""
         self._odd_byte = b""
         self._due = clock()
 
     def __call__(self, most: int) -> bytes:
-        """At most so many bytes of the stream, none at its end; the end of a load when it is due."""
+        """At most so many bytes of the stream, none at its end. It waits until a load is due."""
         if not self._pieces:
             data = self._read(most)
             if not data:
                 return data
             self._pieces.extend(self._pieces_of(data))
-        piece = self._pieces.popleft()
-        if piece.ends_a_load:
+        data, ends_a_load = self._pieces.popleft()
+        if ends_a_load:
             self._wait()
-        return piece.data
+        return data
 
     def _wait(self) -> None:
-        """Wait until the next load is due; one that comes too late does not hurry those after it."""
+        """Wait until the next load is due. A load that comes too late does not hurry the next."""
         now = self._clock()
         if now < self._due:
             self._sleep(self._due - now)
         self._due = max(self._due, now) + self._seconds
 
-    def _pieces_of(self, data: bytes) -> Iterator[_Piece]:
+    def _pieces_of(self, data: bytes) -> Iterator[tuple[bytes, bool]]:
         """The bytes, cut after each load."""
         # A word may have begun in the bytes before, and an instruction in the words before.
         odd = len(self._odd_byte)
         whole = self._odd_byte + data
         self._odd_byte = whole[len(whole) & ~1 :]
         words = np.frombuffer(whole, "<u2", len(whole) // 2).astype(np.uint16, copy=False)
-        begun, end = 0, -2 * self._decoder.held_words - odd
+        begun, end = 0, -2 * self._decoder.pending_words - odd
         for instruction in self._decoder.feed(words):
             end += 2 * len(encode(instruction))
-            if instruction.format.name == LOAD:
-                yield _Piece(data[begun:end], ends_a_load=True)
+            if instruction.format.name == "LAM":
+                yield data[begun:end], True
                 begun = end
         if begun < len(data):
-            yield _Piece(data[begun:], ends_a_load=False)
+            yield data[begun:], False

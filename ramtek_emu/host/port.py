@@ -1,7 +1,18 @@
-"""HostPort: the two methods by which a host uses a display; and the port to a file.
+"""HostPort: the two methods by which a host uses a display; ports to a file and to a display elsewhere.
 
-Files hold streams in the byte order of the PDP-11 and the VAX, low byte first (Hardware: PRG, JPL, whose
-programs hand the words of their memory to the interface as they are).
+Words are 16 bits and go low byte first, in files and on wires (Hardware: PRG, JPL, whose programs hand the
+words of their memory to the interface as they are).
+
+A `Wire` is what a host and a display in another process have between them: a TCP connection or a Unix socket.
+TCP carries one stream of bytes. A Unix socket carries packets; a packet is one write of the host.
+
+Between the words of a wire there may be marks. A host sends a mark to ask for a hard reset, and the display
+sends one back when the reset is done: the replies that arrive before it belong to the time before. On TCP, a
+mark is a byte of urgent data, which is no part of the words; on a Unix socket it is an empty packet.
+
+Hardware: PRG DRIVER.c (the RESET bit of the interface's command register, a hard reset). Assumed: a mark
+stands for that bit, since a wire has no register beside the words; it takes effect after the words that
+were sent before it.
 """
 
 from __future__ import annotations
@@ -12,9 +23,8 @@ import select
 import selectors
 import socket
 import struct
+import sys
 import time
-from abc import ABC, abstractmethod
-from collections import deque
 from contextlib import suppress
 from enum import Enum
 from types import TracebackType
@@ -66,213 +76,121 @@ class Recorder:
         return self._port.receive(count)
 
 
-# -------------------- marks
-# Marks: signs between the words of a connection, by which a host asks for a hard reset and is answered.
-#
-# On TCP a mark is a byte of urgent data, which is no part of the words; on a Unix socket it is an empty
-# packet. A host sends one to ask for a hard reset, and the display sends one back when it is done: replies
-# that arrive before it are those of before.
-#
-# Hardware: PRG DRIVER.c (the RESET bit of the interface's command register, a hard reset). Assumed: a mark
-# stands for that bit, since a wire has no register beside the words; it takes effect after the words that
-# were sent before it.
-
-MARK_BYTE: Final = b"\0"
-NUMBER: Final = struct.Struct("i")
+PACKET_BYTES: Final = 1 << 19
+"""The longest packet that is read whole. Limit: more than a socket holds by the system's defaults."""
 SIOCATMARK: Final = 0x8905
 """The request that tells whether the next byte is urgent (Linux: asm-generic/sockios.h)."""
+MARKS_WORK: Final = hasattr(select, "epoll")
+"""Whether this system (Linux) tells where marks are."""
 
 
 class Sign(Enum):
-    """What a connection holds besides words."""
+    """A result of reading a wire other than bytes."""
 
-    END = "the other side has sent everything"
+    NOTHING = "nothing has arrived"
     MARK = "a mark"
+    END = "the other side has sent everything"
 
 
-def expect_marks(connected: socket.socket) -> None:
-    """Keep the urgent bytes of a TCP connection at their places among the others."""
-    connected.setsockopt(socket.SOL_SOCKET, socket.SO_OOBINLINE, 1)
-
-
-def marks_are_known() -> bool:
-    """Whether this system tells where the urgent byte of a connection is."""
-    return hasattr(select, "epoll")
-
-
-def read_stream(connected: socket.socket, most: int) -> bytes | Sign:
-    """The next bytes of a TCP connection, at most `most`, or a sign; OSError if there are none or it is lost.
-
-    Reading stops before an urgent byte, so that what follows it is never mixed with what precedes it.
-    """
-    if _number(connected, SIOCATMARK):
-        connected.recv(1)
-        return Sign.MARK
-    return connected.recv(most) or Sign.END
-
-
-def send_stream_mark(connected: socket.socket) -> None:
-    """Send a mark on a TCP connection; BlockingIOError if it cannot be sent now."""
-    connected.send(MARK_BYTE, socket.MSG_OOB)
-
-
-def read_packet(connected: socket.socket, most: int) -> bytes | Sign:
-    """The next packet of a Unix connection, cut after `most` bytes, or a sign; OSError as `read_stream`."""
-    packet = connected.recv(most)
-    if packet or not marks_are_known():
-        return packet or Sign.END
-    from termios import FIONREAD
-
-    # An empty packet and the end read alike; at the end the other side has hung up and nothing waits.
-    asked = select.poll()
-    asked.register(connected, select.POLLRDHUP)
-    return Sign.END if asked.poll(0) and not _number(connected, FIONREAD) else Sign.MARK
-
-
-def send_packet_mark(connected: socket.socket) -> None:
-    """Send a mark on a Unix connection; BlockingIOError if it cannot be sent now."""
-    connected.send(b"")
-
-
-def _number(connected: socket.socket, request: int) -> int:
-    """What the system answers to a request about a connection; 0 where there are no such requests."""
-    if not marks_are_known():
-        return 0
-    from fcntl import ioctl
-
-    number: int
-    (number,) = NUMBER.unpack(ioctl(connected, request, NUMBER.pack(0)))
-    return number
-
-
-# -------------------- connection
-# Connections of a host, as the display sees them: a stream of bytes (TCP), or packets (Unix).
-#
-# What is modeled: a write of odd length is rounded down to whole words (Hardware: PRG DRIVER.c, V8K).
-# Packets have the boundaries of the host's writes, so each is rounded down alone. A stream has none: there,
-# only the odd byte at the end of the session is dropped.
-#
-# No call waits: BlockingIOError tells that nothing can be done now, any other OSError that the host is
-# lost.
-
-READ_BYTES: Final = 1 << 16
-PACKET_BYTES: Final = 1 << 19
-"""The largest packet that is taken whole; more than the system lets a socket hold unless it is told to."""
-
-AT_ONCE: Final = struct.pack("ii", 1, 0)
-"""The value of SO_LINGER with which closing resets a connection."""
-
-
-class StreamConnection:
-    """A TCP connection. `waiting` is how many bytes of replies are still to be sent."""
+class Wire:
+    """A connected socket, on which no call waits. Every method raises OSError if the other side is lost."""
 
     def __init__(self, connected: socket.socket) -> None:
         self.socket = connected
-        self.waiting = 0
-        self._replies: deque[bytes] = deque()
-        self._mark_is_due = False
+        self.keeps_writes = connected.type != socket.SOCK_STREAM
+        """Whether the bytes come in packets, as the other side wrote them."""
         connected.setblocking(False)
-        self._prepare()
+        if not self.keeps_writes:
+            connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            # Keep the urgent bytes at their places among the others.
+            connected.setsockopt(socket.SOL_SOCKET, socket.SO_OOBINLINE, 1)
 
-    def _prepare(self) -> None:
-        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
-        expect_marks(self.socket)
+    def read(self, most: int) -> bytes | Sign:
+        """The next bytes or a sign: a whole packet, or at most `most` bytes of a stream.
 
-    @property
-    def has_to_send(self) -> bool:
-        """Whether something is still to be sent."""
-        return self._mark_is_due or self.waiting > 0
+        Reading a stream stops before a mark, so that bytes before and after it are never mixed.
+        """
+        try:
+            if self.keeps_writes:
+                packet = self.socket.recv(PACKET_BYTES)
+                return packet or (Sign.END if self._has_ended() else Sign.MARK)
+            if self._number(SIOCATMARK):
+                self.socket.recv(1)
+                return Sign.MARK
+            return self.socket.recv(most) or Sign.END
+        except BlockingIOError:
+            return Sign.NOTHING
 
-    def read(self) -> bytes | Sign:
-        """The next words of the host, low byte first, or a sign."""
-        return read_stream(self.socket, READ_BYTES)
+    def send(self, data: bytes | bytearray | memoryview) -> int:
+        """Send bytes, as many as the wire takes now; returns how many. A packet goes whole or not at all."""
+        try:
+            return self.socket.send(data)
+        except BlockingIOError:
+            return 0
 
-    def reply(self, data: bytes) -> None:
-        """Keep a reply until it can be sent."""
-        if data:
-            self._replies.append(data)
-            self.waiting += len(data)
-
-    def answer_mark(self) -> None:
-        """Drop the replies that wait, and keep a mark until it can be sent."""
-        self.drop()
-        self._mark_is_due = True
-
-    def drop(self) -> None:
-        """Drop all that is still to be sent."""
-        self._replies.clear()
-        self.waiting = 0
-        self._mark_is_due = False
-
-    def break_off(self) -> None:
-        """Let the end of the connection look like a loss, since not all of the host's words were executed."""
-        # On some systems, a connection that is lost already takes no options.
-        with suppress(OSError):
-            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, AT_ONCE)
-
-    def send(self) -> None:
-        """Send one piece of what waits."""
-        if self._mark_is_due:
-            self._send_mark()
-            self._mark_is_due = False
-        elif self._replies:
-            sent = self.socket.send(self._replies[0])
-            self.waiting -= sent
-            left = self._replies.popleft()[sent:]
-            if left:
-                self._replies.appendleft(left)
-
-    def _send_mark(self) -> None:
-        send_stream_mark(self.socket)
-
-
-class PacketConnection(StreamConnection):
-    """A Unix connection of packets. The replies to different writes are in different packets."""
-
-    def _prepare(self) -> None:
-        """Do nothing: the options are those of TCP."""
-
-    def read(self) -> bytes | Sign:
-        """The words of the next packet, low byte first, without its odd byte; or a sign."""
-        packet = read_packet(self.socket, PACKET_BYTES)
-        return packet if isinstance(packet, Sign) else packet[: len(packet) & ~1]
+    def send_mark(self) -> bool:
+        """Send a mark; returns False if the wire takes none now."""
+        try:
+            if self.keeps_writes:
+                self.socket.send(b"")
+            else:
+                self.socket.send(b"\0", socket.MSG_OOB)
+        except BlockingIOError:
+            return False
+        return True
 
     def break_off(self) -> None:
-        """Do nothing: a Unix socket has only one kind of end, unless the host's words were not even read."""
+        """Let closing a TCP connection look like a loss to the other side. A Unix socket has one end only."""
+        if not self.keeps_writes:
+            # On some systems, a connection that is lost already takes no options.
+            with suppress(OSError):
+                at_once = struct.pack("ii", 1, 0)
+                self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, at_once)
 
-    def _send_mark(self) -> None:
-        send_packet_mark(self.socket)
+    def _has_ended(self) -> bool:
+        """Whether an empty packet is the end: then the other side has hung up, and nothing waits."""
+        if not MARKS_WORK:
+            return True
+        from termios import FIONREAD
+
+        poll = select.poll()
+        poll.register(self.socket, select.POLLRDHUP)
+        return bool(poll.poll(0)) and not self._number(FIONREAD)
+
+    def _number(self, request: int) -> int:
+        """The system's answer to a request about the socket; 0 where there are no such requests."""
+        if not MARKS_WORK:
+            return 0
+        from fcntl import ioctl
+
+        return int.from_bytes(ioctl(self.socket, request, bytes(struct.calcsize("i"))), sys.byteorder)
 
 
-# -------------------- socket_port
-# SocketPort: what a host's ports over TCP and over a Unix socket have in common.
-#
-# While `send` is sending, it also takes what the display replies; otherwise both sides could wait for each
-# other forever.
-
-HURRIED: Final = 1.0
-"""Seconds that closing waits for the display's end while an error is under way."""
 MOST_SECONDS: Final = 1_000_000
-"""The longest timeout; what the system waits for at once is not much more."""
+"""The longest timeout. Limit: the system cannot wait for much longer at once."""
+HURRIED_SECONDS: Final = 1.0
+"""How long closing waits for the display while an error is under way. Limit: not to hide that error."""
 
 Self = TypeVar("Self", bound="SocketPort")
 
 
-class SocketPort(ABC):
-    """A host port over a connected socket; `timeout` is how long it waits for the display, in seconds."""
+class SocketPort:
+    """A host port over a connected socket; `timeout` is how long it waits for the display, in seconds.
+
+    While `send` is sending, it also takes the replies of the display. Otherwise both sides could wait for
+    each other forever.
+    """
 
     at_once: int
-    """Bytes handed to the socket at once."""
+    """How many bytes are sent or read at once."""
 
     def __init__(self, address: str, connected: socket.socket, timeout: float) -> None:
         self.address = address
         self.timeout = timeout
+        self.wire = Wire(connected)
         self._received = bytearray()
         self._mark_is_due = False
-        """Whether a reset was asked for and not answered yet; what is received until then is dropped."""
-        self._socket = connected
-        connected.setblocking(False)
+        """Whether a reset was asked for and is not answered yet; replies until then are dropped."""
 
     def __reduce__(self) -> NoReturn:
         raise TypeError(
@@ -281,19 +199,17 @@ class SocketPort(ABC):
         )
 
     def __repr__(self) -> str:
-        state = "closed" if self._socket.fileno() < 0 else "open"
-        return f"{type(self).__name__}({self.address}, {state})"
+        return f"{type(self).__name__}({self.address}, {'closed' if self._is_closed else 'open'})"
+
+    @property
+    def _is_closed(self) -> bool:
+        return self.wire.socket.fileno() < 0
 
     def send(self, words: Words) -> None:
         """Send 16-bit words; PortError if the connection is lost."""
         data = memoryview(checked_stream(words).astype("<u2", copy=False).tobytes())
         while data:
-            readable, writable = self._wait(writing=True)
-            if readable:
-                self._take()
-            if writable:
-                with self._lost_as_port_error(), suppress(BlockingIOError):
-                    data = data[self._socket.send(data[: self.at_once]) :]
+            data = data[self._send_some(data[: self.at_once]) :]
 
     def receive(self, count: int) -> Words:
         """The next `count` words, uint16; ReplyError at the timeout, PortError if the connection is lost."""
@@ -303,8 +219,7 @@ class SocketPort(ABC):
                 "ask for as many as an instruction replies"
             )
         while self._mark_is_due or len(self._received) < 2 * count:
-            readable, _ = self._wait(writing=False)
-            if not readable:
+            if not self._ready(self.timeout):
                 raise ReplyError(
                     f"the words received must come within {self.timeout:g} seconds, not {count} of which "
                     f"{len(self._received) // 2} came; send an instruction that reads them first, "
@@ -319,24 +234,30 @@ class SocketPort(ABC):
         """Ask for a hard reset, and wait until it is done; all words sent before are executed first.
 
         An unfinished instruction and all replies that were not received are dropped; parameters, screen,
-        cursors and status are reset; table and characters stay. PortError if it is not done in time. How it
-        is asked for is told in `marks`.
+        cursors and status are reset; table and characters stay. PortError if it is not done in time, or on a
+        system that has no marks on TCP.
         """
-        asked = False
-        while self._mark_is_due or not asked:
+        if not (MARKS_WORK or self.wire.keeps_writes):
+            raise PortError(
+                "a hard reset over TCP must be asked for on Linux, and this is another system; "
+                "use the joystick unit of `ramtek serve --joystick`"
+            )
+        is_sent = False
+        while self._mark_is_due or not is_sent:
             # A reset that was given up is answered first: two marks at once would be one.
-            readable, writable = self._wait(writing=not self._mark_is_due)
-            if writable:
-                with self._lost_as_port_error(), suppress(BlockingIOError):
-                    self._send_mark()
-                    asked = self._mark_is_due = True
-            if readable:
-                self._take()
-            elif not writable:
+            events = self._ready(self.timeout, writing=not self._mark_is_due)
+            if not events:
                 raise PortError(
                     f"a display must reset within {self.timeout:g} seconds, and {self.address} does not; "
                     "wait until no other host is served, or start it again"
                 )
+            if events & selectors.EVENT_WRITE:
+                try:
+                    is_sent = self._mark_is_due = self.wire.send_mark()
+                except OSError as cause:
+                    raise self._gone(reason_of(cause)) from cause
+            if events & selectors.EVENT_READ:
+                self._take()
 
     def close(self) -> None:
         """End the session, and wait until the display has executed everything; it is then free for others.
@@ -355,82 +276,86 @@ class SocketPort(ABC):
         if error is None:
             self.close()
         else:
-            # The error under way tells more than the one of closing.
+            # The error under way tells more than an error of closing.
             with suppress(PortError):
-                self._close(min(self.timeout, HURRIED))
+                self._close(min(self.timeout, HURRIED_SECONDS))
 
     def _close(self, seconds: float) -> None:
-        if self._socket.fileno() < 0:
+        if self._is_closed:
             return
         try:
-            self._end(time.monotonic() + seconds, seconds)
+            self._end(seconds)
         finally:
-            self._socket.close()
+            self.wire.socket.close()
 
-    def _end(self, deadline: float, seconds: float) -> None:
+    def _end(self, seconds: float) -> None:
         """End our side, and read until the display ends its own; PortError if it ended first, or does not."""
-        with suppress(BlockingIOError), self._lost_as_port_error():
-            while (data := self._read()) is not Sign.END:
-                if time.monotonic() >= deadline:
-                    break
+        deadline = time.monotonic() + seconds
+        data: bytes | Sign = b""
+        while data is not Sign.NOTHING and time.monotonic() < deadline:
+            data = self._read()
             if data is Sign.END:
-                raise self._gone(None)
-        with self._lost_as_port_error():
-            self._socket.shutdown(socket.SHUT_WR)
+                raise self._gone("it closed the connection")
+        try:
+            self.wire.socket.shutdown(socket.SHUT_WR)
+        except OSError as cause:
+            raise self._gone(reason_of(cause)) from cause
         while (left := deadline - time.monotonic()) > 0:
-            with selectors.DefaultSelector() as selector:
-                selector.register(self._socket, selectors.EVENT_READ)
-                selector.select(left)
-            with suppress(BlockingIOError), self._lost_as_port_error():
-                if self._read() is Sign.END:
-                    return
+            if self._ready(left) and self._read() is Sign.END:
+                return
         raise PortError(
             f"a display must get to the end of what it was sent within {seconds:g} seconds, and "
             f"{self.address} has not: it may be serving another host first; give a longer timeout"
         )
 
-    def _wait(self, writing: bool) -> tuple[bool, bool]:
-        """Wait until the socket is ready; returns whether it can be read, and whether it can be written."""
-        if self._socket.fileno() < 0:
+    def _ready(self, seconds: float, writing: bool = False) -> int:
+        """The events of the socket after waiting up to so many seconds for some: reading, perhaps writing."""
+        if self._is_closed:
             raise PortError(f"a port must be open, not closed ({self.address}); open it again")
         with selectors.DefaultSelector() as selector:
             wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if writing else 0)
-            selector.register(self._socket, wanted)
-            ready = selector.select(self.timeout)
-        if writing and not ready:
+            selector.register(self.wire.socket, wanted)
+            ready = selector.select(seconds)
+        return ready[0][1] if ready else 0
+
+    def _send_some(self, data: bytes | memoryview) -> int:
+        """Send some bytes when the display takes them; returns how many. Replies are taken meanwhile."""
+        events = self._ready(self.timeout, writing=True)
+        if not events:
             raise PortError(
                 f"a display must take words within {self.timeout:g} seconds, and {self.address} does not; "
                 "read its replies, wait until no other host is served, or start it again"
             )
-        events = ready[0][1] if ready else 0
-        return bool(events & selectors.EVENT_READ), bool(events & selectors.EVENT_WRITE)
+        if events & selectors.EVENT_READ:
+            self._take()
+        if not events & selectors.EVENT_WRITE:
+            return 0
+        try:
+            return self.wire.send(data)
+        except OSError as cause:
+            raise self._gone(reason_of(cause)) from cause
 
     def _take(self) -> None:
         """Keep the replies that have arrived; at a mark, drop those that precede it."""
-        with suppress(BlockingIOError), self._lost_as_port_error():
-            data = self._read()
-            if data is Sign.END:
-                raise self._gone(None)
-            if data is Sign.MARK:
-                self._received.clear()
-                self._mark_is_due = False
-            else:
-                self._received += data
+        data = self._read()
+        if data is Sign.END:
+            raise self._gone("it closed the connection")
+        if data is Sign.MARK:
+            self._received.clear()
+            self._mark_is_due = False
+        elif not isinstance(data, Sign):
+            self._received += data
 
-    @abstractmethod
     def _read(self) -> bytes | Sign:
-        """The next replies, or a sign; BlockingIOError if there is neither."""
+        try:
+            return self.wire.read(self.at_once)
+        except OSError as cause:
+            raise self._gone(reason_of(cause)) from cause
 
-    @abstractmethod
-    def _send_mark(self) -> None:
-        """Send a mark; BlockingIOError if it cannot be sent now."""
-
-    def _lost_as_port_error(self) -> LostAsPortError:
-        return LostAsPortError(self)
-
-    def _gone(self, cause: OSError | None) -> PortError:
-        why = "it closed the connection" if cause is None else reason_of(cause)
-        return PortError(f"a display must stay at {self.address}, and it left ({why}); connect again later")
+    def _gone(self, reason: str) -> PortError:
+        return PortError(
+            f"a display must stay at {self.address}, and it left ({reason}); connect again later"
+        )
 
 
 def checked_timeout(seconds: object) -> float:
@@ -443,34 +368,12 @@ def checked_timeout(seconds: object) -> float:
     return float(seconds)
 
 
-class LostAsPortError:
-    """A `with` block in which a lost connection is raised as PortError."""
-
-    def __init__(self, port: SocketPort) -> None:
-        self._port = port
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, place: TracebackType | None
-    ) -> None:
-        if isinstance(error, OSError) and not isinstance(error, (BlockingIOError, PortError)):
-            raise self._port._gone(error) from error
-
-
-# -------------------- tcp_port
-# TcpPort: a host port to a display behind a TCP port, such as `ramtek serve --port` opens.
-
-ADDRESS: Final = re.compile(r"(?i:tcp)://(?P<host>\[[0-9A-Fa-f:.%\w]+\]|[^\s:/\[\]@]+):(?P<port>[0-9]{1,5})")
-
-
 class TcpPort(SocketPort):
-    """A host port to the display at `tcp://host:port`.
+    """A host port to the display at `tcp://host:port`, such as `ramtek serve --port` opens.
 
-    Words are transferred low byte first. If the display serves another host, this one waits in line: what it
-    sends is kept and executed when its turn comes. `receive` waits up to `timeout` seconds, and so does
-    `close`, which a `with` block calls at its end: until the display has executed everything.
+    If the display serves another host, this one waits in line: its words are kept and executed when its turn
+    comes. `receive` waits up to `timeout` seconds, and so does `close` until the display has executed
+    everything. A `with` block calls `close` at its end.
     """
 
     at_once = 1 << 18
@@ -485,20 +388,10 @@ class TcpPort(SocketPort):
                 f"a display must listen at {address}, and it is not reached ({reason_of(cause)}); "
                 "start `ramtek serve` there"
             ) from cause
-        connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        expect_marks(connected)
         super().__init__(address, connected, timeout)
 
-    def _read(self) -> bytes | Sign:
-        return read_stream(self._socket, self.at_once)
 
-    def _send_mark(self) -> None:
-        if not marks_are_known():
-            raise PortError(
-                "a hard reset over TCP must be asked for on Linux, and this is another system; "
-                "use the joystick unit of `ramtek serve --joystick`"
-            )
-        send_stream_mark(self._socket)
+ADDRESS: Final = re.compile(r"(?i:tcp)://(?P<host>\[[0-9A-Fa-f:.%\w]+\]|[^\s:/\[\]@]+):(?P<port>[0-9]{1,5})")
 
 
 def host_and_port(address: str) -> tuple[str, int]:
@@ -507,25 +400,19 @@ def host_and_port(address: str) -> tuple[str, int]:
     >>> host_and_port("tcp://127.0.0.1:9300"), host_and_port("TCP://[::1]:9300")
     (('127.0.0.1', 9300), ('::1', 9300))
     """
-    found = ADDRESS.fullmatch(address) if isinstance(address, str) else None
-    if found is None or not 1 <= int(found["port"]) <= 0xFFFF:
+    parts = ADDRESS.fullmatch(address) if isinstance(address, str) else None
+    if parts is None or not 1 <= int(parts["port"]) <= 0xFFFF:
         raise PortError(
             f"an address must be tcp://host:port with a port from 1 to 65535, not {address!r}; write it so"
         )
-    return found["host"].strip("[]"), int(found["port"])
-
-
-# -------------------- unix_port
-# UnixPort: a host port to a display at a Unix socket, such as `ramtek serve --unix` makes.
-#
-# Each packet is rounded down to whole words alone. This port sends whole words only; `write` sends the
-# bytes of one write as a program of the time made it, whatever their number.
-
-RETRY_SECONDS: Final = 0.05
+    return parts["host"].strip("[]"), int(parts["port"])
 
 
 class UnixPort(SocketPort):
-    """A host port to the display at a path; it waits in line and for the display as TcpPort does."""
+    """A host port to the display at a path, such as `ramtek serve --unix` makes.
+
+    It waits in line and for the display as TcpPort does. The display rounds each packet down to whole words.
+    """
 
     at_once = 1 << 16
 
@@ -533,13 +420,8 @@ class UnixPort(SocketPort):
         address, timeout = os.fspath(path), checked_timeout(timeout)
         super().__init__(address, connected_socket(address, timeout), timeout)
 
-    @property
-    def socket(self) -> socket.socket:
-        """The connected socket, for a relay that waits for other things as well."""
-        return self._socket
-
     def write(self, data: bytes) -> None:
-        """Send bytes as one write of at most 65,536 bytes; the display rounds it down to whole words.
+        """Send any number of bytes up to 65,536 as one write, as a program of the time wrote them.
 
         PortError if the connection is lost, or if the write is longer than that.
         """
@@ -547,23 +429,8 @@ class UnixPort(SocketPort):
             raise PortError(
                 f"a write must be at most {self.at_once} bytes, not {len(data)}; divide it at an even place"
             )
-        while data:
-            readable, writable = self._wait(writing=True)
-            if readable:
-                self._take()
-            if writable:
-                with self._lost_as_port_error():
-                    try:
-                        self._socket.send(data)
-                    except BlockingIOError:
-                        continue
-                    return
-
-    def _read(self) -> bytes | Sign:
-        return read_packet(self._socket, PACKET_BYTES)
-
-    def _send_mark(self) -> None:
-        send_packet_mark(self._socket)
+        while data and not self._send_some(data):
+            pass
 
 
 def packet_socket() -> socket.socket:
@@ -588,9 +455,9 @@ def connected_socket(path: str, timeout: float) -> socket.socket:
             connected.connect(path)
         except (OSError, ValueError) as cause:
             connected.close()
-            # The line is full: it does not wait by itself, as that of TCP does.
+            # The line is full. Unlike TCP, a Unix socket does not wait for a place by itself.
             if isinstance(cause, BlockingIOError) and time.monotonic() < deadline:
-                time.sleep(RETRY_SECONDS)
+                time.sleep(0.05)
                 continue
             raise PortError(
                 f"a display must listen at {path}, and it is not reached ({reason_of(cause)}); "

@@ -1,17 +1,21 @@
 """Server: a display behind a listening socket, for one host after the other.
 
-What is modeled: the host interface as a stream of words, low byte first, both ways. What is **not**: the
-UNIBUS registers and their interrupts.
+What is modeled: the host interface as a stream of words, low byte first both ways (Hardware: PRG, JPL, V8K:
+the words of a PDP-11's or a VAX's memory as they are); instructions cut anywhere; replies in order and as
+soon as they exist; whole words: a write of odd length is rounded down (Hardware: PRG DRIVER.c, V8K). A Unix
+socket keeps the writes of a host apart, and each is rounded down by itself. TCP does not tell where a write
+ended: there, only the odd byte at the end of the session is dropped. What is **not** modeled: the UNIBUS
+registers and their interrupts.
 
 No call blocks longer than its argument allows, so that a window can be drawn in between: `step` reads what
 has arrived, sends what can be sent, and returns. When a host leaves, all its words are executed first; then
 its unfinished instruction and its unread replies are dropped, the memories keep their state, and the next
 host is served. Hosts that connect meanwhile wait in line: the system keeps the connections of 128 of them
-with what they have sent, and others try again until they find a place.
+with the words they have sent, and others try again until they find a place.
 
-Limits: a host is disconnected if nothing is sent or received for `idle_seconds`, or if an instruction stays
-incomplete for `partial_seconds`. The clock of a host starts when its turn comes, so that one that waits loses
-nothing, and one that is silent holds up the line for `idle_seconds` at most. While REPLY_BYTES of replies
+Limit: a host is disconnected if nothing is sent or received for `idle_seconds`, or if an instruction stays
+incomplete for `partial_seconds`. The clock of a host starts when its turn comes, so that a host that waits
+loses nothing, and a silent host holds up the line for `idle_seconds` at most. While REPLY_BYTES of replies
 wait for the host, nothing more is read from it.
 """
 
@@ -22,6 +26,7 @@ import selectors
 import socket
 import stat
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from types import TracebackType
@@ -33,23 +38,12 @@ from ramtek_emu import instructions
 from ramtek_emu.arrays import Booleans, Words
 from ramtek_emu.display import Ramtek9300
 from ramtek_emu.errors import OutputError, OutputExistsError, PortError, reason_of
-from ramtek_emu.host.port import PacketConnection, Sign, StreamConnection, packet_socket
+from ramtek_emu.host.port import Sign, Wire, packet_socket
 from ramtek_emu.instruction_set.instruction import NO_WORDS
 from ramtek_emu.instruction_set.table import FORMATS
 
-# -------------------- host_session
-# HostSession: passes the bytes of a host to a display and those of the replies back, for sockets and pipes.
-#
-# What is modeled: words low byte first both ways (Hardware: PRG, JPL, V8K: the words of a PDP-11's or a
-# VAX's memory as they are); instructions cut anywhere; replies in order and as soon as they exist; whole
-# words: an odd byte at the end is dropped (Hardware: PRG DRIVER.c, V8K round down).
-#
-# The words are passed on in pieces. A piece that may contain reading instructions is short, so that no more
-# than MOST_WAITING words of replies ever wait; the next piece is read when those replies were taken. A
-# piece is also short if the last one took long, so that a window that is served in between stays
-# responsive.
-
 Record = Callable[[bytes], object]
+"""Takes the bytes of whole instructions, in order, to record them."""
 
 LEAST: Final = 4
 PIECE: Final = 1 << 15
@@ -61,20 +55,20 @@ READING_PIECE: Final = 64
 """The size of a piece that may contain reading instructions: at most 32, each with at most 32,767 words."""
 REPLY_PIECE: Final = 1 << 15
 """The largest number of words of replies returned at once."""
-
-
-def replying() -> Booleans:
-    """Whether each of the 256 opcodes makes the display reply."""
-    opcodes = np.zeros(256, np.bool_)
-    opcodes[[format.opcode for format in FORMATS if format.replies]] = True
-    return opcodes
+REPLYING: Final[Booleans] = np.isin(np.arange(256), [row.opcode for row in FORMATS if row.replies])
+"""Whether an opcode makes the display reply."""
 
 
 class HostSession:
-    """One host at a display. When it leaves, its unfinished words are dropped and the memories are kept."""
+    """One host at a display: passes its bytes on, and the bytes of the replies back; for sockets and pipes.
+
+    The words are passed on in pieces. A piece that may contain reading instructions is short, so that the
+    replies that wait never outgrow the processor's bound; the next piece is read when those replies were
+    taken. A piece is also short if the last one took long, so that a window that is served in between stays
+    responsive.
+    """
 
     def __init__(self, display: Ramtek9300, record: Record | None = None) -> None:
-        """Begin a session; `record` is called with the bytes of whole instructions, in order."""
         self.display = display
         self._record = record
         self._unrecorded = NO_WORDS
@@ -82,19 +76,13 @@ class HostSession:
         """How many words the host has sent; it never decreases."""
         self.odd_byte = b""
         """The first byte of a word whose second byte has not arrived."""
-        self._replies = replying()
         self._size = READING_PIECE
         self.leave()
 
     @property
-    def held_words(self) -> int:
-        """How many words of an incomplete instruction are held."""
-        return self.display.decoder.held_words
-
-    @property
     def unfinished(self) -> bool:
         """Whether a word or an instruction is incomplete."""
-        return bool(self.odd_byte) or self.held_words > 0
+        return bool(self.odd_byte) or self.display.decoder.pending_words > 0
 
     def feed(self, data: bytes) -> Iterator[bytes]:
         """Pass bytes of the host to the display, piece by piece, and yield the replies to each piece.
@@ -104,7 +92,7 @@ class HostSession:
         data = self.odd_byte + data
         self.odd_byte = data[len(data) & ~1 :]
         words = np.frombuffer(data, "<u2", len(data) // 2).astype(np.uint16, copy=False)
-        most = READING_PIECE if self._replies[words >> 8].any() else PIECE
+        most = READING_PIECE if REPLYING[words >> 8].any() else PIECE
         place = 0
         while place < len(words):
             piece = words[place : place + min(self._size, most)]
@@ -117,21 +105,21 @@ class HostSession:
             elif took < SHORT:
                 self._size = min(PIECE, 2 * self._size)
             self.words += len(piece)
-            self._keep(piece)
+            if self._record is not None:
+                self._unrecorded = self._recorded(self._record, piece)
             yield b""
             while waiting := self.display.processor.waiting:
                 yield self.display.receive(min(waiting, REPLY_PIECE)).astype("<u2", copy=False).tobytes()
 
-    def _keep(self, piece: Words) -> None:
-        """Record the words of the instructions that are complete now."""
-        if self._record is not None:
-            words = np.concatenate((self._unrecorded, piece))
-            whole = len(words) - self.held_words
-            self._record(words[:whole].astype("<u2", copy=False).tobytes())
-            self._unrecorded = words[whole:]
+    def _recorded(self, record: Record, piece: Words) -> Words:
+        """Record the instructions that are complete now, and return the words of the incomplete one."""
+        words = np.concatenate((self._unrecorded, piece))
+        whole = len(words) - self.display.decoder.pending_words
+        record(words[:whole].astype("<u2", copy=False).tobytes())
+        return words[whole:]
 
     def reset(self) -> None:
-        """Reset the display; what is recorded resets it at the same place.
+        """Reset the display; the recording resets it at the same place.
 
         The incomplete instruction and the replies that were not taken are dropped; the odd byte stays, since
         the stream of bytes goes on.
@@ -149,51 +137,52 @@ class HostSession:
         self.display.receive(self.display.processor.waiting)
 
 
-# -------------------- client
-# Client: the host that a server serves now, with its words, its replies and its time limits.
-#
-# A host that no longer takes its replies loses them, but its words are still executed, as on a pipe.
-
+READ_BYTES: Final = 1 << 16
+"""How many bytes are read from a stream at once."""
 REPLY_BYTES: Final = 1 << 18
 """When this many bytes of replies wait for the host, no more of its words are read."""
 
 
 class Client:
-    """The connected host: its connection, its words and the replies to be sent."""
+    """The host that is served now: its wire, its words, its replies and its time limits.
 
-    def __init__(
-        self,
-        connection: StreamConnection,
-        session: HostSession,
-        idle_seconds: float,
-        partial_seconds: float,
-    ) -> None:
-        self.connection = connection
-        self.socket = connection.socket
+    A host that no longer takes its replies loses them, but its words are still executed, as on a pipe.
+    """
+
+    def __init__(self, wire: Wire, session: HostSession, idle_seconds: float, partial_seconds: float) -> None:
+        self.wire = wire
         self.session = session
         self.idle_seconds, self.partial_seconds = idle_seconds, partial_seconds
-        self.gone = False
-        self.sent_all = False
+        self.waiting = 0
+        """How many bytes of replies are still to be sent."""
+        self._replies: deque[bytes] = deque()
+        self._mark_is_due = False
         self._takes_replies = True
         self._pending: Iterator[bytes] | None = None
+        self._is_gone = False
+        self._sent_all = False
         self._moved = self._whole = time.monotonic()
 
     @property
     def has_work(self) -> bool:
         """Whether words of the host can be passed to the display now."""
-        return self._pending is not None and self.connection.waiting < REPLY_BYTES
+        return self._pending is not None and self.waiting < REPLY_BYTES
+
+    @property
+    def has_to_send(self) -> bool:
+        """Whether a mark or replies are still to be sent."""
+        return self._mark_is_due or self.waiting > 0
 
     @property
     def wanted(self) -> int:
-        """The events of the connection that can be handled now."""
-        reading = self._pending is None and not self.sent_all and self.connection.waiting < REPLY_BYTES
-        writing = self.connection.has_to_send
-        return (selectors.EVENT_READ if reading else 0) | (selectors.EVENT_WRITE if writing else 0)
+        """The events of the socket that can be handled now."""
+        reading = self._pending is None and not self._sent_all and self.waiting < REPLY_BYTES
+        return (selectors.EVENT_READ if reading else 0) | (selectors.EVENT_WRITE if self.has_to_send else 0)
 
     @property
     def ended(self) -> bool:
         """Whether nothing remains to be done for this host."""
-        return self.gone or (self.sent_all and self._pending is None and not self.connection.has_to_send)
+        return self._is_gone or (self._sent_all and self._pending is None and not self.has_to_send)
 
     @property
     def deadline(self) -> float:
@@ -202,9 +191,9 @@ class Client:
         return min(idle, self._whole + self.partial_seconds) if self.session.unfinished else idle
 
     def serve(self, events: int) -> bool:
-        """Read or write what the connection is ready for; returns whether anything moved."""
+        """Read or write what the socket is ready for; returns whether anything moved."""
         moved = False
-        if events & selectors.EVENT_WRITE and self.connection.has_to_send:
+        if events & selectors.EVENT_WRITE and self.has_to_send:
             moved = self._send()
         if events & selectors.EVENT_READ:
             moved |= self._read()
@@ -213,33 +202,47 @@ class Client:
         return moved
 
     def _send(self) -> bool:
+        """Send the mark or one piece of the replies. Replies to different writes are in different packets."""
         try:
-            self.connection.send()
-        except BlockingIOError:
-            return False
+            if self._mark_is_due:
+                self._mark_is_due = not self.wire.send_mark()
+                return not self._mark_is_due
+            sent = self.wire.send(self._replies[0])
         except OSError:
             self._takes_replies = False
-            self.connection.drop()
-        return True
+            self._drop_replies()
+            return True
+        self.waiting -= sent
+        rest = self._replies.popleft()[sent:]
+        if rest:
+            self._replies.appendleft(rest)
+        return sent > 0
+
+    def _drop_replies(self) -> None:
+        self._replies.clear()
+        self.waiting = 0
+        self._mark_is_due = False
 
     def _read(self) -> bool:
         try:
-            data = self.connection.read()
-        except BlockingIOError:
-            return False
+            data = self.wire.read(READ_BYTES)
         except OSError:
-            self.gone = True
+            self._is_gone = True
+            return False
+        if data is Sign.NOTHING:
             return False
         if not self.session.unfinished:
             self._whole = time.monotonic()
         if data is Sign.END:
-            self.sent_all = True
+            self._sent_all = True
         elif data is Sign.MARK:
             self.session.leave()
             self.session.reset()
-            self.connection.answer_mark()
-        else:
-            self._pending = self.session.feed(data)
+            self._drop_replies()
+            self._mark_is_due = True
+        elif not isinstance(data, Sign):
+            # A packet is one write of the host, and is rounded down to whole words by itself.
+            self._pending = self.session.feed(data[: len(data) & ~1] if self.wire.keeps_writes else data)
         return True
 
     def work(self) -> bool:
@@ -253,50 +256,49 @@ class Client:
         self._moved, self._whole = self._moved + took, self._whole + took
         if reply is None:
             self._pending = None
-        elif self._takes_replies:
-            self.connection.reply(reply)
+        elif reply and self._takes_replies:
+            self._replies.append(reply)
+            self.waiting += len(reply)
         if not self.session.unfinished:
             self._whole = time.monotonic()
         return True
 
     def leave(self) -> None:
-        """Close the connection and drop what is unfinished."""
+        """Close the wire and drop the unfinished instruction and the replies."""
         if self._pending is not None:
-            self.connection.break_off()
+            # Not all of the host's words were executed, and it must know.
+            self.wire.break_off()
         self._pending = None
         self.session.leave()
-        self.socket.close()
+        self.wire.socket.close()
 
 
 IDLE_SECONDS: Final = 600.0
 PARTIAL_SECONDS: Final = 60.0
 LINE: Final = 128
-"""How many hosts can wait in line."""
+"""Limit: how many hosts can wait in line."""
 
 Self = TypeVar("Self", bound="Server")
 
 
 class Server:
-    """A display that serves the hosts of a listening socket."""
+    """A display that serves the hosts of a listening socket; `address` is what a host passes to its port."""
 
     def __init__(
         self,
         display: Ramtek9300,
         listener: socket.socket,
-        connection: Callable[[socket.socket], StreamConnection],
-        *,
-        idle_seconds: float = IDLE_SECONDS,
-        partial_seconds: float = PARTIAL_SECONDS,
-        record: Record | None = None,
+        address: str,
+        idle_seconds: float,
+        record: Record | None,
     ) -> None:
-        """Start to serve; `record` is called with the bytes of whole instructions, host after host."""
         self.display = display
+        self.address = address
         self.record = record
         self.idle_seconds = idle_seconds
-        self.partial_seconds = partial_seconds
+        self.partial_seconds = PARTIAL_SECONDS
         self.served = 0
         """How many hosts were served and have left; it never decreases."""
-        self._connection = connection
         self._listener = listener
         self._listener.setblocking(False)
         self._selector = selectors.DefaultSelector()
@@ -315,7 +317,7 @@ class Server:
             return bool(self._selector.select(seconds)) and self._accept()
         left = max(0.0, client.deadline - time.monotonic())
         seconds = 0.0 if client.has_work else min(seconds, left)
-        self._selector.modify(client.socket, client.wanted or selectors.EVENT_WRITE)
+        self._selector.modify(client.wire.socket, client.wanted or selectors.EVENT_WRITE)
         done = False
         for _, events in self._selector.select(seconds):
             done |= client.serve(events)
@@ -361,12 +363,13 @@ class Server:
             # The caller has disconnected already.
             return False
         try:
-            connection = self._connection(connected)
+            connected.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+            wire = Wire(connected)
         except OSError:
             connected.close()
             return True
         session = HostSession(self.display, self.record)
-        self._client = Client(connection, session, self.idle_seconds, self.partial_seconds)
+        self._client = Client(wire, session, self.idle_seconds, self.partial_seconds)
         # While this host is served, the others wait in the listener's line.
         self._selector.unregister(self._listener)
         self._selector.register(connected, selectors.EVENT_READ)
@@ -374,36 +377,26 @@ class Server:
 
     def _disconnect(self) -> None:
         if self._client is not None:
-            self._selector.unregister(self._client.socket)
+            self._selector.unregister(self._client.wire.socket)
             self._client.leave()
             self._client = None
             self._selector.register(self._listener, selectors.EVENT_READ)
             self.served += 1
 
 
-# -------------------- tcp_server
-# TcpServer: a display at `tcp://host:port`.
-#
-# Words come as a stream of bytes: TCP does not tell where one write of a host ended and the next began. A
-# program that relied on each write being rounded down to whole words needs `UnixServer`.
-
-LOOPBACK: Final = "127.0.0.1"
-
-
 class TcpServer(Server):
-    """A display on TCP. `port` is the port it listens on, even if 0 asked for any free one."""
+    """A display at `tcp://host:port`. `port` is the port it listens on, even if 0 asked for any free one."""
 
     def __init__(
         self,
         display: Ramtek9300,
         port: int = 0,
-        host: str = LOOPBACK,
+        host: str = "127.0.0.1",
         *,
         idle_seconds: float = IDLE_SECONDS,
-        partial_seconds: float = PARTIAL_SECONDS,
         record: Record | None = None,
     ) -> None:
-        """Start to listen; PortError if the port cannot be had."""
+        """Start to listen; PortError if the port is taken or cannot be opened."""
         try:
             family = socket.AF_INET6 if ":" in host else socket.AF_INET
             listener = socket.create_server((host, port), family=family, backlog=LINE)
@@ -412,33 +405,17 @@ class TcpServer(Server):
                 f"a server must have a port to itself, and {host}:{port} cannot be had ({reason_of(cause)}); "
                 "choose another, or 0 for any"
             ) from cause
-        super().__init__(
-            display,
-            listener,
-            StreamConnection,
-            idle_seconds=idle_seconds,
-            partial_seconds=partial_seconds,
-            record=record,
-        )
         self.host = host
         self.port: int = listener.getsockname()[1]
-
-    @property
-    def address(self) -> str:
-        """The address that a host passes to TcpPort."""
-        return f"tcp://{f'[{self.host}]' if ':' in self.host else self.host}:{self.port}"
-
-
-# -------------------- unix_server
-# UnixServer: a display at a path, on a Unix domain socket that keeps the boundaries of writes (SEQPACKET).
-#
-# Each packet is one write of the host and is rounded down to whole words alone, as the drivers of the time
-# did (Hardware: PRG DRIVER.c, V8K). Whoever may write to the file may draw: it is made for its owner only
-# (0600).
+        address = f"tcp://{f'[{host}]' if ':' in host else host}:{self.port}"
+        super().__init__(display, listener, address, idle_seconds, record)
 
 
 class UnixServer(Server):
-    """A display on a Unix socket; `address` is its path, which a host passes to UnixPort."""
+    """A display at a path, on a Unix socket that keeps the boundaries of writes (SEQPACKET).
+
+    Whoever may write to the socket's file may draw: it is made for its owner only (0600).
+    """
 
     def __init__(
         self,
@@ -446,7 +423,6 @@ class UnixServer(Server):
         path: str | os.PathLike[str],
         *,
         idle_seconds: float = IDLE_SECONDS,
-        partial_seconds: float = PARTIAL_SECONDS,
         record: Record | None = None,
     ) -> None:
         """Start to listen.
@@ -454,38 +430,31 @@ class UnixServer(Server):
         PortError where the system has no such sockets, OutputExistsError if the path is taken by anything but
         the socket of a server that is gone, OutputError if no socket can be made there.
         """
-        self.address = os.fspath(path)
+        address = os.fspath(path)
         listener = packet_socket()
         try:
-            clear_the_way(self.address)
+            clear_the_way(address)
             # The socket's file gets the permissions of the socket; they are never wider.
             os.fchmod(listener.fileno(), stat.S_IRUSR | stat.S_IWUSR)
-            listener.bind(self.address)
+            listener.bind(address)
             listener.listen(LINE)
-            self._file = identity(self.address)
+            self._file = os.lstat(address)
         except OutputExistsError:
             listener.close()
             raise
         except (OSError, ValueError) as cause:
             listener.close()
             raise OutputError(
-                f"a server's socket must be where one can be made, not at {self.address!r} "
+                f"a server's socket must be where one can be made, not at {address!r} "
                 f"({reason_of(cause)}); choose another path"
             ) from cause
-        super().__init__(
-            display,
-            listener,
-            PacketConnection,
-            idle_seconds=idle_seconds,
-            partial_seconds=partial_seconds,
-            record=record,
-        )
+        super().__init__(display, listener, address, idle_seconds, record)
 
     def close(self) -> None:
         """Disconnect the host, stop listening, and remove the socket's file if it is still ours."""
         super().close()
         with suppress(OSError):
-            if identity(self.address) == self._file:
+            if os.path.samestat(os.lstat(self.address), self._file):
                 os.unlink(self.address)
 
 
@@ -511,9 +480,3 @@ def clear_the_way(path: str) -> None:
         f"a server's socket must be a new file or the socket of a server that is gone, not {path}, "
         f"which {thing}; choose another path"
     )
-
-
-def identity(path: str) -> tuple[int, int]:
-    """What tells the file at a path from any other: its device and its number there."""
-    file = os.lstat(path)
-    return file.st_dev, file.st_ino

@@ -1,7 +1,7 @@
 """Decoder: splits a continuous stream of words into instructions, wherever the stream is cut.
 
 An instruction may span two sends, and one send may hold many instructions (Hardware: PRG, DRIVER.c cuts its
-transfers every 512 bytes). The words of an incomplete instruction are held until the rest of it arrives.
+transfers every 512 bytes). The words of an incomplete instruction are kept until the rest of it arrives.
 
 Assumed: a word whose opcode is in no row of the table, or that asks for a second operand flag word on a
 display without one, is skipped alone and flagged as illegal; the next word is read as an instruction. The
@@ -41,7 +41,7 @@ MOST_WORDS: Final = MOST_HEAD + 0x8000
 
 
 class Decoder:
-    """Takes words as they arrive and returns whole instructions; the words of an incomplete one are held."""
+    """Takes words as they arrive, and returns whole instructions; the words of an incomplete one wait."""
 
     def __init__(self, configuration: Configuration = GMR_9300) -> None:
         self._of(configuration.extended)
@@ -50,24 +50,24 @@ class Decoder:
         self._extended = extended
         self._formats = formats_of_opcodes(extended)
         self._begins = words_that_begin(extended)
-        self._held: Words = np.empty(MOST_WORDS, np.uint16)
+        self._pending: Words = np.empty(MOST_WORDS, np.uint16)
         self._count = 0
         self._needed = 1
 
     def __getstate__(self) -> tuple[bool, Words, int]:
-        return self._extended, self._held[: self._count].copy(), self._needed
+        return self._extended, self._pending[: self._count].copy(), self._needed
 
     def __setstate__(self, state: tuple[bool, Words, int]) -> None:
         self._of(state[0])
         self._count, self._needed = len(state[1]), state[2]
-        self._held[: self._count] = state[1]
+        self._pending[: self._count] = state[1]
 
     def __repr__(self) -> str:
-        return f"Decoder(words held: {self._count})"
+        return f"Decoder(words pending: {self._count})"
 
     @property
-    def held_words(self) -> int:
-        """How many words of an incomplete instruction are held."""
+    def pending_words(self) -> int:
+        """How many words of an incomplete instruction have arrived."""
         return self._count
 
     def clear(self) -> None:
@@ -83,16 +83,16 @@ class Decoder:
         place = 0
         while self._count and place < len(words):
             taken = min(self._needed - self._count, len(words) - place)
-            self._held[self._count : self._count + taken] = words[place : place + taken]
+            self._pending[self._count : self._count + taken] = words[place : place + taken]
             self._count += taken
             place += taken
             if self._count < self._needed:
                 return
-            head = self._held[: min(self._count, MOST_HEAD)].tolist()
+            head = self._pending[: min(self._count, MOST_HEAD)].tolist()
             format = self._format(head[0])
             self._needed = words_needed(format, head)
             if self._needed == self._count:
-                whole = self._held[: self._count].copy()
+                whole = self._pending[: self._count].copy()
                 self.clear()
                 yield instruction_of(format, head, whole)
         while place < len(words):
@@ -105,9 +105,9 @@ class Decoder:
                 continue
             needed = words_needed(format, head)
             if needed > len(words) - place:
-                # Hold the words of an incomplete instruction.
+                # Keep the words of an incomplete instruction.
                 self._needed, self._count = needed, len(words) - place
-                self._held[: self._count] = words[place:]
+                self._pending[: self._count] = words[place:]
                 return
             place += needed
             yield instruction_of(format, head, words[place - needed : place])
@@ -200,8 +200,8 @@ def flag_words(head: list[int]) -> tuple[int, int]:
 @lru_cache
 def formats_of_opcodes(extended: bool) -> tuple[InstructionFormat, ...]:
     """The format of each of the 256 opcodes, with or without those of the 9400 and 9460."""
-    known = {format.opcode: format for format in FORMATS if extended or not format.extended}
-    return tuple(known.get(opcode, ILLEGAL) for opcode in range(256))
+    formats = {format.opcode: format for format in FORMATS if extended or not format.extended}
+    return tuple(formats.get(opcode, ILLEGAL) for opcode in range(256))
 
 
 @lru_cache
@@ -218,9 +218,9 @@ def words_that_begin(extended: bool) -> Booleans:
 
 
 def short_length_place(head: list[int]) -> int | None:
-    """The index of the data length if there are six coefficients; None if it cannot be told from twelve.
+    """The index of the data length if there are six coefficients; None if there may be twelve.
 
-    It can be told where twelve coefficients would make that word the upper half of one of them.
+    There are six where twelve would make that word the upper half of a coefficient.
     """
     first, second = flag_words(head)
     place = FLAG_WORDS[head[0] & 6]

@@ -36,7 +36,7 @@ from ramtek_emu.instruction_set.table import (
 COLUMN: Final = 6
 """The largest number of words on the left of a line."""
 IN_HEXADECIMAL: Final = frozenset(("mask", "read_mask", "texture", "scale", "conic"))
-PLAIN: Final = frozenset(("address", "element", "line"))
+NUMBERS: Final = frozenset(("address", "element", "line"))
 """Operands of special instructions that are numbers; all others are listed in hexadecimal."""
 SIGNED: Final = frozenset(
     ("index_1", "index_2", "origin", "window", "write_window", "write_offset", "start", "element", "line")
@@ -46,7 +46,7 @@ VERTICES: Final = frozenset(("WVL", "WVU", "WPT"))
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class ListingItem:
     """One instruction of a stream, or words that are no instruction."""
 
     place: int
@@ -58,7 +58,7 @@ class Item:
     odd_byte: bytes = field(default=b"")
 
     def lines(self) -> Iterator[str]:
-        """Its lines: words on the left, meaning on the right."""
+        """The lines of the listing: words on the left, meaning on the right."""
         if self.odd_byte:
             yield _line(self.place, "", f"byte {self.odd_byte[0]:02X} ; {self.note}")
             return
@@ -77,7 +77,7 @@ class Item:
             yield _line(place, _hexadecimal(words) if len(words) <= COLUMN else "", f"  {text}")
             place += len(words)
 
-    def plain(self) -> dict[str, Any]:
+    def to_plain(self) -> dict[str, Any]:
         """The item in plain values, for JSON."""
         item: dict[str, Any] = {"place": self.place, "words": self.words.tolist()}
         if self.instruction is None:
@@ -94,7 +94,7 @@ class Item:
         return item
 
 
-def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> Iterator[Item]:
+def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> Iterator[ListingItem]:
     """The items of a stream given as pieces of bytes, low byte first, cut anywhere."""
     decoder = Decoder(configuration)
     place, odd_byte = 0, b""
@@ -106,23 +106,23 @@ def items(pieces: Iterable[bytes], configuration: Configuration = GMR_9300) -> I
         rest = np.concatenate((rest, words))
         taken = 0
         for instruction in decoder.feed(words):
-            meant = encode(instruction)
-            item = rest[taken : taken + len(meant)]
+            encoded = encode(instruction)
+            item = rest[taken : taken + len(encoded)]
             if instruction.format is ILLEGAL:
-                yield Item(place, item, None, "begins no instruction")
-            elif np.array_equal(item, meant):
-                yield Item(place, item, instruction)
+                yield ListingItem(place, item, None, "begins no instruction")
+            elif np.array_equal(item, encoded):
+                yield ListingItem(place, item, instruction)
             else:
-                yield Item(
+                yield ListingItem(
                     place, item, None, f"{instruction.format.name} with flag bits that no source names"
                 )
-            taken += len(meant)
-            place += len(meant)
+            taken += len(encoded)
+            place += len(encoded)
         rest = rest[taken:]
     if len(rest):
-        yield Item(place, rest, None, "the stream ends within this instruction")
+        yield ListingItem(place, rest, None, "the stream ends within this instruction")
     if odd_byte:
-        yield Item(place + len(rest), rest[:0], None, "half a word at the end of the stream", odd_byte)
+        yield ListingItem(place + len(rest), rest[:0], None, "half a word at the end of the stream", odd_byte)
 
 
 def flag_names(low_byte: int) -> list[str]:
@@ -158,7 +158,7 @@ def head_text(instruction: Instruction) -> str:
 
 def operand_text(name: str, words: tuple[int, ...]) -> str:
     """The text of an operand: coordinates as signed numbers, masks and bits in hexadecimal."""
-    if name in IN_HEXADECIMAL or (name not in OPERANDS and name not in PLAIN):
+    if name in IN_HEXADECIMAL or (name not in OPERANDS and name not in NUMBERS):
         return ",".join(f"0x{word:04X}" for word in words)
     numbers = [word - 0x10000 if name in SIGNED and word & 0x8000 else word for word in words]
     if name in ("window", "write_window"):

@@ -18,68 +18,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
-# -------------------- opcode_names
-# The opcodes of the 9400 and 9460 of which only number and name are known.
-#
-# Hardware: NCAR, whose header lists them; no client that sends one of them was found.
-
-UNIMPLEMENTED: Final = (
-    (0x01, "LOAD", "load a hard register"),
-    (0x02, "READ", "read a soft register"),
-    (0x10, "WPB", "write a plot box"),
-    (0x11, "SCRX", "scroll along the lines"),
-    (0x12, "SCRY", "scroll across the lines"),
-    (0x18, "WKB", "write to the keyboard"),
-    (0x19, "RKB", "read the keyboard"),
-    (0x1A, "SPS", "SPS"),
-    (0x1B, "LDL", "load a display list"),
-    (0x1C, "RDL", "read a display list"),
-    (0x1D, "CCM", "CCM"),
-    (0x1E, "XIM", "XIM"),
-    (0x1F, "LDLRP", "load a display list, reverse packed"),
-    (0x20, "RDLRP", "read a display list, reverse packed"),
-    (0x22, "SELMG", "SELMG"),
-    (0x23, "SETDC", "set the display class"),
-    (0x28, "LOADSO", "LOADSO"),
-    (0x31, "LCCIO", "LCCIO"),
-    (0x32, "CWC", "CWC"),
-    (0x34, "DCVC", "DCVC"),
-    (0x36, "WPP", "WPP"),
-    (0x37, "WPV", "WPV"),
-    (0x3B, "ALDL", "allocate a display list"),
-    (0x3C, "DEDL", "delete a display list"),
-    (0x3D, "RESCON", "RESCON"),
-    (0x3E, "WBLK", "write a block"),
-    (0x3F, "WBLKRP", "write a block, reverse packed"),
-    (0x40, "RTC", "RTC"),
-    (0x41, "CDL", "call a display list"),
-    (0x42, "RETDL", "return from a display list"),
-    *((opcode, f"DL{opcode:02X}", "display-list registers") for opcode in range(0x43, 0x4C)),
-    (0x4C, "ALPF", "allocate a font"),
-    (0x4D, "DEPF", "delete a font"),
-    (0x4F, "LMPF", "LMPF"),
-    *((opcode, f"MX{opcode:02X}", "matrices") for opcode in range(0x50, 0x5C)),
-    *((opcode, f"CX{opcode:02X}", "contexts") for opcode in range(0x5C, 0x61)),
-    *((opcode, f"DT{opcode:02X}", "detection") for opcode in range(0x61, 0x69)),
-    (0x6A, "COPYT", "COPYT"),
-    (0x6B, "COMBI", "combine images"),
-    (0x6C, "COMBT", "COMBT"),
-    *((opcode, f"ARC{opcode:02X}", "arcs") for opcode in range(0x6E, 0x71)),
-    *((opcode, f"LF{opcode:02X}", "local functions") for opcode in range(0x71, 0x78)),
-    (0x7F, "WPI", "write a packed image"),
-    (0x80, "WIV", "WIV"),
-    (0x81, "SCW", "SCW"),
-    (0x82, "WRCT", "WRCT"),
-    (0x83, "RCSL", "RCSL"),
-    (0x84, "WCSL", "WCSL"),
-    *((opcode, f"RA{opcode:02X}", "register arithmetic") for opcode in range(0x85, 0x8A)),
-    (0x8A, "WC32", "WC32"),
-    (0x8B, "STM", "STM"),
-    (0x8C, "RTCS", "RTCS"),
-    (0x8D, "WCVU", "WCVU"),
-)
-"""Opcode, name, and what the name means. Names such as DL43 are ours: the header describes a whole range."""
-
 
 class Flags:
     """The bits in the low byte of a normal instruction; plain numbers, which are quick to test."""
@@ -139,7 +77,18 @@ OPERAND_BITS: Final = {
     for word, operands in enumerate((OPERANDS_1, OPERANDS_2))
     for bit, operand in enumerate(operands)
 }
-"""The bit of each operand in the two flag words, of which the second is the upper half."""
+"""The bit of each operand in the two flag words; the second word is the upper half."""
+
+
+@lru_cache(maxsize=1024)
+def operands_named(flag_word_1: int, flag_word_2: int = 0) -> tuple[Operand, ...]:
+    """The operands that two flag words name, in the order in which they are sent."""
+    return tuple(
+        operand
+        for flag_word, operands in ((flag_word_1, OPERANDS_1), (flag_word_2, OPERANDS_2))
+        for bit, operand in enumerate(operands)
+        if flag_word >> bit & 1
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,11 +170,73 @@ SUBSTANTIATED: Final = (
 )
 """The instructions that programs of the time confirm, or whose names leave little doubt.
 
-Hardware: LIN, PRG, BTL (those that are not extended), JPL, NCAR (RAM, ZOOM, SELVO, WAITVR, the pixel and
+Hardware: LIN, PRG, BTL (the rows that are not extended), JPL, NCAR (RAM, ZOOM, SELVO, WAITVR, the pixel and
 global cursor forms, LCF, DDCC, ATTPF; FILL, WPT and CIRC in disabled code).
 Assumed: the formats of PUSHE, POPE, READP, RERR, WAITL, BERS, LPFRP, WVU, WRP and COPY, of which the
-sources give numbers and names; each is described at its executor.
+sources give numbers and names. Their executors say more.
 """
+
+UNIMPLEMENTED: Final = (
+    (0x01, "LOAD", "load a hard register"),
+    (0x02, "READ", "read a soft register"),
+    (0x10, "WPB", "write a plot box"),
+    (0x11, "SCRX", "scroll along the lines"),
+    (0x12, "SCRY", "scroll across the lines"),
+    (0x18, "WKB", "write to the keyboard"),
+    (0x19, "RKB", "read the keyboard"),
+    (0x1A, "SPS", "SPS"),
+    (0x1B, "LDL", "load a display list"),
+    (0x1C, "RDL", "read a display list"),
+    (0x1D, "CCM", "CCM"),
+    (0x1E, "XIM", "XIM"),
+    (0x1F, "LDLRP", "load a display list, reverse packed"),
+    (0x20, "RDLRP", "read a display list, reverse packed"),
+    (0x22, "SELMG", "SELMG"),
+    (0x23, "SETDC", "set the display class"),
+    (0x28, "LOADSO", "LOADSO"),
+    (0x31, "LCCIO", "LCCIO"),
+    (0x32, "CWC", "CWC"),
+    (0x34, "DCVC", "DCVC"),
+    (0x36, "WPP", "WPP"),
+    (0x37, "WPV", "WPV"),
+    (0x3B, "ALDL", "allocate a display list"),
+    (0x3C, "DEDL", "delete a display list"),
+    (0x3D, "RESCON", "RESCON"),
+    (0x3E, "WBLK", "write a block"),
+    (0x3F, "WBLKRP", "write a block, reverse packed"),
+    (0x40, "RTC", "RTC"),
+    (0x41, "CDL", "call a display list"),
+    (0x42, "RETDL", "return from a display list"),
+    *((opcode, f"DL{opcode:02X}", "display-list registers") for opcode in range(0x43, 0x4C)),
+    (0x4C, "ALPF", "allocate a font"),
+    (0x4D, "DEPF", "delete a font"),
+    (0x4F, "LMPF", "LMPF"),
+    *((opcode, f"MX{opcode:02X}", "matrices") for opcode in range(0x50, 0x5C)),
+    *((opcode, f"CX{opcode:02X}", "contexts") for opcode in range(0x5C, 0x61)),
+    *((opcode, f"DT{opcode:02X}", "detection") for opcode in range(0x61, 0x69)),
+    (0x6A, "COPYT", "COPYT"),
+    (0x6B, "COMBI", "combine images"),
+    (0x6C, "COMBT", "COMBT"),
+    *((opcode, f"ARC{opcode:02X}", "arcs") for opcode in range(0x6E, 0x71)),
+    *((opcode, f"LF{opcode:02X}", "local functions") for opcode in range(0x71, 0x78)),
+    (0x7F, "WPI", "write a packed image"),
+    (0x80, "WIV", "WIV"),
+    (0x81, "SCW", "SCW"),
+    (0x82, "WRCT", "WRCT"),
+    (0x83, "RCSL", "RCSL"),
+    (0x84, "WCSL", "WCSL"),
+    *((opcode, f"RA{opcode:02X}", "register arithmetic") for opcode in range(0x85, 0x8A)),
+    (0x8A, "WC32", "WC32"),
+    (0x8B, "STM", "STM"),
+    (0x8C, "RTCS", "RTCS"),
+    (0x8D, "WCVU", "WCVU"),
+)
+"""Opcodes of the 9400 and 9460 that are known by number and name only: opcode, name, and its meaning.
+
+Hardware: NCAR, whose header lists them; no client that sends one of them was found. Names such as DL43 are
+ours: the header describes a whole range.
+"""
+
 FORMATS: Final = SUBSTANTIATED + tuple(
     InstructionFormat(opcode, name, meaning, extended=True, unimplemented=True)
     for opcode, name, meaning in UNIMPLEMENTED
@@ -243,14 +254,3 @@ FLAG_NAMES: Final = {
 }
 ADDRESSING_NAMES: Final = {Flags.INDEX_1: "IX01", Flags.INDEX_2: "IX10", Flags.RELATIVE: "IX11"}
 FORMAT_OF_NAME: Final = {format.name: format for format in FORMATS}
-
-
-@lru_cache(maxsize=1024)
-def operands_named(flag_word_1: int, flag_word_2: int = 0) -> tuple[Operand, ...]:
-    """The operands that two flag words name, in the order in which they are sent."""
-    return tuple(
-        operand
-        for flag_word, operands in ((flag_word_1, OPERANDS_1), (flag_word_2, OPERANDS_2))
-        for bit, operand in enumerate(operands)
-        if flag_word >> bit & 1
-    )

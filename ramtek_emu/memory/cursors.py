@@ -53,7 +53,7 @@ class Cursor:
     element: int = 0
     line: int = 0
     state: int = 0
-    """VISIBLE, BLINK and any other bits that the host wrote above those of the line."""
+    """VISIBLE, BLINK and any other bits that the host wrote above the bits of the line."""
     enter: bool = False
     """Whether ENTER was pressed since the host last read this cursor."""
     shape: Dots = field(default_factory=cross, repr=False)

@@ -18,11 +18,11 @@ from ramtek_emu.arrays import Dots, Numbers, Words
 from ramtek_emu.checks import checked_number, checked_words
 from ramtek_emu.configuration import GMR_9300, Configuration
 from ramtek_emu.errors import WordsError
-from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Block, Point, ScanOrder, Window, blocks
+from ramtek_emu.memory.scan_orders import SCAN_ORDERS, Point, ScanBlock, ScanOrder, Window, blocks
 
 
 class WriteEnable(NamedTuple):
-    """What a write may change: the planes of the mask, within the window."""
+    """The planes that a write may change, by a mask, within a window."""
 
     mask: int = 0xFFFF
     window: Window = Window(-0x8000, -0x8000, 0x7FFF, 0x7FFF)
@@ -204,7 +204,7 @@ class FrameBuffer:
         np.copyto(memory, mixed, where=True if dots is None else dots)
         self.written += memory.size if dots is None else int(np.count_nonzero(dots))
 
-    def _load(self, block: Block, order: ScanOrder, out: Words) -> None:
+    def _load(self, block: ScanBlock, order: ScanOrder, out: Words) -> None:
         place = order.block_window(block.start, block.inner, block.outer)
         clipped = place.intersection(self.window)
         if not clipped.is_empty:

@@ -111,7 +111,7 @@ class LookupTable:
         if self.entry_format is EntryFormat.WORD_12:
             wide = words.astype(np.uint32)
             nibbles = (wide & 0xF00) << 8 | (wide & 0xF0) << 4 | wide & 0xF
-            # The full scale of four bits becomes that of eight: 15 times 17 is 255.
+            # The full scale of four bits becomes the full scale of eight: 15 times 17 is 255.
             self._packed[first : first + len(words)] = nibbles * 17
             self._note(first, first + len(words), len(words))
             return

@@ -118,7 +118,7 @@ class Parameters:
 
     @property
     def enable(self) -> WriteEnable:
-        """What writes may change at present.
+        """The planes and the window that writes may change now.
 
         Hardware: NCAR (the 9460 clips with its write-enable window; the image window clips no vector).
         """

@@ -167,7 +167,7 @@ SCAN_ORDERS: Final = (
 )
 
 
-class Block(NamedTuple):
+class ScanBlock(NamedTuple):
     """Consecutive words that fill a rectangle: its first point, its sizes, the number of its first word."""
 
     start: Point
@@ -196,7 +196,7 @@ def paired_parts(
         yield further, order.after(own, begin, first), count - first
 
 
-def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterator[Block]:
+def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterator[ScanBlock]:
     """The rectangles that `count` words from `start` on fill: at most three each time around the window."""
     along, runs = order.inner_and_outer(window)
     corner = order.corner(window)
@@ -206,9 +206,9 @@ def blocks(window: Window, order: ScanOrder, start: Point, count: int) -> Iterat
         left = count - done
         point = order.stepped(corner, inner, outer)
         if inner or left < along:
-            block = Block(point, min(along - inner, left), 1, done)
+            block = ScanBlock(point, min(along - inner, left), 1, done)
         else:
-            block = Block(point, along, min(left // along, runs - outer), done)
+            block = ScanBlock(point, along, min(left // along, runs - outer), done)
         yield block
         done += block.inner * block.outer
         inner, outer = 0, outer + block.outer

@@ -1,4 +1,4 @@
-"""Glass: the pixels of a window, and what the user does there. The only module that uses pygame.
+"""Glass: the pixels of a window, and the input of its user. The only module that uses pygame.
 
 What is modeled: the field at the largest whole multiple that fits, centered, each pixel a k x k block. What
 is **not**: the phosphor, the beam.
@@ -16,62 +16,17 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
+
+# Set before pygame is imported: its greeting would mix with data on stdout, and Windows enlarges and blurs
+# the windows of a process that does not declare itself aware of the screen's resolution.
+os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
+os.environ["SDL_WINDOWS_DPI_AWARENESS"] = os.environ.get("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
 import pygame
 
 from ramtek_emu.errors import NoScreenError
 from ramtek_emu.monitor.input_queue import Close, InputQueue, Key, Pointer
 from ramtek_emu.monitor.overlay import Overlay
 from ramtek_emu.video.scan_out import Run, ScanOut, Stamp
-
-# -------------------- placement
-# Placement: where a window shows the field, and which pixel of the field is under the mouse.
-
-
-class Placement(NamedTuple):
-    """The rectangle of the window that shows the field: left, top, width and height in pixels."""
-
-    left: int
-    top: int
-    width: int
-    height: int
-
-
-def placement(field: tuple[int, int], window: tuple[int, int], fit: bool = False) -> Placement:
-    """Where a (width, height) window shows a (width, height) field, enlarged by a whole number unless `fit`.
-
-    A window that is smaller than the field shows its middle.
-
-    >>> placement((640, 480), (1400, 1000))
-    Placement(left=60, top=20, width=1280, height=960)
-    """
-    ratio = min(window[0] / field[0], window[1] / field[1])
-    if fit:
-        width, height = (max(1, int(size * ratio + 0.5)) for size in field)
-    else:
-        multiple = max(1, int(ratio))
-        width, height = field[0] * multiple, field[1] * multiple
-    return Placement((window[0] - width) // 2, (window[1] - height) // 2, width, height)
-
-
-def pixel_under(
-    place: tuple[int, int], field: tuple[int, int], window: tuple[int, int], fit: bool = False
-) -> tuple[int, int]:
-    """The element and line of the field at a place of the window; outside the field, the nearest at its edge.
-
-    >>> pixel_under((0, 999), (640, 480), (1400, 1000))
-    (0, 479)
-    """
-    left, top, width, height = placement(field, window, fit)
-    element = (place[0] - left) * field[0] // width
-    line = (place[1] - top) * field[1] // height
-    return min(max(element, 0), field[0] - 1), min(max(line, 0), field[1] - 1)
-
-
-# Set before pygame is imported: its greeting would mix with data on stdout, and Windows enlarges and blurs
-# the windows of a process that does not declare itself aware of the screen's resolution.
-os.environ["PYGAME_HIDE_SUPPORT_PROMPT"] = "1"
-os.environ["SDL_WINDOWS_DPI_AWARENESS"] = os.environ.get("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
-
 
 KEY_DELAY: Final = 400
 KEY_INTERVAL: Final = 33
@@ -105,12 +60,12 @@ def open_screen() -> None:
     if driver in ("offscreen", "dummy") and driver not in asked.split(","):
         pygame.display.quit()
         raise NoScreenError(
-            f"a window must have a screen, and that of DISPLAY or WAYLAND_DISPLAY does not answer; {advice}"
+            f"a window must have a screen, and DISPLAY or WAYLAND_DISPLAY does not answer; {advice}"
         )
 
 
 class Glass:
-    """The window of one display, closed at first. `size` is that of the field, (elements, lines)."""
+    """The window of one display, closed at first. `size` is the field's, (elements, lines)."""
 
     def __init__(self, size: tuple[int, int], fit: bool = False) -> None:
         self.fit = fit
@@ -119,8 +74,8 @@ class Glass:
         self._size = size
         self._window_size = size
         self._redrawn = 0
-        """How often the window lost what was shown."""
-        self._held: tuple[pygame.Surface, Placement, Stamp] | None = None
+        """How often the window lost the field."""
+        self._shown: tuple[pygame.Surface, Viewport, Stamp] | None = None
         """The surface that was scanned out to last, where the window shows it, and the field it holds."""
 
     @property
@@ -133,7 +88,7 @@ class Glass:
         open_screen()
         desktop = pygame.display.get_desktop_sizes()[0]
         room = int(desktop[0] * 0.95), int(desktop[1] * 0.9)
-        self._window_size = placement(self._size, room)[2:]
+        self._window_size = viewport(self._size, room)[2:]
         self._field = pygame.Surface(self._size, 0, 32, FIELD_MASKS)
         self.is_open = True
         pygame.key.set_repeat(KEY_DELAY, KEY_INTERVAL)
@@ -146,7 +101,7 @@ class Glass:
             pygame.display.quit()
 
     def set_title(self, title: str) -> None:
-        """Change the text of the window's title bar; what cannot be printed becomes question marks."""
+        """Change the text of the window's title bar; letters that cannot be printed become question marks."""
         if self.is_open:
             # Names of files may hold bytes that are not text, which pygame refuses.
             printable = (letter if letter.isprintable() else "?" for letter in title)
@@ -176,29 +131,29 @@ class Glass:
         self._lose()
 
     def _lose(self) -> None:
-        """Note that the window does not show any more what was shown."""
+        """Note that the window has lost the field."""
         self._redrawn += 1
-        self._held = None
+        self._shown = None
 
     def show(self, scan_out: ScanOut, overlay: Overlay, title: str, hides_mouse: bool) -> None:
         """Show the current field with its overlay, and the pointer of the mouse unless it is hidden."""
         pygame.mouse.set_visible(not hides_mouse)
         screen = pygame.display.get_surface()
-        place = placement(self._size, screen.get_size(), self.fit)
+        place = viewport(self._size, screen.get_size(), self.fit)
         is_direct = screen.get_size() == self._size and screen.get_masks() == FIELD_MASKS
         surface = screen if is_direct else self._field
-        held = self._held[2] if self._held is not None and self._held[:2] == (surface, place) else None
+        last = self._shown[2] if self._shown is not None and self._shown[:2] == (surface, place) else None
         has_overlay = any(overlay.stamp)
-        changed = scan_out.lines_changed_since(None if has_overlay else held)
+        changed = scan_out.lines_changed_since(None if has_overlay else last)
         # The surface is locked while the array exists.
         pixels = np.asarray(surface.get_view("2")).T
-        stamp = scan_out.scan_out_changes_into(pixels, held)
+        stamp = scan_out.scan_out_changes_into(pixels, last)
         if has_overlay:
             overlay.draw(pixels, scan_out.table(), title)
         del pixels
-        self._held = None if has_overlay else (surface, place, stamp)
+        self._shown = None if has_overlay else (surface, place, stamp)
         is_blurred = self.fit and place[2:] != self._size
-        if held is None or has_overlay or is_blurred:
+        if last is None or has_overlay or is_blurred:
             if not is_direct:
                 screen.fill((0, 0, 0))
                 self._enlarge(screen, place, (0, self._size[1]))
@@ -211,7 +166,7 @@ class Glass:
                 [enlarged(run, place, self._size).clip(screen.get_rect()) for run in changed]
             )
 
-    def _enlarge(self, screen: pygame.Surface, place: Placement, run: Run) -> None:
+    def _enlarge(self, screen: pygame.Surface, place: Viewport, run: Run) -> None:
         """Copy some lines of the field to where the window shows them."""
         lines = self._field.subsurface((0, run[0], self._size[0], run[1] - run[0]))
         target = enlarged(run, place, self._size)
@@ -226,14 +181,14 @@ class Glass:
                 screen.blit(enlarge(lines, target.size), target)
 
     def collect(self, queue: InputQueue, wait: int = 0) -> None:
-        """Let what the user did wait in a queue; wait up to so many milliseconds for something."""
+        """Put the input of the user into a queue; wait up to so many milliseconds for some."""
         if wait:
             self._note(pygame.event.wait(wait), queue)
         for event in pygame.event.get():
             self._note(event, queue)
 
     def _note(self, event: pygame.event.Event, queue: InputQueue) -> None:
-        """Let the input of an event wait, or note what it tells of the window."""
+        """Put the input of an event into the queue, or note that the window has lost the field."""
         if event.type in REDRAWN_ON:
             self._lose()
         elif event.type == pygame.QUIT:
@@ -258,14 +213,54 @@ class Glass:
             queue.add(self._pointer(pygame.mouse.get_pos(), action, steps=abs(event.y)))
 
     def _pointer(self, place: tuple[int, int], action: str, button: int = 0, steps: int = 1) -> Pointer:
-        """What the mouse did at a place of the window, with the modifiers that are held now."""
+        """The input of the mouse at a place of the window, with the modifiers that are down now."""
         element, line = pixel_under(place, self._size, pygame.display.get_window_size(), self.fit)
-        held = pygame.key.get_mods()
-        shift, control = bool(held & pygame.KMOD_SHIFT), bool(held & CONTROL)
+        down = pygame.key.get_mods()
+        shift, control = bool(down & pygame.KMOD_SHIFT), bool(down & CONTROL)
         return Pointer(element, line, False, action, button, steps, shift, control)
 
 
-def enlarged(run: Run, place: Placement, size: tuple[int, int]) -> pygame.Rect:
+class Viewport(NamedTuple):
+    """The rectangle of the window that shows the field: left, top, width and height in pixels."""
+
+    left: int
+    top: int
+    width: int
+    height: int
+
+
+def viewport(field: tuple[int, int], window: tuple[int, int], fit: bool = False) -> Viewport:
+    """Where a (width, height) window shows a (width, height) field, enlarged by a whole number unless `fit`.
+
+    A window that is smaller than the field shows its middle.
+
+    >>> viewport((640, 480), (1400, 1000))
+    Viewport(left=60, top=20, width=1280, height=960)
+    """
+    ratio = min(window[0] / field[0], window[1] / field[1])
+    if fit:
+        width, height = (max(1, int(size * ratio + 0.5)) for size in field)
+    else:
+        multiple = max(1, int(ratio))
+        width, height = field[0] * multiple, field[1] * multiple
+    return Viewport((window[0] - width) // 2, (window[1] - height) // 2, width, height)
+
+
+def pixel_under(
+    place: tuple[int, int], field: tuple[int, int], window: tuple[int, int], fit: bool = False
+) -> tuple[int, int]:
+    """The element and line of the field at a place of the window; outside the field, the nearest at its edge.
+
+    >>> pixel_under((0, 999), (640, 480), (1400, 1000))
+    (0, 479)
+    """
+    left, top, width, height = viewport(field, window, fit)
+    element = (place[0] - left) * field[0] // width
+    line = (place[1] - top) * field[1] // height
+    return min(max(element, 0), field[0] - 1), min(max(line, 0), field[1] - 1)
+
+
+def enlarged(run: Run, place: Viewport, size: tuple[int, int]) -> pygame.Rect:
     """The rectangle of a window that shows some lines of a field of (elements, lines)."""
     top, end = (place.top + line * place.height // size[1] for line in run)
     return pygame.Rect(place.left, top, place.width, end - top)

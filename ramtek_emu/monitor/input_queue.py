@@ -1,4 +1,4 @@
-"""Input queue: what a user did and the program has not handled yet, without what was overtaken meanwhile.
+"""Input queue: the inputs of a user that the program has not handled yet, without outdated ones.
 
 A program may take longer for a key than the keyboard takes to repeat it. Of the repeats of a key that wait,
 only the last is kept, and none when the key is released; of successive places of the mouse, only the last.
@@ -43,7 +43,7 @@ class Pointer(NamedTuple):
     element: int
     line: int
     enter: bool
-    """Whether the left button is down, told when the input is handled."""
+    """Whether the left button is down; set when the input is handled."""
     action: str
     """"move", "press", "release", "wheel up" or "wheel down"."""
     button: int = 0
@@ -60,10 +60,10 @@ class Close(NamedTuple):
 
 
 Input: TypeAlias = Key | Release | Pointer | Path | Close
-"""One input; a path is that of a file that was dropped on the window."""
+"""One input; a path names a file that was dropped on the window."""
 
 MOVEMENTS: Final = frozenset(("move", "wheel up", "wheel down"))
-"""The actions of the mouse of which several in a row are one."""
+"""The actions of the mouse that are united if several wait in a row."""
 
 
 class InputQueue:

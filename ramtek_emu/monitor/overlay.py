@@ -1,4 +1,4 @@
-"""Overlay: what the monitor shows over the field of a display whose memory belongs to a host.
+"""Overlay: pages and messages over the field of a display whose memory belongs to a host.
 
 The words of a page in the frame buffer would overwrite the host's picture, and its entries may all be in use.
 So these pages are made here, in the colors of the window, and the display never knows of them.
@@ -42,7 +42,7 @@ KEYS: Final = (
     ("left button", "ENTER"),
     ("right button", "TRACK, while it is down"),
 )
-"""The keys of a window, and the mouse as the joystick, each with what it does."""
+"""The keys of a window, and the mouse as the joystick, with their actions."""
 
 
 def write(
@@ -88,7 +88,7 @@ def entries_page(colors: PackedColors, lines: int, elements: int) -> PackedColor
 
 
 def write_message(pixels: PackedColors, message: str) -> None:
-    """Write a message on the last lines of a field; one that is too long ends in two periods."""
+    """Write a message on the last lines of a field; a message that is too long ends in two periods."""
     lines, elements = pixels.shape
     size = max(1, elements // 640)
     most = (elements // size - 2 * MARGIN) // ADVANCE
@@ -99,7 +99,7 @@ def write_message(pixels: PackedColors, message: str) -> None:
 
 
 class Overlay:
-    """What is shown over the field: a page, and a message for a while."""
+    """A page over the field, and a message for a while."""
 
     def __init__(self) -> None:
         self.page = ""
@@ -125,7 +125,7 @@ class Overlay:
         self.page = "" if self.page == page else page
 
     def draw(self, pixels: PackedColors, colors: PackedColors, title: str) -> None:
-        """Draw over the pixels of a field, (lines, elements); `colors` are those of all words."""
+        """Draw over the pixels of a field, (lines, elements); `colors` are the colors of all words."""
         if self.page:
             lines, elements = pixels.shape
             is_help = self.page == PAGES["f1"]

@@ -25,7 +25,7 @@ BARS: Final = (
     (0, 0, 0),
 )
 FIRST_BAR: Final = 1
-"""The word of the first bar; those of the others follow."""
+"""The word of the first bar; the words of the other bars follow."""
 GROUND: Final = 9
 GRID: Final = 10
 LABEL: Final = 11

@@ -1,5 +1,5 @@
 """The processor: executes instructions, and keeps the status and the replies.
 
-One module of executors for each subject; `executors` brings them together. Uses the basic modules,
+There is one module of executors for each subject; `display` unites their tables. Uses the basic modules,
 instruction_set, memory, drawing and video.
 """

@@ -16,7 +16,7 @@ import numpy as np
 
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.memory.cursors import LINE_BITS
-from ramtek_emu.processor.processor import Processor, executes
+from ramtek_emu.processor.processor import Executors, Processor
 from ramtek_emu.video.view import pixel_at, screen_at
 
 SHAPE_BYTES_PER_ROW: Final = 4
@@ -35,7 +35,6 @@ def element_bits(processor: Processor) -> int:
     return 0x3FF if processor.configuration.elements <= 0x400 else 0x7FF
 
 
-@executes("WCSS")
 def write_cursor(processor: Processor, instruction: Instruction) -> None:
     """Place a cursor in screen coordinates."""
     if is_there(processor, instruction):
@@ -44,7 +43,6 @@ def write_cursor(processor: Processor, instruction: Instruction) -> None:
         processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
 
 
-@executes("WCSP")
 def write_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
     """Place a cursor in pixel coordinates."""
     if is_there(processor, instruction):
@@ -54,7 +52,6 @@ def write_cursor_at_pixel(processor: Processor, instruction: Instruction) -> Non
         processor.cursors.place(instruction.low_byte, *place, line & ~LINE_BITS)
 
 
-@executes("WCSG")
 def write_global_cursor(processor: Processor, instruction: Instruction) -> None:
     """Place a cursor in global coordinates; the state is a separate word."""
     if is_there(processor, instruction):
@@ -62,7 +59,6 @@ def write_global_cursor(processor: Processor, instruction: Instruction) -> None:
         processor.cursors.place(instruction.low_byte, element & 0xFFF, line & 0xFFF, state)
 
 
-@executes("RCSS")
 def read_cursor(processor: Processor, instruction: Instruction) -> None:
     """Reply the place of a cursor in screen coordinates, with its state and the switches."""
     if not is_there(processor, instruction):
@@ -73,7 +69,6 @@ def read_cursor(processor: Processor, instruction: Instruction) -> None:
     processor.reply(np.array(words, np.uint16))
 
 
-@executes("RCSP")
 def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None:
     """Reply the place of a cursor in pixel coordinates, with its state and the switches."""
     if not is_there(processor, instruction):
@@ -84,7 +79,6 @@ def read_cursor_at_pixel(processor: Processor, instruction: Instruction) -> None
     processor.reply(np.array((element, line & LINE_BITS | state & ~LINE_BITS), np.uint16))
 
 
-@executes("RCSG")
 def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
     """Reply the place of a cursor in global coordinates; the state is a separate word."""
     if not is_there(processor, instruction):
@@ -94,7 +88,6 @@ def read_global_cursor(processor: Processor, instruction: Instruction) -> None:
     processor.reply(np.array((cursor.element & 0xFFFF, cursor.line & 0xFFFF, state), np.uint16))
 
 
-@executes("LCF")
 def load_cursor_shape(processor: Processor, instruction: Instruction) -> None:
     """Hardware: JPL (32 rows of two words, low byte first). Assumed: fewer rows replace the topmost ones."""
     if is_there(processor, instruction):
@@ -103,7 +96,18 @@ def load_cursor_shape(processor: Processor, instruction: Instruction) -> None:
         processor.cursors.shape(instruction.low_byte, rows[:32])
 
 
-@executes("DDCC")
 def connect_device(processor: Processor, instruction: Instruction) -> None:
     """Hardware: JPL (bit c: the device drives cursor c)."""
     processor.cursors.driven[instruction.low_byte] = instruction.operands["cursors"][0]
+
+
+EXECUTORS: Final[Executors] = {
+    "WCSS": write_cursor,
+    "WCSP": write_cursor_at_pixel,
+    "WCSG": write_global_cursor,
+    "RCSS": read_cursor,
+    "RCSP": read_cursor_at_pixel,
+    "RCSG": read_global_cursor,
+    "LCF": load_cursor_shape,
+    "DDCC": connect_device,
+}

@@ -6,6 +6,8 @@ unchanged, as its name suggests; without it the background word is written there
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from ramtek_emu.drawing import curves, text, vectors
@@ -13,17 +15,16 @@ from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.parameters import STANDARD_FONT, register
 from ramtek_emu.memory.scan_orders import Point
-from ramtek_emu.processor.processor import Processor, executes
+from ramtek_emu.processor.processor import Executors, Processor
 
 
 def ink(processor: Processor, instruction: Instruction) -> vectors.Ink:
-    """What the instruction writes lines with."""
+    """The words and the texture of the instruction's lines."""
     foreground, background = processor.colors(instruction)
     transparent = bool(instruction.low_byte & Flags.ADDITIVE)
     return vectors.Ink(foreground, background, processor.parameters.texture, transparent)
 
 
-@executes("WVL")
 def write_linked_vectors(processor: Processor, instruction: Instruction) -> None:
     """Draw from the operating point through all vertices; the operating point moves to the last.
 
@@ -38,7 +39,6 @@ def write_linked_vectors(processor: Processor, instruction: Instruction) -> None
         parameters.start = Point(*vertices[-1].tolist())
 
 
-@executes("WVU")
 def write_unlinked_vectors(processor: Processor, instruction: Instruction) -> None:
     """Assumed: four numbers for each vector, start and end; the operating point moves to the last end."""
     parameters = processor.parameters
@@ -50,7 +50,6 @@ def write_unlinked_vectors(processor: Processor, instruction: Instruction) -> No
         parameters.start = Point(*points[-1].tolist())
 
 
-@executes("WPT")
 def write_points(processor: Processor, instruction: Instruction) -> None:
     """Hardware: NCAR (disabled code: two numbers a point). Assumed: the operating point moves to the last."""
     parameters = processor.parameters
@@ -61,7 +60,6 @@ def write_points(processor: Processor, instruction: Instruction) -> None:
         parameters.start = Point(*points[-1].tolist())
 
 
-@executes("CIRC")
 def write_circles(processor: Processor, instruction: Instruction) -> None:
     """Hardware: NCAR (center and radius in elements; the operating point becomes the center).
 
@@ -78,7 +76,6 @@ def write_circles(processor: Processor, instruction: Instruction) -> None:
     parameters.start = Point(*centers[-1].tolist())
 
 
-@executes("WC")
 def write_conic(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN (from the operating point to the data point, or for a number of pixels).
 
@@ -94,7 +91,6 @@ def write_conic(processor: Processor, instruction: Instruction) -> None:
     parameters.start = Point(int(elements[-1]), int(lines[-1]))
 
 
-@executes("WT")
 def write_text(processor: Processor, instruction: Instruction) -> None:
     """Hardware: BTL, LIN, JPL (cells of 7 x 9); LIN (the swap flag); JPL (size factors)."""
     parameters = processor.parameters
@@ -121,7 +117,6 @@ def write_text(processor: Processor, instruction: Instruction) -> None:
     parameters.start = register(next_cell)
 
 
-@executes("LPF")
 def load_character(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN (twelve rows, a byte each, the first in the high byte).
 
@@ -131,7 +126,6 @@ def load_character(processor: Processor, instruction: Instruction) -> None:
     load_rows(processor, instruction, ">u2")
 
 
-@executes("LPFRP")
 def load_reversed_character(processor: Processor, instruction: Instruction) -> None:
     """Assumed: as LPF with the low byte first, from its name."""
     load_rows(processor, instruction, "<u2")
@@ -145,7 +139,19 @@ def load_rows(processor: Processor, instruction: Instruction, packing: str) -> N
     processor.loaded_characters[instruction.low_byte] = shape
 
 
-@executes("ATTPF")
 def attach_font(processor: Processor, instruction: Instruction) -> None:
     """Hardware: NCAR (FFh: the standard font). Assumed: any other number: the loaded characters."""
     processor.parameters.font = instruction.low_byte
+
+
+EXECUTORS: Final[Executors] = {
+    "WVL": write_linked_vectors,
+    "WVU": write_unlinked_vectors,
+    "WPT": write_points,
+    "CIRC": write_circles,
+    "WC": write_conic,
+    "WT": write_text,
+    "LPF": load_character,
+    "LPFRP": load_reversed_character,
+    "ATTPF": attach_font,
+}

@@ -9,13 +9,12 @@ import numpy as np
 from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import FORMATS, OPERANDS
 from ramtek_emu.memory.parameters import Parameters
-from ramtek_emu.processor.processor import Processor, Status, executes
+from ramtek_emu.processor.processor import Executors, Processor, Status
 
 MOST_SAVED: Final = 16
 """How many environments PUSHE can save. Assumed: one more sets the illegal-instruction status."""
 
 
-@executes("???")
 def skip_illegal_words(processor: Processor, instruction: Instruction) -> None:
     """Hardware: PRG (the status bit). Assumed: each word alone is skipped."""
     processor.flag_illegal()
@@ -28,12 +27,6 @@ def consume(processor: Processor, instruction: Instruction) -> None:
     processor.unimplemented += 1
 
 
-for _form in FORMATS:
-    if _form.unimplemented:
-        executes(_form.name)(consume)
-
-
-@executes("RSET")
 def reset(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN libdoc (clears interrupts, parameters and screen); BTL (the lookup table stays).
 
@@ -45,20 +38,16 @@ def reset(processor: Processor, instruction: Instruction) -> None:
     processor.frame_buffer.fill(processor.parameters.whole_window, processor.parameters.background)
 
 
-@executes("INIT")
 def initialize(processor: Processor, instruction: Instruction) -> None:
     """Assumed: only the parameters are reset, since libdoc mentions erasing for RSET only."""
     processor.parameters = Parameters.at_reset(processor.configuration)
     processor.saved.clear()
 
 
-@executes("NOP")
-@executes("SET")
 def do_nothing(processor: Processor, instruction: Instruction) -> None:
     """Do nothing; the operands were set already."""
 
 
-@executes("PUSHE")
 def save_environment(processor: Processor, instruction: Instruction) -> None:
     """Assumed: all parameters are saved, zoom and font included."""
     if len(processor.saved) < MOST_SAVED:
@@ -67,7 +56,6 @@ def save_environment(processor: Processor, instruction: Instruction) -> None:
         processor.flag_illegal()
 
 
-@executes("POPE")
 def restore_environment(processor: Processor, instruction: Instruction) -> None:
     """Assumed: restores the parameters saved last; without any, sets the illegal-instruction status."""
     if processor.saved:
@@ -76,25 +64,22 @@ def restore_environment(processor: Processor, instruction: Instruction) -> None:
         processor.flag_illegal()
 
 
-@executes("READP")
 def read_parameters(processor: Processor, instruction: Instruction) -> None:
     """Reply the operands that the flag words name, in the order in which they would be sent.
 
-    Assumed: all of it; without flag words every operand is replied, those of the second word last.
+    Assumed: all of it; without flag words every operand is replied, the operands of the second word last.
     """
     names = instruction.operands or OPERANDS
     words = [word for name in names for word in processor.parameters.operand(name)]
     processor.reply(np.array(words, np.uint16))
 
 
-@executes("RERR")
 def read_error_status(processor: Processor, instruction: Instruction) -> None:
     """Assumed: the reply is one word, the request bits of the status register, which are then cleared."""
     processor.reply(np.array([processor.status & ~Status.READY], np.uint16))
     processor.clear_status()
 
 
-@executes("ZOOM")
 def zoom(processor: Processor, instruction: Instruction) -> None:
     """Hardware: JPL, NCAR (line factor less one in the high byte, element factor less one in the low byte).
 
@@ -104,22 +89,37 @@ def zoom(processor: Processor, instruction: Instruction) -> None:
     processor.parameters.zoom = 1 + (word & 0x0F), 1 + (word >> 8 & 0x0F)
 
 
-@executes("SELVO")
 def select_video_origin(processor: Processor, instruction: Instruction) -> None:
     """Hardware: NCAR (1: at the bottom). Assumed: only the lowest bit is used."""
     processor.parameters.origin_at_bottom = bool(instruction.low_byte & 1)
 
 
-@executes("WAITVR")
 def wait_for_retrace(processor: Processor, instruction: Instruction) -> None:
     """Hardware: NCAR (before a table is loaded). Assumed: the number is a channel; all retrace together."""
     if processor.beam is not None:
         processor.beam.wait_for_line(processor.beam.lines)
 
 
-@executes("WAITL")
 def wait_for_line(processor: Processor, instruction: Instruction) -> None:
     """Assumed: the word is a line of the screen, from the top; for one that does not exist no time passes."""
     line = instruction.operands["line"][0]
     if processor.beam is not None and line < processor.beam.lines:
         processor.beam.wait_for_line(line)
+
+
+EXECUTORS: Final[Executors] = {
+    "???": skip_illegal_words,
+    "RSET": reset,
+    "INIT": initialize,
+    "NOP": do_nothing,
+    "SET": do_nothing,
+    "PUSHE": save_environment,
+    "POPE": restore_environment,
+    "READP": read_parameters,
+    "RERR": read_error_status,
+    "ZOOM": zoom,
+    "SELVO": select_video_origin,
+    "WAITVR": wait_for_retrace,
+    "WAITL": wait_for_line,
+    **{row.name: consume for row in FORMATS if row.unimplemented},
+}

@@ -1,8 +1,13 @@
-"""Executors of the instructions for images: erase, write, read, raster, fill and copy."""
+"""Executors of the instructions for images and for the lookup table.
+
+Images are erased, written, read, filled and copied, and rasters of one bit a pixel are written. The lookup
+table is loaded and read.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
@@ -11,10 +16,9 @@ from ramtek_emu.instruction_set.instruction import Instruction
 from ramtek_emu.instruction_set.table import Flags
 from ramtek_emu.memory.parameters import register
 from ramtek_emu.memory.scan_orders import Point, Window, paired_parts
-from ramtek_emu.processor.processor import Processor, executes
+from ramtek_emu.processor.processor import Executors, Processor
 
 
-@executes("ERS")
 def erase(processor: Processor, instruction: Instruction) -> None:
     """Hardware: NCAR (the window alone), JPL (through the mask; foreground with the swap flag)."""
     parameters = processor.parameters
@@ -22,7 +26,6 @@ def erase(processor: Processor, instruction: Instruction) -> None:
     processor.frame_buffer.fill(parameters.window, background, parameters.enable)
 
 
-@executes("BERS")
 def erase_everything(processor: Processor, instruction: Instruction) -> None:
     """Assumed: as ERS, but the whole memory, whatever the windows are: the B stands for bulk."""
     parameters = processor.parameters
@@ -31,12 +34,11 @@ def erase_everything(processor: Processor, instruction: Instruction) -> None:
     processor.frame_buffer.fill(parameters.whole_window, background, enable)
 
 
-@executes("WI")
 def write_image(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN, PIC (one word a pixel); JPL, NCAR (mode 1, two pixels a word; a run goes on).
 
     Assumed: of an odd number of bytes in mode 0 the last is dropped; in mode 1 it is one pixel, and the upper
-    planes become 0. How pairs of pixels meet the edge of the window is told in scan_orders.
+    planes become 0. For pairs of pixels at the edge of the window see scan_orders.
     """
     parameters = processor.parameters
     if parameters.image_mode & 1:
@@ -52,7 +54,6 @@ def write_image(processor: Processor, instruction: Instruction) -> None:
         done += count
 
 
-@executes("RI")
 def read_image(processor: Processor, instruction: Instruction) -> None:
     """Hardware: LIN (one word a pixel), NCAR (the read mask).
 
@@ -82,7 +83,6 @@ def image_parts(processor: Processor, count: int) -> Iterator[tuple[Window, Poin
     return iter([(parameters.window, parameters.start, count)])
 
 
-@executes("WR")
 def write_raster(processor: Processor, instruction: Instruction) -> None:
     """Write one bit a pixel: foreground for 1, background for 0.
 
@@ -101,7 +101,6 @@ def write_raster(processor: Processor, instruction: Instruction) -> None:
     )
 
 
-@executes("WRP")
 def write_random_pixels(processor: Processor, instruction: Instruction) -> None:
     """Assumed: three numbers a pixel, element, line and word; the operating point ends at the last."""
     parameters = processor.parameters
@@ -113,7 +112,6 @@ def write_random_pixels(processor: Processor, instruction: Instruction) -> None:
         parameters.start = Point(*points[-1].tolist())
 
 
-@executes("FILL")
 def fill(processor: Processor, instruction: Instruction) -> None:
     """Fill the area around the operating point with the foreground.
 
@@ -141,7 +139,6 @@ def fill(processor: Processor, instruction: Instruction) -> None:
     frame_buffer.write_points(elements + inside.left, lines + inside.top, foreground, parameters.enable)
 
 
-@executes("COPY")
 def copy_image(processor: Processor, instruction: Instruction) -> None:
     """Copy the window to another place.
 
@@ -167,11 +164,6 @@ def copy_image(processor: Processor, instruction: Instruction) -> None:
     processor.frame_buffer.write_block(place, order, words.reshape(runs, along), parameters.enable)
 
 
-# -------------------- table_executors
-# Executors of the instructions for the lookup table: LAM and RAM.
-
-
-@executes("LAM")
 def load_lookup_table(processor: Processor, instruction: Instruction) -> None:
     """Hardware: JPL, NCAR (the device number is that of a table, 0 on systems of one channel).
 
@@ -182,7 +174,6 @@ def load_lookup_table(processor: Processor, instruction: Instruction) -> None:
         processor.lookup_table.load(instruction.operands["address"][0], words)
 
 
-@executes("RAM")
 def read_lookup_table(processor: Processor, instruction: Instruction) -> None:
     """Hardware: JPL (the packing of LAM). Assumed: a table that does not exist reads as zeros."""
     count = (instruction.length or 0) // 2
@@ -190,3 +181,17 @@ def read_lookup_table(processor: Processor, instruction: Instruction) -> None:
         processor.reply(processor.lookup_table.read(instruction.operands["address"][0], count))
     else:
         processor.reply(np.zeros(count, np.uint16))
+
+
+EXECUTORS: Final[Executors] = {
+    "ERS": erase,
+    "BERS": erase_everything,
+    "WI": write_image,
+    "RI": read_image,
+    "WR": write_raster,
+    "WRP": write_random_pixels,
+    "FILL": fill,
+    "COPY": copy_image,
+    "LAM": load_lookup_table,
+    "RAM": read_lookup_table,
+}

@@ -1,7 +1,8 @@
-"""Processor: executes instructions, and owns the parameters, the status and the replies.
+"""Processor: owns the parameters, the status and the replies, and does for executors what they share.
 
-Each instruction has a row in the instruction table and an executor: a function in the module of its subject,
-which enters itself in EXECUTORS with the decorator `executes`.
+Each instruction has a row in the instruction table and an executor: a function of the processor and the
+instruction, which raises no error. A new instruction is a row of the instruction table, a function in the
+module of executors for its subject, and a row of the table at the foot of that module.
 
 What is modeled: the parameters, the addressing modes, image modes, replies in order, the illegal-instruction
 bit. What is **not**: logical functions other than replacement; they replace (Assumed: FUNC, whose codes no
@@ -65,7 +66,7 @@ class Processor:
         self.saved: list[Parameters] = []
         """The parameters that PUSHE saved, the newest last."""
         self.loaded_characters = loadable(characters())
-        """The dots of the characters that a host can load, (256, 12, 8); until then those of the ROM."""
+        """The dots of the characters that a host can load, (256, 12, 8); at first the ROM's."""
         self.illegal_words = 0
         """How many words were skipped because no instruction begins with them; it never decreases."""
         self.unimplemented = 0
@@ -111,12 +112,6 @@ class Processor:
         """How many words the host can receive."""
         return len(self._replies) // 2
 
-    def execute(self, instruction: Instruction) -> None:
-        """Set the operands of an instruction, then execute it; no instruction raises an error."""
-        if instruction.format.is_normal and instruction.operands and not instruction.format.requests_operands:
-            self.parameters.take(instruction.operands, instruction.low_byte)
-        EXECUTORS[instruction.format.name](self, instruction)
-
     def points(self, instruction: Instruction, numbers_each: int = 2) -> Numbers:
         """The data as (n, numbers_each) signed numbers; an incomplete row at the end is dropped."""
         size = 2 * numbers_each
@@ -159,15 +154,5 @@ class Processor:
         return (pair[1], pair[0]) if instruction.low_byte & Flags.SWAP else pair
 
 
-Executor = Callable[[Processor, Instruction], None]
-EXECUTORS: Final[dict[str, Executor]] = {}
-
-
-def executes(name: str) -> Callable[[Executor], Executor]:
-    """Enter the decorated function in EXECUTORS, as the executor of the instruction of that name."""
-
-    def enter(executor: Executor) -> Executor:
-        EXECUTORS[name] = executor
-        return executor
-
-    return enter
+Executors = dict[str, Callable[[Processor, Instruction], None]]
+"""Executors by the name of the instruction."""

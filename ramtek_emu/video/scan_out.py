@@ -7,6 +7,8 @@ the memories were when the beam passed it. What is **not**: interlace, the level
 
 Hardware: GM (one word selects all three components); LIN, JPL, BTL (parking the address counter); PRG cmap.c,
 introdoc (a black-and-white monitor sees the low eight bits of an entry).
+Assumed: a cursor is white where the picture is dark and black where it is light, so that it is always
+visible; how the 9300 mixed it into the video is in no source.
 """
 
 from __future__ import annotations
@@ -26,67 +28,8 @@ from ramtek_emu.memory.parameters import Parameters
 from ramtek_emu.video.beam import Beam
 from ramtek_emu.video.view import PLAIN_VIEW, View, copy_shown, pixel_at, view_of
 
-# -------------------- dirty_lines
-# Dirty lines: the parts of a field that change when entries of the lookup table are loaded.
-
 Run = tuple[int, int]
 """Consecutive lines of a field, or entries of the table: the first, and the one after the last."""
-STRIP: Final = 32
-"""How many lines are searched at once."""
-
-
-def lines_with(words: Words, first: int, end: int) -> Run:
-    """The first line that contains a word from `first` to `end` - 1, and the line after the last such line.
-
-    (0, 0) if no line contains one.
-    """
-    # Search from the top and from the bottom, and skip what lies between. Measured: searching every line
-    # takes twice as long. Returning whole strips would save a tenth of a scan-out once, and cost a twentieth
-    # of one for each field while a color is dragged.
-    top, bottom = 0, len(words)
-    while top < bottom and least_above(words[top : top + STRIP], first) >= end - first:
-        top += STRIP
-    if top >= bottom:
-        return (0, 0)
-    while least_above(words[max(0, bottom - STRIP) : bottom], first) >= end - first:
-        bottom -= STRIP
-    begin = max(0, bottom - STRIP)
-    in_first = least_above(words[top : top + STRIP], first, axis=1) < end - first
-    in_last = least_above(words[begin:bottom], first, axis=1) < end - first
-    return top + int(np.argmax(in_first)), bottom - int(np.argmax(in_last[::-1]))
-
-
-def least_above(words: Words, first: int, axis: int | None = None) -> Any:
-    """The smallest difference between a word and `first`, of all words or of each line, in 16 bits."""
-    # A word below `first` wraps to a difference that is larger than that of any word in the range.
-    return (words - np.uint16(first)).min(axis=axis)
-
-
-def united(runs: Iterable[Run], lines: int) -> tuple[Run, ...]:
-    """The lines of all runs that a field of so many has, as runs from the top that do not touch.
-
-    >>> united([(40, 72), (9, 9), (-5, 32), (20, 40), (90, 105)], 100)
-    ((0, 72), (90, 100))
-    """
-    found: list[Run] = []
-    clipped = sorted((max(0, first), min(lines, end)) for first, end in runs)
-    for first, end in clipped:
-        if first >= end:
-            continue
-        if found and first <= found[-1][1]:
-            found[-1] = found[-1][0], max(end, found[-1][1])
-        else:
-            found.append((first, end))
-    return tuple(found)
-
-
-# -------------------- cursor_marks
-# Cursor marks: the cursors as they are drawn on a field.
-#
-# Assumed: a cursor is white where the picture is dark and black where it is light, so that it is always
-# visible; how the 9300 mixed it into the video is in no source.
-
-WHITE: Final = np.uint32(0xFFFFFF)
 
 
 class Mark(NamedTuple):
@@ -102,27 +45,6 @@ class Mark(NamedTuple):
     def lines(self) -> Run:
         """The lines that it is drawn on, also beyond the edges of the field."""
         return self.line - SHAPE_CENTER, self.line - SHAPE_CENTER + SHAPE_SIZE
-
-
-def marks(cursors: Cursors, blink_is_on: bool) -> tuple[Mark, ...]:
-    """The marks of the cursors that are drawn while blinking ones are shown, or while they are not."""
-    return tuple([
-        Mark(number, each.element, each.line, cursors.changed)
-        for number, each in enumerate(cursors.all)
-        if each.state & VISIBLE and (blink_is_on or not each.blinks)
-    ])  # fmt: skip
-
-
-def draw(pixels: PackedColors, mark: Mark, shape: Dots, first_line: int = 0) -> None:
-    """Draw a cursor, clipped at the edges, on lines of a field of which the first is `first_line`."""
-    top, left = mark.lines[0] - first_line, mark.element - SHAPE_CENTER
-    up, across = max(0, -top), max(0, -left)
-    part = pixels[max(0, top) : max(0, top + SHAPE_SIZE), max(0, left) : max(0, left + SHAPE_SIZE)]
-    dots = shape[up : up + part.shape[0], across : across + part.shape[1]]
-    if part.size:
-        # The highest bit of green tells light from dark well enough, and is quick to test.
-        light = (part >> 15 & 1).astype(np.bool_)
-        part[dots] = np.where(light[dots], np.uint32(0), WHITE)
 
 
 class Stamp(NamedTuple):
@@ -175,7 +97,7 @@ class ScanOut:
         # times; indices on huge pages take 3 % less, which is not worth the memory.
         self._indices = np.zeros((self.lines, self.elements), np.intp)
         self._indices_of: tuple[int, View] = (-1, PLAIN_VIEW)
-        """What the indices were made from: the count of words written, and the view."""
+        """The count of words written and the view when the indices were computed."""
         shown_words = self._frame_buffer.words[: self.lines, : self.elements]
         self._lines_with = lru_cache(maxsize=64)(lambda first, end: lines_with(shown_words, first, end))
         self._gray: tuple[int, PackedColors] = (-1, self._lookup_table.packed)
@@ -221,29 +143,29 @@ class ScanOut:
             self.table().take(self._indices, out=pixels, mode="wrap")
         self._draw_cursors(pixels)
 
-    def lines_changed_since(self, held: Stamp | None) -> tuple[Run, ...]:
-        """The lines that may differ from those of the field with a stamp, as runs from the top.
+    def lines_changed_since(self, last: Stamp | None) -> tuple[Run, ...]:
+        """The lines that may have changed since the field with the stamp `last`, as runs from the top.
 
         After a load of entries, the lines that show some of them; where a cursor moved, the lines of its old
         place and of its new one; otherwise all lines, as with None.
         """
         stamp = self.stamp
-        if held is None or held.rest != stamp.rest or self._beam is not None:
+        if last is None or last.rest != stamp.rest or self._beam is not None:
             return ((0, self.lines),)
         self._renew_indices()
-        runs = [mark.lines for mark in set(held.marks) ^ set(stamp.marks)]
-        if held.entries != stamp.entries:
-            runs.append(self._lines_showing(self._lookup_table.entries_written_since(held.entries)))
+        runs = [mark.lines for mark in set(last.marks) ^ set(stamp.marks)]
+        if last.entries != stamp.entries:
+            runs.append(self._lines_showing(self._lookup_table.entries_written_since(last.entries)))
         return united(runs, self.lines)
 
-    def scan_out_changes_into(self, pixels: PackedColors, held: Stamp | None) -> Stamp:
+    def scan_out_changes_into(self, pixels: PackedColors, last: Stamp | None) -> Stamp:
         """Bring an array up to date with the current field, and return the stamp of that field.
 
-        `held` is the stamp of the field that the array holds, or None if it holds anything else, such as a
+        `last` is the stamp of the field in the array, or None if the array holds anything else, such as a
         field that was drawn on. Only the lines that changed are written.
         """
         stamp = self.stamp
-        runs = self.lines_changed_since(held)
+        runs = self.lines_changed_since(last)
         if runs == ((0, self.lines),):
             self.scan_out_into(pixels)
             return stamp
@@ -288,7 +210,8 @@ class ScanOut:
         self.table().take(words, out=pixels[first:last], mode="wrap")
 
     def _marks(self) -> tuple[Mark, ...]:
-        return marks(self._cursors, self._blink())
+        blink_is_on = self.blink_is_on if self._beam is None else self._beam.blink_is_on
+        return marks(self._cursors, blink_is_on)
 
     def _draw_cursors(self, pixels: PackedColors, first_line: int = 0) -> None:
         for mark in self._marks():
@@ -310,9 +233,6 @@ class ScanOut:
         self._lines_with.cache_clear()
         copy_shown(self._indices, self._frame_buffer.words, view)
 
-    def _blink(self) -> bool:
-        return self.blink_is_on if self._beam is None else self._beam.blink_is_on
-
     def table(self) -> PackedColors:
         """The colors that words select now, 0x00RRGGBB: of the part in use, gray on a monochrome monitor."""
         table = self._lookup_table.packed
@@ -327,3 +247,73 @@ class ScanOut:
 
     def _partition(self) -> int:
         return self._lookup_table.addressed_entry // self._words * self._words if self._is_parted else 0
+
+
+def marks(cursors: Cursors, blink_is_on: bool) -> tuple[Mark, ...]:
+    """The marks of the cursors that are drawn while blinking ones are shown, or while they are not."""
+    return tuple([
+        Mark(number, each.element, each.line, cursors.changed)
+        for number, each in enumerate(cursors.all)
+        if each.state & VISIBLE and (blink_is_on or not each.blinks)
+    ])  # fmt: skip
+
+
+def draw(pixels: PackedColors, mark: Mark, shape: Dots, first_line: int = 0) -> None:
+    """Draw a cursor, clipped at the edges, on the lines of a field from `first_line` on."""
+    top, left = mark.lines[0] - first_line, mark.element - SHAPE_CENTER
+    up, across = max(0, -top), max(0, -left)
+    part = pixels[max(0, top) : max(0, top + SHAPE_SIZE), max(0, left) : max(0, left + SHAPE_SIZE)]
+    dots = shape[up : up + part.shape[0], across : across + part.shape[1]]
+    if part.size:
+        # The highest bit of green tells light from dark well enough, and is quick to test.
+        light = (part >> 15 & 1).astype(np.bool_)
+        part[dots] = np.where(light[dots], np.uint32(0), np.uint32(0xFFFFFF))
+
+
+STRIP: Final = 32
+"""How many lines are searched at once."""
+
+
+def lines_with(words: Words, first: int, end: int) -> Run:
+    """The first line that contains a word from `first` to `end` - 1, and the line after the last such line.
+
+    (0, 0) if no line contains one.
+    """
+    # Search from the top and from the bottom, and skip what lies between. Measured: searching every line
+    # takes twice as long. Returning whole strips would save a tenth of a scan-out once, and cost a twentieth
+    # of one for each field while a color is dragged.
+    top, bottom = 0, len(words)
+    while top < bottom and least_above(words[top : top + STRIP], first) >= end - first:
+        top += STRIP
+    if top >= bottom:
+        return (0, 0)
+    while least_above(words[max(0, bottom - STRIP) : bottom], first) >= end - first:
+        bottom -= STRIP
+    begin = max(0, bottom - STRIP)
+    in_first = least_above(words[top : top + STRIP], first, axis=1) < end - first
+    in_last = least_above(words[begin:bottom], first, axis=1) < end - first
+    return top + int(np.argmax(in_first)), bottom - int(np.argmax(in_last[::-1]))
+
+
+def least_above(words: Words, first: int, axis: int | None = None) -> Any:
+    """The smallest difference between a word and `first`, of all words or of each line, in 16 bits."""
+    # A word below `first` wraps to a larger difference than any word in the range.
+    return (words - np.uint16(first)).min(axis=axis)
+
+
+def united(runs: Iterable[Run], lines: int) -> tuple[Run, ...]:
+    """The lines of all runs that a field of so many has, as runs from the top that do not touch.
+
+    >>> united([(40, 72), (9, 9), (-5, 32), (20, 40), (90, 105)], 100)
+    ((0, 72), (90, 100))
+    """
+    apart: list[Run] = []
+    clipped = sorted((max(0, first), min(lines, end)) for first, end in runs)
+    for first, end in clipped:
+        if first >= end:
+            continue
+        if apart and first <= apart[-1][1]:
+            apart[-1] = apart[-1][0], max(end, apart[-1][1])
+        else:
+            apart.append((first, end))
+    return tuple(apart)

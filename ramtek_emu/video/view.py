@@ -39,7 +39,7 @@ def pixel_at(
 ) -> tuple[Place, Place]:
     """The element and the line of the memory that are shown at a place of the screen.
 
-    With arrays: the elements of the memory for those of the screen, and its lines for those of the screen.
+    Arrays of elements and of lines of the screen give arrays of elements and of lines of the memory.
     """
     if parameters.origin_at_bottom:
         line = configuration.shown_lines - 1 - line

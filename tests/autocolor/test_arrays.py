@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from autocolor import arrays
 from autocolor.arrays import (
     chunks,
     chunks_of_runs,
@@ -19,6 +20,8 @@ from autocolor.arrays import (
     most_of_four,
     power,
     runs,
+    used_bounds,
+    used_rows,
 )
 
 whole = st.integers(-(2**63), 2**63 - 1)
@@ -124,3 +127,19 @@ def test_halves_go_up(value: float, whole: int) -> None:
 def test_the_nearest_whole_number_is_at_most_a_half_away(value: float) -> None:
     assert -Fraction(1, 2) < Fraction(half_up(value)) - Fraction(value) <= Fraction(1, 2)
     assert halves_up(np.array([value]))[0] == half_up(value)
+
+
+@given(st.lists(st.tuples(*[st.integers(0, 9)] * 4), max_size=9), st.sampled_from([1, 2, 100]))
+def test_the_used_rows_are_those_that_appear(polygons: list[tuple[int, int, int, int]], at_once: int) -> None:
+    numbers = np.array(polygons, np.intp).reshape(-1, 4).T
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(arrays, "NUMBERS_AT_ONCE", at_once)
+        assert np.flatnonzero(used_rows(numbers, 10)).tolist() == sorted({n for row in polygons for n in row})
+
+
+def test_bounds_leave_out_what_no_number_uses() -> None:
+    rows = np.array([[1.0, -9.0, 3.0], [5.0, 99.0, 4.0]])
+    low, high = used_bounds(rows, np.array([[0, 2, 0]]))
+    assert (low.tolist(), high.tolist()) == ([1.0, 4.0], [3.0, 5.0])
+    low, high = used_bounds(rows, np.empty((1, 0), np.intp))
+    assert (low.tolist(), high.tolist()) == ([np.inf] * 2, [-np.inf] * 2)

@@ -17,6 +17,7 @@ from autocolor.screens.viewer import Viewer
 from autocolor.widgets.sheet import Sheet
 from ramtek_emu import HostPort, Ramtek9300, TcpPort, instructions
 from ramtek_emu.host.server import TcpServer
+from tests.autocolor.journal.random_steps import summary
 from tests.autocolor.meshes import grid, wall_scene
 from tests.autocolor.random_hand import RandomHand
 from tests.autocolor.sessions import car, held
@@ -86,7 +87,7 @@ def held_by_a_fresh_display(history: History | Scene) -> tuple[bytes, bytes]:
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_session_shows_what_it_says_is_undone_to_its_beginning_and_is_told_by_its_journal(
+def test_a_random_session_is_shown_recovered_run_as_a_script_undone_and_redone(
     name: str, tmp_path: Path, state: Path
 ) -> None:
     display, autosave = Ramtek9300(), Autosave()
@@ -95,6 +96,8 @@ def test_a_session_shows_what_it_says_is_undone_to_its_beginning_and_is_told_by_
     hand = RandomHand(viewer, display, seed=len(name))
     for number in range(GESTURES):
         hand.do()
+        if number % 3 == 0:
+            autosave.update(viewer.studio.history, at_once=True)
         if number % 4 == 0:
             # What was sent is what the whole page would be.
             whole = Ramtek9300()
@@ -110,17 +113,13 @@ def test_a_session_shows_what_it_says_is_undone_to_its_beginning_and_is_told_by_
     assert studio.history.steps
 
     autosave.update(studio.history, at_once=True)
-    (kept,) = state.glob(f"sessions/*/{JOURNAL}")
-    written = tmp_path / "session.py"
-    written.write_text(studio.journal(beside=tmp_path / "beside"), "utf-8")
-    for path in (kept, written):
-        history = read_journal(path).history
-        assert held_by_a_fresh_display(history) == last
-        assert len(history.to_undo) == len(studio.history.to_undo)
-        assert len(history.to_redo) == len(studio.history.to_redo)
-        assert list(history.variants) == list(studio.variants)
-        assert history.is_changed == studio.is_changed
-    ran = runpy.run_path(str(written))["studio"]
+    (path,) = state.glob(f"sessions/*/{JOURNAL}")
+    history = read_journal(path).history
+    assert summary(history) == summary(studio.history)
+    assert held_by_a_fresh_display(history) == last
+    script = tmp_path / "session.py"
+    script.write_text(studio.journal(beside=tmp_path / "beside"), "utf-8")
+    ran = runpy.run_path(str(script))["studio"]
     # The legend of a scalar stands over the words of the picture.
     assert ran.words.tobytes() == studio.words.tobytes()
     assert held_by_a_fresh_display(ran.scene) == last

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from autocolor import InputError, Studio, Surface, UsageError, render, scene_of
-from autocolor.sending import send_picture
+from autocolor.images import send_picture
 from ramtek_emu import GMR_9300, EntryFormat, Ramtek9300
 from tests.autocolor.meshes import cube, wall_scene
 from tests.autocolor.sessions import SMALL, held, opened

@@ -14,6 +14,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+import autocolor
 from autocolor import (
     InputError,
     OutputError,
@@ -963,3 +964,126 @@ def test_the_image_of_a_scene_in_other_colors_has_the_same_words() -> None:
     image = studio.image_of(studio.scene.with_paint("body", object_color="#204060"))
     assert image.words is studio.words
     assert (image.entries != studio.entries).any()
+
+
+# Opening, variants, saving and the script.
+
+OBJ = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nv 0 1 0\ng front\nf 1 2 3 4\ng side\nf 1 4 5\n"
+
+
+@pytest.fixture
+def mesh_file(tmp_path: Path) -> Path:
+    (tmp_path / "box.obj").write_text(OBJ)
+    return tmp_path / "box.obj"
+
+
+def test_opening_is_a_step_and_undoing_it_gives_the_first_picture_byte_for_byte(mesh_file: Path) -> None:
+    studio, display = opened()
+    first, ranges, scene = held(display), dict(studio.level_ranges), studio.scene
+    studio.open(mesh_file, up="y", surfaces="parts")
+    assert studio.scene.name == "box"
+    assert [surface.name for surface in studio.scene.surfaces] == ["front", "side"]
+    assert held(display) == fresh(studio.scene)
+    second = held(display)
+    studio.undo()
+    assert (held(display), dict(studio.level_ranges)) == (first, ranges)
+    assert studio.scene is scene
+    studio.redo()
+    assert held(display) == second
+
+
+def test_a_file_that_cannot_be_opened_changes_nothing(mesh_file: Path) -> None:
+    studio, display = opened()
+    before = held(display), repr(studio), len(studio.history.steps)
+    mesh_file.write_text("f 1 2 3\n")
+    with pytest.raises(InputError):
+        studio.open(mesh_file)
+    with pytest.raises(InputError):
+        studio.open(mesh_file.with_name("none.obj"))
+    assert (held(display), repr(studio), len(studio.history.steps)) == before
+
+
+def test_every_opened_scene_knows_its_unsaved_changes(mesh_file: Path) -> None:
+    studio, _ = opened()
+    studio.recolor("body", blend=0.25)
+    assert studio.is_changed
+    studio.open(mesh_file)
+    assert not studio.is_changed
+    assert studio.history.left_unsaved == ("scene",)
+    studio.view(angle=5)
+    assert studio.is_changed
+    for _ in range(2):
+        studio.undo()
+    assert studio.is_changed
+    assert studio.history.left_unsaved == ()
+    studio.undo()
+    assert not studio.is_changed
+
+
+def test_a_variant_is_shown_by_one_step() -> None:
+    studio, display = opened()
+    assert studio.keep_variant() == "A"
+    first = held(display)
+    studio.recolor("body", blend=0.25)
+    studio.light("key", on=False)
+    assert studio.keep_variant("night") == "night"
+    night = held(display)
+    studio.show_variant("A")
+    assert held(display) == first
+    studio.show_variant("A")
+    studio.undo()
+    assert held(display) == night
+    assert list(studio.variants) == ["A", "night"]
+    studio.drop_variant("A")
+    assert list(studio.variants) == ["night"]
+    with pytest.raises(UsageError):
+        studio.show_variant("A")
+
+
+def test_a_new_variant_leaves_the_steps_to_redo() -> None:
+    studio, _ = opened()
+    studio.recolor("body", blend=0.25)
+    studio.undo()
+    studio.keep_variant()
+    assert studio.redo()
+
+
+def test_a_variant_brings_back_the_files_of_its_scene(mesh_file: Path, tmp_path: Path) -> None:
+    studio, _ = opened()
+    first = studio.save_session(tmp_path)
+    studio.keep_variant("A")
+    studio.open(mesh_file)
+    second = studio.save_session(tmp_path)
+    assert first.scene != second.scene
+    studio.show_variant("A")
+    assert studio.save_session(tmp_path) == first
+
+
+def test_a_script_needs_the_path_of_its_first_scene() -> None:
+    with pytest.raises(UsageError) as refusal:
+        opened()[0].journal()
+    assert str(refusal.value) == "a journal must name what its first scene was read from; give its path"
+
+
+def test_given_exposure_ranges_are_held() -> None:
+    studio, _ = opened()
+    studio.hold_exposure({"object": (0.0, 2.0)})
+    assert studio.scene.exposure == (("object", (0.0, 2.0)),)
+
+
+def test_the_file_of_a_scene_is_read_again_by_one_step_to_undo(tmp_path: Path) -> None:
+    studio, _ = opened()
+    with pytest.raises(UsageError, match="the scene must be in a file to be read again, and it is in none"):
+        studio.reopen()
+    path = tmp_path / "car.sqlite"
+    autocolor.write_scene(path, studio.scene)
+    studio.open(path)
+    assert studio.file == path
+    assert not studio.reopen()
+    autocolor.write_scene(path, studio.scene.replace(ambient=0.5), overwrite=True)
+    before = studio.scene
+    assert studio.reopen()
+    assert studio.scene.ambient == 0.5
+    assert studio.scene.mesh is before.mesh
+    studio.undo()
+    assert studio.scene is before

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from autocolor.files.meshes.formats import read_mesh
+from autocolor.files.formats import read_mesh
 from benchmarks import mapped_tables
 from benchmarks.hills import hills
 from benchmarks.memory import STATUS

@@ -1,4 +1,4 @@
-"""Displays that were sent something, and what is read off them."""
+"""Displays that were sent words, and their answers, memories and windows."""
 
 from __future__ import annotations
 
@@ -35,3 +35,10 @@ def colored(display: Ramtek9300) -> Ramtek9300:
     display.send(instructions.load_entries(0, np.full((entries, 3), 40)))
     display.send(instructions.park_table())
     return display
+
+
+def shown() -> np.ndarray[tuple[int, ...], np.dtype[np.uint8]]:
+    """The pixels of the window, (height, width, 3)."""
+    import pygame
+
+    return np.asarray(pygame.surfarray.array3d(pygame.display.get_surface())).transpose(1, 0, 2)

@@ -1,6 +1,6 @@
 """Streams that programs of the time sent, and that the descriptions of their instructions show.
 
-Each is what a real program of 1978 to 1990 gave to its display, in hexadecimal words.
+Each was sent by a real program of 1978 to 1990 to its display. Here they are hexadecimal words.
 """
 
 from __future__ import annotations
@@ -8,10 +8,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ramtek_emu import GMR_9300, Configuration
+from ramtek_emu.instruction_set.disassembler import items
+
 
 def words(text: str) -> NDArray[np.uint16]:
     """The words of a text in hexadecimal."""
     return np.array([int(word, 16) for word in text.split()], np.uint16)
+
+
+def listing(stream: bytes, configuration: Configuration = GMR_9300) -> list[str]:
+    """The lines of the listing of a stream."""
+    return [line for item in items([stream], configuration) for line in item.lines()]
 
 
 OUTLINE = words("""

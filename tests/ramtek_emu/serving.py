@@ -23,7 +23,8 @@ Some = TypeVar("Some", bound=Server)
 @contextmanager
 def serving(idle_seconds: float = 20.0, partial_seconds: float = 20.0) -> Iterator[TcpServer]:
     """A server on TCP in a thread of its own; its display is looked at when it has nothing to do."""
-    server = TcpServer(Ramtek9300(), idle_seconds=idle_seconds, partial_seconds=partial_seconds)
+    server = TcpServer(Ramtek9300(), idle_seconds=idle_seconds)
+    server.partial_seconds = partial_seconds
     with in_a_thread(server):
         yield server
 
@@ -54,7 +55,7 @@ def in_a_thread(server: Some) -> Iterator[Some]:
         server.close()
 
 
-def until(condition: object, seconds: float = 5.0) -> None:
+def until(condition: object, seconds: float = 60.0) -> None:
     """Wait until a condition holds."""
     assert callable(condition)
     end = time.monotonic() + seconds

@@ -14,7 +14,7 @@ from typing import ClassVar, NamedTuple
 import click
 import pytest
 
-from ramtek_emu.command_line import CommandGroup, WholeWords, joined, kept, run_command
+from ramtek_emu.command_line import CommandGroup, WholeWords, joined, prefix_in_bash, run_command
 from ramtek_emu.errors import OutputExistsError
 
 
@@ -219,7 +219,7 @@ def test_words_are_joined_around_equals_signs_alone() -> None:
     assert joined(["a", "=", "b", "c"]) == ["a=b", "c"]
     assert joined(["a", "==", "b"]) == ["a==b"]
     assert joined(["=", "b"]) == ["=b"]
-    assert (kept("a=b=c"), kept("--a=b=c"), kept("--a")) == ("a=b=", "b=", "")
+    assert (prefix_in_bash("a=b=c"), prefix_in_bash("--a=b=c"), prefix_in_bash("--a")) == ("a=b=", "b=", "")
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")

@@ -26,6 +26,8 @@ from ramtek_emu import (
     Timing,
     instructions,
 )
+from ramtek_emu.display import EXECUTORS
+from ramtek_emu.instruction_set.table import FORMATS, ILLEGAL
 from ramtek_emu.snapshot import snapshot_bytes
 from tests.ramtek_emu.displays import sent
 from tests.ramtek_emu.recorded_streams import RECORDED
@@ -49,6 +51,12 @@ def test_no_words_at_all_raise_or_leave_the_planes(stream: list[int], places: li
     assert cut.processor.parameters == whole.processor.parameters
     assert cut.processor.waiting == whole.processor.waiting
     assert (cut.receive(cut.processor.waiting) == whole.receive(whole.processor.waiting)).all()
+
+
+def test_every_row_of_the_instruction_table_has_an_executor_that_says_what_it_does() -> None:
+    assert set(EXECUTORS) == {row.name for row in (*FORMATS, ILLEGAL)}
+    for name, executor in EXECUTORS.items():
+        assert executor.__doc__, name
 
 
 def test_recorded_band_draws_vertical_bars() -> None:
@@ -110,17 +118,17 @@ WORST = {
 def test_no_instruction_takes_long(name: str) -> None:
     display = Ramtek9300()
     display.send(sent_words([*WORST[name], 0x0700]))
-    assert display.decoder.held_words == 0
+    assert display.decoder.pending_words == 0
     assert display.words.max() <= 1023
 
 
 def test_the_reset_switch_hides_the_cursors_and_forgets_what_was_unfinished() -> None:
     display = Ramtek9300()
     display.send(sent_words([0x1600, 5, 0x406, 0x1700, 0x0802, 2, 9, 0x0A01, 0xFFFF, 1, 2, 3]))
-    assert display.decoder.held_words
+    assert display.decoder.pending_words
     display.reset()
     assert not display.cursors[0].is_visible
-    assert not display.decoder.held_words
+    assert not display.decoder.pending_words
     assert not display.processor.waiting
     assert display.processor.parameters.foreground == 1023
     display.send(instructions.write_image([[7]]))
@@ -220,7 +228,7 @@ def test_the_parts_of_a_display_tell_what_they_are() -> None:
         "Cursors(4, 1 visible, TRACK off)",
         "Joystick(device 0, drives 1 cursor, element 5, line 6)",
         "Processor(NCAR_9460, 2 words of replies waiting, status READY)",
-        "Decoder(words held: 1)",
+        "Decoder(words pending: 1)",
         "ScanOut(1280 x 1024)",
         "Beam(field 0, line 0 of 525)",
     ]
@@ -254,7 +262,7 @@ def test_two_displays_share_nothing() -> None:
     first.send(sent_words([0x1541, *[0xFFFF] * 6, 0x0A01, 2]))
     pristine = Ramtek9300()
     assert snapshot_bytes(second) == snapshot_bytes(pristine)
-    assert not second.decoder.held_words
+    assert not second.decoder.pending_words
 
 
 @pytest.mark.parametrize(

@@ -83,7 +83,7 @@ def test_streams_with_faults_are_drawn_somehow_and_do_no_harm(
     for _ in range(EACH):
         display.send(with_faults(sessions()[session], random))
         assert display.words.max() <= configuration.largest_word
-        assert display.decoder.held_words < 0x8100
+        assert display.decoder.pending_words < 0x8100
     display.field()
     display.reset()
     display.send(instructions.write_image(np.full((480, 640), 200)))

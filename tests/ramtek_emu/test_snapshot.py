@@ -35,20 +35,41 @@ from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.snapshot import (
     MOST_TEXT,
     display_of,
+    from_plain,
     listed,
     packed,
     picture_bytes,
     picture_of,
-    plain,
-    restored,
     snapshot_bytes,
+    to_plain,
     unpacked,
     whole_number,
 )
 from ramtek_emu.timing import Timing
 from tests.ramtek_emu.recorded_streams import BYTE_IMAGE, DECODED, OUTLINE, words
-from tests.ramtek_emu.snapshots import CURSORS, SNAPSHOT, texts_of, with_text
 from tests.ramtek_emu.strategies import SMALL, quick, streams, thorough
+
+CURSORS = words("1600 0064 0C64 1601 0032 0440")
+
+
+def small_snapshot() -> bytes:
+    display = Ramtek9300(SMALL)
+    display.send(OUTLINE)
+    display.send(CURSORS)
+    display.send(words("1300 0902 0044 0005 0000 0000 0003 0003"))
+    return snapshot_bytes(display)
+
+
+SNAPSHOT = small_snapshot()
+
+
+def texts_of(data: bytes) -> dict[str, str]:
+    return picture_of(data)[1]
+
+
+def with_text(keyword: str, text: str) -> bytes:
+    picture, texts = picture_of(SNAPSHOT)
+    return picture_bytes(picture, texts | {keyword: text})
 
 
 def same(one: Ramtek9300, other: Ramtek9300) -> None:
@@ -228,7 +249,7 @@ def test_what_was_made_plain_is_restored_through_json(words: list[int], dots: li
     }
     for name, value in state.items():
         pattern = value if name != "parameters" else Parameters.at_reset(SMALL)
-        again = restored(pattern, json.loads(json.dumps(plain(value))), name)
+        again = from_plain(pattern, json.loads(json.dumps(to_plain(value))), name)
         assert np.array_equal(again, value) if isinstance(value, np.ndarray) else again == value
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import importlib
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -58,6 +59,18 @@ def test_each_figure_leaves_its_labeled_pictures(
             pixels = np.asarray(image.convert("RGB"))
         assert pixels.shape[0] % (480 + figures.CAPTION_LINES) == 0
         assert (pixels[480 : 480 + figures.CAPTION_LINES, :640] > 200).any(), "the caption is empty"
+
+
+@pytest.mark.parametrize("module", [figures, figure_normals])
+def test_help_says_what_a_script_does_and_writes_nothing(
+    module: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.argv", ["figure", "--help"])
+    with pytest.raises(SystemExit, match="0"):
+        module.main()
+    assert f"python -m {module.__name__} [-h]" in capsys.readouterr().out
+    assert list(tmp_path.iterdir()) == []
 
 
 def brightest_of_plane(scene: autocolor.Scene) -> float:

@@ -1,5 +1,5 @@
-"""Mesh file formats: one module or package for each, and the registry in `formats`.
+"""Readers and writers of mesh files: one module for each format; `files/formats` lists them.
 
-Other modules are what several of them use (`number_text`) or a part of one (`csv_rows`, `csv_writing`).
-Uses `files/repair`, the modules of `files`, `scene` and the ground.
+`number_text`, `file_scalars`, `cells` and `repair` are for several formats. Uses the modules of `files`,
+`scene` and the ground.
 """

@@ -21,9 +21,8 @@ import numpy as np
 
 from autocolor.arrays import Indices, Numbers
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.number_text import NumberText
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, text_problem
 
 TOUCHING: Final = re.compile(rb"(?<=[0-9.])(?=[+-])")
@@ -60,7 +59,7 @@ def read_byu(path: Path, placement: Placement = PLAIN) -> MeshReport:
     corners, corner_counts = _corners(text, first_corner, connectivity, polygons, nodes)
     left = len(text) - end
     skipped = (f"skipped words after the connectivity: {left:,}",) if left else ()
-    table = Polygons(coordinates, corners, corner_counts, part_numbers, names)
+    table = RawPolygons(coordinates, corners, corner_counts, part_numbers, names)
     return repaired(table, path.name, placement, skipped=skipped)
 
 
@@ -100,7 +99,7 @@ def _counts(text: NumberText) -> tuple[int, int, int, int]:
             raise text.wrong(at, f"a count in the header must be at least {least}")
     if polygons > connectivity:
         raise text.wrong(2, f"the polygons must be at most as many as their corners, {connectivity:,}")
-    # As many numbers follow: a count that is larger is wrong, whatever it counts.
+    # Each count stands for at least as many numbers in the file.
     for at, count in enumerate((parts, nodes, polygons, connectivity)):
         if count > len(text):
             raise text.wrong(at, f"a count must be at most that of the numbers in the file, {len(text):,}")
@@ -118,7 +117,7 @@ def _parts(text: NumberText, parts: int, polygons: int, stem: str) -> tuple[tupl
             f"{text.place}, line {text.line(4 + 2 * part)}: part {part + 1} must have polygons of 1 to"
             f" {polygons:,}, in order, not {first} to {last}; correct its range"
         )
-    # The range of a polygon is the last that it is in, so each part is painted over those before it.
+    # A polygon in several ranges belongs to the last part.
     part_numbers = np.full(polygons, parts, np.intp)
     if (ranges[:, 1] - ranges[:, 0] + 1).sum() > MOST_OVERLAP * polygons:
         raise InputError(
@@ -150,6 +149,3 @@ def _corners(text: NumberText, first: int, count: int, polygons: int, nodes: int
             " ended by a negative corner; correct the header or the connectivity"
         )
     return (sizes - 1).astype(np.intp), np.diff(ends, prepend=-1)
-
-
-BYU: Final = register(MeshFormat("Movie.BYU", read_byu, (".g", ".byu")))

@@ -1,8 +1,8 @@
 """The surface of cells: polygons as they are, and the outer faces of volume cells.
 
 A face of a volume cell is outer if no other cell has it. Faces are turned outward by the volume of their
-cell, since programs number the corners of wedges either way round. A polygon that is a face of a volume cell,
-as boundaries are often written besides the volume, is left out: the face itself is there if it is outer.
+cell, since programs number the corners of wedges either way round. A polygon that repeats a face of a volume
+cell is left out: programs often write boundaries besides the volume.
 """
 
 from __future__ import annotations
@@ -82,48 +82,43 @@ class CellSurface(NamedTuple):
     sentences: tuple[str, ...]
 
 
-def cell_surface(coordinates: Floats, flats: Flats, volumes: Sequence[Volumes]) -> CellSurface:
+def cell_surface(
+    coordinates: Floats, flats: Flats, volumes: Sequence[Volumes], *, used_only: bool = False
+) -> CellSurface:
     """The surface of polygons and volume cells.
 
-    With volume cells, nodes that the surface does not use are left out, and its corners are rows of those
-    that are kept.
+    With volume cells or with `used_only`, nodes that the surface does not use are left out, and its corners
+    are rows of the others.
     """
     volumes = [each for each in volumes if len(each.cells)]
-    every = np.arange(len(coordinates))
-    if not volumes:
-        return CellSurface(flats, every, ())
-    faces, owners = _faces(coordinates, volumes)
-    keys = _keys(faces, len(coordinates))
-    order = np.lexsort(keys)
-    differs = (np.diff(keys[0][order]) != 0) | (np.diff(keys[1][order]) != 0)
-    is_outer = np.concatenate([[True], differs]) & np.concatenate([differs, [True]])
-    outer = np.sort(order[is_outer])
     count = sum(len(each.cells) for each in volumes)
-    sentences = [f"took the outer surface of {count:,} volume {'cell' if count == 1 else 'cells'}"]
-
-    # Leave out polygons that are faces, and then the nodes within.
-    is_face = _are_among(flats, keys, len(coordinates))
-    if is_face.any():
-        number = int(is_face.sum())
-        sentences.append(f"left out {number:,} polygon{'s' * (number > 1)} that are faces of volume cells")
-        flats = _chosen(flats, ~is_face)
-    surface = Flats.joined([flats, Flats.of(faces[outer], owners[outer])])
-    kept, sentence = used_nodes(len(coordinates), surface.corners)
-    row_of = np.zeros(len(coordinates), np.intp)
-    row_of[kept] = np.arange(len(kept))
-    surface = Flats(row_of[surface.corners], surface.corner_counts, surface.cells)
-    return CellSurface(surface, kept, (*sentences, *sentence))
-
-
-def used_nodes(count: int, corners: Indices) -> tuple[Indices, tuple[str, ...]]:
-    """The rows of those of `count` nodes that are corners, and a sentence if others are left out."""
-    is_used = np.zeros(count, np.bool_)
-    is_used[corners] = True
-    kept = np.flatnonzero(is_used)
-    left = count - len(kept)
-    return kept, (
-        (f"left out {left:,} node{'s' * (left > 1)} that the surface does not use",) if left else ()
-    )
+    sentences = []
+    if count:
+        faces, owners = _faces(coordinates, volumes)
+        keys = _keys(faces, len(coordinates))
+        order = np.lexsort(keys)
+        differs = (np.diff(keys[0][order]) != 0) | (np.diff(keys[1][order]) != 0)
+        is_outer = np.concatenate([[True], differs]) & np.concatenate([differs, [True]])
+        outer = np.sort(order[is_outer])
+        sentences.append(f"took the outer surface of {count:,} volume {'cell' if count == 1 else 'cells'}")
+        # Leave out polygons that are faces.
+        is_face = _are_among(flats, keys, len(coordinates))
+        if number := int(is_face.sum()):
+            sentences.append(
+                f"left out {number:,} polygon{'s' * (number > 1)} that are faces of volume cells"
+            )
+            flats = _chosen(flats, ~is_face)
+        flats = Flats.joined([flats, Flats.of(faces[outer], owners[outer])])
+    if not count and not used_only:
+        return CellSurface(flats, np.arange(len(coordinates)), ())
+    # Leave out the nodes within.
+    is_used = np.zeros(len(coordinates), np.bool_)
+    is_used[flats.corners] = True
+    if left := int((~is_used).sum()):
+        sentences.append(f"left out {left:,} node{'s' * (left > 1)} that the surface does not use")
+    row_of = np.cumsum(is_used) - 1
+    surface = Flats(row_of[flats.corners], flats.corner_counts, flats.cells)
+    return CellSurface(surface, np.flatnonzero(is_used), tuple(sentences))
 
 
 def _faces(coordinates: Floats, volumes: Sequence[Volumes]) -> tuple[Indices, Indices]:
@@ -133,12 +128,14 @@ def _faces(coordinates: Floats, volumes: Sequence[Volumes]) -> tuple[Indices, In
         template = np.array(FACES[each.shape])
         table = np.empty((len(each.corners), len(template), 4), np.intp)
         for chunk in chunks(len(each.corners), AT_A_TIME):
-            found = each.corners[chunk][:, template]
+            faces_of_cells = each.corners[chunk][:, template]
             inward = _volumes(coordinates[each.corners[chunk]], template) < 0
             # A triangle's last two corners are the same: turning the first two turns it, too.
             triangles = template[:, 2] == template[:, 3]
-            turned = np.where(triangles[:, None], found[..., [1, 0, 2, 3]], found[..., ::-1])
-            table[chunk] = np.where(inward[:, None, None], turned, found)
+            turned = np.where(
+                triangles[:, None], faces_of_cells[..., [1, 0, 2, 3]], faces_of_cells[..., ::-1]
+            )
+            table[chunk] = np.where(inward[:, None, None], turned, faces_of_cells)
         faces.append(table.reshape(-1, 4))
         owners.append(np.repeat(each.cells, len(template)))
     return np.concatenate(faces), np.concatenate(owners)
@@ -166,11 +163,11 @@ def _keys(faces: Indices, nodes: int) -> tuple[Numbers, Numbers]:
 
 def _are_among(flats: Flats, keys: tuple[Numbers, Numbers], nodes: int) -> Booleans:
     """Which polygons have the corners of a face."""
-    found = np.zeros(len(flats.cells), np.bool_)
+    are_among = np.zeros(len(flats.cells), np.bool_)
     starts = np.cumsum(flats.corner_counts) - flats.corner_counts
     small = np.flatnonzero((flats.corner_counts == 3) | (flats.corner_counts == 4))
     if not len(small):
-        return found
+        return are_among
     table = flats.corners[
         starts[small, None] + np.minimum(np.arange(4), flats.corner_counts[small, None] - 1)
     ]
@@ -183,8 +180,8 @@ def _are_among(flats: Flats, keys: tuple[Numbers, Numbers], nodes: int) -> Boole
     firsts = np.maximum.accumulate(np.where(same, 0, np.arange(len(order))))
     is_known = order[firsts] < len(keys[0])
     mine = order >= len(keys[0])
-    found[small[order[mine] - len(keys[0])]] = is_known[mine]
-    return found
+    are_among[small[order[mine] - len(keys[0])]] = is_known[mine]
+    return are_among
 
 
 def _chosen(flats: Flats, chosen: Booleans) -> Flats:

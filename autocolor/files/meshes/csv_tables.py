@@ -33,28 +33,20 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, Numbers, chunks
 from autocolor.checks import LARGEST_COORDINATE, nearest, printable
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
-from autocolor.files.meshes.found_scalars import FoundScalars
-from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, Polygons, repaired
+from autocolor.files.meshes.file_scalars import FileScalars
+from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
+from autocolor.files.meshes.repair import LONGEST_NAME, PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import MOST_SCALARS, NODE, POLYGON
 
-# -------------------- csv_rows
-# The rows of a table in CSV, in blocks whose columns are converted at once.
-#
-# A block in which a column cannot be converted at once is gone through cell by cell, so that every problem
-# is told with its row. Rows are counted from 1, the header, as in a spreadsheet.
-
-MOST_PROBLEMS: Final = 20
+# The rows of a table, in blocks whose columns are converted at once. A block in which a column cannot be
+# converted at once is read cell by cell, so that every problem is reported with its row.
 
 ROWS_AT_ONCE: Final = 1 << 14
 """Measured: with more, the cells of a block fall out of the processor's cache."""
 
-NUMBER: Final = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 WHOLE_NUMBER: Final = re.compile(r"[+-]?[0-9]{1,18}")
-
-LONGEST_WHOLE: Final = 19
 
 IN_NUMBERS: Final = b"0123456789+-.eE ,"
 IN_WHOLES: Final = b"0123456789+- ,"
@@ -63,29 +55,7 @@ NOTHING: Final = -(1 << 63)
 """What stands for an empty or a wrong cell among whole numbers, which have at most 18 digits."""
 
 
-class Problems:
-    """Collects the problems of several tables, up to MOST_PROBLEMS, in the order of their rows."""
-
-    def __init__(self) -> None:
-        self._found: list[tuple[int, int, str]] = []
-        self._places: list[str] = []
-
-    def note(self, place: str, row: int, sentence: str) -> None:
-        """Add a problem; raise InputError once there are MOST_PROBLEMS."""
-        if place not in self._places:
-            self._places.append(place)
-        self._found.append((self._places.index(place), row, f"{place}, row {row}: {sentence}"))
-        if len(self._found) >= MOST_PROBLEMS:
-            self.raise_any()
-
-    def raise_any(self) -> None:
-        """Raise InputError with the problems found so far, if any."""
-        if self._found:
-            in_order = sorted(self._found, key=lambda each: each[:2])
-            raise InputError([sentence for _, _, sentence in in_order])
-
-
-class Cells(Protocol):
+class CellKind(Protocol):
     """How the cells of one column are converted."""
 
     def at_once(self, cells: Sequence[str]) -> AnyArray:
@@ -116,7 +86,7 @@ class NumberCells:
         """The number, 0 if it is wrong."""
         if not cell and self.may_be_empty:
             return np.nan
-        number = float(cell) if NUMBER.fullmatch(cell) else np.inf
+        number = float(cell) if NUMBER.fullmatch(cell.encode()) else np.inf
         if abs(number) <= LARGEST_COORDINATE:
             return number
         note(f"{self.rule}, not {shown(cell)}; correct it")
@@ -133,7 +103,8 @@ class WholeCells:
     def at_once(self, cells: Sequence[str]) -> Numbers:
         """The numbers, int64. Raises ValueError if any might be wrong."""
         _require_letters(cells, IN_WHOLES)
-        if max(map(len, cells)) > LONGEST_WHOLE:
+        # A number of 18 digits and a sign is converted alone.
+        if max(map(len, cells)) > 18:
             raise ValueError
         if self.may_be_empty and "" in cells:
             return np.array([int(cell) if cell else NOTHING for cell in cells], np.int64)
@@ -215,25 +186,25 @@ class CsvRows:
         self.row += len(rows)
         return rows
 
-    def converted(self, problems: Problems, columns: Sequence[Cells]) -> tuple[list[AnyArray], Numbers]:
+    def converted(self, problems: Problems, columns: Sequence[CellKind]) -> tuple[list[AnyArray], Numbers]:
         """The values of each column, and the row numbers of the file.
 
         Empty rows are skipped, and shorter ones filled with empty cells. Problems are noted.
         """
-        found: list[list[AnyArray]] = [[] for _ in columns]
+        in_blocks: list[list[AnyArray]] = [[] for _ in columns]
         numbers: list[Numbers] = []
         first = self.row + 1
         while (block := self._next(ROWS_AT_ONCE)) or not numbers:
             values, in_file = _block(problems, self.place, block, first, columns)
-            for column, each in zip(found, values, strict=True):
+            for column, each in zip(in_blocks, values, strict=True):
                 column.append(each)
             numbers.append(in_file)
             first += len(block)
-        return [np.concatenate(column) for column in found], np.concatenate(numbers)
+        return [np.concatenate(column) for column in in_blocks], np.concatenate(numbers)
 
 
 def _block(
-    problems: Problems, place: str, block: list[list[str]], first: int, columns: Sequence[Cells]
+    problems: Problems, place: str, block: list[list[str]], first: int, columns: Sequence[CellKind]
 ) -> tuple[list[AnyArray], Numbers]:
     """The values of each column in some rows, and the numbers of these in the file."""
     width = len(columns)
@@ -277,7 +248,7 @@ SCALAR: Final = "scalar "
 CORNER: Final = re.compile(r"node[0-9]+")
 
 ALIKE: Final = 0.8
-"""Assumed: a name that is spelled so much like a missing column is a mistake, and no scalar."""
+"""Limit: a name that is spelled so much like a missing column is a mistake, and no scalar."""
 
 COORDINATES: Final = NumberCells("a coordinate must be a decimal number of at most 1e30 in size")
 VALUES: Final = NumberCells(
@@ -292,7 +263,7 @@ class Table:
         self,
         problems: Problems,
         path: Path,
-        columns: Mapping[str, Cells],
+        columns: Mapping[str, CellKind],
         required: tuple[str, ...],
     ) -> None:
         self.problems = problems
@@ -322,7 +293,7 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
 
     Raises InputError with every problem of both tables, each with its file and row.
     """
-    problems = Problems()
+    problems = Problems("row")
     node_table = Table(
         problems,
         nodes,
@@ -356,11 +327,11 @@ def read_csv_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
     problems.raise_any()
 
     is_corner = corners != NOTHING
-    scalars = FoundScalars()
+    scalars = FileScalars()
     for of, table in ((NODE, node_table), (POLYGON, polygon_table)):
         for name, values in table.scalars.items():
             scalars.add(name, values, of)
-    mesh = Polygons(
+    mesh = RawPolygons(
         coordinates,
         rows[is_corner],
         is_corner.sum(axis=1),
@@ -399,11 +370,11 @@ def _rows_of(table: Table, corners: Numbers, numbers: Numbers) -> Indices:
 
 def _known(numbers: Numbers) -> str:
     """The range of the node numbers, for a message; it says if there are gaps."""
-    known = np.unique(numbers[numbers != NOTHING])
-    if not len(known):
+    different_numbers = np.unique(numbers[numbers != NOTHING])
+    if not len(different_numbers):
         return "it is empty"
-    gaps = "" if known[-1] - known[0] + 1 == len(known) else ", with gaps"
-    return f"{known[0]} to {known[-1]}{gaps}"
+    gaps = "" if different_numbers[-1] - different_numbers[0] + 1 == len(different_numbers) else ", with gaps"
+    return f"{different_numbers[0]} to {different_numbers[-1]}{gaps}"
 
 
 def _check_header(place: str, cells: list[str], columns: tuple[str, ...], required: tuple[str, ...]) -> None:
@@ -445,11 +416,8 @@ def _is_mistake(cell: str, columns: tuple[str, ...], missing: list[str]) -> bool
     return bool(difflib.get_close_matches(cell[:60], missing, n=1, cutoff=ALIKE))
 
 
-# -------------------- csv_writing
-# Writing a mesh as two tables in CSV, as `csv_tables` reads them.
-
-ROWS_AT_ONCE_2: Final = 1 << 16
-"""Rows that are made text at once, so that their Python values are few."""
+ROWS_IN_TEXT: Final = 1 << 16
+"""Rows that become text at once, so that there are few Python values at a time."""
 
 
 def csv_tables_bytes(mesh: Mesh) -> tuple[bytes, bytes]:
@@ -467,7 +435,7 @@ def csv_tables_bytes(mesh: Mesh) -> tuple[bytes, bytes]:
 def _node_lines(mesh: Mesh) -> Iterator[str]:
     yield _header(mesh, NODE_COLUMNS, NODE)
     values = [each.values for each in mesh.scalars if each.of == NODE]
-    for chunk in chunks(len(mesh.coordinates), ROWS_AT_ONCE_2):
+    for chunk in chunks(len(mesh.coordinates), ROWS_IN_TEXT):
         columns: list[Iterator[str]] = [
             map(repr, mesh.coordinates[chunk, axis].tolist()) for axis in range(3)
         ]
@@ -480,7 +448,7 @@ def _polygon_lines(mesh: Mesh) -> Iterator[str]:
     yield _header(mesh, POLYGON_COLUMNS, POLYGON)
     values = [each.values for each in mesh.scalars if each.of == POLYGON]
     names = np.array([_row([name]) for name in mesh.part_names], object)
-    for chunk in chunks(len(mesh.node_numbers), ROWS_AT_ONCE_2):
+    for chunk in chunks(len(mesh.node_numbers), ROWS_IN_TEXT):
         corners = mesh.node_numbers[chunk] + 1
         is_triangle = corners[:, 2] == corners[:, 3]
         columns: list[Iterator[str]] = [map(str, corners[:, at].tolist()) for at in range(3)]
@@ -495,15 +463,15 @@ def _polygon_lines(mesh: Mesh) -> Iterator[str]:
 
 
 def _header(mesh: Mesh, columns: tuple[str, ...], of: str) -> str:
-    """The names of the columns; a scalar named like a column of the mesh is told from it."""
+    """The names of the columns; a scalar named like a column of the mesh has a prefix."""
     names = [each.name for each in mesh.scalars if each.of == of]
-    told = [
+    headings = [
         f"{SCALAR}{name}"
         if name.casefold() in columns or CORNER.fullmatch(name) or name.startswith(SCALAR)
         else name
         for name in names
     ]
-    return _row([*columns, *told])
+    return _row([*columns, *headings])
 
 
 def _row(cells: list[str]) -> str:
@@ -518,25 +486,11 @@ def _cells(values: Floats) -> Iterator[str]:
     return ("" if math.isnan(value) else repr(value) for value in values.tolist())
 
 
-# -------------------- csv_format
-# The two CSV tables of a mesh as a format: a folder of nodes.csv and polygons.csv, or two files.
-
-IN_FOLDER: Final = ("nodes.csv", "polygons.csv")
+CSV_FILES: Final = ("nodes.csv", "polygons.csv")
+"""The files of a folder that is a mesh in CSV."""
 
 
 def write_csv_tables(folder: Path, mesh: Mesh) -> None:
     """Write the tables of a mesh to an empty folder. Raises OSError."""
-    for name, data in zip(IN_FOLDER, csv_tables_bytes(mesh), strict=True):
+    for name, data in zip(CSV_FILES, csv_tables_bytes(mesh), strict=True):
         (folder / name).write_bytes(data)
-
-
-CSV: Final = register(
-    MeshFormat(
-        "CSV",
-        read_csv_tables,
-        (".csv",),
-        keys=("nodes", "polygons"),
-        in_folder=IN_FOLDER,
-        write=write_csv_tables,
-    )
-)

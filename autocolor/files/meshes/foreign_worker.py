@@ -1,10 +1,9 @@
 """The process in which a library reads a file: the only module that imports trimesh and meshio.
 
-It is started as `python -m autocolor.files.meshes.foreign_worker LIBRARY FORMAT MESH RESULT SECONDS MEMORY
-BYTES`. The limits of time, of memory and of the result are set by the system, and none can be raised again.
-Once the library is loaded, this process opens no file but in the folder of the mesh and of Python, writes
-none but the result, and has no network. What the library prints goes nowhere. Failures are written as the
-result, after FAILED.
+It is started as `python -m autocolor.files.meshes.foreign_worker LIBRARY FORMAT MESH RESULT SIZE`, where SIZE
+is the number of bytes to read. Once the library is loaded, the system limits time, memory and the size of the
+result. From then on this process opens no file but in the folder of the mesh and of Python, writes none but
+the result, and has no network. If the file cannot be read, the exit code is FAILED and the result a sentence.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import re
 import sys
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -25,18 +24,102 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices
 from autocolor.checks import Color
 from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
+from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.foreign import (
     FAILED,
     LONGEST_SENTENCE,
     ForeignMesh,
     foreign_mesh_bytes,
-    part_names_of,
+    largest_result,
+    most_memory,
+    most_seconds,
 )
-from autocolor.files.meshes.found_scalars import FoundScalars
-from autocolor.files.meshes.repair import Polygons
-from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, POLYGON, MeshScalar
+from autocolor.files.meshes.repair import RawPolygons, different, printable_name
+from autocolor.scene.scalar import LARGEST_SCALAR, NODE, POLYGON
 
-# -------------------- trimesh_scene
+FORBIDDEN: Final = (
+    "socket.", "subprocess.", "os.system", "os.exec", "os.posix_spawn", "os.spawn", "os.fork", "pty.",
+    "ctypes.dlopen", "urllib.", "http.", "ftplib.", "smtplib.", "os.remove", "os.rename", "os.rmdir",
+    "os.mkdir", "os.link", "os.symlink", "os.truncate", "os.kill", "shutil.",
+)  # fmt: skip
+"""How the names of audit events begin that no reader of a mesh needs."""
+
+WRITING: Final = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
+
+
+def main(arguments: list[str]) -> int:
+    """Read a file and write its mesh, or why there is none. Returns the exit code."""
+    library, kind, mesh, result, size = arguments
+    warnings.simplefilter("ignore")
+    code = 0
+    try:
+        read = LIBRARIES[library](kind)
+        limit(int(size))
+        sys.addaudithook(guard(Path(mesh).parent, Path(result)))
+        data = foreign_mesh_bytes(read(mesh))
+    except (Exception, SystemExit) as error:
+        code, data = FAILED, sentence_of(error).encode("utf-8", "replace")
+    with open(result, "wb") as file:
+        file.write(data)
+    return code
+
+
+def sentence_of(error: BaseException) -> str:
+    """What an exception says, in one line of at most LONGEST_SENTENCE letters."""
+    if isinstance(error, MemoryError):
+        return "it needs more memory than its size allows"
+    if isinstance(error, SystemExit):
+        return "it gave up"
+    text = " ".join(str(error).split())
+    name = type(error).__name__
+    return (f"{name}: {text}" if text else name)[:LONGEST_SENTENCE]
+
+
+def limit(size: int) -> None:
+    """Limit the time, the memory and the result of this process, for a file of so many bytes."""
+    try:
+        import resource
+    except ImportError:
+        return
+    memory, largest = most_memory(size), largest_result(size)
+    seconds = math.ceil(time.process_time() + most_seconds(size))
+    for kind, soft, hard in (
+        (resource.RLIMIT_AS, memory, memory),
+        (resource.RLIMIT_FSIZE, largest, largest),
+        (resource.RLIMIT_CORE, 0, 0),
+        # At the hard limit a process is killed without a reason; a second before, SIGXCPU tells it.
+        (resource.RLIMIT_CPU, seconds, seconds + 1),
+    ):
+        most = resource.getrlimit(kind)[1]
+        if most != resource.RLIM_INFINITY:
+            soft, hard = min(soft, most), min(hard, most)
+        resource.setrlimit(kind, (soft, hard))
+
+
+def guard(folder: Path, result: Path) -> Callable[[str, tuple[Any, ...]], None]:
+    """An audit hook that raises PermissionError for files elsewhere, the network and other programs."""
+    readable = [
+        os.path.realpath(each) for each in {str(folder), sys.prefix, sys.base_prefix, *sys.path} if each
+    ]
+    written = os.path.realpath(result)
+
+    def refuse(event: str, values: tuple[Any, ...]) -> None:
+        if event == "open":
+            path, _, flags = values
+            if isinstance(path, int):
+                return
+            real = os.path.realpath(os.fsdecode(path))
+            if real == written:
+                return
+            writes = isinstance(flags, int) and flags & WRITING
+            if writes or not any(os.path.commonpath([real, each]) == each for each in readable):
+                raise PermissionError(f"the file names {os.fsdecode(path)!r}, which is not in its folder")
+        elif event.startswith(FORBIDDEN):
+            raise PermissionError(f"{event} is not allowed")
+
+    return refuse
+
+
 # The triangles of a scene of trimesh: each node of the scene with a mesh is a part, placed by its
 # transform.
 #
@@ -45,7 +128,7 @@ from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, POLYGON, 
 # the base color are taken, of textures nothing. Nothing of trimesh is imported here.
 
 MOST_PLACED: Final = 100_000
-"""Assumed: parts of a scene, of which many may be the same mesh."""
+"""Limit: parts of a scene, of which many may be the same mesh."""
 
 
 def polygons_of_trimesh(scene: Any, stem: str) -> ForeignMesh:
@@ -60,24 +143,25 @@ def polygons_of_trimesh(scene: Any, stem: str) -> ForeignMesh:
     values: list[dict[str, Floats]] = []
     names: list[str] = []
     materials: list[tuple[str, Color | None]] = []
-    skipped = textured = nodes = doubles = 0
+    skipped = textured = nodes = 0
     for name, transform, geometry in placed:
         mesh = scene.geometry[geometry]
         faces = getattr(mesh, "faces", None)
         if faces is None or not len(faces):
             skipped += 1
             continue
-        scalars = _scalars_of(mesh)
-        places, rows = _welded(_moved(np.asarray(mesh.vertices, np.float64), transform), scalars)
+        attributes = _scalars_of(mesh)
+        matrix = np.asarray(transform, np.float64)
+        moved = np.asarray(mesh.vertices, np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+        places, rows = _welded(moved, attributes)
         table = np.asarray(faces, np.intp)
         if table.min() < 0 or table.max() >= len(rows[1]):
             raise ValueError(f"a triangle of {name} with a node that it does not have")
-        doubles += len(rows[1]) - len(places)
         # A reflection turns the triangles over.
-        turned = np.linalg.det(transform[:3, :3]) < 0
+        turned = np.linalg.det(matrix[:3, :3]) < 0
         triangles.append(nodes + rows[1][table[:, ::-1] if turned else table])
         coordinates.append(places)
-        values.append({key: each[rows[0]] for key, each in scalars.items()})
+        values.append({key: each[rows[0]] for key, each in attributes.items()})
         names.append(name.strip() or stem)
         material, has_texture = _material_of(mesh)
         materials.append(material)
@@ -86,60 +170,50 @@ def polygons_of_trimesh(scene: Any, stem: str) -> ForeignMesh:
     if not names:
         raise ValueError("no triangles")
     part_names = part_names_of(names)
-    keys = list(dict.fromkeys(key for each in values for key in each))[:MOST_SCALARS]
-    scalars_found = tuple(
-        MeshScalar(
-            key,
-            np.concatenate(
-                [
-                    each.get(key, np.full(len(places), np.nan))
-                    for each, places in zip(values, coordinates, strict=True)
-                ]
-            ),
-            NODE,
-        )
-        for key in keys
-    )
+    scalars = FileScalars()
+    for key in dict.fromkeys(key for each in values for key in each):
+        of_parts = [
+            each.get(key, np.full(len(places), np.nan))
+            for each, places in zip(values, coordinates, strict=True)
+        ]
+        scalars.add(key, np.concatenate(of_parts), NODE)
     corners = np.concatenate(triangles)
     counts = [len(each) for each in triangles]
-    polygons = Polygons(
+    polygons = RawPolygons(
         np.concatenate(coordinates),
         corners.ravel(),
         np.full(len(corners), 3, np.intp),
         np.repeat(np.arange(len(counts)), counts),
         part_names,
-        scalars_found,
+        scalars.scalars,
     )
-    told = (
-        ("skipped parts without triangles", skipped),
-        ("left out the textures of parts", textured),
-    )
-    sentences = [f"{what}: {number:,}" for what, number in told if number]
+    counted = (("skipped parts without triangles", skipped), ("left out the textures of parts", textured))
+    sentences = [f"{sentence}: {number:,}" for sentence, number in counted if number]
     return ForeignMesh(
         polygons,
-        tuple(sentences),
+        (*sentences, *scalars.messages),
         {part: name for part, (name, _) in zip(part_names, materials, strict=True) if name},
         {name: color for name, color in materials if name and color is not None},
     )
 
 
-def _moved(places: Floats, transform: AnyArray) -> Floats:
-    """Coordinates after a transform of a scene, (4, 4)."""
-    matrix = np.asarray(transform, np.float64)
-    moved: Floats = places @ matrix[:3, :3].T + matrix[:3, 3]
-    return moved
+def part_names_of(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of parts that are printable and different; a part without a name is "part"."""
+    return different([printable_name(name) or "part" for name in names])
 
 
 def _scalars_of(mesh: Any) -> dict[str, Floats]:
-    """The attributes of the nodes that are one number each; too large ones become missing."""
-    found = {}
+    """The attributes with one number for each node; a number that is too large becomes missing."""
+    attributes = {}
     for name, values in (getattr(mesh, "vertex_attributes", None) or {}).items():
         numbers = np.asarray(values)
         numbers = numbers[:, 0] if numbers.ndim == 2 and numbers.shape[1] == 1 else numbers
         if numbers.shape == (len(mesh.vertices),) and numbers.dtype.kind in "iuf":
             numbers = numbers.astype(np.float64)
-            found[str(name).removeprefix("_")] = np.where(np.abs(numbers) <= LARGEST_SCALAR, numbers, np.nan)
-    return found
+            attributes[str(name).removeprefix("_")] = np.where(
+                np.abs(numbers) <= LARGEST_SCALAR, numbers, np.nan
+            )
+    return attributes
 
 
 def _welded(places: Floats, scalars: dict[str, Floats]) -> tuple[Floats, tuple[Indices, Indices]]:
@@ -150,8 +224,8 @@ def _welded(places: Floats, scalars: dict[str, Floats]) -> tuple[Floats, tuple[I
     order = np.argsort(first)
     rank = np.empty(len(order), np.intp)
     rank[order] = np.arange(len(order))
-    kept = first[order]
-    return places[kept], (kept, rank[rows.reshape(-1)])
+    leaders = first[order]
+    return places[leaders], (leaders, rank[rows.reshape(-1)])
 
 
 def _material_of(mesh: Any) -> tuple[tuple[str, Color | None], bool]:
@@ -162,13 +236,13 @@ def _material_of(mesh: Any) -> tuple[tuple[str, Color | None], bool]:
     color = getattr(material, "baseColorFactor", None)
     if not isinstance(name, str) or not name:
         return ("", None), texture
+    name = printable_name(name) or "material"
     if color is None or len(color) < 3:
         return (name, None), texture
-    red, green, blue = (int(each) for each in np.asarray(color)[:3])
+    red, green, blue = (int(each) for each in np.clip(np.asarray(color)[:3], 0, 255))
     return (name, (red, green, blue)), texture
 
 
-# -------------------- meshio_cells
 # The surface of a mesh of meshio: its polygons, the outer faces of its volume cells, parts and scalars.
 #
 # Of cells of higher order the corners are taken. Vertices, lines and cells of other kinds are skipped and
@@ -228,12 +302,12 @@ def polygons_of_meshio(mesh: Any, stem: str) -> ForeignMesh:
     part_of_cell, part_names = _parts(mesh, count, stem)
     scalars = _scalars(mesh, surface.nodes, surface.flats.cells)
     used, part_numbers = np.unique(part_of_cell[surface.flats.cells], return_inverse=True)
-    polygons = Polygons(
+    polygons = RawPolygons(
         coordinates[surface.nodes],
         surface.flats.corners,
         surface.flats.corner_counts,
         part_numbers.reshape(-1).astype(np.intp),
-        tuple(part_names[part] for part in used.tolist()),
+        part_names_of([part_names[part] for part in used.tolist()]),
         scalars.scalars,
     )
     sentences = [f"skipped cells of type {kind}: {number:,}" for kind, number in skipped.items()]
@@ -289,9 +363,9 @@ def _joined(blocks: Any, count: int) -> AnyArray | None:
     return joined if len(joined) == count else None
 
 
-def _scalars(mesh: Any, nodes: Indices, cells: Indices) -> FoundScalars:
+def _scalars(mesh: Any, nodes: Indices, cells: Indices) -> FileScalars:
     """The scalars of nodes and cells, at the rows that are kept."""
-    found = FoundScalars()
+    scalars = FileScalars()
     count = sum(len(block.data) for block in mesh.cells)
     of_nodes = {name: np.asarray(each) for name, each in (mesh.point_data or {}).items()}
     of_cells = {name: _joined(each, count) for name, each in (mesh.cell_data or {}).items()}
@@ -303,103 +377,12 @@ def _scalars(mesh: Any, nodes: Indices, cells: Indices) -> FoundScalars:
             if INTERNAL.match(str(name)) or name in GROUPS:
                 continue
             if values is None or len(values) != length or values.dtype.kind not in "iufb":
-                found.sentences.append(f"skipped the {of} array {name!r}, which has no number for each {of}")
+                scalars.sentences.append(
+                    f"skipped the {of} array {name!r}, which has no number for each {of}"
+                )
             else:
-                found.add(str(name), values, of, rows)
-    return found
-
-
-FORBIDDEN: Final = (
-    "socket.", "subprocess.", "os.system", "os.exec", "os.posix_spawn", "os.spawn", "os.fork", "pty.",
-    "ctypes.dlopen", "urllib.", "http.", "ftplib.", "smtplib.", "os.remove", "os.rename", "os.rmdir",
-    "os.mkdir", "os.link", "os.symlink", "os.truncate", "os.kill", "shutil.",
-)  # fmt: skip
-"""The beginnings of the names of audit events of what a reader has no need of."""
-
-WRITING: Final = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
-
-
-def main(arguments: list[str]) -> int:
-    """Read a file and write its mesh, or why there is none. Returns the exit code."""
-    library, kind, mesh, result, seconds, memory, largest = arguments
-    nothing = os.open(os.devnull, os.O_RDWR)
-    for number in (0, 1, 2):
-        os.dup2(nothing, number)
-    limit_memory(int(memory), int(largest))
-    warnings.simplefilter("ignore")
-    try:
-        read = LIBRARIES[library](kind)
-        limit_time(float(seconds))
-        sys.addaudithook(guard(Path(mesh).parent, Path(result)))
-        data = foreign_mesh_bytes(read(mesh))
-    except (Exception, SystemExit) as error:
-        what = "it needs more memory than its size allows" if isinstance(error, MemoryError) else ""
-        data = FAILED + (what or sentence_of(error)).encode("utf-8", "replace")
-    with open(result, "wb") as file:
-        file.write(data)
-    return 0
-
-
-def sentence_of(error: BaseException) -> str:
-    """What an exception says, in one line of at most LONGEST_SENTENCE letters."""
-    if isinstance(error, SystemExit):
-        return "it gave up"
-    text = " ".join(str(error).split())
-    name = type(error).__name__
-    return (f"{name}: {text}" if text else name)[:LONGEST_SENTENCE]
-
-
-def limit_memory(memory: int, largest: int) -> None:
-    """Limit the addresses of this process, and the size of files that it writes, in bytes."""
-    try:
-        import resource
-    except ImportError:
-        return
-    for limit, value in (
-        (resource.RLIMIT_AS, memory),
-        (resource.RLIMIT_FSIZE, largest),
-        (resource.RLIMIT_CORE, 0),
-    ):
-        hard = resource.getrlimit(limit)[1]
-        value = value if hard == resource.RLIM_INFINITY else min(value, hard)
-        resource.setrlimit(limit, (value, value))
-
-
-def limit_time(seconds: float) -> None:
-    """End this process after so many seconds of computing from now on, or twice as many on the clock."""
-    try:
-        import resource
-        import signal
-    except ImportError:
-        return
-    used = math.ceil(time.process_time() + seconds)
-    # At the hard limit a process is killed without a reason; a second before, SIGXCPU tells it.
-    resource.setrlimit(resource.RLIMIT_CPU, (used, used + 1))
-    signal.setitimer(signal.ITIMER_REAL, 2 * seconds)
-
-
-def guard(folder: Path, result: Path) -> Callable[[str, tuple[Any, ...]], None]:
-    """An audit hook that refuses what no reader of a mesh needs, with PermissionError."""
-    readable = [
-        os.path.realpath(each) for each in {str(folder), sys.prefix, sys.base_prefix, *sys.path} if each
-    ]
-    written = os.path.realpath(result)
-
-    def refuse(event: str, values: tuple[Any, ...]) -> None:
-        if event == "open":
-            path, _, flags = values
-            if isinstance(path, int):
-                return
-            real = os.path.realpath(os.fsdecode(path))
-            if real == written:
-                return
-            writes = isinstance(flags, int) and flags & WRITING
-            if writes or not any(os.path.commonpath([real, each]) == each for each in readable):
-                raise PermissionError(f"the file names {os.fsdecode(path)!r}, which is not in its folder")
-        elif event.startswith(FORBIDDEN):
-            raise PermissionError(f"{event} is not allowed")
-
-    return refuse
+                scalars.add(str(name), values, of, rows)
+    return scalars
 
 
 def meshio_reader(kind: str) -> Callable[[str], ForeignMesh]:
@@ -416,7 +399,7 @@ def trimesh_reader(kind: str) -> Callable[[str], ForeignMesh]:
     """The function that reads a file of a format with trimesh, which is loaded."""
     import trimesh
 
-    # What would be loaded from outside of Python's folders later on.
+    # Load now what would be loaded from outside of Python's folders later on.
     mimetypes.init()
 
     def read(path: str) -> ForeignMesh:

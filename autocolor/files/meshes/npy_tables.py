@@ -17,8 +17,8 @@ All are stored by columns (Fortran order), so that `.T` is contiguous, in the by
 the first two are needed. Tables of other types, orders and shapes that numpy saves are read, too: triangles
 alone as (polygons, 3), float32, int32, rows; these are copied, and the log says so. Nodes that are turned
 (`up`) or scaled are copied. Normals and planes are used where the nodes are as in the file and the crease
-angle is the file's; else, and where they are absent, they are computed. Whoever changes nodes or polygons
-must delete the files of normals and planes, or convert the folder again. Nothing is ever repaired.
+angle is the file's; otherwise they are computed. If you change nodes or polygons, delete the files of normals
+and planes, or convert the folder again. Nothing is ever repaired.
 
 All numbers are checked once when the tables are opened, a few pages at a time.
 """
@@ -41,9 +41,8 @@ import numpy as np
 from autocolor.arrays import AnyArray, Booleans, Floats, Indices, chunks
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError, OutputError, WriteError, reason_of
-from autocolor.files.meshes.formats import HELD, MeshFormat, register
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
-from autocolor.files.reading import opened, read_bytes, shown
+from autocolor.files.reading import bounded_json, opened, read_bytes, shown
 from autocolor.files.writing import write_together
 from autocolor.immutable import read_only
 from autocolor.logs import logger_of, timed
@@ -53,19 +52,15 @@ from autocolor.scene.geometry.planes import SharedPlanes
 from autocolor.scene.mesh import CREASE_ANGLES, PART, Mesh
 from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, POLYGON, MeshScalar
 
-# -------------------- table_rows
-# The rows of mapped tables: checked in chunks, and converted where rendering does not read them as they
-# are.
-#
-# Rows are counted from 0, as numpy does. A table is held as it is if it has the type and the order that
-# rendering reads; any other is copied, in chunks too.
+# Tables are checked in chunks, and converted where rendering does not read them as they are. Rows are counted
+# from 0, as numpy does.
 
 LOG: Final = logger_of(__name__)
 
 ROWS_AT_ONCE: Final = 1 << 16
 
 UNIT: Final = 1e-3
-"""Assumed: how far the length of a unit vector may be from 1."""
+"""Limit: how far the length of a unit vector may be from 1."""
 
 Rule = Callable[[AnyArray], Booleans]
 """Which of some rows, (columns, rows), are right."""
@@ -81,8 +76,8 @@ def checked(name: str, table: AnyArray, thing: str, rule: Rule, remedy: str) -> 
         right = rule(rows[:, chunk])
         if not right.all():
             row = chunk.start + int(np.argmin(right))
-            found = table[row].tolist()
-            raise InputError(f"{name}: {thing}, not {found} (row {row}, counted from 0); {remedy}")
+            numbers = table[row].tolist()
+            raise InputError(f"{name}: {thing}, not {numbers} (row {row}, counted from 0); {remedy}")
 
 
 def is_shaped(name: str, table: AnyArray, what: str, rows: int | None, widths: tuple[int, ...]) -> None:
@@ -146,15 +141,13 @@ def as_read(name: str, table: AnyArray, dtype: type[Any]) -> AnyArray:
     return read_only(copy).T
 
 
-# -------------------- npy_array
-# One .npy file as an array that is mapped into memory: read page by page, and never copied whole.
-#
-# The header is matched, never evaluated, and nothing is ever unpickled. The size of the file is compared
-# with its header before it is mapped. What another program cuts off a file later cannot be guarded against:
-# the system then ends the process that looks at it (SIGBUS). So write such files anew and rename them.
+# A .npy file is mapped into memory: read page by page, and never copied whole. The header is matched, never
+# evaluated. The size of the file is compared with its header before it is mapped. If another program cuts off
+# the file later, the system ends the process that reads it (SIGBUS). So write such files anew, and rename
+# them.
 
 MOST_ROWS: Final = 200_000_000
-"""Assumed: rows of a table, so that looking at all of them takes seconds."""
+"""Limit: rows of a table, so that looking at all of them takes seconds."""
 
 LARGEST_HEADER: Final = 1024
 """Bytes; numpy writes 128 for a table."""
@@ -168,7 +161,7 @@ HEADER: Final = re.compile(
 """The header exactly as numpy writes that of a table of numbers."""
 
 
-class Header(NamedTuple):
+class NpyHeader(NamedTuple):
     """What the header of a file says, and where the numbers begin.
 
     `shape` is (rows,) or (rows, columns); `by_columns` tells that the numbers of a column follow each other.
@@ -185,7 +178,7 @@ class Header(NamedTuple):
         return self.start + math.prod(self.shape) * self.dtype.itemsize
 
 
-def parsed_header(name: str, head: bytes) -> Header:
+def parsed_header(name: str, head: bytes) -> NpyHeader:
     """The header at the beginning of a file of this name. Raises InputError."""
     width = {b"\x01\x00": 2, b"\x02\x00": 4}.get(head[6:8], 0)
     start = 8 + width + int.from_bytes(head[8 : 8 + width], "little")
@@ -201,7 +194,7 @@ def parsed_header(name: str, head: bytes) -> Header:
         raise InputError(f"{name}: a table must have at most {MOST_ROWS:,} rows, not {shape[0]:,}; divide it")
     # A table of one row or one column has both orders.
     by_columns = described[2] == b"True" or len(shape) == 1 or min(shape) <= 1
-    return Header(dtype, by_columns, shape, start)
+    return NpyHeader(dtype, by_columns, shape, start)
 
 
 def mapped(path: Path) -> AnyArray:
@@ -225,8 +218,7 @@ def mapped(path: Path) -> AnyArray:
     return read_only(numbers.reshape(header.shape, order="F" if header.by_columns else "C"))
 
 
-# -------------------- table_notes
-# The notes beside .npy tables, `tables.json`: names of parts, crease angle, scalars, and whether planes.
+# The notes beside the tables: names of parts, crease angle, scalars, and whether there are planes.
 
 NOTES: Final = "tables.json"
 
@@ -242,8 +234,8 @@ KEYS: Final = frozenset(("format", "part_names", "crease_angle", "scalars", "pla
 class TableNotes:
     """What `tables.json` says.
 
-    `scalars` are names, each with "node" or "polygon", in the order of their files. `planes` tells whether
-    the planes that polygons share are known: True where files hold them, False where there are none.
+    `scalars` are pairs of a name and "node" or "polygon", in the order of their files. `planes` is True if
+    files have the planes that polygons share, False if no polygons share a plane, None if that is not known.
     """
 
     part_names: tuple[str, ...]
@@ -266,7 +258,10 @@ def notes_text(notes: TableNotes) -> bytes:
 
 def read_notes(path: Path) -> TableNotes:
     """The notes of a file. Raises InputError."""
-    content = _parsed(path)
+    try:
+        content = bounded_json(read_bytes(path, LARGEST_NOTES), MOST_VALUES)
+    except ValueError as error:
+        _refuse(path, f"it must be JSON of at most {MOST_VALUES:,} values, not wrong ({str(error)[:100]})")
     if not isinstance(content, dict) or set(content) != KEYS or content["format"] != FORMAT:
         _refuse(path, f"its format must be {FORMAT!r}, with the keys {', '.join(sorted(KEYS))}, not another")
     names, scalars = content["part_names"], content["scalars"]
@@ -274,10 +269,10 @@ def read_notes(path: Path) -> TableNotes:
         _refuse(path, "part_names must be strings, one for each part, not others")
     if len(set(names)) != len(names):
         _refuse(path, "part_names must differ, not repeat")
-    found: list[Problem] = []
-    angle = CREASE_ANGLES.validated(content["crease_angle"], ("crease_angle",), found)
+    problems: list[Problem] = []
+    angle = CREASE_ANGLES.validated(content["crease_angle"], ("crease_angle",), problems)
     if not isinstance(angle, float):
-        _refuse(path, found[0].sentence.partition(";")[0])
+        _refuse(path, problems[0].sentence.partition(";")[0])
     if not isinstance(scalars, list) or len(scalars) > MOST_SCALARS or not all(map(_is_scalar, scalars)):
         _refuse(
             path, f"scalars must be at most {MOST_SCALARS} names, each of 'node' or 'polygon', not others"
@@ -299,20 +294,6 @@ def _is_scalar(entry: object) -> bool:
     )
 
 
-def _parsed(path: Path) -> Any:
-    def refuse(constant: str) -> NoReturn:
-        raise ValueError(f"the number {constant}")
-
-    data = read_bytes(path, LARGEST_NOTES)
-    try:
-        if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
-            raise ValueError("more of them")
-        return json.loads(data.decode("utf-8"), parse_constant=refuse)
-    except (ValueError, RecursionError) as error:
-        reason = str(error)[:100]
-        _refuse(path, f"it must be JSON of at most {MOST_VALUES:,} values, not wrong ({reason})")
-
-
 def _refuse(path: Path, sentence: str) -> NoReturn:
     raise InputError(f"{path.name}: {sentence}; convert the mesh again, or correct it")
 
@@ -328,12 +309,12 @@ PLANE_SIDES: Final = "plane_sides.npy"
 SCALARS: Final = "scalars"
 
 MOST_PARTS: Final = 1 << 16
-"""Assumed: parts that get names of their own where a folder names none."""
+"""Limit: parts that get names of their own where a folder names none."""
 
 CORRECT: Final = "correct that row"
 
 
-class Tables(NamedTuple):
+class MappedTables(NamedTuple):
     """The node table and the polygon table, and how many rows they have."""
 
     coordinates: Floats
@@ -367,7 +348,10 @@ def read_npy_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
     part_numbers, names = _parts(folder, tables.polygon_count, notes)
     is_plain = placement.up == "z" and placement.scale == 1
     normals = _normals(folder, tables.polygon_count) if is_plain and wanted == angle else None
-    known = None if notes is None or not is_plain else notes.planes
+    has_planes = None if notes is None or not is_plain else notes.planes
+    planes: Any = ...
+    if has_planes is not None:
+        planes = _planes(folder, tables.polygon_count) if has_planes else None
     mesh = Mesh.of_tables(
         *_placed(tables, placement),
         part_numbers,
@@ -375,12 +359,12 @@ def read_npy_tables(nodes: Path, polygons: Path, placement: Placement = PLAIN) -
         wanted,
         () if notes is None else _scalars(folder, notes, tables),
         normals=normals,
-        shared_planes=... if known is None else _planes(folder, tables.polygon_count) if known else None,
+        shared_planes=planes,
     )
     return MeshReport(mesh)
 
 
-def _tables(nodes: Path, polygons: Path) -> Tables:
+def _tables(nodes: Path, polygons: Path) -> MappedTables:
     """The two tables that there must be, checked."""
     coordinates, corners = mapped(nodes), mapped(polygons)
     is_shaped(nodes.name, coordinates, "a node table", None, (3,))
@@ -400,7 +384,9 @@ def _tables(nodes: Path, polygons: Path) -> Tables:
         four[:3] = corners.T
         four[3] = four[2]
         corners = read_only(four).T
-    return Tables(as_read(nodes.name, coordinates, np.float64), as_read(polygons.name, corners, np.intp))
+    return MappedTables(
+        as_read(nodes.name, coordinates, np.float64), as_read(polygons.name, corners, np.intp)
+    )
 
 
 def _check_numbers(name: str, numbers: Indices, what: str, count: int, table: str) -> None:
@@ -410,7 +396,7 @@ def _check_numbers(name: str, numbers: Indices, what: str, count: int, table: st
     checked(name, numbers, thing, within(count), CORRECT)
 
 
-def _placed(tables: Tables, placement: Placement) -> Tables:
+def _placed(tables: MappedTables, placement: Placement) -> MappedTables:
     """The tables with their nodes in the world: copied, and checked again, unless they are there already."""
     if placement.up == "z" and placement.scale == 1:
         return tables
@@ -444,8 +430,7 @@ def _normals(folder: Path, polygons: int) -> NodeNormals | None:
         return None
     if len(there) == 1:
         raise InputError(
-            f"{there[0]}: {NORMALS} and {NORMAL_NUMBERS} must both be there or neither, not one alone;"
-            " delete it"
+            f"{there[0]}: {NORMALS} and {NORMAL_NUMBERS} must be in the folder together; delete it"
         )
     vectors, numbers = mapped(folder / NORMALS), mapped(folder / NORMAL_NUMBERS)
     is_shaped(NORMALS, vectors, "normals", None, (3,))
@@ -479,9 +464,9 @@ def _planes(folder: Path, polygons: int) -> SharedPlanes:
     )
 
 
-def _scalars(folder: Path, notes: TableNotes, tables: Tables) -> tuple[MeshScalar, ...]:
+def _scalars(folder: Path, notes: TableNotes, tables: MappedTables) -> tuple[MeshScalar, ...]:
     """The scalars that the notes name."""
-    found = []
+    scalars = []
     for number, (name, of) in enumerate(notes.scalars, 1):
         path = folder / SCALARS / f"{number}.npy"
         place, values = f"{SCALARS}/{path.name}", mapped(path)
@@ -500,15 +485,12 @@ def _scalars(folder: Path, notes: TableNotes, tables: Tables) -> tuple[MeshScala
             lambda row: (np.isnan(row) | (np.abs(row) <= LARGEST_SCALAR))[0],
             CORRECT,
         )
-        found.append(MeshScalar(name, as_read(place, values, np.float64), of))
-    return tuple(found)
+        scalars.append(MeshScalar(name, as_read(place, values, np.float64), of))
+    return tuple(scalars)
 
 
-# -------------------- npy_writing
-# Writing a mesh as .npy tables, in chunks: no table is copied whole.
-#
-# Each file is written beside its place, synced and renamed. The notes, without which nothing of normals and
-# planes is believed, are renamed last.
+# Writing goes in chunks: no table is copied whole. Each file is written beside its place, synced and renamed.
+# The notes are renamed last: without them nobody reads normals and planes.
 
 NUMBERS_AT_ONCE: Final = 1 << 17
 
@@ -517,7 +499,7 @@ LARGE: Final = 1 << 21
 
 
 def write_npy_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> None:
-    """Write a mesh as tables to a folder, with its normals and planes, so that they are mapped as they are.
+    """Write a mesh as tables to a folder, with its normals and planes, in the order that rendering reads.
 
     Raises OutputError if a file is there already and `overwrite` is false, WriteError if writing fails.
     """
@@ -529,14 +511,14 @@ def write_npy_tables(folder: Path, mesh: Mesh, *, overwrite: bool = False) -> No
 
 def _files(folder: Path, mesh: Mesh) -> Iterator[tuple[Path, Iterable[bytes]]]:
     """The files of a mesh and their content; each is computed when it is written."""
-    for name, table in _tables_2(folder, mesh):
+    for name, table in _named_tables(folder, mesh):
         yield folder / name, _pieces(table)
     scalars = tuple((scalar.name, scalar.of) for scalar in mesh.scalars)
     notes = TableNotes(mesh.part_names, mesh.crease_angle, scalars, mesh.shared_planes is not None)
     yield folder / NOTES, [notes_text(notes)]
 
 
-def _tables_2(folder: Path, mesh: Mesh) -> Iterator[tuple[str, AnyArray]]:
+def _named_tables(folder: Path, mesh: Mesh) -> Iterator[tuple[str, AnyArray]]:
     """The names of the files and their tables, (rows,) or (rows, columns)."""
     yield NODES, mesh.coordinates
     yield POLYGONS, mesh.node_numbers
@@ -548,12 +530,12 @@ def _tables_2(folder: Path, mesh: Mesh) -> Iterator[tuple[str, AnyArray]]:
         yield PLANES, _plane_rows(planes)
         yield PLANE_NUMBERS, planes.plane_of_polygon
         yield PLANE_SIDES, planes.turned.view(np.uint8)
-    normals = _normals_2(folder, mesh)
+    normals = _normals_of(folder, mesh)
     yield NORMAL_NUMBERS, normals.numbers
     yield NORMALS, normals.vectors
 
 
-def _normals_2(folder: Path, mesh: Mesh) -> NodeNormals:
+def _normals_of(folder: Path, mesh: Mesh) -> NodeNormals:
     """The normals of a mesh: its own, or those of a large one computed in files that have no name."""
     if len(mesh.node_numbers) < LARGE or "normals" in vars(mesh):
         return mesh.normals
@@ -623,21 +605,3 @@ def _pieces(table: AnyArray) -> Iterable[bytes]:
     for row in table.T if table.ndim > 1 else table[None]:
         for chunk in chunks(len(row), NUMBERS_AT_ONCE):
             yield row[chunk].tobytes()
-
-
-# -------------------- npy_format
-# The registration of .npy tables as a mesh format.
-
-NPY: Final = register(
-    MeshFormat(
-        "npy",
-        read_npy_tables,
-        (".npy",),
-        keys=("nodes", "polygons"),
-        in_folder=(NODES, POLYGONS),
-        begins=lambda head: head.startswith(MAGIC),
-        write=write_npy_tables,
-        holds=frozenset(HELD),
-        mapped=True,
-    )
-)

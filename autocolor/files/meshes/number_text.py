@@ -1,30 +1,68 @@
-"""Numbers in text, separated by white space, which several formats of meshes consist of.
+"""Numbers in the text of mesh files, and the problems of their lines.
 
-Where each number begins is found at once, so that any run of them can be converted, counts can be checked
-before anything is made of them, and a wrong one is told with its line.
+`NumberText` is for formats that are numbers separated by white space. It finds at once where each number
+begins. So any run of numbers can be converted, counts are compared with the file before memory is allocated,
+and a wrong number is refused with its line.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import AnyArray, Floats, Numbers, chunks
+from autocolor.arrays import AnyArray, Floats, Indices, Numbers, chunks
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
 from autocolor.files.reading import shown
 
+MOST_PROBLEMS: Final = 20
+"""Limit: problems reported for one mesh file; a file with more usually repeats the same one."""
+
+NUMBER: Final = re.compile(rb"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+"""A decimal number; `float` takes more, such as digits of other scripts."""
+
 BLOCK: Final = 1 << 17
-"""Numbers to convert at once, so that their Python values are few."""
+"""Numbers to convert at once, so that there are few Python values at a time."""
 
 IN_DECIMALS: Final = b"0123456789+-.eE \t\n\r\f\v"
 IN_WHOLES: Final = b"0123456789+- \t\n\r\f\v"
-IN_VALUES: Final = IN_DECIMALS + b"nNaAiIfF"
-"""With the letters of nan and inf; no other word of these letters is a number."""
+IN_VALUES: Final = IN_DECIMALS + b"nNaAiIfFtTyY"
+"""With the letters of nan, inf and infinity; no other word of these letters is a number."""
+
+DIGITS: Final = b"0123456789 \t\n"
+MOST_DIGITS: Final = 18
+"""The digits of a whole number that surely has 64 bits."""
 
 COORDINATE: Final = "a coordinate must be a decimal number of at most 1e30 in size"
+
+
+class Problems:
+    """Collects the problems of files, up to MOST_PROBLEMS, in the order of files and lines.
+
+    `unit` is what messages call a line: "line" or "row".
+    """
+
+    def __init__(self, unit: str) -> None:
+        self._unit = unit
+        self._sentences: list[tuple[int, int, str]] = []
+        self._places: list[str] = []
+
+    def note(self, place: str, line: int, sentence: str) -> None:
+        """Add a problem; raise InputError once there are MOST_PROBLEMS."""
+        if place not in self._places:
+            self._places.append(place)
+        self._sentences.append((self._places.index(place), line, f"{place}, {self._unit} {line}: {sentence}"))
+        if len(self._sentences) >= MOST_PROBLEMS:
+            self.raise_any()
+
+    def raise_any(self) -> None:
+        """Raise InputError with the problems, if any."""
+        if self._sentences:
+            in_order = sorted(self._sentences, key=lambda each: each[:2])
+            raise InputError([sentence for _, _, sentence in in_order])
 
 
 class NumberText:
@@ -56,6 +94,14 @@ class NumberText:
             f"{self.place}, line {self.line(at)}: {rule}, not {shown(self.word(at))}; correct it"
         )
 
+    def lines(self) -> tuple[Indices, int]:
+        """The first word of each line that has words, and the bytes of the longest line."""
+        ends = np.flatnonzero(np.frombuffer(self.data, np.uint8) == ord("\n"))
+        longest = int(np.diff(ends, prepend=-1, append=len(self.data)).max())
+        # Two words are on different lines if a line ends between them.
+        firsts: Indices = np.searchsorted(self.starts, np.append(0, ends))
+        return firsts[(np.diff(firsts, prepend=-1) > 0) & (firsts < len(self))], longest
+
     def require(self, end: int, what: str) -> None:
         """Raise InputError unless there are `end` words, of which the last are `what`."""
         if end > len(self):
@@ -86,7 +132,14 @@ class NumberText:
         """Some words as float64 or int64. Raises InputError for other letters, and for no number."""
         values = np.empty(count, np.float64 if convert is float else np.int64)
         for chunk in chunks(first + count, BLOCK, first):
-            text = self._text(chunk)
+            end = int(self.starts[chunk.stop]) if chunk.stop < len(self) else len(self.data)
+            text = self.data[int(self.starts[chunk.start]) : end]
+            longest = int(np.diff(self.starts[chunk], append=end).max())
+            if longest <= MOST_DIGITS and not text.translate(None, DIGITS):
+                # Measured: a tenth of the time of converting word by word. With digits alone, parsing cannot
+                # stop.
+                values[chunk.start - first : chunk.stop - first] = np.fromstring(text, np.int64, sep=" ")
+                continue
             try:
                 if text.translate(None, letters):
                     raise ValueError
@@ -97,11 +150,6 @@ class NumberText:
             except (ValueError, OverflowError):
                 raise self.wrong(self._first_wrong(chunk, letters), rule) from None
         return values
-
-    def _text(self, chunk: slice) -> bytes:
-        """The text from the first word of a chunk to the end of its last."""
-        end = int(self.starts[chunk.stop]) if chunk.stop < len(self) else len(self.data)
-        return self.data[int(self.starts[chunk.start]) : end]
 
     def _first_wrong(self, chunk: slice, letters: bytes) -> int:
         """The first word of a chunk that is no number of these letters."""

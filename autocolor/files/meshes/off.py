@@ -21,9 +21,8 @@ import numpy as np
 from autocolor.arrays import Floats, Indices
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.number_text import NumberText
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 
@@ -55,11 +54,11 @@ def read_off(path: Path, placement: Placement = PLAIN) -> MeshReport:
     for at, count in enumerate((nodes, polygons)):
         if not 1 <= count <= len(text):
             raise text.wrong(at, f"a count must be from 1 to that of the words in the file, {len(text):,}")
-    lines = _lines(text)
+    lines, _ = text.lines()
     coordinates, first = _coordinates(text, lines, nodes)
     corners, counts, end = _polygons(text, lines, first, polygons, nodes)
     left = len(text) - end
-    table = Polygons(coordinates, corners, counts, np.zeros(polygons, np.intp), (path.stem,))
+    table = RawPolygons(coordinates, corners, counts, np.zeros(polygons, np.intp), (path.stem,))
     skipped = (f"skipped words that are neither nodes nor polygons: {left:,}",) if left else ()
     return repaired(table, path.name, placement, skipped=skipped)
 
@@ -80,13 +79,6 @@ def _coordinates(text: NumberText, lines: Indices, nodes: int) -> tuple[Floats, 
         if len(wrong):
             text.coordinates(first + int(wrong[0]) * width + at, 1)
     return np.ascontiguousarray(table[:, :3]), end
-
-
-def _lines(text: NumberText) -> Indices:
-    """The first word of each line that has any."""
-    ends = np.flatnonzero(np.frombuffer(text.data, np.uint8) == ord("\n"))
-    firsts: Indices = np.searchsorted(text.starts, np.append(0, ends))
-    return firsts[(np.diff(firsts, prepend=-1) > 0) & (firsts < len(text))]
 
 
 def _polygons(
@@ -125,19 +117,18 @@ def _polygons(
         owner = np.repeat(np.arange(len(sizes)), limits[rows] - begins[rows])
         place = np.arange(end - at) - starts[owner]
         chosen = np.flatnonzero((place >= 1) & (place <= sizes[owner]))
-        found = numbers[chosen]
-        wrong = np.flatnonzero(~((found >= 0) & (found < nodes) & (np.floor(found) == found)))
+        of_corners = numbers[chosen]
+        is_node = (of_corners >= 0) & (of_corners < nodes) & (np.floor(of_corners) == of_corners)
+        wrong = np.flatnonzero(~is_node)
         if len(wrong):
             raise text.wrong(
                 at + int(chosen[wrong[0]]), f"a corner must be a node number from 0 to {nodes - 1:,}"
             )
-        corners.append(found.astype(np.intp))
+        corners.append(of_corners.astype(np.intp))
     return np.concatenate(corners), counts, int(limits[-1])
 
 
-def _begins(head: bytes) -> bool:
-    found = KEYWORD.match(head)
-    return found is not None and KNOWN.fullmatch(found[1]) is not None
-
-
-OFF: Final = register(MeshFormat("OFF", read_off, (".off",), begins=_begins))
+def begins_as_off(head: bytes) -> bool:
+    """Whether a file begins with the keyword of an OFF file."""
+    keyword = KEYWORD.match(head)
+    return keyword is not None and KNOWN.fullmatch(keyword[1]) is not None

@@ -1,137 +1,180 @@
-"""Reading a mesh from a PLY file, in text or binary in either byte order.
+"""Meshes in PLY files: read in text or binary in either byte order, and written.
 
 Nodes come from the element `vertex`, polygons from `face`, or from `tristrips` where there are no faces.
-Properties may have any type and any order; integers and real numbers beside coordinates are scalars (see
-`ply_polygons`). NaN is a missing value of a scalar; an infinite one becomes missing, and is counted. Other
-elements, and what follows the last one, are skipped and counted.
+Other elements, and bytes after the last element, are skipped and counted. `ply_elements` reads the elements,
+whose properties may have any type and any order.
+
+A property `part`, `material_index` or `group` of faces is a part number. A comment such as `part 0 hood`
+names a part; without comments, parts are named after the property. All other numbers of vertices and faces
+are scalars, but for normals, colors and texture coordinates, which are ignored. NaN is a missing value.
+
+A mesh is written in binary, little endian.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from autocolor.arrays import AnyArray, Floats, Indices, chunks
 from autocolor.checks import LARGEST_COORDINATE, listed, printable
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
+from autocolor.files.meshes.file_scalars import FileScalars
+from autocolor.files.meshes.number_text import MOST_PROBLEMS
 from autocolor.files.meshes.ply_elements import (
-    AXES,
-    CORNERS,
     FACE,
-    FIRST_LINE,
-    MOST_UNNAMED_PARTS,
-    PART,
-    PARTS,
     STRIPS,
     VERTEX,
-    Comments,
+    ElementRows,
     Lists,
-    PlyTables,
-    Rows,
-    is_scalar,
-    named_in,
     parsed_header,
-    property_of,
     read_binary,
     read_text,
 )
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, different, repaired
+from autocolor.files.meshes.repair import (
+    PLAIN,
+    MeshReport,
+    Placement,
+    RawPolygons,
+    different,
+    name_of,
+    repaired,
+)
 from autocolor.files.reading import LARGEST_BINARY_MESH_FILE, LARGEST_MESH_FILE, read_bytes, read_head
-from autocolor.immutable import read_only
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 from autocolor.scene.mesh import Mesh
-from autocolor.scene.scalar import LARGEST_SCALAR, NODE, POLYGON, MeshScalar
+from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 
-# -------------------- strips
-# Triangle strips of a PLY file, as the scanned models of the nineties have them.
+AXES: Final = ("x", "y", "z")
+CORNERS: Final = ("vertex_indices", "vertex_index")
+
+PART: Final = "part"
+PARTS: Final = (PART, "material_index", "group")
+"""Face properties that assign parts, in order of preference. The first one present is used."""
+
+MOST_UNNAMED_PARTS: Final = 10_000
+"""Limit: a property with more different values is a scalar."""
+
+NOT_SCALARS: Final = frozenset(
+    (
+        *("nx", "ny", "nz", "normal_x", "normal_y", "normal_z"),
+        *("s", "t", "u", "v", "s0", "t0", "u0", "v0", "texture_s", "texture_t", "texture_u", "texture_v"),
+        *("texcoord", "texnumber", "flags"),
+        *("r", "g", "b", "a", "red", "green", "blue", "alpha"),
+        *(
+            f"{kind}_{part}"
+            for kind in ("ambient", "diffuse", "specular")
+            for part in ("red", "green", "blue", "alpha", "coeff", "power")
+        ),
+    )
+)
+"""Normals, colors and texture coordinates, ignored as those of OBJ files are, and flags of other programs."""
+
+NAMED_PART: Final = re.compile(r"part (\d{1,9}) (.+)")
+NAMED_SCALAR: Final = re.compile(r"scalar (\S+) (.+)")
+PLAIN_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_.\-]{0,63}")
 
 
-def triangles_of_strips(numbers: Indices, counts: Indices) -> tuple[Indices, Indices]:
-    """The corners and the corner counts of the triangles of strips.
+class Comments(NamedTuple):
+    """What comments name: parts by number, and scalars by their properties."""
 
-    `numbers` are the corners of all strips, with -1 where a strip ends; `counts` are the lengths of the lists
-    that they stood in, at whose ends strips end, too. Every corner from the third of a strip on makes a
-    triangle with the two before it; every second one is turned, so that all wind alike. Triangles with equal
-    corners are left out: they only lead on to the next.
+    parts: Mapping[int, str]
+    scalars: Mapping[str, str]
 
-    >>> triangles_of_strips(np.array([0, 1, 2, 3, -1, 4, 5, 6]), np.array([8]))[0].reshape(-1, 3).tolist()
-    [[0, 1, 2], [2, 1, 3], [4, 5, 6]]
+
+def named_in(comments: Sequence[str]) -> Comments:
+    """The names in comments such as `part 0 hood` and `scalar value_0 von Mises`; others say nothing."""
+    parts: dict[int, str] = {}
+    scalars: dict[str, str] = {}
+    for comment in comments:
+        if match := NAMED_PART.fullmatch(comment):
+            parts.setdefault(int(match[1]), name_of(match[2].encode()))
+        elif match := NAMED_SCALAR.fullmatch(comment):
+            scalars.setdefault(match[1], name_of(match[2].encode()))
+    return Comments(parts, scalars)
+
+
+def is_scalar(name: str, comments: Comments) -> bool:
+    """Whether a property of a vertex or a face, which is a number, is a scalar of the mesh."""
+    return name in comments.scalars or (name not in NOT_SCALARS and name not in AXES)
+
+
+def property_of(scalar: str, number: int) -> str:
+    """The property that a scalar is written as; where that is not its name, a comment must give it."""
+    is_free = scalar not in NOT_SCALARS and scalar not in (*AXES, *PARTS, *CORNERS)
+    is_free = is_free and not scalar.startswith("value_")
+    return scalar if is_free and PLAIN_NAME.fullmatch(scalar) else f"value_{number}"
+
+
+def read_ply(path: Path, placement: Placement = PLAIN) -> MeshReport:
+    """The mesh of a PLY file, and what was repaired or skipped.
+
+    Raises InputError, with the place of each problem, and MissingInputError if the file does not exist.
     """
-    breaks = numbers < 0
-    begins = np.zeros(len(numbers) + 1, np.bool_)
-    begins[np.cumsum(counts) - counts] = True
-    begins[1:] |= breaks
-    begins = begins[:-1]
-    # The place of each corner in its strip.
-    places = np.arange(len(numbers))
-    places -= np.maximum.accumulate(np.where(begins, places, 0))
-    thirds = np.flatnonzero((places >= 2) & ~breaks)
-    before, between, last = (numbers[thirds - back] for back in (2, 1, 0))
-    turned = places[thirds] % 2 == 1
-    triangles = np.stack([np.where(turned, between, before), np.where(turned, before, between), last], axis=1)
-    differ = (before != between) & (between != last) & (last != before)
-    kept = triangles[differ]
-    return kept.ravel(), np.full(len(kept), 3, np.intp)
+    polygons, skipped = _read(path)
+    return repaired(polygons, path.name, placement, skipped=tuple(skipped))
 
 
-# -------------------- ply_polygons
-# The polygons of a PLY file: nodes from `vertex`, polygons from `face` or `tristrips`, parts and scalars.
-#
-# A file may have a part number for each face, in a property `part`, `material_index` or `group`. A comment
-# such as `part 0 hood` names a part; without comments, parts are named after the property. All other
-# numbers of vertices and faces are scalars, but for normals, colors and texture coordinates, which are
-# ignored.
+def _read(path: Path) -> tuple[RawPolygons, list[str]]:
+    """The polygons of a file, and what was skipped; its bytes are given up before the mesh is made."""
+    is_text = b"format ascii" in read_head(path)
+    data = read_bytes(path, LARGEST_MESH_FILE if is_text else LARGEST_BINARY_MESH_FILE)
+    header = parsed_header(data, path.name)
+    if not header.order and len(data) > LARGEST_MESH_FILE:
+        raise InputError(
+            f"{path.name}: an ascii PLY file must have at most {LARGEST_MESH_FILE:,} bytes, not more; export"
+            " it as binary"
+        )
+    elements, skipped = (read_binary if header.order else read_text)(data, header, path.name)
+    comments = named_in(header.comments)
+    polygons, messages = ply_polygons(elements, comments, path.name, path.stem)
+    return polygons, [*messages, *skipped]
 
-MOST_PROBLEMS: Final = 20
 
 LARGEST_INDEX: Final = 1 << 53
 """A number from here on is that of no node, and may not be exact."""
 
 
-def ply_polygons(tables: PlyTables, comments: Comments, place: str, stem: str) -> tuple[Polygons, list[str]]:
-    """The polygons of the elements of a file, and messages about what was skipped or is missing.
+def ply_polygons(
+    elements: dict[str, ElementRows], comments: Comments, place: str, stem: str
+) -> tuple[RawPolygons, list[str]]:
+    """The polygons of the elements of a file, and messages about elements and values that are skipped.
 
-    `place` is the file's name in messages, `stem` the name of its one part. Raises InputError with the first
+    `place` is the file's name in messages, `stem` the name of a single part. Raises InputError with the first
     problems of coordinates and of corners, each with its place.
     """
-    messages = list(tables.skipped)
-    vertices = tables.elements.get(VERTEX)
-    faces = tables.elements.get(FACE)
+    vertices, faces, strips = (elements.get(name) for name in (VERTEX, FACE, STRIPS))
     coordinates = _coordinates(vertices, place)
-    strips = tables.elements.get(STRIPS)
     has_strips = strips is not None and strips.count > 0 and not (faces and faces.count)
-    polygons = strips if strips is not None and has_strips else faces
-    corners, counts = _corners(polygons, len(coordinates), place, has_strips)
     if has_strips:
-        corners, counts = triangles_of_strips(corners, counts)
-    for name, rows in tables.elements.items():
-        if name not in (VERTEX, FACE) and rows.count and not (has_strips and name == STRIPS):
-            messages.insert(0, f"skipped elements {name!r}: {rows.count:,}")
-    # Nothing but corners is read of strips.
-    faces = None if has_strips else faces
+        corners, counts = triangles_of_strips(*_corners(strips, len(coordinates), place, STRIPS))
+        # Nothing but corners is read of strips.
+        faces = None
+    else:
+        corners, counts = _corners(faces, len(coordinates), place, FACE)
+    used = (VERTEX, FACE, STRIPS) if has_strips else (VERTEX, FACE)
+    messages = [
+        f"skipped elements {name!r}: {rows.count:,}"
+        for name, rows in reversed(elements.items())
+        if name not in used and rows.count
+    ]
     part = _part_property(faces, comments)
     part_numbers, names = _parts(faces, part, comments, stem, len(counts))
-    scalars = []
-    found = [
-        (comments.scalars.get(name, name), values, of)
-        for rows, of in ((vertices, NODE), (faces, POLYGON))
-        for name, values in _numbers(rows, comments)
-        if of == NODE or name != part
-    ]
-    unique = different([name for name, _, _ in found], " of polygons")
-    for name, (_, values, of) in zip(unique, found, strict=True):
-        scalar, missing = _scalar(name, values, of)
-        scalars.append(scalar)
-        if missing:
-            messages.append(f"scalar {name!r}: infinite or larger than 1e30, and so missing: {missing:,}")
-    return Polygons(coordinates, corners, counts, part_numbers, names, tuple(scalars)), messages
+    scalars = FileScalars()
+    for rows, of in ((vertices, NODE), (faces, POLYGON)):
+        for name, column in rows.columns.items() if rows is not None else ():
+            is_part = of == POLYGON and name == part
+            if not isinstance(column, Lists) and not is_part and is_scalar(name, comments):
+                scalars.add(comments.scalars.get(name, name), column, of)
+    polygons = RawPolygons(coordinates, corners, counts, part_numbers, names, scalars.scalars)
+    return polygons, [*messages, *scalars.messages]
 
 
-def _coordinates(vertices: Rows | None, place: str) -> Floats:
+def _coordinates(vertices: ElementRows | None, place: str) -> Floats:
     """The coordinates of the nodes, (nodes, 3)."""
     columns = {} if vertices is None else vertices.columns
     axes = [columns.get(axis) for axis in AXES]
@@ -149,39 +192,34 @@ def _coordinates(vertices: Rows | None, place: str) -> Floats:
         # A comparison with NaN is false.
         low, high = coordinates.min(), coordinates.max()
         if not (low >= -LARGEST_COORDINATE and high <= LARGEST_COORDINATE):
-            rows = np.flatnonzero(~(np.abs(coordinates) <= LARGEST_COORDINATE).all(axis=1))[:MOST_PROBLEMS]
+            is_wrong = ~(np.abs(coordinates) <= LARGEST_COORDINATE)
+            rows = np.flatnonzero(is_wrong.any(axis=1))[:MOST_PROBLEMS]
             rule = "a coordinate must be a finite number of at most 1e30 in size"
             raise InputError(
-                [
-                    f"{vertices.place_of(row)}: {rule}, not {_first_wrong(coordinates[row]):g}; correct it"
-                    for row in rows.tolist()
-                ]
+                f"{vertices.place_of(row)}: {rule}, not {coordinates[row][is_wrong[row]][0]:g}; correct it"
+                for row in rows.tolist()
             )
     return coordinates
 
 
-def _first_wrong(coordinates: Floats) -> float:
-    return float(coordinates[~(np.abs(coordinates) <= LARGEST_COORDINATE)][0])
-
-
-def _corners(rows: Rows | None, nodes: int, place: str, are_strips: bool) -> tuple[Indices, Indices]:
-    """The rows in the node table of all corners, and how many corners each polygon or group of strips has."""
+def _corners(rows: ElementRows | None, nodes: int, place: str, name: str) -> tuple[Indices, Indices]:
+    """The rows in the node table of all corners, and how many corners each row of an element has."""
     if rows is None or not rows.count:
         return np.empty(0, np.intp), np.empty(0, np.intp)
     lists = next((rows.columns[name] for name in CORNERS if name in rows.columns), None)
     if not isinstance(lists, Lists):
         raise InputError(
-            f"{place}: an element {STRIPS if are_strips else FACE!r} must have a list 'vertex_indices', not"
+            f"{place}: an element {name!r} must have a list 'vertex_indices', not"
             f" only {listed(list(rows.columns)[:8]) or 'none'}; export it with polygons"
         )
     values, counts = lists
-    if not are_strips and int(counts.max()) > MOST_CORNERS:
+    if name == FACE and int(counts.max()) > MOST_CORNERS:
         row = int(np.flatnonzero(counts > MOST_CORNERS)[0])
         raise InputError(
             f"{rows.place_of(row)}: a polygon must have at most {MOST_CORNERS:,} corners, not"
             f" {int(counts[row]):,}; split it"
         )
-    least = -1 if are_strips else 0
+    least = 0 if name == FACE else -1
     if len(values) and not (values.min() >= least and values.max() < nodes and _are_whole(values)):
         _refuse_corners(rows, values, counts, nodes, least)
     return values.astype(np.intp, copy=False), counts
@@ -191,7 +229,7 @@ def _are_whole(values: AnyArray) -> bool:
     return values.dtype.kind != "f" or bool((values == np.floor(values)).all())
 
 
-def _refuse_corners(rows: Rows, values: AnyArray, counts: Indices, nodes: int, least: int) -> None:
+def _refuse_corners(rows: ElementRows, values: AnyArray, counts: Indices, nodes: int, least: int) -> None:
     """Raise InputError about the first polygons with corners that are no nodes."""
     is_node = (values >= least) & (values < nodes)
     if values.dtype.kind == "f":
@@ -200,34 +238,12 @@ def _refuse_corners(rows: Rows, values: AnyArray, counts: Indices, nodes: int, l
     owners, first = np.unique(np.searchsorted(np.cumsum(counts), wrong, side="right"), return_index=True)
     rule = f"from {least} to {nodes - 1:,}" if nodes else "of a node in the file, which has none"
     raise InputError(
-        [
-            f"{rows.place_of(row)}: a corner must be a node number {rule}, not {values[corner]:.15g};"
-            " correct it"
-            for row, corner in list(zip(owners.tolist(), wrong[first].tolist(), strict=True))[:MOST_PROBLEMS]
-        ]
+        f"{rows.place_of(row)}: a corner must be a node number {rule}, not {values[corner]:.15g}; correct it"
+        for row, corner in list(zip(owners.tolist(), wrong[first].tolist(), strict=True))[:MOST_PROBLEMS]
     )
 
 
-def _numbers(rows: Rows | None, comments: Comments) -> Iterator[tuple[str, AnyArray]]:
-    """The properties of an element that are scalars, and their values."""
-    for name, column in rows.columns.items() if rows is not None else ():
-        if not isinstance(column, Lists) and is_scalar(name, comments):
-            yield name, column
-
-
-def _scalar(name: str, column: AnyArray, of: str) -> tuple[MeshScalar, int]:
-    """A scalar, and how many of its values are missing because they are infinite or too large."""
-    with np.errstate(invalid="ignore"):
-        values = column.astype(np.float64)
-    # A comparison with NaN is false.
-    too_large = (values > LARGEST_SCALAR) | (values < -LARGEST_SCALAR)
-    missing = int(too_large.sum())
-    if missing:
-        values[too_large] = np.nan
-    return MeshScalar(name, read_only(values), of), missing
-
-
-def _part_property(faces: Rows | None, comments: Comments) -> str | None:
+def _part_property(faces: ElementRows | None, comments: Comments) -> str | None:
     """The property of faces that divides them into parts; None if there is none."""
     for name in PARTS:
         column = None if faces is None else faces.columns.get(name)
@@ -235,16 +251,16 @@ def _part_property(faces: Rows | None, comments: Comments) -> str | None:
             continue
         if not (np.abs(column) < LARGEST_INDEX).all() or not _are_whole(column):
             continue
-        found = np.unique(column)
-        if len(found) <= MOST_UNNAMED_PARTS or (
-            name == PART and all(number in comments.parts for number in found.tolist())
+        different_numbers = np.unique(column)
+        if len(different_numbers) <= MOST_UNNAMED_PARTS or (
+            name == PART and all(number in comments.parts for number in different_numbers.tolist())
         ):
             return name
     return None
 
 
 def _parts(
-    faces: Rows | None, part: str | None, comments: Comments, stem: str, polygons: int
+    faces: ElementRows | None, part: str | None, comments: Comments, stem: str, polygons: int
 ) -> tuple[Indices, tuple[str, ...]]:
     """The part number of each polygon, and the names of the parts."""
     if faces is None or part is None:
@@ -252,15 +268,40 @@ def _parts(
         return np.zeros(polygons, np.intp), different(names)
     column = faces.columns[part]
     assert not isinstance(column, Lists)
-    found = np.unique(column.astype(np.int64))
+    used_numbers = np.unique(column.astype(np.int64))
     named = comments.parts if part == PART else {}
-    numbers = np.union1d(found, np.array(sorted(named), np.int64))
+    numbers = np.union1d(used_numbers, np.array(sorted(named), np.int64))
     names = [named.get(number, f"{part} {number}") for number in numbers.tolist()]
     return np.searchsorted(numbers, column.astype(np.int64)).astype(np.intp), different(names)
 
 
-# -------------------- ply_bytes
-# Writing a mesh as a binary PLY file.
+def triangles_of_strips(numbers: Indices, counts: Indices) -> tuple[Indices, Indices]:
+    """The corners and the corner counts of the triangles of strips, as scanned models of the nineties have.
+
+    `numbers` are the corners of all strips, with -1 where a strip ends. `counts` are the lengths of the lists
+    in the file; a strip ends with its list, too. Every corner from the third of a strip on makes a triangle
+    with the two before it. Every second triangle is turned, so that all wind alike. Triangles with equal
+    corners are left out: they only lead to the next triangle.
+
+    >>> triangles_of_strips(np.array([0, 1, 2, 3, -1, 4, 5, 6]), np.array([8]))[0].reshape(-1, 3).tolist()
+    [[0, 1, 2], [2, 1, 3], [4, 5, 6]]
+    """
+    breaks = numbers < 0
+    begins = np.zeros(len(numbers) + 1, np.bool_)
+    begins[np.cumsum(counts) - counts] = True
+    begins[1:] |= breaks
+    begins = begins[:-1]
+    # The place of each corner in its strip.
+    places = np.arange(len(numbers))
+    places -= np.maximum.accumulate(np.where(begins, places, 0))
+    thirds = np.flatnonzero((places >= 2) & ~breaks)
+    before, between, last = (numbers[thirds - back] for back in (2, 1, 0))
+    turned = places[thirds] % 2 == 1
+    triangles = np.stack([np.where(turned, between, before), np.where(turned, before, between), last], axis=1)
+    differ = (before != between) & (between != last) & (last != before)
+    visible = triangles[differ]
+    return visible.ravel(), np.full(len(visible), 3, np.intp)
+
 
 ROWS_AT_ONCE: Final = 1 << 16
 
@@ -331,38 +372,7 @@ def _faces(mesh: Mesh, chunk: slice, scalars: list[tuple[str, MeshScalar]], has_
         rows[name] = scalar.values[chunk]
     if not is_triangle.any():
         return rows.tobytes()
-    kept = np.ones((len(rows), rows.itemsize), np.bool_)
+    is_written = np.ones((len(rows), rows.itemsize), np.bool_)
     first = rows.dtype.fields["corner 3"][1]  # type: ignore[index]
-    kept[is_triangle, first : first + 4] = False
-    return rows.view(np.uint8).reshape(kept.shape)[kept].tobytes()
-
-
-def read_ply(path: Path, placement: Placement = PLAIN) -> MeshReport:
-    """The mesh of a PLY file, and what was repaired or skipped.
-
-    Raises InputError, with the place of each problem, and MissingInputError if the file does not exist.
-    """
-    polygons, skipped = _read(path)
-    return repaired(polygons, path.name, placement, skipped=tuple(skipped))
-
-
-def _read(path: Path) -> tuple[Polygons, list[str]]:
-    """The polygons of a file, and what was skipped; its bytes are given up before the mesh is made."""
-    is_text = b"format ascii" in read_head(path)
-    data = read_bytes(path, LARGEST_MESH_FILE if is_text else LARGEST_BINARY_MESH_FILE)
-    header = parsed_header(data, path.name)
-    if not header.order and len(data) > LARGEST_MESH_FILE:
-        raise InputError(
-            f"{path.name}: an ascii PLY file must have at most {LARGEST_MESH_FILE:,} bytes, not more; export"
-            " it as binary"
-        )
-    tables = read_binary(data, header, path.name) if header.order else read_text(data, header, path.name)
-    return ply_polygons(tables, named_in(header.comments), path.name, path.stem)
-
-
-def _begins(head: bytes) -> bool:
-    """Whether a file begins as PLY does."""
-    return FIRST_LINE.match(head) is not None
-
-
-PLY: Final = register(MeshFormat("PLY", read_ply, (".ply",), begins=_begins, written=ply_bytes))
+    is_written[is_triangle, first : first + 4] = False
+    return rows.view(np.uint8).reshape(is_written.shape)[is_written].tobytes()

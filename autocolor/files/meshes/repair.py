@@ -4,7 +4,7 @@
 - A polygon with fewer than three corners left, or without area, is dropped.
 - A polygon with more than four corners is split into quads and triangles.
 - Warped, concave and crossed quads (bow-ties) are kept, since the renderer fills them scan line by scan line;
-  `geometry/faults` finds them. Unused nodes are kept.
+  `scene.geometry.faults` finds them. Unused nodes are kept.
 """
 
 from __future__ import annotations
@@ -26,9 +26,6 @@ from autocolor.scene.kinds import Number
 from autocolor.scene.mesh import Mesh
 from autocolor.scene.scalar import NODE, POLYGON, MeshScalar
 from autocolor.scene.surfaces import Surface
-
-# -------------------- placement
-# How the mesh of a file is placed in the world: its up axis, its scale, and where its edges stay sharp.
 
 UPS: Final = ("x", "y", "z")
 
@@ -63,13 +60,9 @@ def placed(coordinates: Floats, placement: Placement) -> Floats:
     return coordinates if placement.scale == 1 else coordinates * placement.scale
 
 
-# -------------------- polygons
-# Polygons as they were in a file, before repair: with any number of corners, possibly repeated.
-
-
 @dataclass(frozen=True, eq=False)
-class Polygons:
-    """Nodes, and polygons with any number of corners.
+class RawPolygons:
+    """Nodes and polygons of a file before repair: with any number of corners, possibly repeated.
 
     `coordinates` is (nodes, 3) float64. `corners` holds the rows in `coordinates` of all corners, polygon
     after polygon; they must be valid. `corner_counts` and `part_numbers`, indices of `part_names`, have one
@@ -89,7 +82,7 @@ class MeshReport:
     """A mesh that was read, with messages about what was repaired or skipped.
 
     `material_of_part` has the names of materials by part name, where the file gives any; `materials` are the
-    surfaces of those that it describes.
+    surfaces of the materials that the file describes.
     """
 
     mesh: Mesh
@@ -113,7 +106,7 @@ LEAST_SQUARE: Final = 1e-250
 
 
 def repaired(
-    polygons: Polygons,
+    polygons: RawPolygons,
     place: str,
     placement: Placement = PLAIN,
     *,
@@ -184,12 +177,12 @@ def _without_repeats(corners: Indices, counts: Indices) -> tuple[Indices, Indice
     ends = np.cumsum(counts)
     filled = counts > 0
     following[ends[filled] - 1] = (ends - counts)[filled]
-    kept = corners != corners[following]
-    if kept.all():
+    differs = corners != corners[following]
+    if differs.all():
         return corners, counts, np.zeros(len(counts), np.bool_)
     owners = np.repeat(np.arange(len(counts)), counts)
-    kept_counts = np.bincount(owners[kept], minlength=len(counts))
-    return corners[kept], kept_counts, kept_counts != counts
+    kept_counts = np.bincount(owners[differs], minlength=len(counts))
+    return corners[differs], kept_counts, kept_counts != counts
 
 
 def _have_area(coordinates: Floats, node_numbers: Indices) -> Booleans:
@@ -222,8 +215,8 @@ def _far_from_flat(one: Floats, other: Floats, squares: Floats) -> Booleans:
     """Whether the triangles of two edges, (3, n), have area for sure; `squares` are at least the other's."""
     normals = cross(one, other)
     sizes = np.maximum(dot(one, one), squares)
-    found: Booleans = dot(normals, normals) > np.maximum(SURE * sizes * sizes, LEAST_SQUARE)
-    return found
+    are_far: Booleans = dot(normals, normals) > np.maximum(SURE * sizes * sizes, LEAST_SQUARE)
+    return are_far
 
 
 def _are_flat(corners: Floats) -> Booleans:
@@ -242,11 +235,8 @@ def _are_flat(corners: Floats) -> Booleans:
     return are_flat
 
 
-# -------------------- names
-# Names of parts, materials and scalars as files have them, made printable, not too long, and different.
-
 LONGEST_NAME: Final = 200
-"""Assumed: letters of a name; the rest of a longer one is left out."""
+"""Limit: letters of a name of a part, a material or a scalar; further letters are left out."""
 
 
 def name_of(data: bytes) -> str:
@@ -272,14 +262,14 @@ def different(names: Sequence[str], addition: str = "") -> tuple[str, ...]:
     >>> different(["hood", "hood", "hood"])
     ('hood', 'hood 2', 'hood 3')
     """
-    found: dict[str, None] = {}
+    unique_names: dict[str, None] = {}
     counts: dict[str, int] = {}
     for name in names:
-        unique = name if name not in found else f"{name}{addition}"
+        unique = name if name not in unique_names else f"{name}{addition}"
         number = counts.get(name, 1)
-        while unique in found:
+        while unique in unique_names:
             number += 1
             unique = f"{name}{addition} {number}"
         counts[name] = number
-        found[unique] = None
-    return tuple(found)
+        unique_names[unique] = None
+    return tuple(unique_names)

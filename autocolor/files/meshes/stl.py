@@ -1,9 +1,9 @@
 """Reading a mesh from an STL file, binary or text, welded.
 
-A binary file may begin with `solid`, as text does: it is told apart by its size, which its count of triangles
-gives. Each solid of a text is a part with its name; a binary file is one part, named after the file. Normals,
-attributes and the text before binary triangles are ignored. Corners at one place become one node (see
-`weld`); triangles that have no area then are dropped and counted.
+A binary file may begin with `solid`, as text does. It is recognized by its size, which follows from its count
+of triangles. Each solid of a text is a part with its name; a binary file is one part, named after the file.
+Normals, attributes and the text before binary triangles are ignored. Corners at the same place become one
+node; then triangles without area are dropped and counted.
 """
 
 from __future__ import annotations
@@ -19,9 +19,16 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, Singles
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import MeshFormat, register
-from autocolor.files.meshes.obj import NUMBER
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, different, name_of, repaired
+from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER
+from autocolor.files.meshes.repair import (
+    PLAIN,
+    MeshReport,
+    Placement,
+    RawPolygons,
+    different,
+    name_of,
+    repaired,
+)
 from autocolor.files.reading import (
     LARGEST_BINARY_MESH_FILE,
     LARGEST_MESH_FILE,
@@ -31,13 +38,64 @@ from autocolor.files.reading import (
     text_problem,
 )
 
-# -------------------- binary
-# The triangles of a binary STL file: 80 bytes of any text, their count, and 50 bytes for each.
+BEGINNING: Final = re.compile(rb"\s*solid\b", re.IGNORECASE)
+FIRST_FACET: Final = re.compile(rb"\s*solid\b[^\r\n]*[\r\n]\s*facet\s+normal\s", re.IGNORECASE)
+IN_UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
+
+
+def read_stl(path: Path, placement: Placement = PLAIN) -> MeshReport:
+    """The mesh of an STL file, and what was repaired or skipped.
+
+    Raises InputError, with the place of each problem, and MissingInputError if the file does not exist.
+    """
+    corners, part_numbers, names, skipped = _triangles(path)
+    points, rows = welded(corners)
+    del corners
+    polygons = RawPolygons(
+        points.astype(np.float64, copy=False),
+        rows,
+        np.full(len(rows) // 3, 3, np.intp),
+        part_numbers,
+        names,
+    )
+    del points, rows
+    return repaired(polygons, path.name, placement, skipped=skipped)
+
+
+def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], tuple[str, ...]]:
+    """The corners of the triangles, (corners, 3), their part numbers, the names of parts, and messages."""
+    data = read_bytes(path, LARGEST_BINARY_MESH_FILE)
+    if has_binary_size(data) or not _is_text(data):
+        corners, skipped = read_binary(data, path.name)
+        return corners, np.zeros(len(corners) // 3, np.intp), (path.stem,), skipped
+    if problem := text_problem(data):
+        raise InputError(f"{path.name}: an ascii STL file {problem}")
+    if len(data) > LARGEST_MESH_FILE:
+        raise InputError(
+            f"{path.name}: an ascii STL file must have at most {LARGEST_MESH_FILE:,} bytes, not more;"
+            " export it as binary"
+        )
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    triangles = read_text(data, path.name)
+    names = different([name_of(name) or path.stem for name in triangles.names])
+    return triangles.corners, triangles.part_numbers, names, triangles.messages
+
+
+def _is_text(data: bytes) -> bool:
+    """Whether a file that has not the size of a binary one is to be read as text."""
+    return data[:2] in IN_UTF_16 or (BEGINNING.match(data) is not None and b"\0" not in data[:84])
+
+
+def begins_as_stl(head: bytes) -> bool:
+    """Whether a file begins as a text of solids does; binary files are only known by their names."""
+    return FIRST_FACET.match(head.removeprefix(UTF_8_MARK)) is not None
+
+
+# A binary file has 80 bytes of any text, the count of triangles, and 50 bytes for each triangle.
 
 BEFORE_TRIANGLES: Final = 84
 TRIANGLE: Final = np.dtype([("normal", "<f4", (3,)), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-
-MOST_PROBLEMS: Final = 20
 
 
 def has_binary_size(data: bytes) -> bool:
@@ -83,8 +141,7 @@ def _count(data: bytes) -> int:
     return int.from_bytes(data[BEFORE_TRIANGLES - 4 : BEFORE_TRIANGLES], "little")
 
 
-# -------------------- text
-# The triangles of an STL file in text, whose solids are parts.
+# In text, solids are parts:
 #
 #     solid hood
 #       facet normal 0 0 1
@@ -102,7 +159,7 @@ BLOCK: Final = 1 << 21
 """Bytes converted at a time."""
 
 LONGEST_FACET: Final = 1 << 16
-"""Assumed: in bytes; a facet seldom has more than three hundred."""
+"""Limit: in bytes; a facet seldom has more than three hundred."""
 
 SOLID: Final = re.compile(rb"^[ \t]*(end)?solid\b([^\n]*)$", re.MULTILINE | re.IGNORECASE)
 
@@ -133,12 +190,12 @@ def read_text(data: bytes, place: str) -> TextTriangles:
     begin = 0
     for match in chain(SOLID.finditer(data), (None,)):
         end = len(data) if match is None else match.start()
-        found = [_corners(data, *block, place) for block in _blocks(data, begin, end, place)]
-        if name is None and found:
+        corners_of_solid = [_corners(data, *block, place) for block in _blocks(data, begin, end, place)]
+        if name is None and corners_of_solid:
             _refuse(data, begin, place, "a facet must stand in a solid, not outside; add a line 'solid'")
-        if name is not None and found:
-            corners += found
-            counts.append(sum(map(len, found)) // 3)
+        if name is not None and corners_of_solid:
+            corners += corners_of_solid
+            counts.append(sum(map(len, corners_of_solid)) // 3)
             names.append(name)
         if match is None:
             break
@@ -160,12 +217,12 @@ def _blocks(data: bytes, begin: int, end: int, place: str) -> Iterator[tuple[int
     """The facets between two places, in blocks of about BLOCK bytes, by where these begin and end."""
     while begin < end:
         most = min(begin + BLOCK, end)
-        found = ENDFACET.search(data, most, min(most + LONGEST_FACET, end))
-        if found is None and most + LONGEST_FACET < end:
+        end_of_facet = ENDFACET.search(data, most, min(most + LONGEST_FACET, end))
+        if end_of_facet is None and most + LONGEST_FACET < end:
             _refuse(
                 data, most, place, f"a facet must have at most {LONGEST_FACET:,} bytes, not more; correct it"
             )
-        stop = end if found is None else found.end()
+        stop = end if end_of_facet is None else end_of_facet.end()
         if data[begin:stop].strip():
             yield begin, stop
         begin = stop
@@ -229,12 +286,11 @@ def _refuse(data: bytes, at: int, place: str, sentence: str) -> NoReturn:
     raise InputError(f"{place}, line {line}: {sentence}")
 
 
-# -------------------- weld
 # Welding: corners at exactly the same place become one node.
 #
-# Assumed: corners are at one place if their coordinates are equal as numbers, so that -0 is 0. Nothing is
-# moved. How near is near enough only the user can know, and a program that wrote a closed surface wrote
-# each of its nodes with the same digits every time.
+# Assumed: corners are at the same place if their coordinates are equal as numbers, so -0 is 0. Nothing is
+# moved: only the user knows how near is near enough, and a program that writes a closed surface writes a node
+# with the same digits every time.
 
 FACTORS: Final = (
     (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9),
@@ -248,15 +304,15 @@ FACTORS: Final = (
 def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
     """The different points of (n, 3) float32 or float64, in the order of their first corner, and their rows.
 
-    The rows, (n,), are of those points, one for each corner. No coordinate may be NaN; -0 becomes 0.
+    The rows, (n,), give the point of each corner. No coordinate may be NaN; -0 becomes 0.
 
     >>> points, rows = welded(np.array([[1.0, 0, 0], [2, 0, 0], [1, -0.0, 0]]))
     >>> len(points), rows.tolist()
     (2, [0, 1, 0])
 
-    Each corner goes to a slot of a table that its coordinates choose, and the first in a slot stands for all
-    there that are equal to it; the others go to another table. Measured: three million corners take a
-    quarter of a second, with `np.unique` almost twenty times as long.
+    The coordinates of a corner choose its slot of a table. All corners in a slot that equal the first become
+    one point; the other corners go to another table. Measured: three million corners take a quarter of a
+    second, with `np.unique` almost twenty times as long.
     """
     points = corners + corners.dtype.type(0)
     # Measured: to compare a coordinate at a time takes half the time of comparing points.
@@ -287,8 +343,8 @@ def welded(corners: AnyArray) -> tuple[AnyArray, Indices]:
 
 
 def _slots(columns: AnyArray, factors: tuple[int, int, int]) -> Indices:
-    """A slot for each point of (3, n), the same for equal ones; there are one to two times as many slots."""
-    # A product of 64 bits loses those above; its upper ones depend on all bits of the coordinate.
+    """A slot for each point of (3, n), the same for equal points, of n to 2 n slots."""
+    # The upper bits of a product of 64 bits depend on all bits of the coordinate.
     mixed = np.zeros(columns.shape[1], np.uint64)
     for axis, factor in zip(
         columns.view(np.uint32 if columns.dtype == np.float32 else np.uint64), factors, strict=True
@@ -298,60 +354,3 @@ def _slots(columns: AnyArray, factors: tuple[int, int, int]) -> Indices:
         mixed *= np.uint64(factor)
     size = max(columns.shape[1], 2).bit_length()
     return (mixed >> np.uint64(64 - size)).astype(np.intp)
-
-
-BEGINNING: Final = re.compile(rb"\s*solid\b", re.IGNORECASE)
-FIRST_FACET: Final = re.compile(rb"\s*solid\b[^\r\n]*[\r\n]\s*facet\s+normal\s", re.IGNORECASE)
-IN_UTF_16: Final = (b"\xff\xfe", b"\xfe\xff")
-
-
-def read_stl(path: Path, placement: Placement = PLAIN) -> MeshReport:
-    """The mesh of an STL file, and what was repaired or skipped.
-
-    Raises InputError, with the place of each problem, and MissingInputError if the file does not exist.
-    """
-    corners, part_numbers, names, skipped = _triangles(path)
-    points, rows = welded(corners)
-    del corners
-    polygons = Polygons(
-        points.astype(np.float64, copy=False),
-        rows,
-        np.full(len(rows) // 3, 3, np.intp),
-        part_numbers,
-        names,
-    )
-    del points, rows
-    return repaired(polygons, path.name, placement, skipped=skipped)
-
-
-def _triangles(path: Path) -> tuple[AnyArray, Indices, tuple[str, ...], tuple[str, ...]]:
-    """The corners of the triangles, (corners, 3), their part numbers, the names of parts, and messages."""
-    data = read_bytes(path, LARGEST_BINARY_MESH_FILE)
-    if has_binary_size(data) or not _is_text(data):
-        corners, skipped = read_binary(data, path.name)
-        return corners, np.zeros(len(corners) // 3, np.intp), (path.stem,), skipped
-    if problem := text_problem(data):
-        raise InputError(f"{path.name}: an ascii STL file {problem}")
-    if len(data) > LARGEST_MESH_FILE:
-        raise InputError(
-            f"{path.name}: an ascii STL file must have at most {LARGEST_MESH_FILE:,} bytes, not more;"
-            " export it as binary"
-        )
-    if b"\r" in data:
-        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    found = read_text(data, path.name)
-    names = different([name_of(name) or path.stem for name in found.names])
-    return found.corners, found.part_numbers, names, found.messages
-
-
-def _is_text(data: bytes) -> bool:
-    """Whether a file that has not the size of a binary one is to be read as text."""
-    return data[:2] in IN_UTF_16 or (BEGINNING.match(data) is not None and b"\0" not in data[:84])
-
-
-def _begins(head: bytes) -> bool:
-    """Whether a file begins as a text of solids does; binary files are only known by their names."""
-    return FIRST_FACET.match(head.removeprefix(UTF_8_MARK)) is not None
-
-
-STL: Final = register(MeshFormat("STL", read_stl, (".stl",), begins=_begins))

@@ -22,7 +22,6 @@ from autocolor.files.array_file import (
     scalar_rows,
     scalars_of,
 )
-from autocolor.files.meshes.formats import MeshFormat, register
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, placed
 from autocolor.files.reading import LARGEST_MESH_FILE
 from autocolor.scene.geometry.normals import CREASE_ANGLE
@@ -69,6 +68,3 @@ def read_table_file(path: Path, placement: Placement = PLAIN) -> MeshReport:
             f"{path.name}: {problem[:400]}; {TABLE_FILE.advice}" for problem in error.problems
         ) from None
     return MeshReport(mesh)
-
-
-TABLES: Final = register(MeshFormat("tables", read_table_file, (SUFFIX,), written=table_file_bytes))

@@ -4,12 +4,13 @@
 - UNSTRUCTURED_GRID: polygons of all kinds, and the outer surface of volume cells (see `cells`).
 - STRUCTURED_GRID, RECTILINEAR_GRID and STRUCTURED_POINTS of one layer: its quads.
 
-The data of nodes and cells are scalars of the mesh (see `attributes`). The file is one part, of its name.
+The data of nodes and cells are scalars of the mesh (see `file_scalars`). The file is one part, of its name.
 """
 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,22 +22,124 @@ import numpy as np
 from autocolor.arrays import AnyArray, Floats, Indices, Numbers, runs
 from autocolor.checks import LARGEST_COORDINATE
 from autocolor.errors import InputError
-from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface, used_nodes
-from autocolor.files.meshes.formats import MeshFormat, register
-from autocolor.files.meshes.found_scalars import FoundScalars
+from autocolor.files.meshes.cells import CORNERS, Flats, Volumes, cell_surface
+from autocolor.files.meshes.file_scalars import FileScalars
 from autocolor.files.meshes.number_text import NumberText
-from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, Polygons, repaired
+from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, repaired
 from autocolor.files.reading import HEAD, LARGEST_MESH_FILE, read_bytes, shown
-from autocolor.scene.scalar import NODE
-from autocolor.scene.scalar import POLYGON as POLYGON_2
-from autocolor.scene.scalar import POLYGON as POLYGON_3
+from autocolor.scene.scalar import NODE, POLYGON
 
-# -------------------- cursor
-# Going through a legacy VTK file: lines of keywords, and arrays in text or binary (high byte first).
+FIRST_LINE: Final = re.compile(rb"# vtk DataFile Version [1-5]\.[0-9]+", re.IGNORECASE)
+
+
+def read_vtk(path: Path, placement: Placement = PLAIN) -> MeshReport:
+    """The mesh of a legacy VTK file with its scalars, and what was repaired. Raises InputError."""
+    data = read_bytes(path, LARGEST_MESH_FILE)
+    if b"\n" not in data[:HEAD] and b"ASCII" in data[:HEAD]:
+        data = data.replace(b"\r", b"\n")
+    cursor = VtkCursor(data, path.name)
+    dataset = _dataset(cursor)
+    coordinates, cells = (read_layer if dataset in LAYERS else _read_cells)(cursor, dataset)
+    # Nodes between the corners of cells of higher order are left out.
+    flats, nodes, sentences = cell_surface(
+        coordinates, Flats.joined(cells.flats), cells.volumes, used_only=cells.higher_order > 0
+    )
+    counts = {NODE: len(coordinates), POLYGON: cells.count}
+    attributes = Attributes(cursor, counts, {NODE: nodes, POLYGON: flats.cells})
+    attributes.read()
+    table = RawPolygons(
+        coordinates[nodes],
+        flats.corners,
+        flats.corner_counts,
+        np.zeros(len(flats.cells), np.intp),
+        (path.stem,),
+        attributes.scalars.scalars,
+    )
+    skipped = (*cells.sentences, *sentences, *attributes.messages)
+    return repaired(table, path.name, placement, skipped=skipped)
+
+
+def _dataset(cursor: VtkCursor) -> bytes:
+    """The type of the data set, after the three lines before it. Raises InputError."""
+    first = cursor.raw_line()
+    if not FIRST_LINE.match(first):
+        raise InputError(
+            f"{cursor.name}, line 1: a legacy VTK file must begin '# vtk DataFile Version 1.0' to 5.1, not"
+            f" {shown(first)}; write it as legacy VTK"
+        )
+    cursor.raw_line()
+    kind = cursor.raw_line().strip().upper()
+    if kind not in (b"ASCII", b"BINARY"):
+        raise InputError(f"{cursor.name}, line 3: it must be ASCII or BINARY, not {shown(kind)}; correct it")
+    words = cursor.words()
+    if len(words) < 2 or words[0].upper() != b"DATASET":
+        raise InputError(
+            f"{cursor.name}, line 4: it must be DATASET and its type, not {shown(b' '.join(words))};"
+            f" correct it"
+        )
+    if kind == b"ASCII":
+        cursor.as_text()
+    return words[1].upper()
+
+
+def _read_cells(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
+    """The nodes and cells of POLYDATA or an UNSTRUCTURED_GRID. Raises InputError."""
+    if dataset not in (b"POLYDATA", b"UNSTRUCTURED_GRID"):
+        datasets = ", ".join(["POLYDATA", "UNSTRUCTURED_GRID", *(each.decode() for each in LAYERS)])
+        raise cursor.error(f"the DATASET must be one of {datasets}, not {shown(dataset)}; take its surface")
+    coordinates: Floats | None = None
+    cells, lists = VtkCells(), None
+    while (keyword := cursor.peek()) and keyword not in TABLES:
+        words = cursor.words()
+        if keyword == b"METADATA":
+            cursor.skip_metadata()
+        elif keyword == b"FIELD":
+            Attributes(cursor, {}, {}).field(words)
+        elif keyword == b"POINTS":
+            coordinates = read_points(cursor, words)
+        elif coordinates is None:
+            raise cursor.error(f"there must be POINTS before {shown(words[0])}; correct the file")
+        elif keyword in (b"VERTICES", b"LINES"):
+            skipped = len(read_cell_lists(cursor, words, len(coordinates)).sizes)
+            cells.skipped[keyword.decode().lower()] += skipped
+            cells.count += skipped
+        elif keyword == b"POLYGONS":
+            add_polygons(cells, read_cell_lists(cursor, words, len(coordinates)))
+        elif keyword == b"TRIANGLE_STRIPS":
+            add_strips(cells, read_cell_lists(cursor, words, len(coordinates)))
+        elif keyword == b"CELLS":
+            # The first count of version 5.1 is that of OFFSETS, one more than the cells.
+            lists = read_cell_lists(cursor, words, len(coordinates))
+        elif keyword == b"CELL_TYPES" and lists is not None:
+            count = cursor.count(words[1] if len(words) > 1 else b"", "the count of CELL_TYPES")
+            add_typed(cells, cursor, lists, cursor.wholes(count, b"int", "CELL_TYPES"))
+            lists = None
+        else:
+            raise cursor.error(f"there must be no {shown(words[0])} in {dataset.decode()}; correct the file")
+    if coordinates is None:
+        raise InputError(f"{cursor.name}: a data set must have POINTS, not none; add them")
+    if lists is not None:
+        raise InputError(f"{cursor.name}: there must be CELL_TYPES after CELLS; add them")
+    return coordinates, cells
+
+
+def read_points(cursor: VtkCursor, words: list[bytes]) -> Floats:
+    """The coordinates after a line such as `POINTS 8 float`, (nodes, 3). Raises InputError."""
+    if len(words) < 3:
+        raise cursor.error("POINTS must have a count and a type; correct it")
+    count = cursor.count(words[1], "the count of POINTS")
+    return cursor.coordinates(3 * count, words[2], "POINTS").reshape(-1, 3)
+
+
+def begins_as_vtk(head: bytes) -> bool:
+    """Whether a file begins as legacy VTK does."""
+    return FIRST_LINE.match(head) is not None
+
 
 LONGEST_LINE: Final = 4096
+"""Limit: bytes of a line of keywords."""
 LONGEST_METADATA: Final = 10_000
-"""Lines of a METADATA section."""
+"""Limit: lines of a METADATA section."""
 
 SPACES: Final = b" \t\r\n\f\v"
 
@@ -51,7 +154,7 @@ TYPES: Final = {
     b"unsigned_long": ">u8",
     b"float": ">f4",
     b"double": ">f8",
-    # Written as 32 bits by all versions that write this name.
+    # All versions that write this name write 32 bits.
     b"vtkidtype": ">i4",
     b"vtktypeint8": "i1",
     b"vtktypeuint8": "u1",
@@ -67,7 +170,10 @@ TYPES: Final = {
 
 
 class VtkCursor:
-    """A place, `at`, in the bytes of a file; `name` is the file's name in messages."""
+    """A place, `at`, in the bytes of a file: it reads lines of keywords, and arrays in text or binary.
+
+    `name` is the file's name in messages.
+    """
 
     def __init__(self, data: bytes, name: str) -> None:
         self.data = data
@@ -87,14 +193,16 @@ class VtkCursor:
         line = self.data.count(b"\n", 0, self.begun) + 1
         return f"{self.name}, line {line}"
 
+    def error(self, sentence: str) -> InputError:
+        """The error about the latest line of keywords."""
+        return InputError(f"{self.where}: {sentence}")
+
     def raw_line(self) -> bytes:
         """The next line, without its end; empty at the end of the file. Raises InputError."""
         end = self.data.find(b"\n", self.at, self.at + LONGEST_LINE)
         if end < 0:
             if len(self.data) - self.at >= LONGEST_LINE:
-                raise InputError(
-                    f"{self.where}: a line of keywords must have less than {LONGEST_LINE:,} bytes; correct it"
-                )
+                raise self.error(f"a line of keywords must have less than {LONGEST_LINE:,} bytes; correct it")
             end = len(self.data)
         line = self.data[self.at : end]
         self.at = min(end + 1, len(self.data))
@@ -119,14 +227,12 @@ class VtkCursor:
         for _ in range(LONGEST_METADATA):
             if self.at >= len(self.data) or not self.raw_line():
                 return
-        raise InputError(f"{self.where}: METADATA must end with an empty line; remove it")
+        raise self.error("METADATA must end with an empty line; remove it")
 
     def count(self, word: bytes, what: str) -> int:
         """A count of at most 18 digits. Raises InputError."""
         if not word.isdigit() or len(word) > 18:
-            raise InputError(
-                f"{self.where}: {what} must be a whole number from 0 on, not {shown(word)}; correct it"
-            )
+            raise self.error(f"{what} must be a whole number from 0 on, not {shown(word)}; correct it")
         return int(word)
 
     def array(self, count: int, kind: bytes, what: str) -> AnyArray:
@@ -136,16 +242,16 @@ class VtkCursor:
         """
         dtype = np.dtype(TYPES.get(kind.lower(), "V"))
         if dtype.kind == "V":
-            raise InputError(
-                f"{self.where}: the type of the {what} must be int, float, double or another of numbers, not"
+            raise self.error(
+                f"the type of the {what} must be int, float, double or another of numbers, not"
                 f" {shown(kind)}; write it as double"
             )
         if self.text is None:
             size = count * dtype.itemsize
             if size > len(self.data) - self.at:
                 left = len(self.data) - self.at
-                raise InputError(
-                    f"{self.where}: the {what} must have {size:,} bytes, not {left:,}; the file is cut short"
+                raise self.error(
+                    f"the {what} must have {size:,} bytes, not {left:,}; the file is cut short"
                     " or its counts are wrong"
                 )
             array = np.frombuffer(self.data, dtype, count, self.at)
@@ -154,8 +260,8 @@ class VtkCursor:
         first = int(np.searchsorted(self.text.starts, self.at))
         left = len(self.text) - first
         if count > left:
-            raise InputError(
-                f"{self.where}: the {what} must have {count:,} numbers, not {left:,}; the file is cut short"
+            raise self.error(
+                f"the {what} must have {count:,} numbers, not {left:,}; the file is cut short"
                 " or its counts are wrong"
             )
         values: AnyArray
@@ -174,9 +280,8 @@ class VtkCursor:
         """The next whole numbers, int64. Raises InputError, for a type that is not whole, too."""
         array = self.array(count, kind, what)
         if array.dtype.kind not in "iu":
-            raise InputError(
-                f"{self.where}: the type of the {what} must be one of whole numbers, not {shown(kind)};"
-                " write it as int"
+            raise self.error(
+                f"the type of the {what} must be one of whole numbers, not {shown(kind)}; write it as int"
             )
         return array.astype(np.int64)
 
@@ -193,36 +298,29 @@ class VtkCursor:
         return values
 
 
-# -------------------- cells
-# Cells of legacy VTK files, by their types: polygons, volume cells, and what is skipped.
-#
-# Of cells of second and higher order the corners are taken, not the nodes between them.
+# Cells, by the numbers of their types. Of cells of second and higher order only the corners are read.
 
-STRIP: Final = 6
-POLYGON: Final = 7
+STRIP_CELL: Final = 6
+POLYGON_CELL: Final = 7
 
-TRIANGLES: Final = (5, 22, 34, 69)
-QUADS: Final = (9, 23, 28, 30, 70)
 PIXEL: Final = 8
-SOLIDS: Final = {
-    "tetra": (10, 24, 71),
-    "hexahedron": (12, 25, 29, 33, 72),
-    "wedge": (13, 26, 31, 32, 73),
-    "pyramid": (14, 27, 74),
-}
 VOXEL: Final = 11
+SHAPES: Final = {
+    **dict.fromkeys((5, 22, 34, 69), "triangle"),
+    **dict.fromkeys((PIXEL, 9, 23, 28, 30, 70), "quad"),
+    **dict.fromkeys((10, 24, 71), "tetra"),
+    **dict.fromkeys((VOXEL, 12, 25, 29, 33, 72), "hexahedron"),
+    **dict.fromkeys((13, 26, 31, 32, 73), "wedge"),
+    **dict.fromkeys((14, 27, 74), "pyramid"),
+}
+"""The shapes that types of cells are read as."""
 
 FIRST_ORDER: Final = frozenset(range(15))
 
 SKIPPED: Final = {
     0: "empty cells",
-    1: "vertices",
-    2: "vertices",
-    3: "lines",
-    4: "lines",
-    21: "lines",
-    35: "lines",
-    68: "lines",
+    **dict.fromkeys((1, 2), "vertices"),
+    **dict.fromkeys((3, 4, 21, 35, 68), "lines"),
 }
 
 ORDERS: Final = {PIXEL: (0, 1, 3, 2), VOXEL: (0, 1, 3, 2, 4, 5, 7, 6)}
@@ -230,7 +328,7 @@ ORDERS: Final = {PIXEL: (0, 1, 3, 2), VOXEL: (0, 1, 3, 2, 4, 5, 7, 6)}
 
 
 class CellLists(NamedTuple):
-    """The node numbers of all cells, and where those of each begin; the last element is their end."""
+    """The node numbers of all cells, and the offset of each cell in them; the last offset is their end."""
 
     numbers: Numbers
     offsets: Numbers
@@ -242,27 +340,22 @@ class CellLists(NamedTuple):
 
 
 @dataclass
-class Cells:
+class VtkCells:
     """Polygons and volume cells of a file, sentences about cells, and how many cells there are."""
 
     flats: list[Flats] = field(default_factory=list)
     volumes: list[Volumes] = field(default_factory=list)
-    skipped: dict[str, int] = field(default_factory=dict)
+    skipped: Counter[str] = field(default_factory=Counter)
     higher_order: int = 0
     count: int = 0
 
     @property
     def sentences(self) -> tuple[str, ...]:
         """What was skipped, and of how many cells the corners were taken."""
-        found = [f"skipped {what}: {count:,}" for what, count in self.skipped.items()]
+        sentences = [f"skipped {what}: {count:,}" for what, count in self.skipped.items() if count]
         if self.higher_order:
-            found.append(f"took the corners alone of cells of higher order: {self.higher_order:,}")
-        return tuple(found)
-
-    def skip(self, what: str, count: int) -> None:
-        """Count cells that are skipped."""
-        if count:
-            self.skipped[what] = self.skipped.get(what, 0) + count
+            sentences.append(f"took the corners alone of cells of higher order: {self.higher_order:,}")
+        return tuple(sentences)
 
 
 def read_cell_lists(cursor: VtkCursor, words: list[bytes], nodes: int) -> CellLists:
@@ -272,12 +365,10 @@ def read_cell_lists(cursor: VtkCursor, words: list[bytes], nodes: int) -> CellLi
     """
     what = words[0].decode("latin-1")
     if len(words) < 3:
-        raise InputError(f"{cursor.where}: {what} must have two counts, not {len(words) - 1}; correct it")
+        raise cursor.error(f"{what} must have two counts, not {len(words) - 1}; correct it")
     cells, size = (cursor.count(word, f"a count of {what}") for word in words[1:3])
-    if cursor.peek() == b"OFFSETS":
-        lists = _offset_lists(cursor, cells, size, what)
-    else:
-        lists = _counted_lists(cursor, cells, size, what)
+    read = _offset_lists if cursor.peek() == b"OFFSETS" else _counted_lists
+    lists = read(cursor, cells, size, what)
     wrong = np.flatnonzero((lists.numbers < 0) | (lists.numbers >= nodes))
     if len(wrong):
         cell = int(np.searchsorted(lists.offsets, wrong[0], side="right")) - 1
@@ -294,7 +385,7 @@ def _offset_lists(cursor: VtkCursor, count: int, size: int, what: str) -> CellLi
         return CellLists(np.empty(0, np.int64), np.zeros(1, np.int64))
     offsets = cursor.wholes(count, _kind_of(cursor, what), f"OFFSETS of {what}")
     if cursor.peek() != b"CONNECTIVITY":
-        raise InputError(f"{cursor.where}: after OFFSETS there must be CONNECTIVITY; correct the file")
+        raise cursor.error("after OFFSETS there must be CONNECTIVITY; correct the file")
     numbers = cursor.wholes(size, _kind_of(cursor, what), f"CONNECTIVITY of {what}")
     if not len(offsets) or offsets[0] != 0 or offsets[-1] != size or (np.diff(offsets) < 0).any():
         raise InputError(
@@ -308,15 +399,14 @@ def _kind_of(cursor: VtkCursor, what: str) -> bytes:
     """The type on a line such as `OFFSETS vtktypeint64`."""
     words = cursor.words()
     if len(words) < 2:
-        raise InputError(f"{cursor.where}: {what} must have types of its arrays; correct it")
+        raise cursor.error(f"{what} must have types of its arrays; correct it")
     return words[1]
 
 
 def _counted_lists(cursor: VtkCursor, cells: int, size: int, what: str) -> CellLists:
     if cells > size:
-        raise InputError(
-            f"{cursor.where}: {what} must have at least as many numbers as cells, {cells:,}, not {size:,};"
-            " correct it"
+        raise cursor.error(
+            f"{what} must have at least as many numbers as cells, {cells:,}, not {size:,}; correct it"
         )
     numbers = cursor.wholes(size, b"int", what)
     width = int(numbers[0]) + 1 if size else 0
@@ -345,16 +435,16 @@ def _counted_lists(cursor: VtkCursor, cells: int, size: int, what: str) -> CellL
     return CellLists(numbers[~is_count], np.concatenate([[0], np.cumsum(sizes)]))
 
 
-def add_polygons(cells: Cells, lists: CellLists) -> None:
+def add_polygons(cells: VtkCells, lists: CellLists) -> None:
     """Add polygons of any number of corners."""
     sizes = lists.sizes
     rows = cells.count + np.arange(len(sizes))
     cells.flats.append(Flats(lists.numbers.astype(np.intp), sizes, rows))
-    cells.skip("empty cells", int((sizes == 0).sum()))
+    cells.skipped["empty cells"] += int((sizes == 0).sum())
     cells.count += len(sizes)
 
 
-def add_strips(cells: Cells, lists: CellLists) -> None:
+def add_strips(cells: VtkCells, lists: CellLists) -> None:
     """Add triangle strips: each node from the third on makes a triangle with the two before it."""
     rows = cells.count + np.arange(len(lists.sizes))
     cells.flats.append(_triangles(lists, np.arange(len(rows)), rows))
@@ -373,7 +463,7 @@ def _triangles(lists: CellLists, chosen: Indices, rows: Indices) -> Flats:
     return Flats.of(lists.numbers[table].astype(np.intp), np.repeat(rows, count))
 
 
-def add_typed(cells: Cells, cursor: VtkCursor, lists: CellLists, types: Numbers) -> None:
+def add_typed(cells: VtkCells, cursor: VtkCursor, lists: CellLists, types: Numbers) -> None:
     """Add the cells of an unstructured grid, each of its type. Raises InputError."""
     sizes = lists.sizes
     if len(types) != len(sizes):
@@ -383,32 +473,21 @@ def add_typed(cells: Cells, cursor: VtkCursor, lists: CellLists, types: Numbers)
         )
     for kind in np.unique(types).tolist():
         rows = np.flatnonzero(types == kind)
-        if kind == POLYGON:
+        if kind == POLYGON_CELL:
             corners = lists.numbers[np.repeat(types == kind, sizes)]
             cells.flats.append(Flats(corners.astype(np.intp), sizes[rows], rows))
-            cells.skip("empty cells", int((sizes[rows] == 0).sum()))
-        elif kind == STRIP:
+            cells.skipped["empty cells"] += int((sizes[rows] == 0).sum())
+        elif kind == STRIP_CELL:
             cells.flats.append(_triangles(lists, rows, rows))
-        elif shape := _shape_of(kind):
+        elif shape := SHAPES.get(kind):
             _add_shaped(cells, cursor, lists, rows, kind, shape)
         else:
-            cells.skip(SKIPPED.get(kind, f"cells of type {kind}"), len(rows))
+            cells.skipped[SKIPPED.get(kind, f"cells of type {kind}")] += len(rows)
     cells.count += len(sizes)
 
 
-def _shape_of(kind: int) -> str:
-    """The shape that a type is read as; empty if it is skipped."""
-    if kind in TRIANGLES:
-        return "triangle"
-    if kind in QUADS or kind == PIXEL:
-        return "quad"
-    if kind == VOXEL:
-        return "hexahedron"
-    return next((shape for shape, kinds in SOLIDS.items() if kind in kinds), "")
-
-
 def _add_shaped(
-    cells: Cells, cursor: VtkCursor, lists: CellLists, rows: Indices, kind: int, shape: str
+    cells: VtkCells, cursor: VtkCursor, lists: CellLists, rows: Indices, kind: int, shape: str
 ) -> None:
     corners = {"triangle": 3, "quad": 4, **CORNERS}[shape]
     sizes = lists.sizes[rows]
@@ -430,27 +509,25 @@ def _add_shaped(
         cells.flats.append(Flats.of(table, rows))
 
 
-# -------------------- layers
-# Legacy VTK grids of nodes in rows: STRUCTURED_GRID, RECTILINEAR_GRID and STRUCTURED_POINTS.
-#
-# One layer of them is a surface of quads, the first of which turns from the first axis to the second.
+# Grids of nodes in rows. A grid of one layer is a surface of quads that turn from the first axis to the
+# second.
 
 LAYERS: Final = (b"STRUCTURED_GRID", b"RECTILINEAR_GRID", b"STRUCTURED_POINTS")
 
 AXES: Final = (b"X_COORDINATES", b"Y_COORDINATES", b"Z_COORDINATES")
 MOST_NODES: Final = 4_000_000
-"""Assumed: nodes of one layer. Where only its axes are written, a small file has many."""
+"""Limit: nodes of one layer. Where only its axes are written, a small file has many."""
 
 VECTORS: Final = (b"ORIGIN", b"SPACING", b"ASPECT_RATIO")
 
 
-def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, Cells]:
+def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, VtkCells]:
     """The nodes and the quads of a grid of one layer. Raises InputError."""
     dimensions: tuple[int, ...] | None = None
     points: Floats | None = None
     axes: dict[bytes, Floats] = {}
     vectors: dict[bytes, Floats] = {}
-    while (keyword := cursor.peek()) and keyword not in (b"POINT_DATA", b"CELL_DATA"):
+    while (keyword := cursor.peek()) and keyword not in TABLES:
         words = cursor.words()
         if keyword == b"METADATA":
             cursor.skip_metadata()
@@ -463,12 +540,10 @@ def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, Cells]:
             count = cursor.count(words[1], f"the count of {what}")
             axes[keyword] = cursor.coordinates(count, words[2], what)
         elif keyword == b"POINTS" and len(words) == 3:
-            count = cursor.count(words[1], "the count of POINTS")
-            points = cursor.coordinates(3 * count, words[2], "POINTS").reshape(-1, 3)
+            points = read_points(cursor, words)
         else:
-            raise InputError(
-                f"{cursor.where}: there must be no {shown(b' '.join(words))} in {dataset.decode()}; correct"
-                " the file"
+            raise cursor.error(
+                f"there must be no {shown(b' '.join(words))} in {dataset.decode()}; correct the file"
             )
     if dimensions is None:
         raise InputError(f"{cursor.name}: a {dataset.decode()} must have DIMENSIONS, not none; add them")
@@ -493,15 +568,15 @@ def read_layer(cursor: VtkCursor, dataset: bytes) -> tuple[Floats, Cells]:
     wide, high = (size for size in (*(each for each in dimensions if each > 1), 1, 1)[:2])
     first = (np.arange(wide - 1) + wide * np.arange(high - 1)[:, None]).ravel()
     table: Indices = first[:, None] + np.array([0, 1, wide + 1, wide])
-    return points, Cells([Flats.of(table, np.arange(len(table)))], count=len(table))
+    return points, VtkCells([Flats.of(table, np.arange(len(table)))], count=len(table))
 
 
 def _dimensions(cursor: VtkCursor, words: list[bytes], dataset: bytes) -> tuple[int, ...]:
     """The three numbers of nodes along the axes, of which one at least is 1. Raises InputError."""
     sizes = tuple(cursor.count(word, "a number of DIMENSIONS") for word in words[1:])
     if len(sizes) != 3 or 0 in sizes or 1 not in sizes:
-        raise InputError(
-            f"{cursor.where}: a {dataset.decode()} must be one layer of nodes, as in DIMENSIONS 5 4 1, not"
+        raise cursor.error(
+            f"a {dataset.decode()} must be one layer of nodes, as in DIMENSIONS 5 4 1, not"
             f" {shown(b' '.join(words))}; take its surface"
         )
     return sizes
@@ -539,22 +614,17 @@ def _points(
     return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
 
 
-# -------------------- attributes
-# The data of nodes and cells in legacy VTK files: POINT_DATA and CELL_DATA.
-#
-# Scalars, vectors, tensors and the arrays of fields are taken as `found_scalars` says. Normals, texture
-# coordinates, colors, numbers for identification, bits and texts are skipped.
+# The data of nodes and cells. Scalars, vectors, tensors and the arrays of fields are scalars of the mesh.
+# Normals, texture coordinates, colors, numbers for identification, bits and texts are skipped and counted.
 
-TABLES: Final = {b"POINT_DATA": NODE, b"CELL_DATA": POLYGON_2}
+TABLES: Final = {b"POINT_DATA": NODE, b"CELL_DATA": POLYGON}
 
 COMPONENTS: Final = {b"VECTORS": 3, b"TENSORS": 9, b"TENSORS6": 6}
 
 IGNORED: Final = {b"NORMALS": 3, b"GLOBAL_IDS": 1, b"PEDIGREE_IDS": 1, b"EDGE_FLAGS": 1}
 
-BITS: Final = b"bit"
-STRING: Final = b"string"
-
 MOST_ARRAYS: Final = 100_000
+"""Limit: arrays of a FIELD."""
 
 
 class Attributes:
@@ -564,9 +634,9 @@ class Attributes:
         self.cursor = cursor
         self.counts = counts
         self.rows = rows
-        self.found = FoundScalars()
+        self.scalars = FileScalars()
         self.of: str | None = None
-        self.skipped: dict[str, int] = {}
+        self.skipped: Counter[str] = Counter()
 
     def read(self) -> None:
         """Read all data to the end of the file. Raises InputError.
@@ -582,35 +652,34 @@ class Attributes:
             elif keyword == b"FIELD":
                 self.field(words)
             elif not self._attribute(keyword, words):
-                self.found.sentences.append(f"skipped all from the unknown keyword {shown(words[0])} on")
+                self.scalars.sentences.append(f"skipped all from the unknown keyword {shown(words[0])} on")
                 return
 
     @property
     def messages(self) -> tuple[str, ...]:
         """Sentences about what was left out."""
         skipped = (f"skipped {what}: {count:,}" for what, count in self.skipped.items())
-        return (*self.found.messages, *skipped)
+        return (*self.scalars.messages, *skipped)
 
     def _begin(self, of: str, words: list[bytes]) -> None:
         """Begin the data of a table, whose count must be that of its rows."""
         what = words[0].decode("latin-1").upper()
         count = self.cursor.count(words[1] if len(words) > 1 else b"", f"the count of {what}")
         if count != self.counts[of]:
-            raise InputError(
-                f"{self.cursor.where}: {what} must be for all {self.counts[of]:,} of the file, not {count:,};"
-                " correct the count"
+            raise self.cursor.error(
+                f"{what} must be for all {self.counts[of]:,} of the file, not {count:,}; correct the count"
             )
         self.of = of
 
     def _attribute(self, keyword: bytes, words: list[bytes]) -> bool:
         """Read one attribute; False if its keyword is unknown."""
-        known = (b"SCALARS", b"COLOR_SCALARS", b"LOOKUP_TABLE", b"TEXTURE_COORDINATES")
-        if keyword not in (*known, *COMPONENTS, *IGNORED):
+        others = (b"SCALARS", b"COLOR_SCALARS", b"LOOKUP_TABLE", b"TEXTURE_COORDINATES")
+        if keyword not in (*others, *COMPONENTS, *IGNORED):
             return False
-        least = 3 if keyword not in known else {b"SCALARS": 3, b"TEXTURE_COORDINATES": 4}.get(keyword, 3)
+        least = 4 if keyword == b"TEXTURE_COORDINATES" else 3
         if len(words) < least:
-            raise InputError(
-                f"{self.cursor.where}: {words[0].decode('latin-1')} must be followed by {least - 1} words,"
+            raise self.cursor.error(
+                f"{words[0].decode('latin-1')} must be followed by {least - 1} words,"
                 f" not {len(words) - 1}; correct it"
             )
         name, rows = words[1], self.counts[self.of or NODE]
@@ -639,9 +708,8 @@ class Attributes:
         cursor = self.cursor
         arrays = cursor.count(words[2] if len(words) > 2 else b"", "the number of arrays of a FIELD")
         if arrays > MOST_ARRAYS:
-            raise InputError(
-                f"{cursor.where}: a FIELD must have at most {MOST_ARRAYS:,} arrays, not {arrays:,}; leave"
-                " some out"
+            raise self.cursor.error(
+                f"a FIELD must have at most {MOST_ARRAYS:,} arrays, not {arrays:,}; leave some out"
             )
         while arrays:
             header = cursor.words()
@@ -649,8 +717,8 @@ class Attributes:
                 cursor.skip_metadata()
                 continue
             if len(header) < 4:
-                raise InputError(
-                    f"{cursor.where}: an array of a FIELD must have a name, two counts and a type, not"
+                raise self.cursor.error(
+                    f"an array of a FIELD must have a name, two counts and a type, not"
                     f" {shown(b' '.join(header))}; correct it"
                 )
             width, rows = (cursor.count(word, "a count of an array of a FIELD") for word in header[1:3])
@@ -660,38 +728,36 @@ class Attributes:
     def _array(self, name: bytes, rows: int, width: int, kind: bytes, ignored: str = "") -> None:
         """Read one array, which is a scalar unless it is `ignored` or of another size."""
         cursor, kind = self.cursor, kind.lower()
-        if kind == BITS:
+        if kind == b"bit":
             ignored = "arrays of bits"
-        if kind == STRING:
+        if kind == b"string":
             ignored = "arrays of texts"
             self._skip_texts(rows * width)
-        elif kind == BITS and cursor.text is None:
+        elif kind == b"bit" and cursor.text is None:
             cursor.array(-(-rows * width // 8), b"unsigned_char", "bits")
         else:
             what = f"array {shown(name)}"
-            values = cursor.array(rows * width, b"int" if kind == BITS else kind, what)
+            values = cursor.array(rows * width, b"int" if kind == b"bit" else kind, what)
             if not ignored and (self.of is None or rows != self.counts[self.of]):
                 ignored = "arrays that are of no node or cell"
             if not ignored and rows and width:
                 assert self.of is not None
                 text = unquote_to_bytes(name).decode("utf-8", "replace")
-                self.found.add(text, values.reshape(rows, width), self.of, self.rows[self.of])
+                self.scalars.add(text, values.reshape(rows, width), self.of, self.rows[self.of])
                 return
         ignored = ignored or "empty arrays"
-        self.skipped[ignored] = self.skipped.get(ignored, 0) + 1
+        self.skipped[ignored] += 1
 
     def _skip(self, count: int, in_text: bytes, in_binary: bytes, what: str) -> None:
         self.cursor.array(count, in_binary if self.cursor.text is None else in_text, what)
-        self.skipped[what] = self.skipped.get(what, 0) + 1
+        self.skipped[what] += 1
 
     def _skip_texts(self, count: int) -> None:
         """Go past texts: lines, or in binary each after its length, of which two bits tell the size."""
         cursor = self.cursor
         for _ in range(count):
             if cursor.at >= len(cursor.data):
-                raise InputError(
-                    f"{cursor.where}: there must be {count:,} texts, not fewer; correct the count"
-                )
+                raise self.cursor.error(f"there must be {count:,} texts, not fewer; correct the count")
             if cursor.text is not None:
                 cursor.raw_line()
                 continue
@@ -699,138 +765,3 @@ class Attributes:
             head = int.from_bytes(cursor.data[cursor.at : cursor.at + size], "big")
             length = head & ((1 << (8 * size - 2)) - 1)
             cursor.at = min(cursor.at + size + length, len(cursor.data))
-
-
-FIRST_LINE: Final = re.compile(rb"# vtk DataFile Version [1-5]\.[0-9]+", re.IGNORECASE)
-
-SKIPPED_2: Final = {b"VERTICES": "vertices", b"LINES": "lines"}
-
-TABLES_2: Final = (b"POINT_DATA", b"CELL_DATA")
-
-
-class Grid(NamedTuple):
-    """The nodes and the cells of a file."""
-
-    coordinates: Floats
-    cells: Cells
-
-
-def read_vtk(path: Path, placement: Placement = PLAIN) -> MeshReport:
-    """The mesh of a legacy VTK file with its scalars, and what was repaired. Raises InputError."""
-    data = read_bytes(path, LARGEST_MESH_FILE)
-    if b"\n" not in data[:HEAD] and b"ASCII" in data[:HEAD]:
-        data = data.replace(b"\r", b"\n")
-    cursor = VtkCursor(data, path.name)
-    dataset = _dataset(cursor)
-    grid = read_layer(cursor, dataset) if dataset in LAYERS else _grid(cursor, dataset)
-    coordinates, cells = grid
-    surface = cell_surface(coordinates, Flats.joined(cells.flats), cells.volumes)
-    flats, nodes, sentences = surface
-    if cells.higher_order and not cells.volumes:
-        flats, nodes, sentences = _without_unused(flats, len(coordinates))
-    counts = {NODE: len(coordinates), POLYGON_3: cells.count}
-    attributes = Attributes(cursor, counts, {NODE: nodes, POLYGON_3: flats.cells})
-    attributes.read()
-    table = Polygons(
-        coordinates[nodes],
-        flats.corners,
-        flats.corner_counts,
-        np.zeros(len(flats.cells), np.intp),
-        (path.stem,),
-        attributes.found.scalars,
-    )
-    skipped = (*cells.sentences, *sentences, *attributes.messages)
-    return repaired(table, path.name, placement, skipped=skipped)
-
-
-def _dataset(cursor: VtkCursor) -> bytes:
-    """The type of the data set, after the three lines before it. Raises InputError."""
-    first = cursor.raw_line()
-    if not FIRST_LINE.match(first):
-        raise InputError(
-            f"{cursor.name}, line 1: a legacy VTK file must begin '# vtk DataFile Version 1.0' to 5.1, not"
-            f" {shown(first)}; write it as legacy VTK"
-        )
-    cursor.raw_line()
-    kind = cursor.raw_line().strip().upper()
-    if kind not in (b"ASCII", b"BINARY"):
-        raise InputError(f"{cursor.name}, line 3: it must be ASCII or BINARY, not {shown(kind)}; correct it")
-    words = cursor.words()
-    if len(words) < 2 or words[0].upper() != b"DATASET":
-        raise InputError(
-            f"{cursor.name}, line 4: it must be DATASET and its type, not {shown(b' '.join(words))};"
-            f" correct it"
-        )
-    if kind == b"ASCII":
-        cursor.as_text()
-    return words[1].upper()
-
-
-def _grid(cursor: VtkCursor, dataset: bytes) -> Grid:
-    """The nodes and cells of POLYDATA or an UNSTRUCTURED_GRID. Raises InputError."""
-    if dataset not in (b"POLYDATA", b"UNSTRUCTURED_GRID"):
-        known = ", ".join(["POLYDATA", "UNSTRUCTURED_GRID", *(each.decode() for each in LAYERS)])
-        raise InputError(
-            f"{cursor.where}: the DATASET must be one of {known}, not {shown(dataset)}; take its surface"
-        )
-    coordinates: Floats | None = None
-    cells, lists = Cells(), None
-    while (keyword := cursor.peek()) and keyword not in TABLES_2:
-        words = cursor.words()
-        if keyword == b"METADATA":
-            cursor.skip_metadata()
-        elif keyword == b"FIELD":
-            Attributes(cursor, {}, {}).field(words)
-        elif keyword == b"POINTS":
-            coordinates = read_points(cursor, words)
-        elif coordinates is None:
-            raise InputError(
-                f"{cursor.where}: there must be POINTS before {shown(words[0])}; correct the file"
-            )
-        elif keyword in SKIPPED_2:
-            sizes = read_cell_lists(cursor, words, len(coordinates)).sizes
-            cells.skip(SKIPPED_2[keyword], len(sizes))
-            cells.count += len(sizes)
-        elif keyword == b"POLYGONS":
-            add_polygons(cells, read_cell_lists(cursor, words, len(coordinates)))
-        elif keyword == b"TRIANGLE_STRIPS":
-            add_strips(cells, read_cell_lists(cursor, words, len(coordinates)))
-        elif keyword == b"CELLS":
-            # The first count of version 5.1 is that of OFFSETS, one more than the cells.
-            lists = read_cell_lists(cursor, words, len(coordinates))
-        elif keyword == b"CELL_TYPES" and lists is not None:
-            count = cursor.count(words[1] if len(words) > 1 else b"", "the count of CELL_TYPES")
-            add_typed(cells, cursor, lists, cursor.wholes(count, b"int", "CELL_TYPES"))
-            lists = None
-        else:
-            raise InputError(
-                f"{cursor.where}: there must be no {shown(words[0])} in {dataset.decode()}; correct the file"
-            )
-    if coordinates is None:
-        raise InputError(f"{cursor.name}: a data set must have POINTS, not none; add them")
-    if lists is not None:
-        raise InputError(f"{cursor.name}: there must be CELL_TYPES after CELLS; add them")
-    return Grid(coordinates, cells)
-
-
-def read_points(cursor: VtkCursor, words: list[bytes]) -> Floats:
-    """The coordinates after a line such as `POINTS 8 float`, (nodes, 3). Raises InputError."""
-    if len(words) < 3:
-        raise InputError(f"{cursor.where}: POINTS must have a count and a type; correct it")
-    count = cursor.count(words[1], "the count of POINTS")
-    return cursor.coordinates(3 * count, words[2], "POINTS").reshape(-1, 3)
-
-
-def _without_unused(flats: Flats, nodes: int) -> tuple[Flats, Indices, tuple[str, ...]]:
-    """The polygons without the nodes between corners, as `cell_surface` returns them."""
-    kept, sentences = used_nodes(nodes, flats.corners)
-    row_of = np.zeros(nodes, np.intp)
-    row_of[kept] = np.arange(len(kept))
-    return Flats(row_of[flats.corners], flats.corner_counts, flats.cells), kept, sentences
-
-
-def _begins(head: bytes) -> bool:
-    return FIRST_LINE.match(head) is not None
-
-
-VTK: Final = register(MeshFormat("VTK", read_vtk, (".vtk",), begins=_begins))

@@ -17,7 +17,6 @@ from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.reading import read_bytes
-from autocolor.files.scenes.formats import SceneFormat, register
 from autocolor.files.scenes.scene_meshes import mesh_file, meshes_of
 from autocolor.files.scenes.scene_report import SceneProblems, SceneReport, scene_report
 from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
@@ -199,6 +198,3 @@ def _row(
         known = [key for key in keys_of(type(row)) if key != "name"]
         problems.note_all([unknown_key("name", known)], path)
     return row
-
-
-SCENE_FILE: Final = register(SceneFormat("scene file", read_scene_file, (".toml",), in_folder="scene.toml"))

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Final
 from weakref import WeakKeyDictionary
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import format_of_files, read_mesh
+from autocolor.files.formats import format_of_files, read_mesh
 from autocolor.files.meshes.repair import SCALES, UPS, MeshReport, Placement
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE

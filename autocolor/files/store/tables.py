@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from autocolor.errors import UsageError
-from autocolor.files.registry import recognized
-from autocolor.files.scene_sources import PathLike, read_scene_with_report
-from autocolor.files.scenes.formats import scene_formats
+from autocolor.files.formats import recognized
+from autocolor.files.scene_sources import SCENE_FORMATS, PathLike, read_scene_with_report
 from autocolor.files.store.connections import closed, connected, connected_to_change, journal_mode
 from autocolor.files.store.schema import MESH_TABLES, NODES, POLYGONS, VALUES
 from autocolor.files.store.sql_columns import quoted
@@ -54,7 +53,7 @@ def is_store(path: Path) -> bool:
     """Whether a path is that of a store, by its name or its first bytes."""
     if os.path.isdir(path):
         return False
-    found = recognized(path, scene_formats())
+    found = recognized(path, SCENE_FORMATS)
     return found is not None and found.name == "store"
 
 

@@ -2,17 +2,17 @@
 
 Assumed: at each normal a quadric is fitted to the nodes next to it in the polygons that share the normal, by
 least squares: h = p x + q y - (a x x + 2 b x y + c y y) / 2, where x and y are in the tangent plane and h is
-along the normal. So there is no curvature across a crease, and that of a curved surface comes out at any
-density of its nodes. Every neighbor counts the same, near or far, and the normals of the neighbors count a
-little, too: they decide where there are few neighbors. Mean curvature is positive where the surface bends
+along the normal. So there is no curvature across a crease, and the curvature of a surface does not depend on
+the density of its nodes. Every neighbor counts the same, near or far, and the normals of the neighbors count
+a little, too: they decide where there are few neighbors. Mean curvature is positive where the surface bends
 away from its normal: a sphere of radius r that faces outward has 1/r.
 
-Assumed: at the rim of a fan, where neighbors are on one side only, it is the mean of that of the neighbors
+Assumed: at the rim of a fan, with neighbors on one side only, the curvature is the mean of the neighbors
 around which the surface is closed, if there are any.
 
-Measured and rejected: a fit to the normals alone, which on a regular mesh is as good; but with triangles of
-random density it was 7 % off at half of the nodes of a sphere, and no less with more of them; this is less
-than 1 % off.
+Measured and rejected: a fit to the normals alone. It is as good on a regular mesh, but with triangles of
+random density it was 7 % off at half of the nodes of a sphere, however many the triangles. The fit to the
+nodes is less than 1 % off.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from autocolor.scene.geometry.normals import NodeNormals
 CORNERS_AT_ONCE: Final = 1 << 14
 
 NORMAL_WEIGHT: Final = 0.01
-"""Assumed: how much the normal of a neighbor counts in proportion to its place."""
+"""Assumed: the weight of a neighbor's normal in proportion to that of its place."""
 
 RIDGE: Final = 1e-9
-"""What is added to the equations, in proportion, so that what nothing decides becomes 0."""
+"""Added to the diagonal of the equations, so that an unknown that no neighbor decides becomes 0."""
 
 UNKNOWNS: Final = 5
 """The slopes p and q, and a, b and c."""
@@ -50,12 +50,39 @@ class Curvatures(Immutable):
     gaussian: Floats
 
 
+def curvatures(coordinates: Floats, node_numbers: Indices, normals: NodeNormals) -> Curvatures:
+    """The curvatures at the normals of a mesh; 0 where a normal has no polygon with area.
+
+    Arguments are as in `Mesh`. The work is done in chunks, with 5 more numbers a polygon.
+    """
+    count = len(normals.vectors)
+    numbers = np.ascontiguousarray(normals.numbers.T)
+    node_rows, coordinate_rows = np.ascontiguousarray(node_numbers.T), np.ascontiguousarray(coordinates.T)
+    order = np.argsort(numbers.ravel(), kind="stable")
+    corner_counts = np.bincount(numbers.ravel(), minlength=count)
+    values, closed = np.empty((2, count)), np.empty(count, np.bool_)
+    for corners in _corners(order, corner_counts, node_rows, numbers):
+        local = np.repeat(np.arange(len(corners.counts)), corners.counts)
+        equations = _equations(coordinate_rows, normals.vectors.T, corners)
+        sums = [np.bincount(local, row, len(corners.counts)) for row in equations]
+        values[:, corners.rows] = _curvatures_of(_solved(np.stack(sums)))
+        # Each edge within a fan leads to one corner after and to one before.
+        ends = (corners.neighbors[0] - corners.neighbors[2]).astype(np.float64)
+        closed[corners.rows] = np.bincount(local, ends, len(corners.counts)) == 0
+    if not closed.all():
+        inner = values.copy()
+        for corners in _corners(order, corner_counts, node_rows, numbers):
+            if not closed[corners.rows].all():
+                _take_from_closed(values, inner, closed, corners)
+    return Curvatures(read_only(values[0]), read_only(values[1]))
+
+
 class Corners(NamedTuple):
     """The corners of polygons at some normals.
 
-    `rows` are these normals, and `counts` how many corners each has. Of each corner there is the normal at
-    it, `own`; the columns of the node at it and at the corner after, across and before, `nodes` (4, corners);
-    and the normals at the latter, `neighbors` (3, corners).
+    `rows` are these normals, and `counts` the number of corners of each. `own`, (corners,), has the normal at
+    each corner, and `neighbors`, (3, corners), the normals at the corners after, across and before. `nodes`,
+    (4, corners), has the columns of the nodes at these four.
     """
 
     rows: slice
@@ -63,33 +90,6 @@ class Corners(NamedTuple):
     own: Indices
     nodes: Indices
     neighbors: Indices
-
-
-def curvatures(coordinates: Floats, node_numbers: Indices, normals: NodeNormals) -> Curvatures:
-    """The curvatures at the normals of a mesh; 0 where a normal has no polygon with area.
-
-    Arguments are as in `Mesh`. Worked on in chunks, with 5 more numbers a polygon.
-    """
-    count = len(normals.vectors)
-    numbers = np.ascontiguousarray(normals.numbers.T)
-    node_rows, coordinate_rows = np.ascontiguousarray(node_numbers.T), np.ascontiguousarray(coordinates.T)
-    order = np.argsort(numbers.ravel(), kind="stable")
-    corner_counts = np.bincount(numbers.ravel(), minlength=count)
-    found, closed = np.empty((2, count)), np.empty(count, np.bool_)
-    for corners in _corners(order, corner_counts, node_rows, numbers):
-        local = np.repeat(np.arange(len(corners.counts)), corners.counts)
-        equations = _equations(coordinate_rows, normals.vectors.T, corners)
-        sums = [np.bincount(local, row, len(corners.counts)) for row in equations]
-        found[:, corners.rows] = _curvatures_of(_solved(np.stack(sums)))
-        # Each edge within a fan leads to one corner after and to one before.
-        ends = (corners.neighbors[0] - corners.neighbors[2]).astype(np.float64)
-        closed[corners.rows] = np.bincount(local, ends, len(corners.counts)) == 0
-    if not closed.all():
-        inner = found.copy()
-        for corners in _corners(order, corner_counts, node_rows, numbers):
-            if not closed[corners.rows].all():
-                _take_from_closed(found, inner, closed, corners)
-    return Curvatures(read_only(found[0]), read_only(found[1]))
 
 
 def _corners(order: Indices, counts: Indices, node_rows: Indices, numbers: Indices) -> Iterator[Corners]:
@@ -103,7 +103,7 @@ def _corners(order: Indices, counts: Indices, node_rows: Indices, numbers: Indic
 
 
 def _equations(coordinate_rows: Floats, vector_rows: Singles, corners: Corners) -> Floats:
-    """What each corner adds to the equations of its normal, (20, corners).
+    """The terms that each corner adds to the equations of its normal, (20, corners).
 
     They are the upper triangle of the matrix by rows, and the right side.
     """
@@ -118,7 +118,7 @@ def _equations(coordinate_rows: Floats, vector_rows: Singles, corners: Corners) 
         square = dot(edge, edge)
         counts = square > 0
         if step == 2:
-            # What is across in a triangle is a neighbor already.
+            # The corner across in a triangle is a neighbor already.
             counts &= ~triangles
         square[~counts] = 1.0
         weight = counts / (square * square)
@@ -175,22 +175,22 @@ def _curvatures_of(unknowns: Floats) -> Floats:
     return np.stack([mean, (a * c - b * b) / (square * square)])
 
 
-def _take_from_closed(found: Floats, inner: Floats, closed: Booleans, corners: Corners) -> None:
-    """Give each normal of a fan with a rim the mean of its neighbors `inner` of closed fans, if any."""
+def _take_from_closed(values: Floats, inner: Floats, closed: Booleans, corners: Corners) -> None:
+    """Give each normal of a fan with a rim the mean of the `inner` values of neighbors with closed fans."""
     count = len(corners.counts)
     local = np.repeat(np.arange(count), corners.counts)
     having, sums = np.zeros(count), np.zeros((2, count))
     for neighbor in corners.neighbors:
         weight = closed[neighbor].astype(np.float64)
         having += np.bincount(local, weight, count)
-        for sum_row, values in zip(sums, inner, strict=True):
-            sum_row += np.bincount(local, weight * values[neighbor], count)
-    changed = np.flatnonzero(~closed[corners.rows] & (having > 0))
-    found[:, changed + corners.rows.start] = sums[:, changed] / having[changed]
+        for sum_row, row in zip(sums, inner, strict=True):
+            sum_row += np.bincount(local, weight * row[neighbor], count)
+    rims = np.flatnonzero(~closed[corners.rows] & (having > 0))
+    values[:, rims + corners.rows.start] = sums[:, rims] / having[rims]
 
 
 def _tangents(normals: Floats) -> tuple[Floats, Floats]:
-    """Two unit vectors across each unit normal, (3, n), and each other."""
+    """Two unit vectors at right angles to each unit normal, (3, n), and to each other."""
     least = np.abs(normals).argmin(axis=0)
     along = np.zeros_like(normals)
     along[least, np.arange(len(least))] = 1.0

@@ -1,7 +1,7 @@
 """Meshes of other programs: nodes and polygons in arrays, and the meshes of trimesh, PyVista and meshio.
 
-None of these is imported: a mesh is recognized by what it has. Only its nodes, its polygons and their scalars
-are taken, no colors, normals or groups. A polygon of more than four sides is split, as those of files are.
+None of these libraries is imported: a mesh is recognized by its attributes. Nodes, polygons and their scalars
+are taken, and no colors, normals or groups. A polygon of more than four sides is split, as in files.
 """
 
 from __future__ import annotations
@@ -21,87 +21,14 @@ from autocolor.logs import logger_of
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS, split_polygons
 from autocolor.scene.scalar import LARGEST_SCALAR, MOST_SCALARS, NODE, POLYGON, MeshScalar
 
-# -------------------- foreign_scalars
-# The scalars of meshes of other programs: the data of points and cells of PyVista and meshio.
-
 LOG: Final = logger_of(__name__)
 
-
-def foreign_scalars(
-    source: object, nodes: object, owners: Indices, blocks: Sequence[int] | None
-) -> tuple[MeshScalar, ...]:
-    """The scalars of a mesh with `point_data` and `cell_data`; none of one without.
-
-    Arrays of one component are taken and all others left out; a number that is infinite or above 1e30 in size
-    becomes missing. `owners` has the source's polygon of each row of the polygon table, at least one of each.
-    Where the data of cells are lists of one array a block, `blocks` are those of the polygons.
-    """
-    found: dict[str, MeshScalar] = {}
-    of_polygons = (
-        (name, values if blocks is None else _joined(values, blocks))
-        for name, values in _items(source, "cell_data")
-    )
-    for of, count, rows, data in (
-        (NODE, _row_count(nodes), None, _items(source, "point_data")),
-        (POLYGON, int(owners.max(initial=-1)) + 1, owners, of_polygons),
-    ):
-        for name, given in data:
-            values = _numbers(given)
-            if values is None or values.shape != (count,) or len(found) >= MOST_SCALARS:
-                LOG.info("data of a %s left out, since they are no scalar: %s", of, name)
-                continue
-            with np.errstate(invalid="ignore"):
-                too_large = np.abs(values) > LARGEST_SCALAR
-            if too_large.any():
-                LOG.info("values of scalar %s above 1e30 in size made missing: %d", name, too_large.sum())
-                values[too_large] = np.nan
-            name = name if name not in found else f"{name} of {of}s"
-            values = values if rows is None else values[rows]
-            found.setdefault(name, MeshScalar(name, read_only(values), of))
-    return tuple(found.values())
-
-
-def _items(source: Any, data: str) -> Iterator[tuple[str, Any]]:
-    """The names and the arrays of the data of a mesh, those of names that a scalar can have."""
-    table = getattr(source, data, None)
-    if table is not None and callable(getattr(table, "items", None)):
-        yield from ((name, values) for name, values in table.items() if isinstance(name, str) and name)
-
-
-def _row_count(table: object) -> int:
-    """How many rows a table has; -1, as no array of data has, for what the checks of `Mesh` will refuse."""
-    try:
-        return len(np.asarray(table))
-    except (TypeError, ValueError):
-        return -1
-
-
-def _joined(values: Any, blocks: Sequence[int]) -> object:
-    """The arrays of some blocks, one after the other; None if they do not fit together."""
-    try:
-        return np.concatenate([np.asarray(values[block]) for block in blocks])
-    except (TypeError, ValueError, LookupError):
-        return None
-
-
-def _numbers(given: object) -> AnyArray | None:
-    """A copy of an array of one component as float64, (n,); None for anything else."""
-    try:
-        values = np.asarray(given)
-    except (TypeError, ValueError):
-        return None
-    if values.dtype.kind not in "iuf" or not (values.ndim == 1 or values.shape[1:] == (1,)):
-        return None
-    with np.errstate(over="ignore"):
-        return np.array(values.reshape(-1), np.float64)
-
-
 FLAT_CELLS: Final = ("triangle", "quad", "polygon")
-"""The cells of meshio that are polygons; some files number the last by its sides, as in polygon5."""
+"""The cells of meshio that are polygons; some files add the number of sides to "polygon", as in polygon5."""
 
 
 class ForeignTables(NamedTuple):
-    """The node table, the polygon table and the scalars of a mesh of another program, still to be checked."""
+    """The node table, the polygon table and the scalars of a mesh of another program, not yet checked."""
 
     nodes: Any
     polygons: Any
@@ -111,9 +38,9 @@ class ForeignTables(NamedTuple):
 def foreign_tables(source: object, polygons: object = None) -> ForeignTables:
     """The tables of a mesh of another program, for the checks of `Mesh`.
 
-    `source` are nodes, (nodes, 3), if `polygons` are given: (polygons, 3), (polygons, 4), or a list of lists
-    of any lengths. Otherwise it has `vertices` and `faces`, as those of trimesh; `points` and `faces`, as
-    PyVista's PolyData; or `points` and `cells`, as those of meshio. The latter two may have scalars. Raises
+    If `polygons` are given, (polygons, 3), (polygons, 4), or a list of lists of any lengths, `source` has the
+    nodes, (nodes, 3). Otherwise `source` has `vertices` and `faces`, as in trimesh; `points` and `faces`, as
+    in PyVista's PolyData; or `points` and `cells`, as in meshio. The latter two may have scalars. Raises
     InputError, and UsageError for anything else.
     """
     if polygons is not None:
@@ -127,7 +54,7 @@ def foreign_tables(source: object, polygons: object = None) -> ForeignTables:
 
 
 def _polygon_table(nodes: object, polygons: Any) -> tuple[AnyArray, Indices]:
-    """The polygon table of polygons, and the polygon that each of its rows is, or is a piece of."""
+    """The polygon table, and for each row the number of the polygon that it is, or is a piece of."""
     try:
         table = np.asarray(polygons)
     except ValueError:
@@ -161,9 +88,9 @@ def _nodes_and_polygons(source: Any) -> tuple[Any, Any]:
 
 
 def _polygons_of_counted(faces: AnyArray) -> object:
-    """The polygons of PyVista's faces: each is a count, and then as many node numbers.
+    """The polygons of PyVista's faces: a count and so many node numbers, again and again.
 
-    Raises InputError where the counts do not lead to the end.
+    Raises InputError if the counts do not lead to the end.
     """
     if faces.ndim == 2:
         return faces
@@ -261,3 +188,75 @@ def _split(nodes: object, corners: Indices, counts: Indices) -> tuple[Indices, I
     if split := int((counts > 4).sum()):
         LOG.info("polygons with more than four corners that were split: %d", split)
     return table, owners
+
+
+# -------------------- scalars
+
+
+def foreign_scalars(
+    source: object, nodes: object, owners: Indices, blocks: Sequence[int] | None
+) -> tuple[MeshScalar, ...]:
+    """The scalars in `point_data` and `cell_data` of a mesh, if it has them.
+
+    Arrays of several components are left out. A number that is infinite or above 1e30 in size becomes
+    missing. `owners` has the source's polygon for each row of the polygon table, and every polygon at least
+    once. If the data of cells are lists with an array for each block, `blocks` are the blocks of polygons.
+    """
+    scalars: dict[str, MeshScalar] = {}
+    of_polygons = (
+        (name, values if blocks is None else _joined(values, blocks))
+        for name, values in _items(source, "cell_data")
+    )
+    for of, count, rows, data in (
+        (NODE, _row_count(nodes), None, _items(source, "point_data")),
+        (POLYGON, int(owners.max(initial=-1)) + 1, owners, of_polygons),
+    ):
+        for name, given in data:
+            values = _numbers(given)
+            if values is None or values.shape != (count,) or len(scalars) >= MOST_SCALARS:
+                LOG.info("data of a %s left out, since they are no scalar: %s", of, name)
+                continue
+            with np.errstate(invalid="ignore"):
+                too_large = np.abs(values) > LARGEST_SCALAR
+            if too_large.any():
+                LOG.info("values of scalar %s above 1e30 in size made missing: %d", name, too_large.sum())
+                values[too_large] = np.nan
+            name = name if name not in scalars else f"{name} of {of}s"
+            values = values if rows is None else values[rows]
+            scalars.setdefault(name, MeshScalar(name, read_only(values), of))
+    return tuple(scalars.values())
+
+
+def _items(source: Any, data: str) -> Iterator[tuple[str, Any]]:
+    """The names and the arrays of the data of a mesh. Names that a scalar cannot have are left out."""
+    table = getattr(source, data, None)
+    if table is not None and callable(getattr(table, "items", None)):
+        yield from ((name, values) for name, values in table.items() if isinstance(name, str) and name)
+
+
+def _row_count(table: object) -> int:
+    """How many rows a table has; for a table that the checks of `Mesh` will refuse -1, which fits no data."""
+    try:
+        return len(np.asarray(table))
+    except (TypeError, ValueError):
+        return -1
+
+
+def _joined(values: Any, blocks: Sequence[int]) -> object:
+    """The concatenated arrays of some blocks; None if they do not fit together."""
+    try:
+        return np.concatenate([np.asarray(values[block]) for block in blocks])
+    except (TypeError, ValueError, LookupError):
+        return None
+
+
+def _numbers(given: object) -> AnyArray | None:
+    """A copy of an array of one component as float64, (n,); None for anything else."""
+    try:
+        values = np.asarray(given)
+    except (TypeError, ValueError):
+        return None
+    if values.dtype.kind not in "iuf" or not (values.ndim == 1 or values.shape[1:] == (1,)):
+        return None
+    with np.errstate(over="ignore"):
+        return np.array(values.reshape(-1), np.float64)

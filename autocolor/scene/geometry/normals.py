@@ -1,10 +1,10 @@
 """Node normals: one unit vector for each smooth fan of polygons around a node.
 
-Paper: "The Lighting Model" interpolates the normal between node normals; how they are made is not said.
-Assumed: the mean of the normals of the adjoining polygons, each weighted by its angle at the node, so that
-it does not depend on how a flat side was divided into polygons. A normal is not shared across parts, nor
-across an edge where the polygons meet at more than the crease angle. Nodes at the same place count as one, so
-that a file that repeats its nodes is as smooth as one that shares them.
+Paper: "The Lighting Model" interpolates the normal between node normals, and does not say how they are
+computed. Assumed: a node normal is the mean of the normals of the adjoining polygons, weighted by their
+angles at the node, so that it does not depend on how a flat side was divided into polygons. A normal is not
+shared across parts, nor across an edge where the polygons meet at more than the crease angle. Nodes at the
+same place count as one node, so that it does not matter whether a file repeats its nodes.
 """
 
 from __future__ import annotations
@@ -15,74 +15,19 @@ from typing import Final
 
 import numpy as np
 
-from autocolor.arrays import Booleans, Floats, Indices, Numbers, Scratch, Singles, chunks, cross, lengths
+from autocolor.arrays import Floats, Indices, Numbers, Scratch, Singles, chunks, cross, lengths
 from autocolor.immutable import Immutable, read_only
 
-# -------------------- union_find
-# Union-find: items that are united in pairs, and the groups that come of it.
-#
-# Every item has a parent, a lower item of its group; the root of a group is its lowest item and its own
-# parent. At first every item is a root, as in `np.arange`. All functions work on many items at once.
+CREASE_ANGLE: Final = 40.0
+"""Assumed: in degrees; the edges of a box stay sharp, and a cylinder of ten sides or more is smooth."""
+
+POLYGONS_AT_ONCE: Final = 1 << 13
+"""Few enough for their corners to stay in the processor's cache."""
 
 AT_ONCE: Final = 1 << 15
 
-
-def unite(parents: Indices, one: Indices, other: Indices) -> None:
-    """Unite the groups of each pair of items; `parents` is changed in place."""
-    while len(one):
-        # Drop the pairs that are in one group by now.
-        one, other = roots_of(parents, np.concatenate([one, other])).reshape(2, -1)
-        apart = np.flatnonzero(one != other)
-        one, other = np.take(one, apart), np.take(other, apart)
-        # Make the lower root the parent of the higher one. Where several pairs share the higher root, the
-        # lowest parent is taken and the other pairs try again.
-        np.minimum.at(parents, np.maximum(one, other), np.minimum(one, other))
-
-
-def group_numbers(parents: Indices, scratch: Scratch = np.empty) -> Indices:
-    """The group of each item; groups are numbered from 0 in the order of their roots."""
-    groups: Indices = scratch(parents.shape, parents.dtype.type)
-    count = 0
-    for chunk in chunks(len(parents), AT_ONCE):
-        items = np.arange(chunk.start, chunk.stop)
-        is_root = parents[chunk] == items
-        numbers = np.cumsum(is_root)
-        groups[chunk] = numbers + (count - 1)
-        count += int(numbers[-1])
-        # A root is the lowest of its group, so that it has its number by now.
-        others = items[~is_root]
-        groups[others] = groups[roots_of(parents, others)]
-    return groups
-
-
-def united_items(parents: Indices) -> Indices:
-    """The items that are not the root of their group, ascending."""
-    found = [
-        np.flatnonzero(parents[chunk] != np.arange(chunk.start, chunk.stop)) + chunk.start
-        for chunk in chunks(len(parents), AT_ONCE)
-    ]
-    return np.concatenate([np.empty(0, np.intp), *found])
-
-
-def roots_of(parents: Indices, items: Indices) -> Indices:
-    """The root of each item, which becomes its parent (path compression)."""
-    ancestors = np.take(parents, items)
-    while True:
-        higher = np.take(parents, ancestors)
-        if (higher == ancestors).all():
-            return higher
-        parents[items] = ancestors = higher
-
-
-# -------------------- fans
-# Fans: the polygon corners around a place that share a normal.
-#
-# Two corners at the same place share a normal where their polygons meet in an edge that is no crease, and
-# so on from polygon to polygon around the place. Corner 4 p + c is corner c of polygon p. Corners are
-# worked on in chunks, so that a large mesh needs no more than a few numbers a corner.
-
 EDGES_AT_ONCE: Final = 1 << 22
-"""Edges that are sorted at once; more are divided by the lower of their places."""
+"""Edges that are sorted at once; more edges are divided by the lower of their places."""
 
 MOST_DIVISIONS: Final = 200
 
@@ -93,164 +38,9 @@ MIXER: Final = np.uint64(0x9E3779B97F4A7C15)
 """An odd number with well-spread bits, so that every bit of a factor changes the high bits of the product."""
 
 
-def places_of_corners(coordinate_rows: Floats, node_rows: Indices, scratch: Scratch = np.empty) -> Indices:
-    """A number for each corner, (4, polygons), equal for corners at the same place.
-
-    `coordinate_rows` is (3, nodes); `node_rows`, (4, polygons), holds the node numbers of the polygons.
-    """
-    if not _some_share_a_place(coordinate_rows, scratch):
-        return node_rows
-    order = np.lexsort(coordinate_rows)
-    moved = np.zeros(len(order), np.bool_)
-    for row in coordinate_rows:
-        moved[1:] |= np.diff(row[order]) != 0
-    places = np.empty(len(order), np.intp)
-    places[order] = np.cumsum(moved)
-    found: Indices = scratch(node_rows.shape, np.intp)
-    for chunk in chunks(node_rows.shape[1], AT_ONCE):
-        found[:, chunk] = places.take(node_rows[:, chunk])
-    return found
-
-
-def _some_share_a_place(coordinate_rows: Floats, scratch: Scratch) -> bool:
-    """Whether two nodes may be at the same place: compares hashes of the coordinates.
-
-    Measured: it takes a fifth of the time of sorting the nodes.
-    """
-    hashes = scratch(coordinate_rows.shape[1:], np.uint64)
-    for chunk in chunks(len(hashes), AT_ONCE):
-        part = np.zeros(chunk.stop - chunk.start, np.uint64)
-        for row in coordinate_rows:
-            # Add 0 to turn -0 into 0, which is the same place.
-            part ^= (row[chunk] + 0.0).view(np.uint64)
-            part *= MIXER
-            part ^= part >> np.uint64(32)
-        hashes[chunk] = part
-    hashes.sort()
-    return bool((hashes[1:] == hashes[:-1]).any())
-
-
-def fans_of_corners(
-    places: Indices,
-    part_numbers: Indices,
-    normals: Floats,
-    crease_angle: float,
-    scratch: Scratch = np.empty,
-) -> tuple[Indices, list[Indices]]:
-    """The fan of each corner, (corners,), and pairs of fans with opposite winding, each (2, pairs).
-
-    `places`, (4, polygons), has the place of each corner; `normals`, (3, polygons), holds unit vectors, or
-    zeros. Fans are numbered from 0 in the order of their first corners.
-    """
-    parents = scratch((places.size,), np.intp if places.size < LARGE else np.int32)
-    for chunk in chunks(places.shape[1], AT_ONCE):
-        corners = np.arange(4 * chunk.start, 4 * chunk.stop)
-        # Unite the last two corners of a triangle, which repeats its last node.
-        corners[3::4] -= places[2, chunk] == places[3, chunk]
-        parents[4 * chunk.start : 4 * chunk.stop] = corners
-    least_cosine = np.cos(np.radians(crease_angle)) - 1e-9
-    opposite_corners = []
-    for one, other in _corners_at_shared_edges(places, part_numbers, scratch):
-        # Two polygons have opposite winding where both run along the shared edge in the same direction; then
-        # compare one normal with the reverse of the other.
-        opposite = places[one & 3, one >> 2] == places[other & 3, other >> 2]
-        cosine = (np.take(normals, one >> 2, axis=1) * np.take(normals, other >> 2, axis=1)).sum(axis=0)
-        np.negative(cosine, out=cosine, where=opposite)
-        smooth = cosine >= least_cosine
-        # Unite the corners at both ends of the edge, unless it is a crease.
-        ends, other_ends = np.stack([one, _next_corner(one)]), np.stack([other, _next_corner(other)])
-        same, reversed_ = np.flatnonzero(smooth & ~opposite), np.flatnonzero(smooth & opposite)
-        unite(parents, ends[:, same].ravel(), other_ends[::-1, same].ravel())
-        if len(reversed_):
-            opposite_corners.append(np.stack([ends[:, reversed_].ravel(), other_ends[:, reversed_].ravel()]))
-    fans = group_numbers(parents, scratch)
-    return fans, [fans[pairs] for pairs in opposite_corners]
-
-
-def _corners_at_shared_edges(
-    places: Indices, part_numbers: Indices, scratch: Scratch
-) -> Iterator[tuple[Indices, Indices]]:
-    """Pairs of corners whose outgoing edges join the same two places in the same part, chunk by chunk.
-
-    Where more than two polygons share an edge, each is paired with the next in the polygon table.
-    """
-    several_parts = bool((part_numbers != part_numbers[:1]).any())
-    for keys, edges in _edges(places, scratch):
-        # Sort the edges so that equal edges of one part become neighbors.
-        if several_parts:
-            polygons = np.repeat(np.arange(places.shape[1]), 4) if edges is None else edges >> 2
-            order = np.lexsort((part_numbers[polygons], keys))
-        else:
-            order = np.argsort(keys, kind="stable")
-        for first in range(int(np.count_nonzero(keys < 0)), len(order), AT_ONCE):
-            rows = order[first : first + AT_ONCE + 1]
-            key, corners = keys[rows], rows if edges is None else edges[rows]
-            shared = key[1:] == key[:-1]
-            if several_parts:
-                part = part_numbers[corners >> 2]
-                shared &= part[1:] == part[:-1]
-            shared = np.flatnonzero(shared)
-            yield corners[shared], corners[shared + 1]
-
-
-def _edges(places: Indices, scratch: Scratch) -> Iterator[tuple[Numbers, Indices | None]]:
-    """The edges in divisions: a key that does not depend on their direction, and their first corners.
-
-    Edges without length have the key -1. The corners of a division are in order, and no key is in two of
-    them. Where all are in one division its corners are None: they are as many as the keys.
-    """
-    place_count = int(places.max(initial=-1)) + 1
-    count = min(-(-places.size // EDGES_AT_ONCE), MOST_DIVISIONS)
-    if count <= 1:
-        all_keys = np.empty((places.shape[1], 4), np.int64)
-        for chunk in chunks(len(all_keys), AT_ONCE):
-            start = places[:, chunk]
-            all_keys[chunk] = _keys(start, np.roll(start, -1, axis=0), place_count).T
-        yield all_keys.ravel(), None
-        return
-    # Number the divisions by the lower place of an edge.
-    divisions = scratch((places.size,), np.uint8)
-    for chunk in chunks(places.shape[1], AT_ONCE):
-        start = places[:, chunk]
-        lower = np.minimum(start, np.roll(start, -1, axis=0))
-        divisions[4 * chunk.start : 4 * chunk.stop] = (lower * count // place_count).T.ravel()
-    for number in range(count):
-        corners = np.concatenate(
-            [
-                np.flatnonzero(divisions[chunk] == number) + chunk.start
-                for chunk in chunks(len(divisions), EDGES_AT_ONCE)
-            ]
-        )
-        keys = np.empty(len(corners), np.int64)
-        for chunk in chunks(len(corners), AT_ONCE):
-            some = corners[chunk]
-            start, end = places[some & 3, some >> 2], places[(some + 1) & 3, some >> 2]
-            keys[chunk] = _keys(start, end, place_count)
-        yield keys, corners
-
-
-def _keys(start: Indices, end: Indices, place_count: int) -> Numbers:
-    """A key for each edge from one place to another, the same both ways; -1 where they are the same."""
-    keys: Numbers = np.minimum(start, end) * np.int64(place_count) + np.maximum(start, end)
-    keys[start == end] = -1
-    return keys
-
-
-def _next_corner(corners: Indices) -> Indices:
-    """The next corner of each corner's polygon."""
-    return (corners & ~3) | ((corners + 1) & 3)
-
-
-CREASE_ANGLE: Final = 40.0
-"""Assumed: degrees; edges of boxes stay sharp, and a cylinder of ten sides or more is smooth."""
-
-POLYGONS_AT_ONCE: Final = 1 << 13
-"""Few enough for their corners to stay in the processor's cache."""
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class NodeNormals(Immutable):
-    """Unit normals, and which of them is at each corner of a polygon.
+    """Unit normals, and the number of the normal at each corner of each polygon.
 
     `vectors` is (normals, 3) float32, `numbers` (polygons, 4) intp: rows of `vectors`. Both are stored by
     columns, so that `.T` is the contiguous array that the renderer works on.
@@ -267,9 +57,9 @@ def node_normals(
     crease_angle: float = CREASE_ANGLE,
     scratch: Scratch = np.empty,
 ) -> NodeNormals:
-    """The normals at the corners of the polygons; a polygon without area adds nothing to any.
+    """The normals at the corners of the polygons; a polygon without area adds nothing.
 
-    `scratch` gives the arrays to work in, and those of the result: for a large mesh files may back them.
+    `scratch` makes the arrays of the work and of the result: for a large mesh files may back them.
     """
     coordinate_rows, node_rows = np.ascontiguousarray(coordinates.T), np.ascontiguousarray(node_numbers.T)
     normals, angles = _normals_and_angles(coordinate_rows, node_rows, scratch)
@@ -383,32 +173,207 @@ def _corner_angles(corners: Floats) -> Floats:
     return angles
 
 
-# -------------------- used_rows
-# Which rows of a table another table uses, and how far they reach; no table is copied.
+# -------------------- fans
+# Two corners at the same place share a normal where their polygons meet in an edge that is no crease, and
+# so on from polygon to polygon around the place. Corner 4 p + c is corner c of polygon p. Corners are
+# worked on in chunks, so that a large mesh needs no more than a few numbers a corner.
 
-AT_ONCE_2: Final = 1 << 16
 
+def places_of_corners(coordinate_rows: Floats, node_rows: Indices, scratch: Scratch = np.empty) -> Indices:
+    """A number for each corner, (4, polygons), equal for corners at the same place.
 
-def used_rows(numbers: Indices, count: int) -> Booleans:
-    """Which of `count` rows appear in the numbers, (k, n), which are never copied whole.
-
-    >>> used_rows(np.array([[0, 3], [1, 3]]), 5).tolist()
-    [True, True, False, True, False]
+    `coordinate_rows` is (3, nodes); `node_rows`, (4, polygons), holds the node numbers of the polygons.
     """
-    used = np.zeros(count, np.bool_)
-    for chunk in chunks(numbers.shape[1], AT_ONCE_2):
-        used[numbers[:, chunk]] = True
-    return used
+    if not _some_share_a_place(coordinate_rows, scratch):
+        return node_rows
+    order = np.lexsort(coordinate_rows)
+    moved = np.zeros(len(order), np.bool_)
+    for row in coordinate_rows:
+        moved[1:] |= np.diff(row[order]) != 0
+    places = np.empty(len(order), np.intp)
+    places[order] = np.cumsum(moved)
+    of_corners: Indices = scratch(node_rows.shape, np.intp)
+    for chunk in chunks(node_rows.shape[1], AT_ONCE):
+        of_corners[:, chunk] = places.take(node_rows[:, chunk])
+    return of_corners
 
 
-def used_bounds(rows: Floats, numbers: Indices) -> tuple[Floats, Floats]:
-    """The least and the largest of each of some rows, (k, count), where numbers use it; infinite if none do.
+def _some_share_a_place(coordinate_rows: Floats, scratch: Scratch) -> bool:
+    """Whether two nodes may be at the same place: compares hashes of the coordinates.
 
-    >>> low, high = used_bounds(np.array([[5.0, 2.0, 3.0]]), np.array([[0, 2]]))
-    >>> low.tolist(), high.tolist()
-    ([3.0], [5.0])
+    Measured: it takes a fifth of the time of sorting the nodes.
     """
-    used = used_rows(numbers, rows.shape[1])
-    low: Floats = rows.min(axis=1, where=used, initial=np.inf)
-    high: Floats = rows.max(axis=1, where=used, initial=-np.inf)
-    return low, high
+    hashes = scratch(coordinate_rows.shape[1:], np.uint64)
+    for chunk in chunks(len(hashes), AT_ONCE):
+        part = np.zeros(chunk.stop - chunk.start, np.uint64)
+        for row in coordinate_rows:
+            # Add 0 to turn -0 into 0, which is the same place.
+            part ^= (row[chunk] + 0.0).view(np.uint64)
+            part *= MIXER
+            part ^= part >> np.uint64(32)
+        hashes[chunk] = part
+    hashes.sort()
+    return bool((hashes[1:] == hashes[:-1]).any())
+
+
+def fans_of_corners(
+    places: Indices,
+    part_numbers: Indices,
+    normals: Floats,
+    crease_angle: float,
+    scratch: Scratch = np.empty,
+) -> tuple[Indices, list[Indices]]:
+    """The fan of each corner, (corners,), and pairs of fans with opposite winding, each (2, pairs).
+
+    `places`, (4, polygons), has the place of each corner; `normals`, (3, polygons), holds unit vectors, or
+    zeros. Fans are numbered from 0 in the order of their first corners.
+    """
+    parents = scratch((places.size,), np.intp if places.size < LARGE else np.int32)
+    for chunk in chunks(places.shape[1], AT_ONCE):
+        corners = np.arange(4 * chunk.start, 4 * chunk.stop)
+        # Unite the last two corners of a triangle, which repeats its last node.
+        corners[3::4] -= places[2, chunk] == places[3, chunk]
+        parents[4 * chunk.start : 4 * chunk.stop] = corners
+    least_cosine = np.cos(np.radians(crease_angle)) - 1e-9
+    opposite_corners = []
+    for one, other in _corners_at_shared_edges(places, part_numbers, scratch):
+        # Two polygons have opposite winding where both run along the shared edge in the same direction; then
+        # compare one normal with the reverse of the other.
+        opposite = places[one & 3, one >> 2] == places[other & 3, other >> 2]
+        cosine = (np.take(normals, one >> 2, axis=1) * np.take(normals, other >> 2, axis=1)).sum(axis=0)
+        np.negative(cosine, out=cosine, where=opposite)
+        smooth = cosine >= least_cosine
+        # Unite the corners at both ends of the edge, unless it is a crease.
+        ends, other_ends = np.stack([one, _next_corner(one)]), np.stack([other, _next_corner(other)])
+        same, reversed_ = np.flatnonzero(smooth & ~opposite), np.flatnonzero(smooth & opposite)
+        unite(parents, ends[:, same].ravel(), other_ends[::-1, same].ravel())
+        if len(reversed_):
+            opposite_corners.append(np.stack([ends[:, reversed_].ravel(), other_ends[:, reversed_].ravel()]))
+    fans = group_numbers(parents, scratch)
+    return fans, [fans[pairs] for pairs in opposite_corners]
+
+
+def _corners_at_shared_edges(
+    places: Indices, part_numbers: Indices, scratch: Scratch
+) -> Iterator[tuple[Indices, Indices]]:
+    """Pairs of corners whose outgoing edges join the same two places in the same part, chunk by chunk.
+
+    Where more than two polygons share an edge, each is paired with the next in the polygon table.
+    """
+    several_parts = bool((part_numbers != part_numbers[:1]).any())
+    for keys, edges in _edges(places, scratch):
+        # Sort the edges so that equal edges of one part become neighbors.
+        if several_parts:
+            polygons = np.repeat(np.arange(places.shape[1]), 4) if edges is None else edges >> 2
+            order = np.lexsort((part_numbers[polygons], keys))
+        else:
+            order = np.argsort(keys, kind="stable")
+        for first in range(int(np.count_nonzero(keys < 0)), len(order), AT_ONCE):
+            rows = order[first : first + AT_ONCE + 1]
+            key, corners = keys[rows], rows if edges is None else edges[rows]
+            shared = key[1:] == key[:-1]
+            if several_parts:
+                part = part_numbers[corners >> 2]
+                shared &= part[1:] == part[:-1]
+            shared = np.flatnonzero(shared)
+            yield corners[shared], corners[shared + 1]
+
+
+def _edges(places: Indices, scratch: Scratch) -> Iterator[tuple[Numbers, Indices | None]]:
+    """The edges in divisions: a key that does not depend on their direction, and their first corners.
+
+    Edges without length have the key -1. The corners of a division are in order, and no key is in two
+    divisions. A single division has None for its corners: key k belongs to corner k.
+    """
+    place_count = int(places.max(initial=-1)) + 1
+    count = min(-(-places.size // EDGES_AT_ONCE), MOST_DIVISIONS)
+    if count <= 1:
+        all_keys = np.empty((places.shape[1], 4), np.int64)
+        for chunk in chunks(len(all_keys), AT_ONCE):
+            start = places[:, chunk]
+            all_keys[chunk] = _keys(start, np.roll(start, -1, axis=0), place_count).T
+        yield all_keys.ravel(), None
+        return
+    # Number the divisions by the lower place of an edge.
+    divisions = scratch((places.size,), np.uint8)
+    for chunk in chunks(places.shape[1], AT_ONCE):
+        start = places[:, chunk]
+        lower = np.minimum(start, np.roll(start, -1, axis=0))
+        divisions[4 * chunk.start : 4 * chunk.stop] = (lower * count // place_count).T.ravel()
+    for number in range(count):
+        corners = np.concatenate(
+            [
+                np.flatnonzero(divisions[chunk] == number) + chunk.start
+                for chunk in chunks(len(divisions), EDGES_AT_ONCE)
+            ]
+        )
+        keys = np.empty(len(corners), np.int64)
+        for chunk in chunks(len(corners), AT_ONCE):
+            some = corners[chunk]
+            start, end = places[some & 3, some >> 2], places[(some + 1) & 3, some >> 2]
+            keys[chunk] = _keys(start, end, place_count)
+        yield keys, corners
+
+
+def _keys(start: Indices, end: Indices, place_count: int) -> Numbers:
+    """A key for each edge from one place to another, the same both ways; -1 where they are the same."""
+    keys: Numbers = np.minimum(start, end) * np.int64(place_count) + np.maximum(start, end)
+    keys[start == end] = -1
+    return keys
+
+
+def _next_corner(corners: Indices) -> Indices:
+    """The next corner of each corner's polygon."""
+    return (corners & ~3) | ((corners + 1) & 3)
+
+
+# -------------------- union-find
+# Every item has a parent, a lower item of its group; the root of a group is its lowest item and its own
+# parent. At first every item is a root, as in `np.arange`. All functions work on many items at once.
+
+
+def unite(parents: Indices, one: Indices, other: Indices) -> None:
+    """Unite the groups of each pair of items; `parents` is changed in place."""
+    while len(one):
+        # Drop the pairs that are already in one group.
+        one, other = roots_of(parents, np.concatenate([one, other])).reshape(2, -1)
+        apart = np.flatnonzero(one != other)
+        one, other = np.take(one, apart), np.take(other, apart)
+        # Make the lower root the parent of the higher one. Where several pairs share the higher root, the
+        # lowest parent is taken and the other pairs try again.
+        np.minimum.at(parents, np.maximum(one, other), np.minimum(one, other))
+
+
+def group_numbers(parents: Indices, scratch: Scratch = np.empty) -> Indices:
+    """The group of each item; groups are numbered from 0 in the order of their roots."""
+    groups: Indices = scratch(parents.shape, parents.dtype.type)
+    count = 0
+    for chunk in chunks(len(parents), AT_ONCE):
+        items = np.arange(chunk.start, chunk.stop)
+        is_root = parents[chunk] == items
+        numbers = np.cumsum(is_root)
+        groups[chunk] = numbers + (count - 1)
+        count += int(numbers[-1])
+        # A root is the lowest item of its group, so its number is already known.
+        others = items[~is_root]
+        groups[others] = groups[roots_of(parents, others)]
+    return groups
+
+
+def united_items(parents: Indices) -> Indices:
+    """The items that are not the root of their group, ascending."""
+    parts = [
+        np.flatnonzero(parents[chunk] != np.arange(chunk.start, chunk.stop)) + chunk.start
+        for chunk in chunks(len(parents), AT_ONCE)
+    ]
+    return np.concatenate([np.empty(0, np.intp), *parts])
+
+
+def roots_of(parents: Indices, items: Indices) -> Indices:
+    """The root of each item, which becomes its parent (path compression)."""
+    ancestors = np.take(parents, items)
+    while True:
+        higher = np.take(parents, ancestors)
+        if (higher == ancestors).all():
+            return higher
+        parents[items] = ancestors = higher

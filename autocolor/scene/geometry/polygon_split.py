@@ -14,16 +14,16 @@ from autocolor.arrays import Booleans, Floats, Indices
 from autocolor.errors import InputError
 
 MOST_CORNERS: Final = 1000
-"""Assumed: corners of one polygon; the time for ear clipping grows with their square."""
+"""Limit: corners of one polygon; the time for ear clipping grows with their square."""
 
 MOST_CLIPPING: Final = 200_000_000
-"""Assumed: the sum of squared corner counts of all clipped polygons; some minutes in the worst case."""
+"""Limit: the sum of squared corner counts of all clipped polygons; some minutes in the worst case."""
 
 Point = tuple[float, float]
 
 
 def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> tuple[Indices, Indices]:
-    """The pieces, (n, 4), and the index of each one's polygon, (n,).
+    """The pieces, (n, 4), and the index of the polygon of each piece, (n,).
 
     A piece is a quad, or a triangle that repeats its last node. The pieces are in polygon order; polygons
     with fewer than three corners have none. Raises InputError if there are too many large polygons with
@@ -31,7 +31,7 @@ def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> tu
     """
     for sides in (3, 4):
         if len(counts) and (counts == sides).all():
-            # Measured: where all polygons have the same number of sides, half the time of what follows.
+            # Measured: if all polygons have the same number of sides, this takes half the time.
             by_column = np.empty((4, len(counts)), np.intp)
             by_column[:sides] = corners.reshape(-1, sides).T
             by_column[3] = by_column[sides - 1]
@@ -66,15 +66,13 @@ def split_polygons(coordinates: Floats, corners: Indices, counts: Indices) -> tu
     return np.concatenate(pieces)[order], owner[order]
 
 
-def _in_their_planes(
-    points: Floats,
-) -> tuple[Floats, Booleans]:
-    """The polygons of (n, corners, 3) projected to (n, corners, 2), counterclockwise; which are convex."""
+def _in_their_planes(points: Floats) -> tuple[Floats, Booleans]:
+    """Polygons, (n, corners, 3), projected to (n, corners, 2), counterclockwise; whether each is convex."""
     size = np.ptp(points, axis=1).max(axis=1)
     size[size == 0] = 1.0
     points = (points - points[:, :1]) / size[:, None, None]
     normals = np.cross(points, np.roll(points, -1, axis=1)).sum(axis=1)
-    # Project along the axis that keeps most of the area, from the side where the corners turn left.
+    # Project along the axis that preserves most of the area, from the side where the corners turn left.
     rows = np.arange(len(points))
     axis = np.abs(normals).argmax(axis=1)
     x = points[rows, :, (axis + 1) % 3]
@@ -90,8 +88,8 @@ def _in_their_planes(
 def clipped_ears(points: list[Point]) -> list[tuple[int, int, int, int]]:
     """The pieces of one counterclockwise polygon by ear clipping, as indices of its points.
 
-    All but the last are triangles. A simple polygon always has an ear; where a self-intersecting one has
-    none left, its remaining corners are clipped in order.
+    All but the last are triangles. A simple polygon always has an ear. If a self-intersecting polygon has no
+    ear left, its remaining corners are clipped in order.
     """
     rows = list(range(len(points)))
     pieces = []

@@ -1,4 +1,4 @@
-"""Grips: what can be taken hold of in the three views, and the scene after it was put elsewhere."""
+"""The points of the eye and the lights that can be moved in the three views, and their handles."""
 
 from __future__ import annotations
 
@@ -20,14 +20,17 @@ LIGHT: Final = "light"
 AIM: Final = "aim"
 DIRECTION: Final = "direction"
 FLAP: Final = "flap"
-"""What a grip moves."""
+"""The kinds of movable points."""
 
 BETWEEN: Final = 14
-"""Assumed: elements or lines from one place where the line of a flap can be taken hold of to the next."""
+"""Assumed: elements or lines between neighboring handles along the line of a flap."""
 
 
-class Grip(NamedTuple):
-    """What is moved, in a view by its name: the eye, its target, or something of a light."""
+class MovablePoint(NamedTuple):
+    """A point that can be moved in a view: the eye, its target, or a point of a light.
+
+    `side` is the name of the view. A flap has an axis and an end.
+    """
 
     what: str
     side: str = ""
@@ -37,7 +40,7 @@ class Grip(NamedTuple):
 
     @property
     def label(self) -> str:
-        """What the message line calls it."""
+        """Its name in the message line."""
         if not self.light:
             return self.what
         if self.what == FLAP:
@@ -45,7 +48,7 @@ class Grip(NamedTuple):
         return self.light if self.what == LIGHT else f"{self.light}: {self.what}"
 
     def point_in(self, scene: Scene, views: OrthographicViews) -> Vector | None:
-        """The point that it stands for; None if it is gone."""
+        """Where it is in a scene; None if the scene does not have it."""
         if self.what == EYE:
             return scene.view.eye
         if self.what == TARGET:
@@ -60,7 +63,7 @@ class Grip(NamedTuple):
         return arrow_end(views, light)
 
     def put(self, scene: Scene, point: Vector) -> Scene:
-        """The scene with what it moves at a point. An end of a flap does not pass the other one."""
+        """The scene with it moved to a point. An end of a flap does not pass the other end."""
         if self.what == EYE:
             return scene.with_view(eye=point)
         if self.what == TARGET and scene.view.target is not None:
@@ -80,63 +83,63 @@ class Grip(NamedTuple):
         return scene.with_light(self.light, flaps=flaps)
 
 
-def grip_of(handle: Handle) -> Grip:
-    """What a handle of this screen moves."""
-    assert isinstance(handle.key, Grip)
+def movable_of(handle: Handle) -> MovablePoint:
+    """The point that a handle of this screen moves."""
+    assert isinstance(handle.key, MovablePoint)
     return handle.key
 
 
 def handles_in(scene: Scene, views: OrthographicViews, chosen: str) -> list[Handle]:
-    """Everything that can be taken hold of; what is chosen comes last, and goes before all others.
+    """All handles. The chosen light or eye comes last: of handles at one place, the last is grabbed.
 
     `chosen` is the name of a light, or empty for the eye.
     """
-    eye = [*_handles(Grip(TARGET), scene, views), *_handles(Grip(EYE), scene, views)]
-    found = eye if chosen else []
+    eye = [*_handles(MovablePoint(TARGET), scene, views), *_handles(MovablePoint(EYE), scene, views)]
+    handles = eye if chosen else []
     for light in sorted(scene.lights, key=lambda each: each.name == chosen):
         if light.name == chosen:
-            found += _handles_of_flaps(light, views)
+            handles += _handles_of_flaps(light, views)
         if light.axis is not None:
             what = AIM if light.aim is not None else DIRECTION
-            found += _handles(Grip(what, light=light.name), scene, views)
-        found += _handles(Grip(LIGHT, light=light.name), scene, views)
-    return found if chosen else found + eye
+            handles += _handles(MovablePoint(what, light=light.name), scene, views)
+        handles += _handles(MovablePoint(LIGHT, light=light.name), scene, views)
+    return handles if chosen else handles + eye
 
 
-def _handles(grip: Grip, scene: Scene, views: OrthographicViews) -> Iterator[Handle]:
-    """The handles of something in the views that show it."""
-    point = grip.point_in(scene, views)
+def _handles(movable: MovablePoint, scene: Scene, views: OrthographicViews) -> Iterator[Handle]:
+    """The handles of a point in the views that show it."""
+    point = movable.point_in(scene, views)
     assert point is not None
-    label = f"{grip.label}: {told(point)}"
+    label = f"{movable.label}: {point_text(point)}"
     for side in SIDES:
         element, line = (round(each) for each in views.position(side, point))
         if side.area.has(element, line):
-            yield Handle(grip._replace(side=side.name), element, line, label)
+            yield Handle(movable._replace(side=side.name), element, line, label)
 
 
 def _handles_of_flaps(light: Light, views: OrthographicViews) -> Iterator[Handle]:
     """The handles along the lines of a light's flaps."""
     for side in SIDES:
         for mark in flap_marks(views, side, light):
-            grip = Grip(FLAP, side.name, light.name, AXES[mark.axis], mark.end)
+            movable = MovablePoint(FLAP, side.name, light.name, AXES[mark.axis], mark.end)
             left, top, right, bottom = (round(each) for each in mark.stroke[0])
             for along in range(BETWEEN // 2, max(right - left, bottom - top), BETWEEN):
                 is_level = mark.axis == side.up
                 place = (left + along, top) if is_level else (left, top + along)
-                yield Handle(grip, *place, grip.label)
+                yield Handle(movable, *place, movable.label)
 
 
-def told(point: Vector) -> str:
-    """A point as the message line tells it.
+def point_text(point: Vector) -> str:
+    """The coordinates of a point, for the message line.
 
-    >>> told((4.02, -6.1, 5.0))
+    >>> point_text((4.02, -6.1, 5.0))
     'x 4.02  y -6.1  z 5'
     """
     return "  ".join(f"{axis} {value:.6g}" for axis, value in zip(AXES, point, strict=True))
 
 
 def target_in(scene: Scene) -> Vector:
-    """The target of the view; without one, the point at which it is as deep as the object."""
+    """The target of the view; without a target, the point of the line of sight as deep as the object."""
     x, y, z = target_of(scene).tolist()
     return x, y, z
 

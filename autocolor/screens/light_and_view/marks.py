@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from autocolor.checks import Vector
 from autocolor.scene.lights import Light
 from autocolor.scene.scene import Scene
 from autocolor.scene.view import View
-from autocolor.screens.light_and_view.object_lines import Kept, ObjectStrokes
+from autocolor.screens.light_and_view.object_lines import Cached, ObjectStrokes
 from autocolor.screens.light_and_view.orthographic_views import AXES, PICTURE_ASPECT, OrthographicViews, Side
 from autocolor.widgets.items import (
     BLUE,
@@ -40,7 +41,6 @@ from autocolor.widgets.items import (
 )
 from ramtek_emu import instructions
 
-# -------------------- arrows
 # Arrows on the screen: a shaft and a head that is the same size however long the shaft is.
 
 HEAD: Final = 7.0
@@ -71,7 +71,6 @@ def arrow(start: tuple[float, float], end: tuple[float, float]) -> Floats:
     return together([shaft, joined(head)])
 
 
-# -------------------- eye_marks
 # The marks of the eye in the three views: an eye, its view direction, and the edges of the picture.
 #
 # Paper: Figure 5, "Each view shows the eye position and view direction". Assumed: the edges of the picture
@@ -104,7 +103,7 @@ def eye_marks(
     picture = together([between(np.broadcast_to(at, (4, 2)), corners), joined([*corners, corners[0]])])
     eye = together([joined(LIDS + at), joined(PUPIL + at)])
     direction = arrow(at, views.position(side, target))
-    return EyeMarks(*(clipped(strokes, side.area) for strokes in (eye, direction, picture)))
+    return EyeMarks(clipped(eye, side.area), clipped(direction, side.area), clipped(picture, side.area))
 
 
 def picture_corners(view: View, target: Vector, aspect: float = PICTURE_ASPECT) -> Floats:
@@ -119,7 +118,6 @@ def picture_corners(view: View, target: Vector, aspect: float = PICTURE_ASPECT) 
     return np.array(view.eye) + depth * np.array(rays)
 
 
-# -------------------- cone_outline
 # The outline of a light's cone as it is seen in one of the three views.
 #
 # The cone is drawn as far as the end of the arrow: its rim is a circle of points at that distance from the
@@ -180,7 +178,6 @@ def _perpendicular(axis: Floats) -> tuple[Floats, Floats]:
     return one, np.cross(axis, one)
 
 
-# -------------------- light_marks
 # The marks of a light in the three views: its cross, the arrow to its aim, its cone and its flaps.
 #
 # Paper: Figure 5, "the position and direction of each light. Point source lights would be shown with only a
@@ -229,7 +226,7 @@ def light_marks(views: OrthographicViews, side: Side, light: Light) -> LightMark
         if light.cone_angle is not None:
             cone = together([joined(each) for each in cone_outline(views, side, light, end)])
     cross = CROSS + np.tile(at, 2)
-    return LightMarks(*(clipped(strokes, side.area) for strokes in (cross, shaft, cone)))
+    return LightMarks(clipped(cross, side.area), clipped(shaft, side.area), clipped(cone, side.area))
 
 
 def flap_marks(views: OrthographicViews, side: Side, light: Light) -> tuple[FlapMark, ...]:
@@ -257,7 +254,6 @@ def flap_marks(views: OrthographicViews, side: Side, light: Light) -> tuple[Flap
     return tuple(marks)
 
 
-# -------------------- numerals
 # The numerals beside the lights in the three views, each where it hides as little as can be.
 
 REACH: Final = 4
@@ -313,8 +309,8 @@ def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> lis
     `taken` are areas that should stay free, as far as can be.
     """
     seen = [cross for cross in crosses if area.has(cross.element, cross.line)]
-    filled = [*taken, *(cross.area for cross in seen)]
-    found = []
+    filled = [*taken, *[cross.area for cross in seen]]
+    placed = []
     for cross in seen:
         best, least = None, math.inf
         for right, down in PLACES:
@@ -322,15 +318,15 @@ def numerals(crosses: Sequence[Cross], area: Area, taken: Sequence[Area]) -> lis
             if not area.covers(place):
                 continue
             toward = (right * cross.arrow[0] + down * cross.arrow[1]) / math.hypot(right, down)
-            burden = sum(place.overlaps(other) for other in filled) + (toward > NEAR_ARROW) / 2
+            burden = sum(map(place.overlaps, filled)) + (toward > NEAR_ARROW) / 2
             if burden < least:
                 best, least = place, burden
             if least == 0:
                 break
         if best is not None:
-            found.append(Numeral(cross, best))
+            placed.append(Numeral(cross, best))
             filled.append(best)
-    return found
+    return placed
 
 
 Numbered = tuple[int, Light]
@@ -342,11 +338,11 @@ class SideItems:
 
     def __init__(self, side: Side) -> None:
         self._side = side
-        self._eye: Kept[EyeMarks] = Kept()
-        self._still: Kept[list[Item]] = Kept()
-        self._chosen: Kept[list[Item]] = Kept()
-        self._numerals: Kept[list[Numeral]] = Kept()
-        self._lights: Kept[tuple[Light, ...]] = Kept()
+        self._eye: Cached[EyeMarks] = Cached()
+        self._still: Cached[list[Item]] = Cached()
+        self._chosen: Cached[list[Item]] = Cached()
+        self._numerals: Cached[list[Numeral]] = Cached()
+        self._lights: Cached[tuple[Light, ...]] = Cached()
         title = f"{side.name}   {AXES[side.right]} >  {AXES[side.up]} ^"
         self._label = text(title, side.area.left + 8, side.area.top + 4, GRAY)
 
@@ -382,7 +378,7 @@ class SideItems:
             self._label,
             *([] if moved is None else [lines_across(views, side, moved)]),
             *self._still.of(still, views, eye, strokes, bool(ours), *tables),
-            *self._chosen.of(above, views, eye, *(light for _, light in ours)),
+            *self._chosen.of(above, views, eye, *[light for _, light in ours]),
             *self._numeral_items(views, view, others, ours),
         ]
 
@@ -393,16 +389,16 @@ class SideItems:
         side = self._side
         taken = [self._label.area, area_around(joined(LIDS + views.position(side, view.eye)))]
 
-        def found() -> list[Numeral]:
+        def compute() -> list[Numeral]:
             return numerals([cross_of(views, side, *each) for each in others], side.area, taken)
 
-        kept = self._numerals.of(found, views, view, *(part for each in others for part in each))
-        around = [area for cross, area in kept] + [cross.area for cross, _ in kept]
+        placed = self._numerals.of(compute, views, view, *chain.from_iterable(others))
+        around = [area for cross, area in placed] + [cross.area for cross, _ in placed]
         own = numerals([cross_of(views, side, *each) for each in ours], side.area, [*taken, *around])
         is_on = {number: light.on for number, light in others}
         return [
-            *(numeral_item(each, WHITE if is_on[each.cross.number] else GRAY) for each in kept),
-            *(numeral_item(each, YELLOW) for each in own),
+            *[numeral_item(each, WHITE if is_on[each.cross.number] else GRAY) for each in placed],
+            *[numeral_item(each, YELLOW) for each in own],
         ]
 
 
@@ -454,7 +450,8 @@ def cross_of(views: OrthographicViews, side: Side, number: int, light: Light) ->
     element, line = views.position(side, light.position)
     end, arrow = arrow_end(views, light), (0.0, 0.0)
     if end is not None:
-        right, down = (a - b for a, b in zip(views.position(side, end), (element, line), strict=True))
+        to_element, to_line = views.position(side, end)
+        right, down = to_element - element, to_line - line
         length = math.hypot(right, down)
         # An arrow that points at the viewer or away is in no place's way.
         if length > SHORTEST:
@@ -473,13 +470,13 @@ def lines_across(views: OrthographicViews, side: Side, point: Vector) -> Item:
 
 def drawn_items(layers: Mapping[int, Sequence[Floats]]) -> list[Item]:
     """Strokes that are clipped already, by their words, each with the area that they need."""
-    found = []
+    items = []
     for word, parts in layers.items():
         strokes = together(parts)
         if len(strokes):
             stream = instructions.write_segments(rounded(strokes), word).tobytes()
-            found.append(Item(area_around(strokes), stream))
-    return found
+            items.append(Item(area_around(strokes), stream))
+    return items
 
 
 def area_around(strokes: Floats) -> Area:

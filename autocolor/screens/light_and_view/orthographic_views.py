@@ -21,7 +21,6 @@ from autocolor.scene.scene import Scene
 from autocolor.screens.picture.picture_edits import target_of
 from autocolor.widgets.items import Area, between, clipped
 
-# -------------------- areas
 # Where the views of the light and view screen stand.
 
 PICTURE_ASPECT: Final = 640 / 480
@@ -191,7 +190,6 @@ def _scale_within(scale: float, center: Vector) -> float:
     return min(max(scale, 1 / COARSEST), 1 / finest)
 
 
-# -------------------- shown_points
 # The points of a scene that the three views show when they are scaled to all of it.
 
 

@@ -46,7 +46,7 @@ PERIOD: Final = 5
 
 
 class HandleKey(NamedTuple):
-    """What a handle moves of a light. Those of one rim are told apart by their line and element."""
+    """What a handle moves of a light. Those of one rim are message_of apart by their line and element."""
 
     light: str
     what: Literal["highlight"] | Rim
@@ -113,7 +113,7 @@ class LightHandles:
         if key.what == HIGHLIGHT:
             points = session.studio.sight.points
             self._highlight = _source_of(light), points, session.surface_name, (line, element)
-        session.tell(told(light, key.what))
+        session.tell(message_of(light, key.what))
 
     def _seen_light(self) -> Light | None:
         """The chosen light where it is, if it is on and the finished picture of the scene is shown."""
@@ -126,16 +126,16 @@ class LightHandles:
         """The handle at the highlight on the chosen surface, else on any other, if it is in the area."""
         studio, surface = self.session.studio, self.session.surface_name
         points = studio.sight.points
-        known = self._highlight
+        cached = self._highlight
         source = _source_of(light)
-        if known is None or known[0] != source or known[1] is not points or known[2] != surface:
+        if cached is None or cached[0] != source or cached[1] is not points or cached[2] != surface:
             if self.session.moving:
                 return []
             place = (surface and studio.highlight_of(light.name, surface)) or studio.highlight_of(light.name)
-            known = self._highlight = source, points, surface, place
-        if known[3] is None:
+            cached = self._highlight = source, points, surface, place
+        if cached[3] is None:
             return []
-        line, element = known[3]
+        line, element = cached[3]
         handle = Handle(HandleKey(light.name, HIGHLIGHT), element, line, f"highlight of {light.name}")
         return [handle] if self._area.has(element, line) else []
 
@@ -144,16 +144,16 @@ class LightHandles:
         sight, area = self.session.studio.sight, self._area
         if not self._has_rims:
             return (), ()
-        known = self._rims
-        if known is None or known[0] != light or known[1] is not sight.points:
+        cached = self._rims
+        if cached is None or cached[0] != light or cached[1] is not sight.points:
             handles: list[Handle] = []
             items: list[Item] = []
             for rim, pixels in rims(sight, light.name).items():
                 seen = pixels[(pixels <= (area.bottom, area.right)).all(axis=1)]
                 handles += rim_handles(light.name, rim, seen)
                 items += rim_items(seen, area)
-            known = self._rims = light, sight.points, handles, items
-        return known[2:]
+            cached = self._rims = light, sight.points, handles, items
+        return cached[2:]
 
 
 def rim_handles(light: str, rim: Rim, pixels: Indices) -> list[Handle]:
@@ -198,7 +198,7 @@ def name_of(rim: Rim) -> str:
     return f"half-space {rim.half_space}" if isinstance(rim, Plane) else f"flap {rim[0]}, {rim[1]},"
 
 
-def told(light: Light, what: Literal["highlight"] | Rim) -> str:
+def message_of(light: Light, what: Literal["highlight"] | Rim) -> str:
     """What the message line says of a light while something of it is placed."""
     if what == HIGHLIGHT:
         places = zip("xyz", light.position, strict=True)

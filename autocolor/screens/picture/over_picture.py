@@ -21,7 +21,6 @@ from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.widget import Choice
 
-# -------------------- legend_items
 # The legend of a scalar as items of a page.
 
 
@@ -56,8 +55,8 @@ class OverPicture(Screen):
         is_beside_menu = self.has_menu or self.is_under_menu
         if self._legend is None or self._legend[:2] != (image, is_beside_menu):
             end, at_left = (MENU.left, self.has_room_at_left) if is_beside_menu else (None, False)
-            found = legend(image, end, at_left)
-            self._legend = image, is_beside_menu, found, legend_items(found)
+            drawn = legend(image, end, at_left)
+            self._legend = image, is_beside_menu, drawn, legend_items(drawn)
         return self._legend[3]
 
     def loads(self) -> Sequence[tuple[int, Bytes]]:
@@ -66,7 +65,7 @@ class OverPicture(Screen):
 
     def hint(self, element: int, line: int) -> str:
         pointed = self._pointed(element, line)
-        return self.help if pointed is None else pointed.told
+        return self.help if pointed is None else pointed.message
 
     def pick(self, gesture: Gesture) -> None:
         session = self.session
@@ -79,11 +78,11 @@ class OverPicture(Screen):
             return
         session.choose_surface(pointed.surface)
         session.part_name = pointed.part
-        session.tell(pointed.told)
+        session.tell(pointed.message)
 
     def _is_on_legend(self, gesture: Gesture) -> bool:
-        found = None if self._legend is None else self._legend[2]
-        return found is not None and found.has(gesture.element, gesture.line)
+        drawn = None if self._legend is None else self._legend[2]
+        return drawn is not None and drawn.has(gesture.element, gesture.line)
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
         if start.button == MIDDLE or start.shift:
@@ -108,7 +107,7 @@ class OverPicture(Screen):
         part = "" if seen is None else seen.part
         bands, scalar = studio.image.bands.get(name), studio.scene.scalar
         if bands is None or scalar is None:
-            what = "level" if studio.image.normals is None else "normal"
+            what = studio.image.meaning
             return Pointed(name, part, f"{what} {word - first} of {levels - 1}")
         values, block = studio.image.picture.scalar, studio.image.block
         value = float("nan") if values is None else float(values[line // block, element // block])
@@ -124,21 +123,20 @@ class Pointed(NamedTuple):
     read: str
 
     @property
-    def told(self) -> str:
+    def message(self) -> str:
         """The same, as the message line says it."""
         names = " - ".join(dict.fromkeys(name for name in (self.part, self.surface) if name))
         return f"{names}, {self.read}"
 
 
-# -------------------- surface_row
 # The row that chooses a surface, in the menus of all screens that are about one.
 
 
-def surface_row(session: Session, told: str, choose: Callable[[str], object] | None = None) -> Choice:
+def surface_row(session: Session, help: str, choose: Callable[[str], object] | None = None) -> Choice:
     """A row with the surfaces in use; `choose` is the session's own unless another is given."""
     return Choice(
         "surface",
-        told,
+        help,
         names=tuple(session.studio.level_ranges),
         present=session.surface_name,
         choose=session.choose_surface if choose is None else choose,

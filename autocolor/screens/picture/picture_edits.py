@@ -15,7 +15,6 @@ from autocolor.scene.scene import Exposure, Scene
 from autocolor.scene.view import View
 from autocolor.screens.session import Session
 
-# -------------------- color_cycle
 # The object colors that a key goes through: those that surfaces are given in turn, and a surface's own.
 
 
@@ -33,7 +32,6 @@ def color_after(present: str, own: str, step: int) -> str:
     return colors[place % len(colors)]
 
 
-# -------------------- orbit
 # Orbiting: views with the eye moved around its target, closer to it, farther away or beside it.
 #
 # Some views have names: those from the sides of the object.

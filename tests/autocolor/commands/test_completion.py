@@ -10,8 +10,8 @@ from autocolor import read_scene, render, write_picture
 from autocolor.commands import completion
 from autocolor.commands.autocolor import autocolor
 from autocolor.commands.completion import narrowed
-from autocolor.files.meshes.formats import mesh_formats, mesh_suffixes
-from autocolor.files.scenes.formats import scene_suffixes
+from autocolor.files.formats import MESH_FORMATS
+from autocolor.files.scene_sources import scene_and_mesh_suffixes
 from tests.autocolor.commands.conftest import Run
 
 
@@ -37,10 +37,10 @@ def crowded(folder: Path) -> Path:
 
 def test_the_files_and_folders_of_all_formats_are_completed(folder: Path) -> None:
     (folder / "all").mkdir()
-    expected = {f"all/a{suffix}" for suffix in (*scene_suffixes(), *mesh_suffixes())}
+    expected = {f"all/a{suffix}" for suffix in scene_and_mesh_suffixes()}
     for name in expected:
         (folder / name).touch()
-    for each in mesh_formats():
+    for each in MESH_FORMATS:
         for name in each.in_folder:
             (folder / "all" / each.name).mkdir(exist_ok=True)
             (folder / "all" / each.name / name).touch()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from autocolor import read_scene, render, write_picture
-from autocolor.mapping.display_image import display_image
+from autocolor.images import display_image
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.meshes import wall_scene

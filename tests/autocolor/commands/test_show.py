@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from threading import Event, Thread
+from types import SimpleNamespace
 
 import pytest
 
@@ -98,10 +99,10 @@ def test_a_display_that_is_not_there_is_told(folder: Path, run: Run) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends programs without a signal")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 128 + signal.SIGTERM)])
-def test_a_session_that_is_ended_here_is_kept_and_gone_on_with(
-    folder: Path, state: Path, number: int, code: int
+def test_a_session_that_is_ended_by_a_signal_is_recovered(
+    folder: Path, number: int, code: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The display turns the object by TRACK; what was done is there after the signal."""
+    """The joystick turns the object by TRACK, before and after the session is recovered."""
     with TcpServer(Ramtek9300()) as server:
 
         def start(*arguments: str) -> subprocess.Popen[str]:
@@ -113,35 +114,40 @@ def test_a_session_that_is_ended_here_is_kept_and_gone_on_with(
                 text=True,
             )
 
-        def serve(seconds: float) -> None:
-            end = time.monotonic() + seconds
-            while time.monotonic() < end:
-                server.step(0.01)
+        polls = 0
+        state_of = server.display.cursors.state_of
 
-        def is_shown() -> bool:
-            return any(cursor.is_visible for cursor in server.display.cursors.all)
+        def counted(number: int) -> int:
+            nonlocal polls
+            polls += 1
+            return state_of(number)
+
+        monkeypatch.setattr(server.display.cursors, "state_of", counted)
+
+        def serve_polls(process: subprocess.Popen[str]) -> None:
+            """Serve until the program has handled the joystick as it is now."""
+            end, wanted = time.monotonic() + 60, polls + 3
+            while polls < wanted and process.poll() is None:
+                assert time.monotonic() < end
+                server.step(0.01)
 
         for arguments in (("scene", "--set", "ambient=0.3"), ("--recover",)):
             process = start(*arguments)
-            end = time.monotonic() + 30
-            while not is_shown() and time.monotonic() < end:
-                serve(0.1)
-            serve(0.3)
             joystick = server.display.joystick
+            serve_polls(process)
             joystick.move_to(300, 200)
+            serve_polls(process)
             joystick.track = True
-            serve(0.1)
+            serve_polls(process)
             joystick.move_to(340, 210)
-            serve(0.3)
+            serve_polls(process)
             joystick.track = False
-            serve(0.3)
+            serve_polls(process)
             process.send_signal(number)
-            while process.poll() is None:
+            while process.poll() is None or server.busy:
                 server.step(0.01)
-            serve(0.1)
             _, err = process.communicate(timeout=30)
             assert process.returncode == code, err
-            server.display.cursors.hide()
     (left,) = left_sessions()
     history = read_journal(left / JOURNAL).history
     assert len(history.to_undo) == 2
@@ -157,7 +163,7 @@ def test_files_are_in_the_folder_of_the_scene_and_never_in_that_of_the_demo(fold
 
 def place_of(viewer: Viewer, label: str, share: float = 0.5) -> tuple[int, int]:
     """Where a row of the menu is, at a share of its width."""
-    area = next(each.area for each in viewer.board.menu_rows() if each.label == label)
+    area = next(each.area for each in viewer.board.layout.rows if each.label == label)
     return round(area.left + share * area.width), (area.top + area.bottom) // 2
 
 
@@ -334,21 +340,30 @@ def session_with(port: object, address: str, folder: Path) -> None:
 
 
 def test_the_unit_is_polled_at_least_sixty_times_a_second_and_the_program_sleeps(
-    server: Served, tmp_path: Path
+    server: Served, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    now, slept, polls = 100.0, 0.0, 0
+
+    def sleep(seconds: float) -> None:
+        nonlocal now, slept
+        now, slept = now + seconds, slept + seconds
+
     with port_to(server.address) as port:
         viewer = Viewer(car(), port, tmp_path)
-        polls = 0
 
         def update() -> None:
-            nonlocal polls
+            nonlocal now, polls
             polls += 1
-            viewer.session.leaves = time.monotonic() - begin >= 1.0
+            now += 0.25 if polls == 1 else 0.004
+            viewer.session.leaves = now >= 101.25
 
-        begin, worked = time.monotonic(), time.thread_time()
+        clock = SimpleNamespace(monotonic=lambda: now, sleep=sleep)
+        # `show` is a command in its module, which has the same name.
+        monkeypatch.setattr(sys.modules["autocolor.commands.show"], "time", clock)
         attend(viewer, update)
-        assert polls >= 60
-        assert time.thread_time() - worked < 0.5
+    # The first poll, which took a quarter of a second, is not made up for.
+    assert 60 <= polls < 110
+    assert slept > 0.5
 
 
 def test_a_unix_socket_is_addressed_by_its_path(tmp_path: Path) -> None:

@@ -9,8 +9,8 @@ import pytest
 from autocolor import Mesh, image, render, scene_of, write_scene
 from autocolor.commands import view
 from autocolor.commands.validate import COLORS, fault_lines, fault_scene, fault_values
+from autocolor.images import display_image
 from autocolor.journal.history import History
-from autocolor.mapping.display_image import display_image
 from autocolor.mapping.legend import legend
 from autocolor.scene.mesh_faults import KINDS, mesh_faults
 from autocolor.scene.scalar import MeshScalar

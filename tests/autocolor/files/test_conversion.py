@@ -21,12 +21,12 @@ from autocolor.files.conversion import (
     write_folder,
     write_obj,
 )
-from autocolor.files.meshes.formats import HELD, NODE_SCALARS, PARTS, POLYGON_SCALARS, mesh_formats
+from autocolor.files.formats import HELD, MESH_FORMATS, NODE_SCALARS, PARTS, POLYGON_SCALARS
 from autocolor.scene.scalar import NODE, MeshScalar
 from autocolor.scene.surfaces import Surface
 from tests.autocolor.meshes import cube, wall_scene
 
-MESH_OUTPUTS = [each for each in outputs() if each.name in {known.name for known in mesh_formats()}]
+MESH_OUTPUTS = [each for each in outputs() if each.name in {known.name for known in MESH_FORMATS}]
 
 
 def full_mesh() -> Mesh:
@@ -97,7 +97,7 @@ def test_a_name_that_is_too_long_is_left_to_what_writes(tmp_path: Path, name: st
 
 def test_a_scene_file_holds_everything_and_a_mesh_no_lights() -> None:
     assert SCENE.holds == WHOLE_SCENE
-    meshes = {each.name for each in mesh_formats()}
+    meshes = {each.name for each in MESH_FORMATS}
     of_meshes = [each for each in outputs() if each.name in meshes]
     assert of_meshes
     for each in of_meshes:

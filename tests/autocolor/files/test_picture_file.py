@@ -34,7 +34,7 @@ from autocolor import (
 )
 from autocolor.errors import InputError, MissingInputError, OutputError, WriteError
 from autocolor.files.picture_file import PICTURE_FILE, SavedPicture
-from autocolor.mapping.display_image import display_image
+from autocolor.images import display_image
 from autocolor.scene.scalar import MeshScalar
 from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.meshes import cube, grid, wall, wall_scene

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -8,11 +9,16 @@ from typing import Any
 
 import pytest
 
-from autocolor import Scene
+from autocolor import Scene, render, write_picture
 from autocolor.errors import InputError, MissingInputError, UsageError
-from autocolor.files.scene_sources import read_scene, read_scene_with_report
+from autocolor.files.formats import recognized
+from autocolor.files.openable import kind_of
+from autocolor.files.scene_sources import SCENE_FORMATS, read_scene, read_scene_with_report
+from autocolor.files.scene_writing import write_scene
 from autocolor.scene.columns import fields_of
 from autocolor.scene.defaults import MAPPING_FIELDS
+from tests.autocolor.files.store.stores import is_equal, small_scene, small_store
+from tests.autocolor.meshes import wall_scene
 
 CAR = "v 0 0 0\nv 1 0 0\nv 1 1 3\nv 0 1 0\ng hood\nf 1 2 3 4\n"
 
@@ -149,3 +155,57 @@ def test_a_scene_file_that_leaves_out_how_intensities_are_shown_means_the_defaul
         name: default() for name in MAPPING_FIELDS if (default := fields[name].default) is not None
     }
     assert {name: vars(bare)[name] for name in MAPPING_FIELDS} == MAPPING_FIELDS
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "found"),
+    [
+        ("night.TOML", b"", "scene file"),
+        ("car.toml.npz", b"", "picture file"),
+        ("saved", b"PK\x03\x04 and more", "picture file"),
+        ("saved", b"PK\x05\x06", None),
+        ("notes", b'[[mesh]]\nfile = "car.obj"\n', None),
+        ("short", b"PK", None),
+        ("tables.bin", b"SQLite format 3\0", "store"),
+        ("toml", b"", None),
+        (".toml", b"", None),
+        ("car.toml.bak", b"", None),
+    ],
+)
+def test_a_scene_is_known_by_its_suffix_or_its_first_bytes(
+    tmp_path: Path, name: str, data: bytes, found: str | None
+) -> None:
+    (tmp_path / name).write_bytes(data)
+    scene_format = recognized(tmp_path / name, SCENE_FORMATS)
+    assert (scene_format.name if scene_format else None) == found
+
+
+def test_a_picture_file_gives_the_scene_that_was_saved_and_needs_nothing_else(tmp_path: Path) -> None:
+    scene, path = wall_scene(ambient=0.25, name="lit wall"), tmp_path / "wall.npz"
+    write_picture(path, render(scene, 6, 8), scene)
+    for outside in (False, True):
+        report = read_scene_with_report(path, outside=outside)
+        assert (report.repairs, report.created, report.mesh_files) == ((), (), ())
+        assert (report.scene.name, report.scene.ambient) == ("lit wall", 0.25)
+        assert (report.scene.surfaces, report.scene.lights) == (scene.surfaces, scene.lights)
+        assert report.scene.view == scene.view
+        assert report.scene.mesh.coordinates.tolist() == scene.mesh.coordinates.tolist()
+    path.write_bytes(path.read_bytes()[:-1])
+    with pytest.raises(InputError, match=r"^wall\.npz: a picture file must be whole"):
+        read_scene(path)
+
+
+@pytest.mark.parametrize("name", ["scene.sqlite", "scene.db", "SCENE.DB"])
+def test_a_scene_is_written_to_a_store_and_read_from_it_by_its_name(tmp_path: Path, name: str) -> None:
+    path = tmp_path / name
+    write_scene(path, small_scene())
+    assert is_equal(read_scene(path), small_scene())
+    assert kind_of(path) == "store"
+
+
+def test_a_store_of_another_name_is_read_and_gives_its_own_up_axis(tmp_path: Path) -> None:
+    path = tmp_path / "tables.bin"
+    shutil.copy(small_store(tmp_path), path)
+    assert is_equal(read_scene(path), small_scene())
+    with pytest.raises(UsageError, match="up is for mesh files"):
+        read_scene(path, up="y")

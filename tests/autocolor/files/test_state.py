@@ -1,3 +1,5 @@
+"""The state folder, its locks, and the lists of recent colors and files."""
+
 from __future__ import annotations
 
 import os
@@ -11,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import OutputError, WriteError
-from autocolor.files import state as recent
+from autocolor.files import state as state_module
 from autocolor.files.state import (
     COLORS,
     FILES,
@@ -30,13 +32,13 @@ from autocolor.files.state import (
 ROOT = Path(__file__).parents[3]
 
 
-def test_at_first_there_is_nothing_and_no_folder_is_made(state: Path) -> None:
+def test_the_lists_are_empty_at_first_and_no_folder_is_created(state: Path) -> None:
     assert recent_colors() == ()
     assert recent_files() == ()
     assert not state.exists()
 
 
-def test_what_was_used_last_stands_first_and_only_once(tmp_path: Path) -> None:
+def test_the_last_entry_is_first_and_there_once(tmp_path: Path) -> None:
     for color in ((176, 16, 32), (255, 255, 255), (0, 0, 255), (176, 16, 32)):
         note_color(color)
     assert recent_colors() == ((176, 16, 32), (0, 0, 255), (255, 255, 255))
@@ -53,7 +55,7 @@ def test_lists_are_short() -> None:
     assert [path.name for path in recent_files()] == [str(19 - number) for number in range(MOST_FILES)]
 
 
-def test_a_path_is_kept_whole_from_any_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_path_is_absolute_whatever_its_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
     names = ["a b\n.toml", "\N{SNOWMAN}\udcff.obj", "x" * 200]
     for name in names:
@@ -99,13 +101,13 @@ def test_no_bytes_are_an_error(data: bytes) -> None:
     assert isinstance(recent_files(), tuple)
 
 
-def test_right_entries_of_a_damaged_list_are_kept(state: Path) -> None:
+def test_valid_entries_of_a_damaged_list_stay(state: Path) -> None:
     state.mkdir(parents=True)
     (state / COLORS).write_text('["#000001", 3, "#000002", "#000001", "red"]', "utf-8")
     assert recent_colors() == ((0, 0, 1), (0, 0, 2))
 
 
-def test_where_nothing_can_be_written_nothing_is_kept(state: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_list_that_cannot_be_written_stays_as_it_was(state: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     state.parent.mkdir(parents=True)
     state.write_text("a file where the folder should be", "utf-8")
     note_color((255, 0, 0))
@@ -116,7 +118,7 @@ def test_where_nothing_can_be_written_nothing_is_kept(state: Path, monkeypatch: 
         raise WriteError("the disk is full")
 
     note_color((255, 0, 0))
-    monkeypatch.setattr(recent, "write_atomically", full)
+    monkeypatch.setattr(state_module, "write_atomically", full)
     note_color((0, 0, 255))
     assert recent_colors() == ((255, 0, 0),)
     # A folder where a list should be.
@@ -135,7 +137,7 @@ def test_without_a_home_there_are_no_lists(monkeypatch: pytest.MonkeyPatch) -> N
     assert recent_colors() == ()
 
 
-def test_what_no_list_can_hold_is_not_kept() -> None:
+def test_entries_that_no_list_can_have_are_left_out() -> None:
     note_color((300, 0, 0))
     note_file("a\0b")
     note_file("/" + "a" * LONGEST_PATH)
@@ -143,13 +145,13 @@ def test_what_no_list_can_hold_is_not_kept() -> None:
     assert recent_files() == ()
 
 
-def test_the_longest_paths_are_kept() -> None:
+def test_the_longest_paths_fit() -> None:
     for number in range(MOST_FILES):
         note_file("/" + "\N{SNOWMAN}" * (LONGEST_PATH - 2) + str(number))
     assert len(recent_files()) == MOST_FILES
 
 
-def test_a_program_that_hangs_holds_no_other_up(state: Path) -> None:
+def test_a_program_that_hangs_does_not_stop_others(state: Path) -> None:
     state.mkdir(parents=True)
     descriptor = lock_file(state / LOCK)
     assert descriptor is not None
@@ -205,7 +207,7 @@ def test_without_a_home_the_variable_is_named(monkeypatch: pytest.MonkeyPatch) -
     )
 
 
-def test_one_has_the_lock_until_it_is_closed(tmp_path: Path) -> None:
+def test_a_lock_lasts_until_it_is_closed(tmp_path: Path) -> None:
     first = lock_file(tmp_path / "lock")
     assert first is not None
     assert lock_file(tmp_path / "lock") is None

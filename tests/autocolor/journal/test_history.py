@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import UsageError
-from autocolor.journal import history as room
-from autocolor.journal.history import Edit, History, Opened, Variants
-from autocolor.journal.places import Place, Source
+from autocolor.journal import history as history_module
+from autocolor.journal.history import Edit, History, Variants
+from autocolor.journal.places import Opened, ScenePlace, Source
 from tests.autocolor.sessions import car
 
 CAR = car()
@@ -47,7 +47,6 @@ def test_the_steps_of_any_session_give_the_same_history_when_taken_again(
         else:
             assert isinstance(step, Edit)
             assert step.before is again.scene
-            assert step.before is not step.after
             again.take(step.after, step.joins)
     assert state(again) == state(history)
 
@@ -84,7 +83,7 @@ def test_each_place_knows_what_was_saved_of_it() -> None:
     first = history.place
     history.take(SCENES[1])
     source = Source("other.obj")
-    history.open(Opened(SCENES[2], Place(source)), source)
+    history.open(Opened(SCENES[2], ScenePlace(source)), source)
     assert (history.place.source, history.is_changed, history.left_unsaved) == (source, False, ("scene",))
     history.mark_saved({"other.npz": "9f"})
     history.undo()
@@ -116,29 +115,26 @@ def test_there_is_nothing_to_undo_at_the_beginning() -> None:
     assert (history.to_undo, history.to_redo, history.steps) == ((), (), [])
 
 
-# -------------------- test_variants
-# Kept scenes by name, as an immutable value.
-
-ONE = Opened(car(), Place())
+ONE = Opened(car(), ScenePlace())
 
 
 def test_variants_keep_their_order_and_are_values() -> None:
     none = Variants()
-    both = none.with_kept("B", ONE).with_kept("A", ONE)
+    both = none.with_variant("B", ONE).with_variant("A", ONE)
     assert list(both) == ["B", "A"]
     assert both["A"] is ONE
     assert len(none) == 0
-    assert list(Variants({"A": ONE, "B": Opened(car(), Place())}).without("A")) == ["B"]
+    assert list(Variants({"A": ONE, "B": Opened(car(), ScenePlace())}).without("A")) == ["B"]
 
 
 def test_dropping_one_of_two_equal_variants_leaves_the_other() -> None:
-    assert list(Variants().with_kept("A", ONE).with_kept("B", ONE).without("A")) == ["B"]
+    assert list(Variants().with_variant("A", ONE).with_variant("B", ONE).without("A")) == ["B"]
 
 
 def test_a_name_in_use_is_never_given_to_another_scene() -> None:
-    kept = Variants().with_kept("A", ONE)
+    variants = Variants().with_variant("A", ONE)
     with pytest.raises(UsageError) as refusal:
-        kept.with_kept("A", Opened(car(), Place()))
+        variants.with_variant("A", Opened(car(), ScenePlace()))
     assert str(refusal.value) == (
         "a variant must have a name of its own, and 'A' is in use; choose another, or drop that one"
     )
@@ -147,28 +143,28 @@ def test_a_name_in_use_is_never_given_to_another_scene() -> None:
 @pytest.mark.parametrize("name", ["", "x" * 101, 5])
 def test_a_name_is_a_short_text(name: str) -> None:
     with pytest.raises(UsageError, match="a variant must have a name of 1 to 100 characters, not "):
-        Variants().with_kept(name, ONE)
+        Variants().with_variant(name, ONE)
 
 
 def test_an_unknown_name_is_told_with_the_closest() -> None:
     with pytest.raises(UsageError) as refusal:
-        Variants().with_kept("evening", ONE)["evenin"]
+        Variants().with_variant("evening", ONE)["evenin"]
     assert str(refusal.value) == "there is no variant 'evenin'; did you mean 'evening'?"
 
 
 def test_free_names_are_letters_and_then_letters_with_numbers() -> None:
-    kept = Variants()
+    variants = Variants()
     names = []
     for _ in range(54):
-        names.append(kept.free_name())
-        kept = kept.with_kept(names[-1], ONE)
+        names.append(variants.free_name())
+        variants = variants.with_variant(names[-1], ONE)
     assert names[:3] == ["A", "B", "C"]
     assert names[25:28] == ["Z", "A2", "B2"]
     assert names[52:] == ["A3", "B3"]
-    assert kept.without("C").free_name() == "C"
+    assert variants.without("C").free_name() == "C"
 
 
 def test_there_are_not_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(room, "MOST_VARIANTS", 1)
+    monkeypatch.setattr(history_module, "MOST_VARIANTS", 1)
     with pytest.raises(UsageError, match="there must be at most 1 variants; drop one"):
-        Variants().with_kept("A", ONE).with_kept("B", ONE)
+        Variants().with_variant("A", ONE).with_variant("B", ONE)

@@ -1,4 +1,4 @@
-"""Saving scene and picture under names that are told; nothing that was there is lost."""
+"""Saving scene and picture under names that the program chooses; no file is lost."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 import autocolor
 from autocolor import OutputError, Studio, read_picture, read_scene, write_picture
 from autocolor.journal.history import History
-from autocolor.journal.opening import opened
-from autocolor.journal.places import PACKAGE, Place, Source
+from autocolor.journal.places import PACKAGE, ScenePlace, Source, opened
 from autocolor.journal.saving import SavedFiles
 from ramtek_emu import Ramtek9300
 from tests.autocolor.sessions import SMALL, car
@@ -52,7 +51,7 @@ def test_a_scene_of_no_file_is_saved_to_new_names_and_then_to_the_same(work: Pat
     studio.recolor("body", blend=0.25)
     saved = studio.save_session(work)
     assert saved == SavedFiles(work / "coupe" / "scene.toml", work / "coupe.npz")
-    assert saved.told(work) == "saved coupe/scene.toml and coupe.npz".replace("/", os.sep)
+    assert saved.message(work) == "saved coupe/scene.toml and coupe.npz".replace("/", os.sep)
     assert not studio.is_changed
     studio.recolor("body", blend=0.5)
     assert studio.save_session(work) == saved
@@ -70,17 +69,15 @@ def test_new_names_are_those_that_neither_file_has(work: Path, there: str) -> No
     assert (work / there).read_text() == "mine"
 
 
-def test_a_scene_file_keeps_its_comments_and_what_it_held_is_kept_beside_once(
-    scene_file: Path, work: Path
-) -> None:
+def test_a_scene_file_keeps_its_comments_and_has_one_backup(scene_file: Path, work: Path) -> None:
     before = scene_file.read_text()
     studio = studio_of(scene_file.parent)
     studio.recolor("body", blend=0.25)
     saved = studio.save_session(work)
-    kept = scene_file.with_name("scene-2.toml")
-    assert saved == SavedFiles(scene_file, work / "car.npz", (kept,))
-    assert saved.told(work) == f"saved {scene_file} and car.npz; what was there is in {kept}"
-    assert kept.read_text() == before
+    backup = scene_file.with_name("scene-2.toml")
+    assert saved == SavedFiles(scene_file, work / "car.npz", (backup,))
+    assert saved.message(work) == f"saved {scene_file} and car.npz; what was there is in {backup}"
+    assert backup.read_text() == before
     assert scene_file.read_text().startswith(COMMENT)
     assert read_scene(scene_file).surface("body").paint.blend == 0.25
     studio.recolor("body", blend=0.5)
@@ -89,7 +86,7 @@ def test_a_scene_file_keeps_its_comments_and_what_it_held_is_kept_beside_once(
     assert read_scene(scene_file).surface("body").paint.blend == 0.5
 
 
-def test_a_picture_file_that_was_opened_is_saved_to_and_kept(work: Path) -> None:
+def test_a_picture_file_that_was_opened_is_saved_to_and_has_a_backup(work: Path) -> None:
     Studio(car(), Ramtek9300(SMALL)).save(work / "old.npz")
     before = (work / "old.npz").read_bytes()
     studio = studio_of(work / "old.npz")
@@ -106,7 +103,7 @@ def test_a_file_that_was_changed_since_is_left_alone_and_told(scene_file: Path, 
     before = contents(scene_file.parent)
     saved = studio.save_session(work)
     assert saved == SavedFiles(work / "car" / "scene.toml", work / "car.npz", (), (scene_file,))
-    assert saved.told(work).endswith(f"; {scene_file} was changed since, and is left alone")
+    assert saved.message(work).endswith(f"; {scene_file} was changed since, and is left alone")
     assert contents(scene_file.parent) == before
     # Nor is what this session saved, when another program changed it since.
     (work / "car.npz").write_bytes(b"theirs")
@@ -167,7 +164,7 @@ def test_a_save_that_fails_changes_no_file(scene_file: Path, tmp_path: Path) -> 
 
 
 def test_a_place_without_a_stamp_is_not_saved_to(scene_file: Path, work: Path) -> None:
-    history = History(read_scene(scene_file), Place(Source(str(scene_file))))
+    history = History(read_scene(scene_file), ScenePlace(Source(str(scene_file))))
     saved = Studio(history, Ramtek9300(SMALL)).save_session(work)
     assert saved.scene == work / "car" / "scene.toml"
 

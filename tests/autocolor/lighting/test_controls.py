@@ -17,11 +17,10 @@ from autocolor.lighting.controls import (
     Concentration,
     Cone,
     Falloff,
-    FlapSides,
-    HalfSpaces,
     LightControl,
     LinkedParts,
     LitPoints,
+    Sides,
     SoftCone,
     SoftSides,
     controls_of,
@@ -50,9 +49,8 @@ def test_a_point_source_without_flaps_has_no_controls() -> None:
 def test_a_light_has_the_controls_that_its_fields_ask_for(light: Light) -> None:
     used = {type(control) for control in controls_of(light, wall_points())}
     limits = [flap for flap in (light.flaps.x, light.flaps.y, light.flaps.z) if flap is not None and flap.on]
-    assert (FlapSides in used) == bool(limits)
     planes = [half_space for half_space in light.half_spaces if half_space.on]
-    assert (HalfSpaces in used) == bool(planes)
+    assert (Sides in used) == bool(limits or planes)
     widths = [flap.edge_width for flap in limits] + [plane.edge_width for plane in planes]
     assert (SoftSides in used) == any(width > 0 for width in widths)
     assert (Cone in used) == (light.cone_angle is not None)
@@ -83,7 +81,7 @@ def test_a_control_is_added_by_one_registered_class(monkeypatch: pytest.MonkeyPa
             assert lit.cos_light is not None
             return np.divide(lit.cos_light, 2, out=out)
 
-    monkeypatch.setattr(light_controls, "CONTROLS", [*CONTROLS, Ramp])
+    monkeypatch.setattr(light_controls, "CONTROLS", (*CONTROLS, Ramp))
 
     light = Light("light", (0.0, -1.0, 0.0), direction=(0, 1, 0), concentration=3)
     controlled = render(wall_scene(lights=[light]), 40, 40)
@@ -123,7 +121,7 @@ def test_a_factor_may_depend_on_distance_and_place_of_any_light(
             out[:] = np.exp(-lit.distance() - lit.positions()[0] / size)
             return out
 
-    monkeypatch.setattr(light_controls, "CONTROLS", [*CONTROLS, Falloff])
+    monkeypatch.setattr(light_controls, "CONTROLS", (*CONTROLS, Falloff))
 
     given = {"direction": (0, 1, 0), "concentration": 2.0} if is_aimed else {}
     light = Light("light", (0.0, -1.0, 0.0), **given)  # type: ignore[arg-type]
@@ -157,7 +155,7 @@ def test_a_sharp_side_has_room_for_the_rounding_of_points_and_a_soft_one_has_non
     points = wall_points()
     sharp, soft = (side_of(points, (0.0, 1.0, 0.0), 0.0, width) for width in (0.0, 0.1))
     assert sharp.row[3] - soft.row[3] == pytest.approx(4 * EPSILON * points.radius)
-    assert is_inside(sharp, points.rows).all()
+    assert is_inside(sharp.row, points.rows).all()
 
 
 @pytest.mark.parametrize(("least", "inside"), [(1e300, False), (-1e300, True), (1e36, False)])
@@ -165,7 +163,7 @@ def test_a_plane_may_be_farther_than_a_single_can_hold(least: float, inside: boo
     points = wall_points()
     side = side_of(points, (1.0, 0.0, 0.0), least, 0.0)
     assert abs(side.row[3]) == pytest.approx(FARTHEST_PLANE)
-    assert is_inside(side, points.rows).tolist() == [inside] * len(points.pixels)
+    assert is_inside(side.row, points.rows).tolist() == [inside] * len(points.pixels)
 
 
 @given(views(), numbers(-1, 1), numbers(0, 1))
@@ -178,7 +176,7 @@ def test_sharp_flaps_have_the_sides_they_always_had(view: View, least: float, ex
         for sign, limit in ((1.0, least), (-1.0, least + extent)):
             in_units = sign * limit / points.unit - 4 * EPSILON * points.radius
             rows.append(sign * coordinate - np.array([0, 0, 0, in_units]))
-    control = FlapSides.of(light, points)
+    control = Sides.of(light, points)
     assert control is not None
     assert np.array_equal(control.sides, np.array(rows, np.float32))
     assert len(flap_sides(light, points)) == 6
@@ -196,7 +194,7 @@ def test_a_point_is_inside_a_side_of_a_flap_up_to_its_coordinate(
             assert ((axis, end) in sides) == (flap is not None and flap.on)
             if flap is None or not flap.on:
                 continue
-            inside = is_inside(sides[axis, end], rows)
+            inside = is_inside(sides[axis, end].row, rows)
             for point, value in zip(world, inside.tolist(), strict=True):
                 beyond = point[number] - flap.minimum if end == "minimum" else flap.maximum - point[number]
                 assert value == (beyond >= 0) or abs(beyond) < 1e-5
@@ -331,7 +329,7 @@ def test_barn_doors_turn_and_move_with_the_light() -> None:
     for across, aim in ((0.0, 0.0), (0.4, 0.4), (0.0, 0.7), (-0.5, 0.2)):
         light = Light("light", (across, -2.0, 0.0), aim=(aim, 0.0, 0.0), half_spaces=doors)
         (control,) = controls_of(light, points)
-        assert isinstance(control, HalfSpaces)
+        assert isinstance(control, Sides)
         lit = control.lit_points(points.rows, slice(None))
         # To the right of the light's direction is (y, -x) of it.
         along = np.array([aim - across, 2.0]) / np.hypot(aim - across, 2.0)

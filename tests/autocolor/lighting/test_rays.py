@@ -8,10 +8,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Light, View
-from autocolor.lighting.rays import FARTHEST, camera_light, rays_to
+from autocolor.lighting.rays import (
+    FARTHEST,
+    camera_light,
+    direction_between,
+    direction_to_eye,
+    direction_to_light,
+    middle_of,
+    rays_to,
+)
 from autocolor.visibility.visible_points import NORMAL, REFLECTED_VIEW, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import cube, sphere, wall
+from tests.autocolor.meshes import cube, sphere, wall, wall_scene
 from tests.autocolor.reference import dot, minus, times, unit
 from tests.autocolor.strategies import Vector, directions, numbers, outside_views, vectors
 
@@ -113,3 +121,20 @@ def test_a_light_has_a_direction_only_where_one_is_asked_for() -> None:
     assert points.view.axes.T @ direction == pytest.approx(np.array([0, 1, 0]), abs=1e-12)
     source = Light("light", (3, -3, 3))
     assert camera_light(source, points, directed=True).direction is None
+
+
+def test_the_direction_between_two_points_is_a_unit_vector_or_zero() -> None:
+    assert direction_between((0, 0, 0), (3e200, 0, 4e200)) == pytest.approx((0.6, 0.0, 0.8))
+    assert direction_between((0, 0, 0), (3e-200, 0, 4e-200)) == pytest.approx((0.6, 0.0, 0.8))
+    assert direction_between((1, 2, 3), (1, 2, 3)) == (0.0, 0.0, 0.0)
+
+
+def test_a_light_is_in_its_direction_from_the_middle_and_one_at_infinity_along_its_axis() -> None:
+    assert middle_of(wall_scene(BALL)) == pytest.approx((0, 0, 0), abs=1e-12)
+    assert direction_to_light(Light("a", (0, 0, 2)), (0, 0, -3)) == (0.0, 0.0, 1.0)
+    sun = Light("sun", (5, 5, 5), direction=(0, -2, 0), at_infinity=True)
+    assert direction_to_light(sun, (0, 0, 0)) == pytest.approx((0, 1, 0))
+
+
+def test_the_eye_is_in_its_direction_from_the_middle_in_camera_space() -> None:
+    assert direction_to_eye(wall_scene(BALL)) == pytest.approx([0, 0, -1], abs=1e-9)

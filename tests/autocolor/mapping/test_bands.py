@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, Light, Mesh, Picture, Scene, Surface, View, render, scene_of
+from autocolor.images import display_image
 from autocolor.mapping.bands import (
     DARKEST,
     Bands,
@@ -18,7 +19,6 @@ from autocolor.mapping.bands import (
     colored_surfaces,
     own_limits,
 )
-from autocolor.mapping.display_image import display_image
 from autocolor.mapping.ranges import SURFACE_WORDS
 from autocolor.scene.color_scales import scale_colors
 from autocolor.scene.scalar import MeshScalar

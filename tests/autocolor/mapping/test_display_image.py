@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from autocolor import InputError, Light, Mesh, Picture, Scene, Surface, UsageError, render, scene_of
 from autocolor.arrays import Numbers
+from autocolor.images import display_image
 from autocolor.mapping import display_image as scan_lines
-from autocolor.mapping.display_image import DisplayImage, display_image, words_by_line
+from autocolor.mapping.display_image import DisplayImage, words_by_line
 from autocolor.mapping.intensity import held_exposure
 from autocolor.mapping.ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS
 from autocolor.rendering import Rendering, rendering

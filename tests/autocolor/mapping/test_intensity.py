@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, LevelRange, Light, Picture, Scene, render
+from autocolor.images import display_image
 from autocolor.lighting.picture import IntensityRange
-from autocolor.mapping.display_image import display_image
 from autocolor.mapping.intensity import (
     dithered_levels,
     fraction_of,

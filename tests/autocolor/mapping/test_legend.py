@@ -9,8 +9,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, Scene, View, render, scene_of
+from autocolor.images import display_image
 from autocolor.mapping.bands import Bands
-from autocolor.mapping.display_image import DisplayImage, display_image
+from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.legend import (
     BAR_ELEMENTS,
     CHARACTER,

@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 from autocolor import Flap, Flaps, InputError, Light, Scene, Surface, View, render, scene_of
 from autocolor.arrays import Singles
 from autocolor.checks import Vector
+from autocolor.images import display_image
 from autocolor.lighting.picture import Picture
-from autocolor.mapping.display_image import DisplayImage, display_image
 from autocolor.mapping.normal_words import (
     BINS,
+    NormalImage,
     cells_of,
     far_light,
     light_at_normals,
@@ -24,6 +25,7 @@ from autocolor.mapping.normal_words import (
     words_at_levels,
     words_of_normals,
 )
+from autocolor.scene.columns import fields_of
 from autocolor.scene.curves import GAMMA, LOGARITHM
 from autocolor.scene.scene import OBJECT
 from autocolor.visibility.visible_points import SurfaceSlice
@@ -34,9 +36,11 @@ from tests.autocolor.strategies import scenes
 LINES, ELEMENTS = 24, 32
 
 
-def image_of(scene: Scene, lines: int = LINES, elements: int = ELEMENTS) -> DisplayImage:
+def image_of(scene: Scene, lines: int = LINES, elements: int = ELEMENTS) -> NormalImage:
     scene = scene.replace(words="normals")
-    return display_image(scene, render(scene, lines, elements))
+    image = display_image(scene, render(scene, lines, elements))
+    assert isinstance(image, NormalImage)
+    return image
 
 
 def in_world(scene: Scene, normals: Singles) -> list[Vector]:
@@ -78,9 +82,8 @@ def fraction(scene: Scene, intensity: float, low: float, high: float) -> float:
     return float(np.interp(along, xs, ys))
 
 
-def entries(image: DisplayImage) -> dict[int, tuple[int, ...]]:
+def entries(image: NormalImage) -> dict[int, tuple[int, ...]]:
     """The entry of each word in use."""
-    assert image.normals is not None
     scene, words = image.scene, image.normals.words.tolist()
     normals, samples = (in_world(scene, each) for each in (image.normals.normals, image.normals.samples))
     found = {}
@@ -134,7 +137,6 @@ def test_each_entry_is_the_closed_form_at_the_normal_of_its_word(scene: Scene, i
 def test_where_words_are_in_use_they_are_those_of_the_pixels_and_each_surface_has_its_range() -> None:
     scene = ball_scene(20)
     image = image_of(scene, 48, 64)
-    assert image.normals is not None
     seen = np.unique(image.words)
     assert seen.tolist() == [0, *image.normals.words.tolist()]
     first, levels = image.ranges["shell"]
@@ -145,7 +147,6 @@ def test_where_words_are_in_use_they_are_those_of_the_pixels_and_each_surface_ha
 
 def test_the_normal_of_a_word_is_near_that_of_each_of_its_pixels() -> None:
     image = image_of(ball_scene(20), 240, 320)
-    assert image.normals is not None
     assert image.picture.normals is not None
     normals = np.zeros((1024, 3), np.float32)
     normals[image.normals.words] = image.normals.normals.T
@@ -211,7 +212,7 @@ def test_the_levels_of_a_ball_rise_from_its_darkest_to_its_brightest_color() -> 
     image = image_of(ball_scene(20), 240, 320)
     colors = image.entries[image.words_at_levels("shell")].astype(int).sum(axis=1)
     assert (np.diff(colors) >= 0).all()
-    own = image.entries[image.normals.words] if image.normals is not None else image.entries
+    own = image.entries[image.normals.words]
     assert colors[-1] == own.astype(int).sum(axis=1).max()
 
 
@@ -329,7 +330,7 @@ def test_the_spread_of_normals_is_how_much_of_the_sphere_they_take() -> None:
 FAR = 1e4
 
 
-def ball_2(*lights: Light, eye: Vector = (0.0, -FAR, 0.0), **reflectance: float) -> Scene:
+def far_ball(*lights: Light, eye: Vector = (0.0, -FAR, 0.0), **reflectance: float) -> Scene:
     """A ball around the origin whose eye is far away."""
     view = View(eye, target=(0, 0, 0), field_of_view=math.degrees(2.4 / FAR))
     scene = scene_of(sphere(), surfaces=[Surface("shell")], surface_of_part={"sphere": "shell"})
@@ -337,7 +338,7 @@ def ball_2(*lights: Light, eye: Vector = (0.0, -FAR, 0.0), **reflectance: float)
 
 
 def intensities(scene: Scene, *normals: Vector) -> list[float]:
-    """What light_at_normals finds at normals in the axes of the world."""
+    """The intensities of `light_at_normals` at normals in the axes of the world."""
     count = len(normals)
     in_camera = (scene.view.axes @ np.array(normals, float).T).astype(np.float32)
     slices = (SurfaceSlice(1, 0, count),)
@@ -349,7 +350,7 @@ LEFT = (math.sqrt(0.5), -math.sqrt(0.5), 0.0)
 
 
 def test_a_light_gives_its_diffuse_and_specular_term_at_a_normal() -> None:
-    scene = ball_2(Light("key", (FAR, 0, 0), 2.0), diffuse=0.5, specular=0.25, exponent=8)
+    scene = far_ball(Light("key", (FAR, 0, 0), 2.0), diffuse=0.5, specular=0.25, exponent=8)
     # At LEFT, half-way between light and eye, the light is reflected into the eye.
     expected = [0.1 + 2 * (0.5 * math.sqrt(0.5) + 0.25), 0.1 + 2 * 0.5, 0.1, 0.1]
     found = intensities(scene, LEFT, (1, 0, 0), (0, -1, 0), (-1, 0, 0))
@@ -358,7 +359,7 @@ def test_a_light_gives_its_diffuse_and_specular_term_at_a_normal() -> None:
 
 def test_every_pixel_of_a_ball_has_the_light_of_its_normal_where_lights_and_eye_are_far() -> None:
     lights = Light("key", (FAR, -FAR, FAR)), Light("rim", (-FAR, 0, 0.3 * FAR), 0.6)
-    scene = ball_2(*lights, diffuse=0.7, specular=0.6, exponent=20).replace(words="normals")
+    scene = far_ball(*lights, diffuse=0.7, specular=0.6, exponent=20).replace(words="normals")
     picture = render(scene, 60, 80)
     assert picture.normals is not None
     count = len(picture.pixels)
@@ -370,13 +371,13 @@ def test_every_pixel_of_a_ball_has_the_light_of_its_normal_where_lights_and_eye_
 def test_a_light_at_infinity_shines_along_its_axis() -> None:
     sun = Light("sun", (5, 5, 5), direction=(-1, 0, 0), at_infinity=True)
     point = Light("point", (1, 0, 0))
-    assert intensities(ball_2(sun), LEFT, (0, 0, 1)) == intensities(ball_2(point), LEFT, (0, 0, 1))
+    assert intensities(far_ball(sun), LEFT, (0, 0, 1)) == intensities(far_ball(point), LEFT, (0, 0, 1))
 
 
 def test_a_light_that_follows_the_eye_shines_from_there() -> None:
     head_lamp = Light("head", (0, 0, 0), follows="eye")
-    assert intensities(ball_2(head_lamp), (0, -1, 0)) == intensities(
-        ball_2(Light("a", (0, -3, 0))), (0, -1, 0)
+    assert intensities(far_ball(head_lamp), (0, -1, 0)) == intensities(
+        far_ball(Light("a", (0, -3, 0))), (0, -1, 0)
     )
 
 
@@ -386,8 +387,14 @@ def test_what_depends_on_places_is_left_out() -> None:
         aim=(9, 9, 9), concentration=40, cone_angle=5, flaps=Flaps(x=Flap(8, 9)), reach=0.1, falloff="linear"
     )
     normals = LEFT, (0, 0, 1), (1, 0, 0)
-    assert intensities(ball_2(shaped), *normals) == intensities(ball_2(plain), *normals)
-    assert far_light(shaped, (0, 0, 0)) == far_light(plain, (0, 0, 0))
+    assert intensities(far_ball(shaped), *normals) == intensities(far_ball(plain), *normals)
+
+
+def test_a_far_light_keeps_every_column_but_those_of_its_place() -> None:
+    light = Light("sun", (4, -3, 2), aim=(9, 9, 9), at_infinity=True).replace(only_parts=("sphere",))
+    far = far_light(light, (0, 0, 0))
+    differing = {name for name in fields_of(Light) if vars(far)[name] != vars(light)[name]}
+    assert differing == {"position", "at_infinity", "links"}
 
 
 def test_links_to_surfaces_stay_and_those_to_parts_are_left_out() -> None:
@@ -399,24 +406,24 @@ def test_links_to_surfaces_stay_and_those_to_parts_are_left_out() -> None:
 
 
 def test_a_light_in_the_middle_of_the_object_gives_nothing() -> None:
-    assert intensities(ball_2(Light("inside", (0, 0, 0))), LEFT, (0, -1, 0)) == pytest.approx([0.1, 0.1])
+    assert intensities(far_ball(Light("inside", (0, 0, 0))), LEFT, (0, -1, 0)) == pytest.approx([0.1, 0.1])
 
 
 def test_without_lights_there_is_the_ambient_light_alone() -> None:
-    assert intensities(ball_2(), LEFT, (0, 0, 0)) == pytest.approx([0.1, 0.1])
+    assert intensities(far_ball(), LEFT, (0, 0, 0)) == pytest.approx([0.1, 0.1])
 
 
 def test_the_distance_of_lights_and_eye_does_not_matter() -> None:
     near, far = (
-        ball_2(Light("a", (0, 0, 2)), eye=(0, -3, 0)),
-        ball_2(Light("a", (0, 0, 2e20)), eye=(0, -3e20, 0)),
+        far_ball(Light("a", (0, 0, 2)), eye=(0, -3, 0)),
+        far_ball(Light("a", (0, 0, 2e20)), eye=(0, -3e20, 0)),
     )
     assert intensities(near, LEFT, (0, 0, 1)) == pytest.approx(intensities(far, LEFT, (0, 0, 1)))
 
 
 def test_the_picture_of_normals_has_one_line_with_an_element_for_each_number() -> None:
     normals = np.array([[0.0], [0.0], [-1.0]], np.float32)
-    lit = light_at_normals(ball_2(), normals, (SurfaceSlice(1, 0, 1),), np.array([7]), 10)
+    lit = light_at_normals(far_ball(), normals, (SurfaceSlice(1, 0, 1),), np.array([7]), 10)
     assert isinstance(lit, Picture)
     assert lit.intensity.shape == (1, 10)
     assert np.flatnonzero(lit.surface_number).tolist() == [7]

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as stn
 
 from autocolor import render
-from autocolor.mapping.display_image import DisplayImage, display_image
+from autocolor.images import display_image
+from autocolor.mapping.display_image import DisplayImage
 from autocolor.mapping.palette import in_palette, thumbnail
 from tests.autocolor.sessions import car
 

@@ -10,21 +10,21 @@ from hypothesis import strategies as st
 from autocolor import Mesh, View
 from autocolor.rendering import rendering
 from autocolor.scalars.computed import (
-    _KEPT,
+    _RANGES,
     COMPUTING,
-    MOST_KEPT,
+    MOST_RANGES,
     ScalarValues,
+    cached_range,
     coordinate,
+    direction_of,
     distance,
     draft_angle,
     gaussian_curvature,
-    kept,
     largest_curvature,
     mean_curvature,
     range_of,
     slope,
     smallest_curvature,
-    unit_vector,
     widened,
     within,
     zebra,
@@ -127,15 +127,15 @@ def test_a_range_is_computed_once_for_a_mesh_and_a_key() -> None:
 
     one, other = wall(), wall()
     for mesh, key in ((one, "a"), (one, "a"), (one, "b"), (other, "a"), (one, "a")):
-        assert kept(mesh, key, compute) == (0, 1)
+        assert cached_range(mesh, key, compute) == (0, 1)
     assert len(asked) == 3
 
 
 def test_few_ranges_are_kept_of_a_mesh() -> None:
     mesh = wall()
-    for step in range(10 * MOST_KEPT):
-        kept(mesh, step, lambda: (0.0, 1.0))
-    assert len(_KEPT[mesh]) <= MOST_KEPT
+    for step in range(10 * MOST_RANGES):
+        cached_range(mesh, step, lambda: (0.0, 1.0))
+    assert len(_RANGES[mesh]) <= MOST_RANGES
 
 
 PITCH = 35.0
@@ -212,13 +212,13 @@ def test_the_sides_of_a_box_have_the_draft_angles_of_a_mold() -> None:
 ANY = Scalar("mean curvature")
 
 
-def points_of_2(mesh: Mesh) -> VisiblePoints:
+def points_around(mesh: Mesh) -> VisiblePoints:
     return rendering(wall_scene(mesh), 30, 40).points
 
 
 def test_a_ball_has_one_curvature_at_every_pixel() -> None:
     mesh = sphere(120, 60, radius=2.0)
-    points = points_of_2(mesh)
+    points = points_around(mesh)
     for found, wanted in (
         (mean_curvature, 0.5),
         (gaussian_curvature, 0.25),
@@ -234,7 +234,7 @@ def test_a_ball_has_one_curvature_at_every_pixel() -> None:
 
 def test_a_cylinder_bends_one_way() -> None:
     mesh = cone(0.0)
-    points = points_of_2(mesh)
+    points = points_around(mesh)
     wanted = {mean_curvature: 0.25, gaussian_curvature: 0.0, largest_curvature: 0.5, smallest_curvature: 0.0}
     for found, number in wanted.items():
         assert found(mesh, ANY, points).values == pytest.approx(number, abs=1e-3)
@@ -244,7 +244,7 @@ def test_the_range_leaves_a_few_sharp_bends_out() -> None:
     ball, needle = sphere(120, 60), sphere(12, 8, radius=0.01)
     moved = Mesh(needle.coordinates + np.array([3.0, 0.0, 0.0]), needle.node_numbers, part_names=("needle",))
     mesh = Mesh.joined([ball, moved])
-    _, (low, high) = mean_curvature(mesh, ANY, points_of_2(ball))
+    _, (low, high) = mean_curvature(mesh, ANY, points_around(ball))
     assert mesh.curvatures.mean.max() > 50
     assert 0.4 < low < 1 < high < 2
 
@@ -252,7 +252,7 @@ def test_the_range_leaves_a_few_sharp_bends_out() -> None:
 def test_what_is_flat_but_for_rounding_has_the_middle_of_the_range() -> None:
     mesh = grid(9, 9, (0.1, 0.2, 0.3), (3.0, 0.7, -0.2), (-0.3, 2.0, 1.1))
     mesh = Mesh(mesh.coordinates.astype(np.float32), mesh.node_numbers, part_names=("wall",))
-    points = points_of_2(mesh)
+    points = points_around(mesh)
     assert mesh.curvatures.mean.any()
     for found in (mean_curvature, gaussian_curvature, largest_curvature, smallest_curvature):
         values, (low, high) = found(mesh, ANY, points)
@@ -287,7 +287,7 @@ def test_a_distance_is_measured_along_the_direction_whatever_its_length() -> Non
     wanted = points.world_points @ direction / 3
     for length in (1e-30, 1.0, 1e30):
         scalar = Scalar("distance", direction=tuple((direction * length).tolist()))
-        assert unit_vector(scalar) == pytest.approx(direction / 3)
+        assert direction_of(scalar) == pytest.approx(direction / 3)
         values, limits = distance(scene.mesh, scalar, points)
         assert values == pytest.approx(wanted, abs=1e-6)
         assert limits == pytest.approx((-2, 2), abs=0.03)

@@ -34,9 +34,9 @@ from autocolor import (
 from autocolor.commands.settings import with_settings
 from autocolor.files.plain_scene import plain_scene
 from autocolor.journal.history import History
+from autocolor.journal.journal import MeshesBeside, first_line, step_line
 from autocolor.journal.places import Source
-from autocolor.journal.reading import session_of
-from autocolor.journal.script import MeshesBeside, journal_text
+from autocolor.journal.script import script_of
 from autocolor.mapping.normal_words import far_light
 from autocolor.scene.columns import Row, fields_of, from_plain, keys_of, to_plain, with_values
 from autocolor.scene.lights import Flap, HalfSpace
@@ -269,31 +269,36 @@ def by_plain_values(scene: Scene, folder: Path) -> Scene:
     return from_plain(Scene, {**fields, "mesh": scene.mesh})
 
 
-def by_journal(scene: Scene, folder: Path) -> Scene:
-    """The journal of a session in which the edit is a step."""
+def session(scene: Scene, folder: Path) -> History:
+    """A session with the start, in which the edit is a step."""
     write_scene(folder, start())
     history = History(read_scene(folder))
     history.take(with_values(scene, {"mesh": history.scene.mesh, "name": history.scene.name}))
-    return session_of(journal_text(history, Source(str(folder)), MeshesBeside())).history.scene
+    return history
+
+
+def replayed(history: History, folder: Path) -> History:
+    """The history that the journal of a history gives."""
+    meshes = MeshesBeside()
+    lines = [step_line(step, history.start, meshes) for step in history.steps]
+    (folder / "journal").write_text("".join([first_line(history.start, Source(str(folder))), *lines]))
+    return read_journal(folder / "journal").history
+
+
+def by_journal(scene: Scene, folder: Path) -> Scene:
+    return replayed(session(scene, folder), folder).scene
 
 
 def by_start_of_journal(scene: Scene, folder: Path) -> Scene:
     """The journal of a session that began with the edited scene."""
-    write_scene(folder, start())
-    mesh = read_scene(folder).mesh
-    history = History(with_values(scene, {"mesh": mesh}))
-    path = folder / "journal.py"
-    path.write_text(journal_text(history, Source(str(folder)), MeshesBeside()))
-    return read_journal(path).history.start
+    edits = session(scene, folder)
+    return replayed(History(edits.scene), folder).start
 
 
 def by_script(scene: Scene, folder: Path) -> Scene:
-    """The journal, run as a script."""
-    write_scene(folder, start())
-    history = History(read_scene(folder))
-    history.take(with_values(scene, {"mesh": history.scene.mesh, "name": history.scene.name}))
+    """The script of a session, after it was run."""
     names: dict[str, Any] = {}
-    exec(journal_text(history, Source(str(folder)), MeshesBeside()), names)
+    exec(script_of(session(scene, folder), Source(str(folder)), MeshesBeside()), names)
     studio = names["studio"]
     assert isinstance(studio, Studio)
     return studio.scene

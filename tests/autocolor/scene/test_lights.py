@@ -31,9 +31,10 @@ from autocolor import (
 from autocolor.journal.history import History
 from autocolor.journal.places import Source, place_of
 from autocolor.scene.columns import Tier
-from autocolor.scene.lights import AXIS_CONTROLS, Links, middle_between, unit_vector
+from autocolor.scene.lights import Links, free_name, middle_between, unit_vector
 from autocolor.scene.scene import cost_of_edit
 from ramtek_emu import Ramtek9300
+from tests.autocolor.journal.random_steps import journal_of
 from tests.autocolor.meshes import grid
 from tests.autocolor.reference import cross, dot, minus
 from tests.autocolor.strategies import Vector, directions, lights, numbers, some_of, vectors
@@ -397,8 +398,7 @@ def test_links_are_undone_and_told_by_the_journal(tmp_path: Path) -> None:
     studio.light("key", only_surfaces=["glass"])
     assert (studio.words != before).any()
     studio.light("key", only_surfaces=None, except_parts=["b"])
-    (tmp_path / "session.py").write_text(studio.journal(beside=tmp_path / "beside"), "utf-8")
-    history = read_journal(tmp_path / "session.py").history
+    history = read_journal(journal_of(studio.history, tmp_path)).history
     assert history.scene.light("key").links == Links(except_parts=("b",))
     assert (Studio(history, Ramtek9300()).words == studio.words).all()
     studio.undo()
@@ -425,8 +425,15 @@ def test_the_middle_of_two_points_is_halfway_also_between_the_largest() -> None:
     assert middle_between((1.5e308, 0, 0), (1.7e308, 0, 0)) == (1.6e308, 0, 0)
 
 
-@pytest.mark.parametrize("name", AXIS_CONTROLS)
-def test_a_point_source_has_no_control_of_an_axis(name: str) -> None:
-    value = {"concentration": 2, "cone_angle": 40, "inner_angle": 30, "at_infinity": True}[name]
-    with pytest.raises(InputError, match=r"must come with a (direction or an aim|cone), not with"):
-        Light("key", (0, 0, 1), **{name: value})  # type: ignore[arg-type]
+@given(
+    st.lists(st.sampled_from(["key", "key 2", "key 3", "key 4", "rim"])), st.sampled_from(["key", "key 2"])
+)
+def test_a_free_name_is_not_taken_and_keeps_the_word(taken: list[str], name: str) -> None:
+    free = free_name(name, taken)
+    assert free not in taken
+    assert free.startswith("key")
+    assert (free == name) == (name not in taken)
+
+
+def test_a_name_that_is_a_number_alone_is_kept_whole() -> None:
+    assert free_name("2", ["2"]) == "2 2"

@@ -323,7 +323,7 @@ def test_a_curve_through_points_of_schlicks_is_close_to_it() -> None:
 
 
 @given(growths, numbers(0, 1))
-def test_the_factor_is_that_of_the_slow_twin_2(growth: SpecularGrowth, cosine: float) -> None:
+def test_the_growth_is_that_of_the_slow_twin(growth: SpecularGrowth, cosine: float) -> None:
     single = np.array([cosine], np.float32)
     found = growth.factor(single)
     expected = reference.specular_growth(growth, float(single[0]))

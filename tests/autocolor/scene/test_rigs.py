@@ -1,13 +1,20 @@
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
-from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Rig, Scene, render, scene_of
+from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Rig, Scene, UsageError, render, scene_of
 from autocolor.scene.columns import from_plain, to_plain
-from tests.autocolor.meshes import cube
-from tests.autocolor.strategies import scenes
+from autocolor.scene.following import detached
+from autocolor.scene.lights import AXES
+from autocolor.scene.rigs import mirrored
+from tests.autocolor.meshes import cube, wall_scene
+from tests.autocolor.strategies import lights, scenes, short
 
 
 @given(scenes())
@@ -104,3 +111,66 @@ def test_lights_that_follow_keep_their_place_beside_what_they_follow_and_are_as_
     large = scene_of(cube(2.0), lights=()).with_rig(small.rig)
     one, other = (render(each, 60, 80).intensity for each in (small, large))
     assert np.allclose(one, other, atol=1e-5)
+
+
+@given(lights(), st.sampled_from(AXES), short)
+def test_a_light_mirrored_twice_is_where_it_was(light: Light, axis: str, about: float) -> None:
+    there = mirrored(light, "there", axis, about)
+    back = mirrored(there, light.name, axis, about)
+    assert back.position == pytest.approx(light.position)
+    assert (back.direction, back.intensity, back.cone_angle) == (
+        light.direction,
+        light.intensity,
+        light.cone_angle,
+    )
+    for name in AXES:
+        one, other = vars(light.flaps)[name], vars(back.flaps)[name]
+        assert (one is None) == (other is None)
+        if one is not None:
+            assert (other.minimum, other.maximum) == pytest.approx((one.minimum, one.maximum))
+            assert (other.on, other.edge_width) == (one.on, one.edge_width)
+    assert [each.name for each in back.half_spaces] == [each.name for each in light.half_spaces]
+    for plane, same in zip(light.half_spaces, back.half_spaces, strict=True):
+        assert same.point == pytest.approx(plane.point)
+        assert same == plane.replace(point=same.point)
+
+
+@given(lights(), st.sampled_from(AXES), short)
+def test_the_half_spaces_of_a_mirrored_light_are_mirrored_in_the_world(
+    light: Light, axis: str, about: float
+) -> None:
+    there = mirrored(light, "there", axis, about)
+    number = AXES.index(axis)
+    for plane, copy in zip(light.half_spaces, there.half_spaces, strict=True):
+        assert copy.carried == plane.carried
+        one, other = detached(plane, light), detached(copy, there)
+        point, direction = list(one.point), list(one.direction)
+        point[number], direction[number] = 2 * about - point[number], -direction[number]
+        assert other.point == pytest.approx(point, abs=1e-9)
+        assert other.direction == pytest.approx(direction, abs=1e-9)
+
+
+def test_position_aim_and_one_flap_are_mirrored_and_nothing_else() -> None:
+    light = Light(
+        "key", (1, 2, 3), aim=(0, 1, 0), concentration=4, flaps=Flaps(Flap(0, 1), Flap(minimum=0.5))
+    )
+    assert mirrored(light, "other", "y", 1.0) == Light(
+        "other", (1, 0, 3), aim=(0, 1, 0), concentration=4, flaps=Flaps(Flap(0, 1), Flap(maximum=1.5))
+    )
+    directed = Light("key", (1, 2, 3), direction=(0, 1, -1))
+    assert repr(mirrored(directed, "key", "x", 0.0).direction) == "(0.0, 1.0, -1.0)"
+    assert mirrored(directed, "key", "z", 0.0).direction == (0, 1, 1)
+
+
+def test_a_mirrored_picture_is_that_of_the_mirrored_light() -> None:
+    scene = wall_scene(lights=[Light("key", (0.7, -1.5, 0.4), aim=(0.5, 0, 0), cone_angle=20)])
+    other = scene.with_mirrored_light("key").without_light("key")
+    one, mirror = (render(each, 40, 40).intensity for each in (scene, other))
+    assert np.ptp(one) > 0
+    assert np.allclose(one, mirror[:, ::-1], atol=1e-6)
+
+
+@pytest.mark.parametrize("axis", ["w", "X", ""])
+def test_an_unknown_axis_is_refused(axis: Any) -> None:
+    with pytest.raises(UsageError, match=f"^an axis must be 'x', 'y' or 'z', not '{axis}'$"):
+        mirrored(Light("key", (0, 0, 0)), "other", axis, math.pi)

@@ -14,22 +14,21 @@ from autocolor.screens.board import (
     MOST_CHARACTERS,
     REACH,
     Board,
-    Grip,
     Layout,
     TypingLine,
+    handles_near,
     last_rows,
     message_items,
-    page_of_menu,
     rows_of_menu,
     with_loads,
 )
 from autocolor.screens.input import Gesture
 from autocolor.screens.screen import Handle, Screen
-from autocolor.screens.session import MESSAGE_SECONDS
+from autocolor.screens.session import MESSAGE_SECONDS, Session
 from autocolor.screens.viewer import Viewer
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import BLACK, GRAY, NIGHT, ORANGE, SCREEN, SLATE, WHITE, WIDTH, filled, text
-from autocolor.widgets.menu import MENU, WIDE_BAR, laid_out
+from autocolor.widgets.menu import MENU, WIDE_BAR, laid_out, page_of_menu
 from autocolor.widgets.sheet import Sheet
 from autocolor.widgets.widget import Button, Entry, Place, Widget
 from ramtek_emu import PRINCETON_9300, Ramtek9300
@@ -87,6 +86,7 @@ def test_of_two_rows_with_one_name_the_one_under_the_pointer_is_lit(
 ) -> None:
     rows = Desk.rows
     monkeypatch.setattr(Desk, "rows", lambda desk: [*rows(desk), *rows(desk)])
+    viewer.tell("")
     first, second = [each.area for each in board.widgets() if each.label == "ambient"]
     point(viewer, "hover", second.left + 9, second.top + 1)
     words = display_of(viewer).words
@@ -217,15 +217,15 @@ def test_a_drag_beyond_the_screen_stays_at_its_edge(viewer: Viewer, board: Board
 def test_a_click_opens_the_wide_bar_and_a_second_one_closes_it(viewer: Viewer, board: Board) -> None:
     place = middle_of(board, "ambient")
     point(viewer, "pick", *place)
-    assert board.widget_at(300, WIDE_BAR.top + 5) is not None
+    assert board.layout.widget_at(300, WIDE_BAR.top + 5) is not None
     point(viewer, "pick", WIDE_BAR.left + 3, WIDE_BAR.top + 5)
     assert viewer.studio.scene.ambient == 0.0
     assert is_drawn_whole(viewer)
     point(viewer, "pick", *place)
-    assert board.widget_at(300, WIDE_BAR.top + 5) is None
+    assert board.layout.widget_at(300, WIDE_BAR.top + 5) is None
     point(viewer, "pick", *place)
     assert viewer.on_key("escape")
-    assert board.widget_at(300, WIDE_BAR.top + 5) is None
+    assert board.layout.widget_at(300, WIDE_BAR.top + 5) is None
 
 
 def test_a_number_is_typed_over_its_bar(viewer: Viewer, board: Board) -> None:
@@ -323,6 +323,7 @@ def test_every_page_of_a_long_menu_is_reached_and_a_menu_that_shrinks_shows_its_
     viewer: Viewer, board: Board, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Desk, "rows_more", 70)
+    viewer.tell("")
     seen: set[str] = set()
     for _ in range(3):
         seen |= {each.label for each in board.widgets()}
@@ -333,8 +334,10 @@ def test_every_page_of_a_long_menu_is_reached_and_a_menu_that_shrinks_shows_its_
     for _ in range(2):
         point(viewer, "pick", *middle_of(board, "more"))
     monkeypatch.setattr(Desk, "rows_more", 30)
+    viewer.tell("")
     assert {"row 29", "more"} <= {each.label for each in board.widgets()}
     monkeypatch.setattr(Desk, "rows_more", 0)
+    viewer.tell("")
     assert "ambient" in {each.label for each in board.widgets()}
 
 
@@ -393,57 +396,43 @@ def test_the_mark_goes_when_the_pointer_is_exactly_on_it(tmp_path: Path) -> None
     assert viewer.board.mark is None
 
 
-# -------------------- test_layout
 # What a layout has is tried through the board, in test_board.py.
 
 places = st.tuples(st.integers(90, 110), st.integers(90, 110))
 
 
-class Handles(Screen):
-    """A screen with handles alone."""
-
-    def __init__(self, places: list[tuple[int, int]]) -> None:
-        self.places = places
-
-    def handles(self) -> list[Handle]:
-        return [Handle(number, *place, "") for number, place in enumerate(self.places)]
-
-
 @given(st.lists(places, max_size=5), places)
-def test_the_nearest_handle_within_reach_is_found_the_last_of_those_as_near(
+def test_the_nearest_handle_within_reach_comes_first_the_last_of_those_as_near(
     handles: list[tuple[int, int]], place: tuple[int, int]
 ) -> None:
     distances = [max(abs(x - place[0]), abs(y - place[1])) for x, y in handles]
-    found = Layout(Handles(handles), [], "", []).handle_at(*place)
-    if not distances or min(distances) > REACH:
-        assert found is None
-    else:
-        assert found is not None
-        last = max(number for number, each in enumerate(distances) if each == min(distances))
-        assert found.key == last
+    numbers = [number for number, each in enumerate(distances) if each <= REACH]
+    rows = [Handle(number, *at, "") for number, at in enumerate(handles)]
+    assert [each.key for each in handles_near(rows, *place)] == sorted(
+        numbers, key=lambda number: (distances[number], -number)
+    )
 
 
 def test_the_wide_bar_covers_what_is_below_it(tmp_path: Path) -> None:
     screen = desk_viewer(tmp_path).board.screen
     rows = laid_out([Bar("ambient"), Button("go")])
-    closed, opened = (Layout(screen, rows, key, [MENU]) for key in ("", "ambient"))
+    closed, opened = (Layout(screen, rows, wide_key=key) for key in ("", "ambient"))
     place = (100, WIDE_BAR.top + 3)
     assert not closed.is_covered(*place)
     assert opened.is_covered(*place)
     assert opened.widget_at(*place) is opened.wide
-    assert Layout(screen, rows, "gone", [MENU]).wide is None
+    assert Layout(screen, rows, wide_key="gone").wide is None
 
 
-def test_a_widget_is_found_again_by_its_key_and_stays_where_it_was_grabbed() -> None:
+def test_a_widget_is_found_again_by_its_key_and_stays_where_it_was_grabbed(board: Board) -> None:
     before = laid_out([Bar("x", value=1.0), Button("x")])
     after = laid_out([Button("new"), Bar("x", value=2.0)])
-    now = Layout(Handles([]), after, "", []).now(before[0])
+    now = Layout(board.screen, after).now(before[0])
     assert isinstance(now, Bar)
     assert (now.value, now.area) == (2.0, before[0].area)
-    assert Layout(Handles([]), after, "", []).now(before[1]) is None
+    assert Layout(board.screen, after).now(before[1]) is None
 
 
-# -------------------- test_composition
 # What a page looks like is tried through the board, in test_board.py.
 
 
@@ -470,14 +459,14 @@ def test_a_message_stands_over_all_that_a_screen_draws(
     assert items.index(filled(SCREEN, 3)) < min(items.index(item) for item in told)
 
 
-# -------------------- test_grip
 # What is dragged on a board is tried in test_board.py; here, what is asked of the screen.
 
 
 class Told(Screen):
     """A screen that notes what it is asked for."""
 
-    def __init__(self) -> None:
+    def __init__(self, session: Session) -> None:
+        super().__init__(session)
         self.did: list[object] = []
 
     def handles(self) -> list[Handle]:
@@ -493,23 +482,22 @@ class Told(Screen):
         self.did.append(("drag", start.element, last.element, now.element))
 
 
-def test_a_handle_is_held_and_placed_and_the_screen_dragged_step_by_step() -> None:
-    screen, grip = Told(), Grip()
-    layout = Layout(screen, [], "", [])
-    grip.grab(layout, Gesture("grab", 102, 100))
-    grip.drag(layout, Gesture("drag", 110, 90))
-    assert grip.is_on
-    grip.release()
-    grip.drag(layout, Gesture("drag", 120, 90))
+def test_a_handle_is_held_and_placed_and_the_screen_dragged_step_by_step(viewer: Viewer) -> None:
+    screen = Told(viewer.session)
+    board = Board(viewer.session, {"desk": screen})
+    board.take(Gesture("grab", 102, 100))
+    board.take(Gesture("drag", 110, 90))
+    assert board.is_dragging
+    board.release()
+    board.take(Gesture("drag", 120, 90))
     assert screen.did == [("hold", "a"), ("place", "a", 110, 90)]
     screen.did.clear()
-    grip.grab(layout, Gesture("grab", 200, 200))
+    board.take(Gesture("grab", 200, 200))
     for element in (210, 225):
-        grip.drag(layout, Gesture("drag", element, 200))
+        board.take(Gesture("drag", element, 200))
     assert screen.did == [("drag", 200, 200, 210), ("drag", 200, 210, 225)]
 
 
-# -------------------- test_message_line
 # How long a message stands, and what it leaves, is tried through the viewer, in test_viewer.py.
 
 

@@ -279,7 +279,7 @@ def test_the_scene_of_a_session_is_not_changed_by_looking(hand: Hand) -> None:
 
 
 def test_the_up_axis_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand, folder: Path) -> None:
-    row = next(each for each in hand.viewer.board.menu_rows() if each.label == "mesh up")
+    row = next(each for each in hand.viewer.board.layout.rows if each.label == "mesh up")
     # From z to x and y.
     for _ in range(2):
         hand.click(row.area.right - 8, row.area.top + 8)
@@ -293,7 +293,7 @@ def test_the_up_axis_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand, folder:
 
 
 def test_the_scale_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand) -> None:
-    row = next(each for each in hand.viewer.board.menu_rows() if each.label == "mesh scale")
+    row = next(each for each in hand.viewer.board.layout.rows if each.label == "mesh scale")
     # From 1 to 10 and 100.
     for _ in range(2):
         hand.click(row.area.right - 8, row.area.top + 8)
@@ -304,6 +304,6 @@ def test_the_scale_of_a_mesh_is_chosen_before_it_is_opened(hand: Hand) -> None:
 
 def test_the_scale_of_the_command_line_is_among_those_that_can_be_pointed_at(hand: Hand) -> None:
     hand.viewer.session.place_meshes("y", 25.4)
-    row = next(each for each in hand.viewer.board.menu_rows() if each.label == "mesh scale")
+    row = next(each for each in hand.viewer.board.layout.rows if each.label == "mesh scale")
     hand.click(row.area.right - 8, row.area.top + 8)
     assert (hand.viewer.session.mesh_up, hand.viewer.session.mesh_scale) == ("y", 100)

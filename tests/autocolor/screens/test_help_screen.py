@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from autocolor.screens.board import MESSAGE
 from autocolor.screens.help_screen import LIMITS, MIDDLE, STEP, TITLE, TOP, help_items
-from autocolor.screens.pointing import rows_of_help
+from autocolor.screens.viewer import rows_of_help
 from autocolor.widgets.items import ORANGE, SCREEN, WHITE, text
 
 ROWS = rows_of_help()

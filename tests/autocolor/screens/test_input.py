@@ -121,7 +121,6 @@ def test_digits_and_signs_are_signs(name: str, is_sign: bool) -> None:
     assert Chord(name).is_sign == is_sign
 
 
-# -------------------- test_unit
 # The joystick unit in process, and behind a TCP port.
 
 

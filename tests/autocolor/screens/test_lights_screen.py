@@ -9,7 +9,7 @@ import pytest
 
 from autocolor import HalfSpace, Light, View, read_rig
 from autocolor.scene.columns import keys_of
-from autocolor.scene.following import set_down
+from autocolor.scene.following import detached
 from autocolor.scene.lights import Links
 from autocolor.screens.light_parameters import AIM, DIRECTION, POINT
 from autocolor.screens.lights_screen import is_lit_side, places_of, turned
@@ -330,7 +330,7 @@ def test_a_half_space_that_is_carried_from_now_on_stays_where_it_is(hand_2: Hand
     words = hand_2.viewer.studio.words.copy()
     hand_2.pick("left carried", BOX)
     assert plane(hand_2).carried
-    placed = set_down(plane(hand_2), hand_2.viewer.studio.scene.light("key"))
+    placed = detached(plane(hand_2), hand_2.viewer.studio.scene.light("key"))
     assert placed.point == pytest.approx(LEFT.point)
     assert placed.direction == pytest.approx(LEFT.direction)
     assert (hand_2.viewer.studio.words != words).mean() < 1e-3

@@ -89,6 +89,7 @@ def test_a_scale_is_reversed_and_stays_so_when_another_is_chosen(hand: Hand) -> 
 
 def test_a_list_of_colors_has_no_name_to_reverse(hand: Hand) -> None:
     hand.viewer.session.edit(hand.viewer.studio.scene.with_scalar(scale=["red", "blue"]))
+    hand.viewer.tell("")
     assert hand.widget("reversed").why_not
     hand.pick("reversed")
     assert scalar_of(hand).scale == ((255, 0, 0), (0, 0, 255))

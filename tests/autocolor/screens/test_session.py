@@ -58,7 +58,7 @@ def test_a_message_that_stands_does_so_until_the_next_one(
 ) -> None:
     now = 100.0
     monkeypatch.setattr(time, "monotonic", lambda: now)
-    session.tell("welcome", stands=True)
+    session.tell("welcome", persistent=True)
     now += 100 * MESSAGE_SECONDS
     assert (session.message, session.has_news) == ("welcome", True)
     session.tell("saved")
@@ -433,7 +433,7 @@ def test_over_a_screen_without_the_picture_the_picture_comes(hand: Hand) -> None
 def test_the_message_stands_as_long_as_the_other_state_does(hand: Hand) -> None:
     press(hand)
     session = hand.viewer.session
-    session.news = session.news._replace(told_at=session.news.told_at - 60)
+    session.news = session.news._replace(shown_at=session.news.shown_at - 60)
     assert session.has_news
     session.comparing.end()
     assert not session.has_news

@@ -95,7 +95,7 @@ def test_the_panel_stands_on_every_screen_and_makes_room(hand: Hand, tutorial: T
         for _ in range(2):
             panel = next(each.area for each in hand.viewer.board.widgets() if each.label == "tutorial")
             places.append(panel)
-            assert hand.viewer.board.layout().is_covered(panel.left + 8, panel.top + 20)
+            assert hand.viewer.board.is_covered(panel.left + 8, panel.top + 20)
             hand.pick("up" if panel.top else "down")
         assert not places[0].overlaps(places[1])
         assert all(WORK.covers(place) for place in places)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from autocolor import InputError, Light, Mesh, Surface, View, render, scene_of
-from autocolor.mapping.display_image import display_image
+from autocolor.images import display_image
 from autocolor.mapping.palette import thumbnail
 from autocolor.mapping.ranges import SCREENS
 from autocolor.screens.variants_screen import ELEMENTS, FRAME, LINES, ON_PAGE, PLACES

@@ -9,19 +9,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Mesh, View, render, scene_of
-from autocolor.visibility import projection as projection_room
 from autocolor.visibility import projection as room
-from autocolor.visibility.camera import Raster
 from autocolor.visibility.projection import (
-    MOST_OFF,
     Projection,
+    Raster,
     focal_length,
+    left_center,
+    on_raster,
     preselected,
     projection,
+    right_center,
     split_quads,
 )
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.meshes import ROUNDINGS, cube, decal_on_ground, grid, sphere
+from tests.autocolor.meshes import cube, decal_on_ground, grid, sphere
 from tests.autocolor.reference import ray
 from tests.autocolor.strategies import Vector, directions, meshes, outside_views, rasters, vectors, views
 
@@ -45,6 +46,40 @@ def test_pixels_are_square_and_the_field_of_view_is_the_vertical_one() -> None:
     projected = projection(panel, view, 100, 300)
     assert np.sort(projected.x) == pytest.approx([100, 100, 200, 200])
     assert np.sort(projected.y) == pytest.approx([0, 0, 100, 100])
+
+
+RASTER = Raster(10, 16, 20.0)
+
+
+@given(st.floats(-3, 3), st.floats(-3, 3), st.floats(0.1, 10))
+def test_a_node_lies_where_its_ray_meets_the_raster(right: float, down: float, depth: float) -> None:
+    x, y, inverse_depth, first_line = on_raster(np.array([[right], [down], [depth]]), 1e-9, RASTER)
+    assert x[0] == pytest.approx(8 + 20 * right / depth)
+    assert y[0] == pytest.approx(5 + 20 * down / depth)
+    assert inverse_depth[0] == 1 / depth
+    centers = np.arange(10) + 0.5
+    assert first_line[0] == np.count_nonzero(centers < y[0])
+
+
+def test_a_node_behind_the_near_plane_is_put_on_it() -> None:
+    nodes = on_raster(np.array([[1.0, 0.0], [1.0, 0.0], [-1.0, 0.5]]), 0.25, RASTER)
+    assert nodes.inverse_depth.tolist() == [4.0, 2.0]
+    assert nodes.x.tolist() == [8 + 20 * 4.0, 8.0]
+
+
+def test_nodes_lie_alike_in_chunks_of_any_size() -> None:
+    positions = np.random.default_rng(1).uniform(-1, 1, (3, 50))
+    whole = on_raster(positions, 0.1, RASTER)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(room, "NODES_AT_ONCE", 7)
+        for one, other in zip(on_raster(positions, 0.1, RASTER), whole, strict=True):
+            assert one.tobytes() == other.tobytes()
+
+
+def test_a_crossing_within_its_rounding_of_a_center_may_be_on_either_side() -> None:
+    for x in (3.5 - 1e-9, 3.5, 3.5 + 1e-9):
+        assert (left_center(np.array([x]))[0], right_center(np.array([x]))[0]) == (3, 4)
+    assert (left_center(np.array([3.6]))[0], right_center(np.array([3.6]))[0]) == (4, 4)
 
 
 @given(meshes(), views(), rasters)
@@ -115,16 +150,6 @@ GROUND = grid(1, 1, (-1, -1, 0), (2, 0, 0), (0, 2, 0), "ground")
 DECAL = grid(2, 2, (-0.5, -0.5, 0), (1, 0, 0), (0, 1, 0), "decal")
 
 
-@given(st.integers(0, 1 << 32), st.sampled_from(ROUNDINGS))
-def test_the_depth_of_a_plane_is_that_of_the_corners_of_its_polygons(seed: int, rounding: str) -> None:
-    mesh, view = decal_on_ground(seed, rounding)
-    projected = projection(mesh, view, 48, 64)
-    corners = projected.corners[:, projected.planes.columns >= 0]
-    x, y = projected.x[corners], projected.y[corners]
-    depths = projected.planes.inverse_depth(np.zeros_like(corners), x, y)
-    assert depths == pytest.approx(projected.inverse_depth[corners], rel=1.1 * MOST_OFF)
-
-
 @given(st.integers(0, 1 << 32))
 def test_all_polygons_of_a_plane_and_winding_are_seen_from_the_same_side(seed: int) -> None:
     mesh, view = decal_on_ground(seed)
@@ -142,9 +167,9 @@ def test_a_plane_is_not_used_where_the_eye_is_almost_in_it(height: float, used: 
     decal = Mesh(uneven, DECAL.node_numbers, DECAL.part_numbers, DECAL.part_names)
     mesh = Mesh.joined([GROUND, decal])
     projected = projection(mesh, View((0.0, 0.0, height), direction=(0, 1, -1)), 48, 64)
-    assert len(projected.planes.columns) > 1
-    assert (projected.planes.columns >= 0).all() == used
-    assert (projected.planes.columns < 0).all() == (not used)
+    assert projected.planes is not None
+    assert len(projected.planes.of_polygons) > 1
+    assert set((projected.planes.of_polygons >= 0).tolist()) == {used}
 
 
 @pytest.mark.parametrize("rounding", ["float32", "decimals"])
@@ -172,13 +197,13 @@ def test_a_decal_hides_its_ground_even_if_it_is_seen_almost_edge_on(rounding: st
 
 def test_a_mesh_without_shared_planes_has_none_on_the_raster() -> None:
     projected = projection(sphere(), View((0.0, -4.0, 0.0), target=(0, 0, 0)), 48, 64)
-    assert projected.planes.columns.size == projected.planes.linear.size == 0
+    assert projected.planes is None
 
 
 def in_two_steps(mesh: Mesh, view: View, lines: int, elements: int) -> Projection:
     """The projection as that of a large mesh, in chunks of a few polygons and nodes."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(projection_room, "LARGE", 0)
+        patch.setattr(room, "LARGE", 0)
         patch.setattr(room, "POLYGONS_AT_ONCE", 3)
         patch.setattr(room, "NODES_AT_ONCE", 5)
         return projection(mesh, view, lines, elements)
@@ -197,8 +222,7 @@ def same(one: Projection, other: Projection) -> bool:
             each.polygon_numbers,
             each.from_behind,
             each.line_counts,
-            each.planes.columns,
-            each.planes.linear,
+            *([] if each.planes is None else each.planes),
             np.array([each.nearest, each.unit, each.focal_length]),
         ]
         for each in (one, other)

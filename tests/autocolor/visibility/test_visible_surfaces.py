@@ -7,6 +7,7 @@ import math
 import tracemalloc
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -21,6 +22,7 @@ from autocolor.visibility.visible_surfaces import (
     RAY,
     along_spans,
     depth_test,
+    not_occluded,
     visible_spans,
     visible_surfaces,
 )
@@ -251,6 +253,65 @@ def test_a_decal_hides_its_ground_at_every_pixel_that_both_cover(rounding: str, 
     assert set(points.pixels[~on_decal].tolist()) == ground - decal
 
 
+PAIRS = 100
+
+
+def decals_on_grounds(seed: int) -> tuple[Mesh, View]:
+    """A hundred grounds in random planes, side by side in the picture, and a decal on each.
+
+    The parts are the grounds and then the decals. Positions, turns and scales are random, as are the place
+    and size of the whole and how its coordinates are rounded.
+    """
+    random = np.random.default_rng(seed)
+    grounds: list[Mesh] = []
+    decals: list[Mesh] = []
+    for number in range(PAIRS):
+        turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+        middle = np.array([5 * (number % 10 - 4.5), random.uniform(-3, 3), 5 * (number // 10 - 4.5)])
+        scale = random.uniform(0.4, 1.3)
+        for parts, sizes, far in ((grounds, (1.0, 1.0), 0.0), (decals, random.uniform(0.15, 0.6, 2), 0.3)):
+            angle = random.uniform(0, 2 * math.pi)
+            across = np.array([math.cos(angle), math.sin(angle), 0]) * 2 * scale * sizes[0] @ turn
+            up = np.array([-math.sin(angle), math.cos(angle), 0]) * 2 * scale * sizes[1] @ turn
+            offset = random.uniform(-far, far, 2) * scale @ turn[:2]
+            corner = middle + offset - across / 2 - up / 2
+            columns, rows = random.integers(1, 6, 2).tolist()
+            name = f"part {len(parts)} {far}"
+            parts.append(grid(columns, rows, tuple(corner), tuple(across), tuple(up), name))
+    mesh = Mesh.joined([*grounds, *decals])
+    turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    size, place = 10.0 ** random.uniform(-3, 3), random.uniform(-30, 30, 3)
+    coordinates = ((mesh.coordinates + place) @ turn) * size
+    if seed % 3 == 1:
+        coordinates = coordinates.astype(np.float32).astype(np.float64)
+    elif seed % 3 == 2:
+        coordinates = coordinates.round(6 - math.floor(math.log10(size)))
+    eye, target = ((np.array(point) + place) @ turn * size for point in ((3, -60, 5), (0, 0, 0)))
+    view = View(tuple(eye.tolist()), target=tuple(target.tolist()), field_of_view=60)
+    return Mesh(coordinates, mesh.node_numbers, mesh.part_numbers, mesh.part_names), view
+
+
+def parts_seen(mesh: Mesh, view: View, chosen: npt.NDArray[np.bool_]) -> npt.NDArray[np.intp]:
+    """The number of the part at each pixel of a picture of some polygons, -1 for none."""
+    some = Mesh(mesh.coordinates, mesh.node_numbers[chosen], mesh.part_numbers[chosen], mesh.part_names)
+    points = visible_surfaces(some, view, (1,) * len(mesh.part_names), 300, 300)
+    parts = np.full(300 * 300, -1)
+    parts[points.pixels] = some.part_numbers[points.polygon_numbers]
+    return parts
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_of_two_thousand_decals_none_is_torn(seed: int) -> None:
+    mesh, view = decals_on_grounds(seed)
+    is_decal = mesh.part_numbers >= PAIRS
+    ground, decal = (parts_seen(mesh, view, chosen) for chosen in (~is_decal, is_decal))
+    assert len(set(decal.tolist())) > 0.75 * PAIRS
+    torn = np.flatnonzero(
+        parts_seen(mesh, view, np.ones_like(is_decal)) != np.where(decal >= 0, decal, ground)
+    )
+    assert not len(torn), f"part {decal[torn[0]]} at pixel {torn[0]}"
+
+
 @given(seed=st.integers(0, 1 << 32))
 def test_of_polygons_in_a_plane_those_that_face_the_eye_hide_the_others(seed: int) -> None:
     mesh, view = decal_on_ground(seed)
@@ -265,8 +326,51 @@ def test_of_polygons_in_a_plane_those_that_face_the_eye_hide_the_others(seed: in
     assert sorted(on_top.tolist()) == sorted(alone.tolist())
 
 
-# -------------------- test_visible_spans
-# Interpolation along visible spans, where a polygon is edge-on or reaches far outside the picture.
+CULLING_RASTER = (126, 171)
+
+
+def examined_and_visible(mesh: Mesh, view: View) -> tuple[set[int], set[int]]:
+    """Of the polygons seen from behind: those that are not culled, and those visible if none is culled."""
+    projected = projection(mesh, view, *CULLING_RASTER)
+    scale = depth_scale(projected)
+    depth_buffer = np.zeros(CULLING_RASTER[0] * CULLING_RASTER[1], np.int64)
+    behind = np.flatnonzero(projected.from_behind)
+    depth_test(depth_buffer, projected, scale, np.flatnonzero(~projected.from_behind))
+    tested = not_occluded(depth_buffer, projected, scale, behind)
+    depth_test(depth_buffer, projected, scale, behind)
+    number = np.unique(depth_buffer & (scale.number_limit - 1))
+    visible = polygons_of_numbers(projected, number[number > 0])
+    return set(tested.tolist()), set(visible.tolist()) & set(behind.tolist())
+
+
+@given(meshes(), views() | outside_views())
+def test_no_visible_polygon_is_culled(mesh: Mesh, view: View) -> None:
+    tested, visible = examined_and_visible(mesh, view)
+    assert visible <= tested
+
+
+@given(st.integers(0, 1 << 32), st.booleans())
+def test_no_visible_polygon_of_a_shared_plane_is_culled(seed: int, cover: bool) -> None:
+    mesh, view = decal_on_ground(seed)
+    # Let half of the polygons run the other way round.
+    numbers = mesh.node_numbers.copy()
+    numbers[::2] = numbers[::2, ::-1]
+    if cover:
+        # A copy that faces the eye lies on all of them.
+        numbers = np.concatenate([numbers, numbers[:, ::-1]])
+    parts = np.zeros(len(numbers), np.intp)
+    tested, visible = examined_and_visible(Mesh(mesh.coordinates, numbers, parts, ("all",)), view)
+    assert visible <= tested
+
+
+@pytest.mark.parametrize("distance", [2.5, 4.0, 9.0])
+def test_the_far_side_of_a_ball_is_culled_except_near_its_rim(distance: float) -> None:
+    view = View((0, -distance, 0), target=(0, 0, 0), field_of_view=60)
+    tested, visible = examined_and_visible(sphere(), view)
+    behind = int(projection(sphere(), view, *CULLING_RASTER).from_behind.sum())
+    assert visible <= tested
+    assert len(tested) < 0.9 * behind
+
 
 tenths = st.integers(-20, 20).map(lambda number: number / 10)
 

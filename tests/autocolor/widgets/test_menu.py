@@ -3,7 +3,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from autocolor.widgets.menu import GAP_LINES, MENU, MOST_LINES, laid_out, menu_items, pages_of
+from autocolor.widgets.menu import MENU, MOST_LINES, laid_out, menu_items, pages_of
 from autocolor.widgets.widget import ROW_LINES, Button, Gap, Heading, Widget
 
 rows = st.lists(st.sampled_from([Button, Gap, Heading]), max_size=120).map(
@@ -35,7 +35,7 @@ def test_rows_stand_one_below_the_other_within_the_menu(rows: list[Widget]) -> N
     for row in laid_out(rows):
         assert MENU.covers(row.area)
         assert row.area.top == top
-        assert row.area.height == (GAP_LINES if isinstance(row, Gap) else ROW_LINES)
+        assert row.area.height == (ROW_LINES // 2 if isinstance(row, Gap) else ROW_LINES)
         top = row.area.bottom + 1
     assert MENU.height == MOST_LINES
 

@@ -26,7 +26,7 @@ from autocolor.scene.kinds import (
 from autocolor.scene.row_kinds import NamedRows, Nested, OneRowOf, Reference, References, Referring
 from autocolor.widgets.bars import Bar
 from autocolor.widgets.items import Area
-from autocolor.widgets.rows import NAMES_A_PAGE, KnownNames, World, reference_rows, rows_of
+from autocolor.widgets.rows import NAMES_A_PAGE, TableNames, World, reference_rows, rows_of
 from autocolor.widgets.widget import Choice, Entry, Heading, Place, Switch, Widget
 
 MIX = Tier.MIX
@@ -304,7 +304,7 @@ def test_each_row_by_name_has_a_box_and_below_it_its_rows() -> None:
 
 def test_names_of_other_tables_are_chosen_among_those_that_the_world_knows() -> None:
     tables = {"lamps": ("lamp", "sky"), "walls": ("north", "south")}
-    world = World(WORLD.low, WORLD.high, KnownNames(tables.__getitem__, {}))
+    world = World(WORLD.low, WORLD.high, TableNames(tables.__getitem__, {}))
     table = Table()
     for label in ("follows", "walls", "  south"):
         rows = {row.label: row.at(AREA) for row in rows_of(table.lamp, table.put, world)}
@@ -312,7 +312,6 @@ def test_names_of_other_tables_are_chosen_among_those_that_the_world_knows() -> 
     assert (table.lamp.follows, table.lamp.walls) == ("sun", ("south",))
 
 
-# -------------------- test_name_rows
 # Names of rows of other tables are chosen by pointing: one of them, or a list.
 
 NEXT = Place(600, 8)
@@ -347,7 +346,7 @@ class Menu:
     def rows(self) -> list[Widget]:
         kind = self.field.column.kind
         assert isinstance(kind, Referring)
-        known = KnownNames(self._posts, self.pages)
+        known = TableNames(self._posts, self.pages)
         found = reference_rows("its posts", self.field, kind, self.value, self.take, known)
         return [row.at(AREA) for row in found]
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from autocolor.widgets.items import LIGHT_GRAY, NIGHT, Area, text
 from autocolor.widgets.widget import (
-    FEWEST,
+    STEM_LETTERS,
     Button,
     Choice,
     Entry,
@@ -163,7 +163,7 @@ def test_a_label_keeps_its_words_and_fits_if_it_can(label: str, most: int) -> No
     assert len(shortened) == len(words)
     for word, part in zip(words, shortened, strict=True):
         assert part == word or (part.endswith(".") and word.startswith(part[:-1]) and len(part) < len(word))
-    least = sum(min(len(word), FEWEST + 1) for word in words) + len(words) - 1
+    least = sum(min(len(word), STEM_LETTERS + 1) for word in words) + len(words) - 1
     assert len(short) <= max(most, least)
     if len(label) <= most:
         assert short == label

@@ -5,7 +5,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import numpy as np
@@ -24,38 +23,6 @@ def test_the_names_of_configurations_are_completed(command: list[str]) -> None:
     shell = BashComplete(ramtek, {}, "ramtek", "_RAMTEK_COMPLETE")
     found = shell.get_completions([*command, "--configuration"], "p")
     assert [item.value for item in found] == ["PRINCETON_9300"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "code"),
-    [
-        (["serve"], 2),
-        (["serve", "--stdio", "--port", "1"], 2),
-        (["serve", "--port", "70000"], 2),
-        (["serve", "--stdio", "--configuration", "gmr_9301"], 2),
-        (["serve", "--stdio", "-o", "/none/at/all.png"], 73),
-        (["serve", "--stdio", "-o", "-"], 2),
-        (["-o", "-"], 2),
-        (["-o", ""], 2),
-        (["--configuration", "gmr_9301", "-o", "x.png"], 2),
-        (["play"], 2),
-        (["play", "none.ramtek"], 66),
-        (["play", "."], 66),
-        (["play", ""], 2),
-        (["list", ""], 2),
-        (["list", "none.ramtek", "--configuration", "gmr_9301"], 2),
-        (["assemble", "none.txt", "-o", ""], 2),
-        (["list", "none.ramtek"], 66),
-        (["assemble", "none.txt", "-o", "/none/at/all"], 73),
-        (["plai"], 2),
-    ],
-)
-def test_what_cannot_be_done_is_refused_in_words(arguments: list[str], code: int) -> None:
-    refused = run(*arguments)
-    assert refused.returncode == code
-    assert refused.stdout == b""
-    assert refused.stderr
-    assert b"Traceback" not in refused.stderr
 
 
 @pytest.mark.parametrize("command", ["play", "list", "assemble", "serve"])
@@ -85,9 +52,8 @@ def test_what_hosts_sent_is_recorded_in_whole_instructions(tmp_path: Path) -> No
                 port.send(words("0B01 0002"))
                 if part[0] != 0x0A03:
                     port.receive(1)
-            time.sleep(0.3)
         process.send_signal(signal.SIGTERM)
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
     read = words("0B01 0002")
     assert record.read_bytes() == stream(np.concatenate((OUTLINE, read, COLOR_MAP, read)))
 
@@ -112,13 +78,6 @@ def test_a_display_goes_on_from_a_snapshot(tmp_path: Path) -> None:
     )
 
 
-def test_a_configuration_that_is_not_known_is_told_the_nearest() -> None:
-    refused = run("play", "-", "-o", "x.png", "--configuration", "gmr")
-    assert refused.returncode == 2
-    assert b"must be one of GMR_9300, " in refused.stderr
-    assert b"not 'gmr'; did you mean GMR_9300?" in refused.stderr
-
-
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_a_read_that_waits_and_every_one_after_it(number: signal.Signals) -> None:
     read_end, write_end = os.pipe()
@@ -129,9 +88,7 @@ def test_a_signal_ends_a_read_that_waits_and_every_one_after_it(number: signal.S
         assert read(5) == b"words"
         assert not signals.received
         threading.Timer(0.2, os.kill, (os.getpid(), number)).start()
-        begin = time.monotonic()
         assert read(5) == b""
-        assert time.monotonic() - begin < 5
         assert signals.received
         os.write(write_end, b"words")
         assert read(5) == b""

@@ -27,16 +27,4 @@ def test_a_played_stream_gives_its_picture_its_recording_and_its_snapshot(tmp_pa
         in again.stderr
     )
     assert run("play", "-", "-o", picture, "--force", data=record.read_bytes()).returncode == 0
-    windowless = run("play", path)
-    assert windowless.returncode == 69
-
-
-def test_a_pace_is_for_the_window_alone_and_a_whole_number(tmp_path: Path) -> None:
-    path = tmp_path / "a.ramtek"
-    path.write_bytes(stream(COLOR_MAP))
-    refused = run("play", path, "-o", tmp_path / "a.png", "--loads-per-second", "30")
-    assert refused.returncode == 2
-    assert b"--loads-per-second is for the window; add --window, or leave it out" in refused.stderr
-    assert run("play", path, "--loads-per-second", "nan").returncode == 2
-    assert run("play", path, "--loads-per-second", "0").returncode == 2
     assert run("play", path, "--loads-per-second", "30").returncode == 69

@@ -1,12 +1,15 @@
 from __future__ import annotations
 
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from ramtek_emu.command_line import run_command
+from ramtek_emu.commands.ramtek import ramtek as ramtek_group
 from tests.ramtek_emu.processes import ROOT
 
 
@@ -69,8 +72,98 @@ def test_help_shows_an_example() -> None:
     assert "ramtek -o pattern.png" in run.stdout
 
 
-def test_wrong_usage_leaves_with_2() -> None:
-    assert ramtek("--nonsense").returncode == 2
+OUTPUT = "Error: an output must be the name of a file, not {!r}; give it one"
+FOLDER = (
+    "ramtek: an output must have a folder to be in, and there is no folder {}; "
+    "make it, or choose another place"
+)
+CONFIGURATION = (
+    "ramtek: a configuration must be one of GMR_9300, JPL_9460, NCAR_9460, PRINCETON_9300, not {!r}; "
+    "did you mean GMR_9300?"
+)
+INPUT = "Error: an input must be the name of a file, not ''; give it one"
+MISSING = (
+    "ramtek: a stream must be a file that can be read, not 'none' (no such file or directory); check the name"
+)
+WAYS = "Error: a display must be served on one of --port, --unix and --stdio; give one of them"
+JOYSTICK = (
+    "ramtek: a joystick's lines must come from a file or a FIFO that can be read, not {!r} ({}); "
+    "make a FIFO with mkfifo, or give - for stdin"
+)
+REFUSED = (
+    ("plai", 2, "Error: there is no command 'plai'; did you mean 'play'?"),
+    ("--nonsense", 2, "Error: No such option"),
+    ("-o -", 2, OUTPUT.format("-")),
+    ("-o ''", 2, OUTPUT.format("")),
+    ("--configuration gmr_9301 -o x.png", 2, CONFIGURATION.format("gmr_9301")),
+    ("play", 2, "Error: Missing argument 'STREAM'."),
+    ("play none", 66, MISSING),
+    ("play .", 66, "ramtek: a stream must be a file, not the folder .; name a file in it"),
+    ("play ''", 2, INPUT),
+    ("play - -o x.png --configuration gmr", 2, CONFIGURATION.format("gmr")),
+    (
+        "play - -o x.png --configuration gmr_9300 --start s.png",
+        2,
+        "Error: a display must be given by --configuration or --start; leave one out",
+    ),
+    (
+        "play - -o x.png --loads-per-second 30",
+        2,
+        "Error: --loads-per-second is for the window; add --window, or leave it out",
+    ),
+    ("play - --loads-per-second nan", 2, "Error: Invalid value for '--loads-per-second'"),
+    ("play - --loads-per-second 0", 2, "Error: Invalid value for '--loads-per-second'"),
+    ("list none", 66, MISSING),
+    ("list ''", 2, INPUT),
+    ("list none --configuration gmr_9301", 2, CONFIGURATION.format("gmr_9301")),
+    ("assemble none -o ''", 2, OUTPUT.format("")),
+    ("assemble none -o /none/at/all", 73, FOLDER.format("/none/at")),
+    ("serve", 2, WAYS),
+    ("serve --stdio --port 1", 2, WAYS),
+    ("serve --port 0 --unix x", 2, WAYS),
+    ("serve --port 70000", 2, "Error: Invalid value for '--port'"),
+    ("serve --stdio --configuration gmr_9301", 2, CONFIGURATION.format("gmr_9301")),
+    ("serve --stdio -o /none/at/all.png", 73, FOLDER.format("/none/at")),
+    ("serve --stdio -o -", 2, OUTPUT.format("-")),
+    (
+        "serve --stdio --joystick -",
+        2,
+        "Error: stdin must be for words or for the joystick, not both; give --joystick a FIFO",
+    ),
+    ("serve --stdio --joystick none", 66, JOYSTICK.format("none", "no such file or directory")),
+    ("serve --port 0 --joystick ''", 66, JOYSTICK.format("", "no such file or directory")),
+    ("serve --port 0 --joystick .", 66, JOYSTICK.format(".", "is a directory")),
+    (
+        "tty none -- 'no such program'",
+        66,
+        "ramtek: a program must be one that can be run, not 'no such program'; check its name",
+    ),
+    (
+        "tty none -- true",
+        69,
+        "ramtek: a display must listen at none, and it is not reached (no such file or directory); "
+        "start `ramtek serve --unix none`",
+    ),
+)
+"""Arguments, the exit code, and the sentence on stderr, or its start where click writes it."""
+
+
+@pytest.mark.parametrize(("arguments", "code", "sentence"), REFUSED)
+def test_a_command_that_cannot_be_done_is_refused(
+    arguments: str,
+    code: int,
+    sentence: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["ramtek", *shlex.split(arguments)])
+    with pytest.raises(SystemExit) as left:
+        run_command(ramtek_group, "ramtek")
+    out, err = capsys.readouterr()
+    assert (left.value.code, out) == (code, "")
+    assert err.splitlines()[-1].startswith(sentence)
 
 
 BROKEN = {

@@ -18,10 +18,11 @@ import pytest
 from ramtek_emu import Ramtek9300, TcpPort, UnixPort, instructions, read_snapshot
 from ramtek_emu.commands.displays import show
 from ramtek_emu.host.server import TcpServer
-from ramtek_emu.monitor.window import TICK_MILLISECONDS, Monitor
+from ramtek_emu.monitor.window import Monitor
+from tests.ramtek_emu.displays import shown
 from tests.ramtek_emu.processes import ROOT, PipedHost, environment, field_of, run, started, stream
 from tests.ramtek_emu.recorded_streams import BARS, OUTLINE, words
-from tests.ramtek_emu.screens import shown
+from tests.ramtek_emu.serving import until
 
 pygame = pytest.importorskip("pygame")
 
@@ -53,14 +54,14 @@ def test_a_polygon_filler_works_on_a_pipe_and_over_tcp(tmp_path: Path) -> None:
         fill_polygon(host, 0, 0, 80, 50)
         host.into.close()
         assert host.out.read() == b""
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
     assert (read_snapshot(tmp_path / "pipe.png").words == expected).all()
     with started("serve", "--port", "0", "--once", "--snapshot", tmp_path / "tcp.png") as process:
         assert process.stdout is not None
         with TcpPort(process.stdout.readline().decode().strip()) as port:
             port.send(TRIANGLE)
             fill_polygon(port, 0, 0, 80, 50)
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
     assert (read_snapshot(tmp_path / "tcp.png").words == expected).all()
 
 
@@ -72,7 +73,7 @@ def test_a_program_that_changes_the_table_it_read_works_on_a_pipe(tmp_path: Path
         table = host.receive(4)
         host.send(np.concatenate((words("0300 0000 0008"), table[[2, 3, 0, 1]])))
         host.into.close()
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
     assert field_of(tmp_path / "table.png")[0, 0].tolist() == [40, 50, 60]
 
 
@@ -86,7 +87,7 @@ def test_a_reply_comes_before_the_next_word_is_sent_and_dribbled_bytes_are_words
             assert host.receive(1).tolist() in ([128], [256])
         host.into.write(b"\x07")
         host.into.close()
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
         assert process.stderr is not None
         assert b"within a word: its last byte was dropped" in process.stderr.read()
     twin = Ramtek9300()
@@ -115,7 +116,7 @@ def test_a_host_that_takes_no_replies_still_gets_its_picture(tmp_path: Path) -> 
         process.stdout.close()
         process.stdin.write(stream(np.concatenate((words("0B03 0040 0 0 9 9 64"), OUTLINE))))
         process.stdin.close()
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
     assert read_snapshot(tmp_path / "late.png").words.any()
 
 
@@ -139,7 +140,7 @@ def test_a_program_that_never_ends_is_interrupted_and_its_picture_is_there(
         host.send(words("0B03 0040 64 64 64 64 2 0A01"))
         assert host.receive(1).tolist() == [128]
         process.send_signal(number)
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
     assert read_snapshot(tmp_path / "s.png").words.any()
 
 
@@ -159,7 +160,7 @@ def test_two_pipes_put_a_program_that_reads_back_on_the_display(tmp_path: Path) 
         f"{python} host.py < replies | {python} -m ramtek_emu serve --stdio --snapshot s.png > replies"
     )
     done = subprocess.run(
-        command, shell=True, cwd=tmp_path, env=environment(), capture_output=True, check=False, timeout=20
+        command, shell=True, cwd=tmp_path, env=environment(), capture_output=True, check=False, timeout=60
     )
     assert done.returncode == 0, done.stderr
     assert read_snapshot(tmp_path / "s.png").words[[3, 4], [3, 4]].tolist() == [7, 8]
@@ -175,11 +176,8 @@ def test_a_server_prints_its_port_serves_one_host_after_the_other_and_ends_when_
             with TcpPort(address) as port:
                 port.send(words(f"0902 0044 {number + 1:X} {number:X} 0 {number:X} 0 0B03 0040 0 0 2 0 6"))
                 assert port.receive(3).tolist()[: number + 1] == list(range(1, number + 2))
-            time.sleep(0.1)
         process.send_signal(signal.SIGTERM)
-        begin = time.monotonic()
-        assert process.wait(10) == 0
-        assert time.monotonic() - begin < 5
+        assert process.wait(60) == 0
         assert f"wrote {tmp_path / 'end.png'}" in process.stderr.read().decode()
 
 
@@ -198,7 +196,7 @@ def test_two_hundred_hosts_one_right_after_another_all_draw_on_a_server_process(
                 host.sendall(stream(mark(number + 1)))
         TcpPort(address).close()
         process.send_signal(signal.SIGTERM)
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
     assert read_snapshot(tmp_path / "end.png").words[9, :400].tolist() == list(range(1, 401))
 
 
@@ -218,23 +216,9 @@ def test_a_server_at_a_unix_socket_rounds_each_write_down_and_removes_its_socket
             f"not {path}, which belongs to a server that runs; choose another path\n"
         )
         process.send_signal(signal.SIGTERM)
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
     assert not path.exists()
     assert read_snapshot(tmp_path / "end.png").words[9, :200].tolist() == list(range(1, 201))
-
-
-def test_one_of_the_ways_to_serve_must_be_given() -> None:
-    for arguments in ([], ["--stdio", "--port", 0], ["--port", 0, "--unix", "x"]):
-        asked = run("serve", *arguments)
-        assert asked.returncode == 2
-        assert b"on one of --port, --unix and --stdio" in asked.stderr
-
-
-def test_a_joystick_without_a_name_or_in_a_folder_is_refused(tmp_path: Path) -> None:
-    for name in ("", tmp_path):
-        asked = run("serve", "--port", 0, "--joystick", name)
-        assert asked.returncode == 66
-        assert b"a joystick's lines must come from a file or a FIFO that can be read" in asked.stderr
 
 
 def test_lines_on_stdin_move_the_joystick_of_a_server() -> None:
@@ -258,15 +242,11 @@ def test_lines_on_stdin_move_the_joystick_of_a_server() -> None:
             assert port.receive(3).tolist() == [0, 100, 200]
         process.stdin.close()
         process.send_signal(signal.SIGTERM)
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
 
 
 def test_a_fifo_moves_the_joystick_of_a_display_on_a_pipe(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "stick")
-    assert run("serve", "--stdio", "--joystick", "-").returncode == 2
-    missing = run("serve", "--stdio", "--joystick", tmp_path / "none")
-    assert missing.returncode == 66
-    assert b"make a FIFO with mkfifo" in missing.stderr
     with started("serve", "--stdio", "--joystick", tmp_path / "stick") as process:
         host = PipedHost(process)
         host.send(words("1600 0005 0406 1700"))
@@ -281,7 +261,7 @@ def test_a_fifo_moves_the_joystick_of_a_display_on_a_pipe(tmp_path: Path) -> Non
         host.send(words("0B03 0040 0 0 9F 9F C800"))
         host.into.close()
         assert len(host.out.read()) == 0xC800
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
 
 
 def test_a_host_address_other_than_loopback_is_served_with_a_warning() -> None:
@@ -291,7 +271,7 @@ def test_a_host_address_other_than_loopback_is_served_with_a_warning() -> None:
         port = int(process.stdout.readline().decode().strip().rpartition(":")[2])
         socket.create_connection(("127.0.0.1", port), 5).close()
         process.send_signal(signal.SIGINT)
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
         assert b"whoever reaches tcp://0.0.0.0" in process.stderr.read()
 
 
@@ -302,10 +282,13 @@ def test_the_window_shows_what_a_remote_host_draws_as_it_draws(on_screen: str) -
         host = TcpPort(server.address)
         host.send(instructions.load_entries(0, [[n % 256, n // 4, 0] for n in range(1024)]))
         counts = []
+        sent = 3 + 2 * 1024
         for part in np.split(BARS, 8):
             host.send(part)
-            for _ in range(20):
+            sent += len(part)
+            while server.display.words_received < sent:
                 monitor.step(2)
+            monitor.step()
             counts.append(monitor.refreshed)
             multiple = len(shown()) // 480
             assert (shown()[::multiple, ::multiple] == server.display.field()).all()
@@ -319,8 +302,19 @@ def test_the_window_shows_what_a_remote_host_draws_as_it_draws(on_screen: str) -
         monitor.close()
 
 
-def test_a_host_that_polls_the_joystick_of_a_window_does_not_wait_for_its_ticks(on_screen: str) -> None:
+def test_a_host_that_polls_the_joystick_of_a_window_does_not_wait_for_its_ticks(
+    on_screen: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     polls = 100
+    waits: set[int] = set()
+    step = Monitor.step
+
+    def observed(monitor: Monitor, wait: int = 0) -> bool:
+        if server.busy:
+            waits.add(wait)
+        return step(monitor, wait)
+
+    monkeypatch.setattr(Monitor, "step", observed)
 
     def poll(address: str) -> None:
         with TcpPort(address) as host:
@@ -331,7 +325,6 @@ def test_a_host_that_polls_the_joystick_of_a_window_does_not_wait_for_its_ticks(
     with TcpServer(Ramtek9300()) as server:
         host = threading.Thread(target=poll, args=(server.address,))
         host.start()
-        begin = time.monotonic()
 
         def serve_for(seconds: float) -> None:
             server.serve_for(seconds, wait=0.005)
@@ -339,8 +332,8 @@ def test_a_host_that_polls_the_joystick_of_a_window_does_not_wait_for_its_ticks(
                 os.kill(os.getpid(), signal.SIGTERM)
 
         show(server.display, serve_for, lambda: server.busy)
-        assert time.monotonic() - begin < polls * TICK_MILLISECONDS / 1000 / 2
-        host.join(10)
+        host.join(60)
+    assert waits == {0}
 
 
 def test_a_window_closes_at_once_while_a_host_is_still_sending(on_screen: str) -> None:
@@ -363,12 +356,12 @@ def test_a_window_closes_at_once_while_a_host_is_still_sending(on_screen: str) -
             monitor.step(5)
         assert server.busy
         pygame.event.post(pygame.event.Event(pygame.QUIT))
-        begin = time.monotonic()
-        while monitor.is_open:
-            monitor.step(5)
+        begin = time.thread_time()
+        monitor.step(5)
+        assert not monitor.is_open
         server.close()
-        assert time.monotonic() - begin < 0.25
-        host.wait(10)
+        assert time.thread_time() - begin < 0.25
+        host.wait(60)
 
 
 @pytest.mark.parametrize(
@@ -388,15 +381,19 @@ def test_a_command_with_a_window_stays_until_it_is_told(
     assert process.stdin is not None
     process.stdin.write(OUTLINE.astype("<u2").tobytes())
     process.stdin.flush()
-    time.sleep(1.2)
+    until(lambda: catches(process.pid, signal.SIGTERM))
     assert process.poll() is None
     # The window's manager would send this as a request to close it.
     process.send_signal(signal.SIGINT)
-    begin = time.monotonic()
-    _, said = process.communicate(timeout=10)
-    assert time.monotonic() - begin < 2
+    _, said = process.communicate(timeout=60)
     assert process.returncode == 0
     assert b"Traceback" not in said
+
+
+def catches(process: int, number: signal.Signals) -> bool:
+    """Whether a process handles a signal: a command with a window handles the signals to end."""
+    status = dict(line.split(":\t") for line in Path(f"/proc/{process}/status").read_text().splitlines())
+    return bool(int(status["SigCgt"], 16) >> (number - 1) & 1)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -430,5 +427,5 @@ def test_the_server_s_window_is_a_command(on_screen: str, tmp_path: Path) -> Non
         host.send(stream)
         assert (host.receive(count) == 9).all()
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=10)
+    process.communicate(timeout=60)
     assert process.returncode == 0

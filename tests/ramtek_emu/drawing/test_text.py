@@ -139,7 +139,7 @@ def test_text_with_the_widest_spacing_takes_little_time_and_memory() -> None:
     window = [0x8000, 0x8000, 0x7FFF, 0x7FFF]
     head = [0x0C03, 0x0740, *window, 16, 16, 0xFFFF, 0xFFFF, 0x0F0F, 0xFFFE]
     display.send(np.array(head + [0x4142] * 0x7FFF, np.uint16))
-    assert display.decoder.held_words == 0
+    assert display.decoder.pending_words == 0
 
 
 def test_spacing_leaves_the_pixels_between_the_cells() -> None:

@@ -2,9 +2,10 @@ from __future__ import annotations
 
 import copy
 import pickle
+import select
 import socket
 import threading
-import time
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from ramtek_emu import (
     HostPort,
     PortError,
     Ramtek9300,
+    RamtekError,
     Recorder,
     ReplyError,
     TcpPort,
@@ -23,17 +25,8 @@ from ramtek_emu import (
     WordsError,
     instructions,
 )
-from ramtek_emu.host.port import (
-    PacketConnection,
-    Sign,
-    SocketPort,
-    expect_marks,
-    host_and_port,
-    read_packet,
-    read_stream,
-    send_packet_mark,
-    send_stream_mark,
-)
+from ramtek_emu.host.port import Sign, SocketPort, Wire, host_and_port
+from ramtek_emu.host.server import Server, TcpServer
 from tests.ramtek_emu.recorded_streams import OUTLINE, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
 
@@ -99,105 +92,89 @@ def test_a_recorder_tells_its_file_and_its_display(tmp_path: Path) -> None:
     assert repr(Recorder(BytesIO(), Ramtek9300())).startswith("Recorder(BytesIO, Ramtek9300(GMR_9300, ")
 
 
-def connected_pair() -> tuple[socket.socket, socket.socket]:
+Pair = Callable[[], tuple[socket.socket, socket.socket]]
+
+
+def tcp_pair() -> tuple[socket.socket, socket.socket]:
+    """The two ends of a TCP connection."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
         host = socket.create_connection(listener.getsockname())
         display, _ = listener.accept()
-    expect_marks(display)
     return host, display
 
 
-def test_a_mark_stands_at_its_place_between_the_bytes_of_a_stream() -> None:
-    host, display = connected_pair()
-    with host, display:
-        host.sendall(b"before")
-        send_stream_mark(host)
-        host.sendall(b"after")
-        host.shutdown(socket.SHUT_WR)
-        time.sleep(0.1)
-        found = [read_stream(display, 100) for _ in range(4)]
-    assert found == [b"before", Sign.MARK, b"after", Sign.END]
+def unix_pair() -> tuple[socket.socket, socket.socket]:
+    """The two ends of a Unix socket of packets."""
+    return socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
 
 
-def test_a_mark_stands_at_its_place_between_packets() -> None:
-    host, display = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    with host, display:
-        host.send(b"be")
-        host.send(b"fore")
-        send_packet_mark(host)
-        assert [read_packet(display, 100) for _ in range(3)] == [b"be", b"fore", Sign.MARK]
-        send_packet_mark(host)
+def signs_and_bytes(wire: Wire) -> list[bytes | Sign]:
+    """Everything that a wire gives until its end; it is waited for, and parts of a stream are joined."""
+    given: list[bytes | Sign] = []
+    while Sign.END not in given:
+        data = wire.read(100)
+        if data is Sign.NOTHING:
+            select.select([wire.socket], [], [])
+        elif isinstance(data, bytes) and given and isinstance(given[-1], bytes) and not wire.keeps_writes:
+            given[-1] += data
+        else:
+            given.append(data)
+    return given
+
+
+@pytest.mark.parametrize("pair", [tcp_pair, unix_pair])
+def test_a_mark_stands_at_its_place_between_the_bytes(pair: Pair) -> None:
+    ends = pair()
+    host, display = map(Wire, ends)
+    with ends[0], ends[1]:
+        for word in (b"be", b"fore"):
+            host.send(word)
+        assert host.send_mark()
         host.send(b"after")
-        host.close()
-        assert [read_packet(display, 100) for _ in range(3)] == [Sign.MARK, b"after", Sign.END]
+        host.socket.shutdown(socket.SHUT_WR)
+        given = signs_and_bytes(display)
+    before = [b"be", b"fore"] if host.keeps_writes else [b"before"]
+    assert given == [*before, Sign.MARK, b"after", Sign.END]
 
 
-def test_nothing_to_read_is_told_by_an_error() -> None:
-    host, display = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    with host, display:
-        display.setblocking(False)
-        with pytest.raises(BlockingIOError):
-            read_packet(display, 100)
+@pytest.mark.parametrize("pair", [tcp_pair, unix_pair])
+def test_a_wire_never_waits(pair: Pair) -> None:
+    ends = pair()
+    host, display = map(Wire, ends)
+    with ends[0], ends[1]:
+        assert display.read(100) is Sign.NOTHING
+        while host.send(bytes(1 << 14)) or host.send_mark():
+            pass
+        ends[1].close()
+        with pytest.raises(ConnectionError):
+            send_for_ever(host)
 
 
-def test_a_packet_loses_its_odd_byte_and_replies_keep_their_boundaries() -> None:
-    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    display = PacketConnection(there)
-    with host, there:
-        for packet in (b"abc", b"d", b"ef"):
-            host.send(packet)
-        assert [display.read() for _ in range(3)] == [b"ab", b"", b"ef"]
-        display.reply(b"12")
-        display.reply(b"")
-        display.reply(b"3456")
-        assert display.waiting == 6
-        while display.has_to_send:
-            display.send()
-        assert [host.recv(100), host.recv(100)] == [b"12", b"3456"]
-        host.close()
-        assert display.read() is Sign.END
+def send_for_ever(wire: Wire) -> None:
+    while True:
+        select.select([], [wire.socket], [])
+        wire.send(b"lost")
 
 
-def test_the_answer_to_a_mark_takes_the_place_of_the_replies_that_wait() -> None:
-    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    display = PacketConnection(there)
-    with host, there:
-        display.reply(b"old")
-        display.answer_mark()
-        assert display.has_to_send
-        display.reply(b"new")
-        while display.has_to_send:
-            display.send()
-        assert [host.recv(100), host.recv(100)] == [b"", b"new"]
-
-
-class PairedPort(SocketPort):
-    """A port on one of two sockets of this process."""
-
-    at_once = 4
-
-    def _read(self) -> bytes | Sign:
-        return self._socket.recv(100) or Sign.END
-
-    def _send_mark(self) -> None:
-        self._socket.send(b"mark")
-
-
-def paired(timeout: float = 5.0) -> tuple[PairedPort, socket.socket]:
-    ours, theirs = socket.socketpair()
-    return PairedPort("here", ours, timeout), theirs
+def paired(timeout: float = 5.0) -> tuple[SocketPort, socket.socket]:
+    """A port, and the display's end of its connection."""
+    ours, theirs = tcp_pair()
+    port = SocketPort("here", ours, timeout)
+    port.at_once = 1 << 16
+    return port, theirs
 
 
 def test_words_are_sent_in_pieces_low_byte_first() -> None:
     port, display = paired()
+    port.at_once = 4
     with display:
         port.send(np.array([0x0102, 0x0304, 0x0506], np.uint16))
-        assert display.recv(100) == b"\x02\x01\x04\x03\x06\x05"
+        assert display.recv(6, socket.MSG_WAITALL) == b"\x02\x01\x04\x03\x06\x05"
         display.send(b"\x08\x07\x0a")
         assert port.receive(1).tolist() == [0x0708]
         display.send(b"\x09")
         assert port.receive(1).tolist() == [0x090A]
-    port._socket.close()
+    port.wire.socket.close()
 
 
 def test_a_display_that_takes_nothing_or_is_lost_is_told_as_such() -> None:
@@ -214,54 +191,68 @@ def test_a_display_that_takes_nothing_or_is_lost_is_told_as_such() -> None:
         port.send(np.zeros(1, np.uint16))
 
 
-@pytest.mark.parametrize("seconds", [0, -1, float("nan"), float("inf"), None, "30", True])
-def test_what_is_no_time_to_wait_is_refused(seconds: Any, tmp_path: Path) -> None:
-    with pytest.raises(PortError, match="a timeout must be a number of seconds from 0 to 1,000,000"):
-        TcpPort("tcp://127.0.0.1:1", seconds)
-    with pytest.raises(PortError, match="a timeout must be a number of seconds from 0 to 1,000,000"):
-        UnixPort(tmp_path / "display", seconds)
-
-
-@pytest.mark.parametrize("count", [-1, 1.0, None, "1", True])
-def test_what_is_no_number_of_words_to_receive_is_refused(count: Any) -> None:
+def receive(count: Any) -> None:
     port, display = paired()
-    with display, pytest.raises(ReplyError, match="the words received must be a whole number from 0 on"):
+    try:
         port.receive(count)
-    port._socket.close()
+    finally:
+        port.wire.socket.close()
+        display.close()
 
 
-def test_a_port_without_a_display_is_refused_in_one_sentence() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        port = listener.getsockname()[1]
-    with pytest.raises(PortError) as refusal:
-        TcpPort(f"tcp://127.0.0.1:{port}")
-    assert str(refusal.value) == (
-        f"a display must listen at tcp://127.0.0.1:{port}, and it is not reached (connection refused); "
-        "start `ramtek serve` there"
-    )
+TIMEOUT = "a timeout must be a number of seconds from 0 to 1,000,000, not {!r}; choose another"
+ADDRESS = "an address must be tcp://host:port with a port from 1 to 65535, not {!r}; write it so"
+COUNT = (
+    "the words received must be a whole number from 0 on, not {!r}; ask for as many as an instruction replies"
+)
+REFUSED: list[tuple[Callable[[Any], object], list[Any], str]] = [
+    (lambda value: TcpPort("tcp://127.0.0.1:1", value), [0, -1, float("nan"), None, "30", True], TIMEOUT),
+    (lambda value: UnixPort("nowhere", value), [0, float("inf"), "30", True], TIMEOUT),
+    (
+        host_and_port,
+        ["", "127.0.0.1:1", "tcp://", "tcp://a", "tcp://a:0", "tcp://a:70000", "tcp://a:b", "tcp://a b:1", 9],
+        ADDRESS,
+    ),
+    (receive, [-1, 1.0, None, "1", True], COUNT),
+]
+"""A call with one argument, arguments that it refuses, and its sentence about them."""
 
 
 @pytest.mark.parametrize(
-    "address",
-    ["", "127.0.0.1:1", "tcp://", "tcp://a", "tcp://a:0", "tcp://a:70000", "tcp://a:b", "tcp://a b:1", 9300],
+    ("call", "value", "sentence"),
+    [(call, value, sentence) for call, values, sentence in REFUSED for value in values],
 )
-def test_what_is_no_address_is_refused(address: Any) -> None:
-    with pytest.raises(PortError) as refusal:
-        host_and_port(address)
-    assert str(refusal.value) == (
-        f"an address must be tcp://host:port with a port from 1 to 65535, not {address!r}; write it so"
-    )
+def test_a_wrong_argument_is_refused(call: Callable[[Any], object], value: Any, sentence: str) -> None:
+    with pytest.raises(RamtekError) as refusal:
+        call(value)
+    assert str(refusal.value) == sentence.format(value)
+
+
+def test_a_port_without_a_display_is_refused(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
+    path = str(tmp_path / "display")
+    for port, where, reason, command in (
+        (TcpPort, address, "connection refused", "`ramtek serve` there"),
+        (UnixPort, path, "no such file or directory", f"`ramtek serve --unix {path}`"),
+    ):
+        with pytest.raises(PortError) as refusal:
+            port(where)
+        assert str(refusal.value) == (
+            f"a display must listen at {where}, and it is not reached ({reason}); start {command}"
+        )
 
 
 def test_words_that_do_not_come_are_refused_after_a_while() -> None:
-    with serving() as server, TcpPort(server.address, timeout=0.2) as port:
+    with serving() as server, TcpPort(server.address) as port:
         port.send(words("0B03 0040 0 0 0 0 2"))
+        select.select([port.wire.socket], [], [])
+        port.timeout = 0.2
         with pytest.raises(ReplyError) as refusal:
             port.receive(3)
         assert "within 0.2 seconds, not 3 of which 1 came" in str(refusal.value)
         assert port.receive(1).tolist() == [0]
-        with pytest.raises(ReplyError):
-            port.receive(-1)
+        port.timeout = 60
     with pytest.raises(PortError, match="must be open"):
         port.send(words("0700"))
 
@@ -323,21 +314,29 @@ def test_an_error_in_a_with_block_is_not_hidden_by_the_one_of_closing() -> None:
             raise ZeroDivisionError
 
 
-def test_a_hard_reset_frees_a_display_that_waits_for_the_rest_of_an_instruction() -> None:
-    with serving() as server, TcpPort(server.address) as port:
+@pytest.mark.parametrize("kind", ["tcp", "unix"])
+def test_a_hard_reset_frees_a_display_that_waits_for_the_rest_of_an_instruction(
+    kind: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "display"
+    with serving() if kind == "tcp" else serving_at(path) as server, port_to(server) as port:
         port.send(instructions.load_entries(3, [[1, 2, 3]]))
         port.send(OUTLINE)
         server_words = server.display.words
         port.send(words("0802 0002 0009 1600 0064 0464 0B03 0040 0 0 9 9 C8 0A01 FFFE 1 2 3"))
-        until(lambda: server.display.decoder.held_words == 5)
+        until(lambda: server.display.decoder.pending_words == 5)
         port.reset()
         assert not server_words.any()
-        assert server.display.decoder.held_words == 0
+        assert server.display.decoder.pending_words == 0
         assert not server.display.cursors[0].is_visible
         assert server.display.entries[3].tolist() == [1, 2, 3]
-        # The replies of before are gone; the next are those of what is asked now.
+        # The replies before the reset are gone; the next reply answers the next instruction.
         port.send(words("0902 0044 5 0 0 0 0 0B03 0040 0 0 0 0 2"))
         assert port.receive(1).tolist() == [5]
+
+
+def port_to(server: Server) -> SocketPort:
+    return TcpPort(server.address) if isinstance(server, TcpServer) else UnixPort(server.address)
 
 
 def test_many_resets_in_a_row_leave_the_words_between_them_whole() -> None:
@@ -409,7 +408,7 @@ def test_each_write_is_rounded_down_to_whole_words_alone(tmp_path: Path) -> None
         port.write(bytes.fromhex("0017"))
         assert port.receive(2).tolist() == [0, 0]
         assert server.display.words.any()
-        assert server.display.decoder.held_words == 0
+        assert server.display.decoder.pending_words == 0
         # Single bytes are no words at all.
         for byte in b"\x02\x09\x44":
             port.write(bytes((byte,)))
@@ -441,21 +440,11 @@ def test_two_hundred_hosts_one_right_after_another_all_draw_at_a_unix_socket(tmp
         assert server.display.words[9, :200].tolist() == list(range(1, 201))
 
 
-def test_a_hard_reset_frees_a_display_that_waits_for_the_rest_of_an_instruction_2(tmp_path: Path) -> None:
-    with serving_at(tmp_path / "display") as server, UnixPort(tmp_path / "display") as port:
-        port.send(words("0902 0044 7 0 0 9 9 0B03 0040 0 0 9 9 C8 0A01 FFFE 1 2 3"))
-        port.reset()
-        assert not server.display.words.any()
-        assert server.display.decoder.held_words == 0
-        port.send(words("0902 0044 5 0 0 0 0 0B03 0040 0 0 0 0 2"))
-        assert port.receive(1).tolist() == [5]
-
-
 def test_more_hosts_than_the_line_holds_find_a_place_later(tmp_path: Path) -> None:
     path = tmp_path / "display"
 
     def draw(number: int) -> None:
-        with UnixPort(path, timeout=20) as port:
+        with UnixPort(path, timeout=60) as port:
             port.send(words(f"0902 0044 5 {number:X} 9 {number:X} 9"))
 
     with serving_at(path) as server:
@@ -477,13 +466,3 @@ def test_a_write_that_is_too_long_for_a_packet_is_refused(tmp_path: Path) -> Non
         assert str(refusal.value) == (
             "a write must be at most 65536 bytes, not 65537; divide it at an even place"
         )
-
-
-def test_a_path_without_a_display_is_refused_in_one_sentence(tmp_path: Path) -> None:
-    path = tmp_path / "display"
-    with pytest.raises(PortError) as refusal:
-        UnixPort(path)
-    assert str(refusal.value) == (
-        f"a display must listen at {path}, and it is not reached (no such file or directory); "
-        f"start `ramtek serve --unix {path}`"
-    )

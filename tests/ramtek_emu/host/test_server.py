@@ -6,7 +6,6 @@ import selectors
 import socket
 import stat
 import threading
-import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from hypothesis import strategies as st
 
 from ramtek_emu import HostPort, OutputError, OutputExistsError, PortError, Ramtek9300, TcpPort, instructions
 from ramtek_emu.arrays import Words
-from ramtek_emu.host.port import PacketConnection, UnixPort
+from ramtek_emu.host.port import UnixPort, Wire
 from ramtek_emu.host.server import REPLY_BYTES, Client, HostSession, TcpServer, UnixServer
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED, words
 from tests.ramtek_emu.serving import READ_EVERYTHING, serving, serving_at, until
@@ -25,12 +24,12 @@ from tests.ramtek_emu.strategies import SMALL, quick, streams
 
 
 def connected(server: TcpServer) -> socket.socket:
-    return socket.create_connection(("127.0.0.1", server.port), 5)
+    return socket.create_connection(("127.0.0.1", server.port), 60)
 
 
 def closed(connection: socket.socket) -> bool:
-    """Whether the other side closes the connection within five seconds."""
-    connection.settimeout(5)
+    """Whether the other side closes the connection within a minute."""
+    connection.settimeout(60)
     with suppress(ConnectionError):
         return connection.recv(1) == b""
     return True
@@ -68,14 +67,21 @@ def test_everything_can_be_asked_before_anything_is_read() -> None:
 
 def test_a_host_that_takes_no_replies_is_read_no_further() -> None:
     with serving() as server, connected(server) as host:
-        asked = np.tile(READ_EVERYTHING, 300_000).astype("<u2").tobytes()
-        host.settimeout(0.5)
-        with pytest.raises(TimeoutError):
-            host.sendall(asked)
-        assert server.busy
-        # What waits is bounded: what the socket holds, one full buffer, and the replies of one piece.
+        left = memoryview(np.tile(READ_EVERYTHING, 300_000).astype("<u2").tobytes())
+        wire = Wire(host)
+
+        def is_stopped() -> bool:
+            """Whether the server reads no more and the host can send no more; it sends until then."""
+            nonlocal left
+            sent = wire.send(left)
+            left = left[sent:]
+            return not sent and server._client is not None and server._client.waiting >= REPLY_BYTES
+
+        until(is_stopped)
+        assert len(left) > 0
+        # The replies of one piece may come on top.
         assert server._client is not None
-        assert server._client.connection.waiting < REPLY_BYTES + (1 << 17)
+        assert server._client.waiting < REPLY_BYTES + (1 << 17)
 
 
 def test_words_come_whole_however_the_bytes_are_cut() -> None:
@@ -84,7 +90,7 @@ def test_words_come_whole_however_the_bytes_are_cut() -> None:
         host.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         for byte in data.astype("<u2").tobytes():
             host.sendall(bytes((byte,)))
-        host.settimeout(5)
+        host.settimeout(60)
         reply = b""
         while len(reply) < 4:
             reply += host.recv(4)
@@ -107,16 +113,16 @@ def test_a_host_that_vanishes_in_mid_instruction_leaves_the_display_to_the_next(
             data = words(partial).astype("<u2").tobytes() + b"\x01"
             until(server.display.words.any)
             with suppress(PortError):
-                first._socket.setblocking(True)
-                first._socket.sendall(data)
+                first.wire.socket.setblocking(True)
+                first.wire.socket.sendall(data)
             if rudely:
                 # Closed with a reset instead of a farewell.
-                first._socket.setsockopt(
+                first.wire.socket.setsockopt(
                     socket.SOL_SOCKET, socket.SO_LINGER, b"\x01\x00\x00\x00\x00\x00\x00\x00"
                 )
-            first._socket.close()
+            first.wire.socket.close()
         until(lambda: not server.busy)
-        assert server.display.decoder.held_words == 0
+        assert server.display.decoder.pending_words == 0
         assert server.display.processor.waiting == 0
         before = server.display.words.copy()
         assert before.any()
@@ -165,7 +171,7 @@ def test_two_hundred_hosts_one_right_after_another_all_draw() -> None:
 
 def test_a_server_that_closes_before_all_is_drawn_is_lost_for_the_host() -> None:
     server = TcpServer(Ramtek9300())
-    port = TcpPort(server.address, timeout=20)
+    port = TcpPort(server.address, timeout=60)
     port.send(np.tile(words("0902 0044 7 5 5 5 5"), 1000))
     errors: list[str] = []
 
@@ -177,19 +183,18 @@ def test_a_server_that_closes_before_all_is_drawn_is_lost_for_the_host() -> None
 
     host = threading.Thread(target=close)
     host.start()
-    time.sleep(0.2)
     until(lambda: server.step(0.1) and server.display.words[5, 5] == 7)
     server.close()
     host.join()
     assert len(errors) == 1
-    assert "and it left (connection reset by peer)" in errors[0]
+    assert "and it left (" in errors[0]
 
 
 def test_two_hundred_plain_sockets_one_right_after_another_all_draw() -> None:
     with serving() as server:
         for number in range(200):
             draw_from_a_socket(server, number)
-        until(lambda: server.served == 200, 20)
+        until(lambda: server.served == 200)
         assert server.display.words[9, :200].tolist() == ALL_MARKS
 
 
@@ -198,7 +203,7 @@ def test_plain_sockets_that_ask_for_replies_and_leave_without_them_all_draw() ->
         for number in range(200):
             asked = instructions.read_image(0, 0, 640, 2).__next__()[0].astype("<u2").tobytes()
             draw_from_a_socket(server, number, more=asked + mark(number + 200).astype("<u2").tobytes())
-        until(lambda: server.served == 200, 20)
+        until(lambda: server.served == 200)
         assert np.count_nonzero(server.display.words[9]) == 400
 
 
@@ -209,35 +214,52 @@ def test_a_hundred_hosts_at_the_same_time_all_draw() -> None:
             host.sendall(mark(number).astype("<u2").tobytes())
         for host in hosts:
             host.close()
-        until(lambda: server.served == 100, 20)
+        until(lambda: server.served == 100)
         assert server.display.words[9, :100].tolist() == ALL_MARKS[:100]
 
 
 def test_a_silent_host_holds_up_the_line_no_longer_than_its_limit() -> None:
     with serving(idle_seconds=0.3) as server, connected(server), connected(server):
         until(lambda: server.busy)
-        begin = time.monotonic()
         with TcpPort(server.address) as port:
             port.send(mark(1))
-        assert 0.2 < time.monotonic() - begin < 3
+            until(lambda: server.served == 2)
         assert server.display.words[9, 1] == 2
 
 
-def test_a_silent_host_is_shown_out_and_one_that_leaves_an_instruction_unfinished_sooner() -> None:
-    with serving(idle_seconds=0.3) as server:
-        with connected(server) as host:
-            assert closed(host)
-        until(lambda: server.served == 1)
-    with serving(partial_seconds=0.3) as server:
-        with connected(server) as host:
-            until(lambda: server.busy)
-            time.sleep(0.5)
-            host.sendall(b"\x00\x07")
-            time.sleep(0.5)
-            assert server.busy
-            host.sendall(b"\x00")
-            assert closed(host)
-        until(lambda: server.served == 1)
+def test_a_silent_host_and_a_host_that_leaves_an_instruction_unfinished_are_shown_out() -> None:
+    for sent, limits in ((b"", {"idle_seconds": 0.2}), (b"\x00", {"partial_seconds": 0.2})):
+        with serving(**limits) as server:
+            with connected(server) as host:
+                host.sendall(sent)
+                assert closed(host)
+            until(lambda server=server: server.served == 1)
+
+
+def test_only_an_unfinished_instruction_has_the_shorter_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 1000.0
+    monkeypatch.setattr("ramtek_emu.host.server.time.monotonic", lambda: now)
+    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    client = Client(Wire(there), HostSession(Ramtek9300()), idle_seconds=600, partial_seconds=60)
+    with host:
+        for seconds, sent, limit in (
+            (500.0, "0700", 600),
+            (100.0, "0A01", 60),
+            (50.0, "4", 10),
+            (5.0, "1", 5),
+        ):
+            now += seconds
+            host.send(packet(sent))
+            client.serve(client.wanted)
+            while client.has_work:
+                client.work()
+            assert client.deadline == now + limit
+        host.send(packet("2"))
+        client.serve(client.wanted)
+        while client.has_work:
+            client.work()
+        assert client.deadline == now + 600
+    client.leave()
 
 
 def test_a_host_that_takes_no_replies_is_shown_out_after_a_while() -> None:
@@ -262,7 +284,7 @@ def test_random_bytes_over_tcp_leave_the_display_that_they_leave_here() -> None:
             for place in range(0, len(data), 4999):
                 host.sendall(data[place : place + 4999])
             host.shutdown(socket.SHUT_WR)
-            reader.join(20)
+            reader.join(60)
         until(lambda: server.served == 1)
         assert (server.display.words == twin.words).all()
         assert (server.display.entries == twin.entries).all()
@@ -273,7 +295,7 @@ def test_a_host_that_ends_its_side_still_gets_its_replies() -> None:
     with serving() as server, connected(server) as host:
         host.sendall(READ_EVERYTHING.astype("<u2").tobytes())
         host.shutdown(socket.SHUT_WR)
-        host.settimeout(5)
+        host.settimeout(60)
         received = 0
         while data := host.recv(1 << 16):
             received += len(data)
@@ -303,7 +325,7 @@ def test_urgent_bytes_among_noise_leave_a_display_that_works() -> None:
                     host.sendall(draw.bytes(int(draw.integers(0, 4000))))
                     host.send(draw.bytes(1), socket.MSG_OOB)
                 host.shutdown(socket.SHUT_WR)
-                reader.join(20)
+                reader.join(60)
         with TcpPort(server.address) as port:
             port.reset()
             port.send(OUTLINE)
@@ -339,9 +361,9 @@ def test_a_display_gets_the_words_whatever_pieces_their_bytes_come_in(
     replies = b"".join(reply for piece in pieces for reply in session.feed(piece))
     assert np.frombuffer(replies, "<u2").tolist() == twin.receive(twin.processor.waiting).tolist()
     assert (session.display.words == twin.words).all()
-    assert session.held_words == twin.decoder.held_words
+    assert session.display.decoder.pending_words == twin.decoder.pending_words
     assert session.odd_byte == odd_byte
-    assert session.unfinished == bool(odd_byte or twin.decoder.held_words)
+    assert session.unfinished == bool(odd_byte or twin.decoder.pending_words)
 
 
 @quick
@@ -354,8 +376,8 @@ def test_what_is_recorded_ends_with_a_whole_instruction(stream: list[int], cut: 
         for _ in session.feed(piece):
             again = Ramtek9300(SMALL)
             again.send(np.frombuffer(b"".join(kept), "<u2").astype(np.uint16))
-            assert again.decoder.held_words == 0
-    assert b"".join(kept) == data[: len(data) - 2 * session.held_words]
+            assert again.decoder.pending_words == 0
+    assert b"".join(kept) == data[: len(data) - 2 * session.display.decoder.pending_words]
 
 
 def test_a_host_that_leaves_takes_its_unfinished_words_and_replies_with_it() -> None:
@@ -376,7 +398,7 @@ def packet(text: str) -> bytes:
 def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
     host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     display = Ramtek9300()
-    client = Client(PacketConnection(there), HostSession(display), 10, 10)
+    client = Client(Wire(there), HostSession(display), 10, 10)
     host.send(packet("0B03 0040 0 0 0 0 2"))
     host.send(packet("0902 0044 7 5 5 5 5"))
     host.close()
@@ -391,7 +413,7 @@ def test_a_host_that_takes_no_more_replies_is_still_drawn_for() -> None:
 def test_the_time_that_the_display_takes_is_no_silence_of_the_host(monkeypatch: pytest.MonkeyPatch) -> None:
     host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     display = Ramtek9300()
-    client = Client(PacketConnection(there), HostSession(display), 10, 10)
+    client = Client(Wire(there), HostSession(display), 10, 10)
     now = 1000.0
     monkeypatch.setattr("ramtek_emu.host.server.time.monotonic", lambda: now)
     monkeypatch.setattr("ramtek_emu.host.server.READING_PIECE", 4)
@@ -416,21 +438,40 @@ def test_the_time_that_the_display_takes_is_no_silence_of_the_host(monkeypatch: 
     client.leave()
 
 
-def test_a_mark_resets_the_display_and_is_recorded_as_a_reset() -> None:
+def test_replies_to_different_writes_are_in_different_packets_and_an_odd_byte_is_no_word() -> None:
     host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    kept: list[bytes] = []
-    display = Ramtek9300()
-    client = Client(PacketConnection(there), HostSession(display, kept.append), 10, 10)
+    client = Client(Wire(there), HostSession(Ramtek9300()), 10, 10)
     with host:
-        for sent in (packet("0902 0044 7 5 5 5 5 0A01 0008"), b"", packet("0902 0044 9 6 6 6 6")):
+        for odd in (b"!", b""):
+            host.send(packet("0902 0044 7 5 5 5 5 0B03 0040 5 5 5 5 2") + odd)
+            host.send(packet("0B03 0040 5 5 6 5 4"))
+        while client.waiting < 12:
+            client.serve(selectors.EVENT_READ)
+            while client.work():
+                pass
+        while client.has_to_send:
+            client.serve(selectors.EVENT_WRITE)
+        assert [host.recv(100) for _ in range(4)] == [packet("7"), packet("7 0")] * 2
+    client.leave()
+
+
+def test_a_mark_resets_the_display_is_recorded_and_answered_instead_of_the_replies_that_wait() -> None:
+    host, there = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    recorded: list[bytes] = []
+    display = Ramtek9300()
+    client = Client(Wire(there), HostSession(display, recorded.append), 10, 10)
+    drawn, drawn_after = "0902 0044 7 5 5 5 5 0B03 0040 5 5 5 5 2", "0902 0044 9 6 6 6 6 0B03 0040 6 6 6 6 2"
+    with host:
+        for sent in (packet(f"{drawn} 0A01 0008"), b"", packet(drawn_after)):
             host.send(sent)
         for _ in range(20):
             client.serve(client.wanted & selectors.EVENT_READ)
             client.work()
         assert display.words[[5, 6], [5, 6]].tolist() == [0, 9]
-        assert b"".join(kept) == packet("0902 0044 7 5 5 5 5 0500 0902 0044 9 6 6 6 6")
-        client.serve(selectors.EVENT_WRITE)
-        assert host.recv(10) == b""
+        assert b"".join(recorded) == packet(f"{drawn} 0500 {drawn_after}")
+        while client.has_to_send:
+            client.serve(selectors.EVENT_WRITE)
+        assert [host.recv(10), host.recv(10)] == [b"", packet("9")]
     client.leave()
 
 
@@ -453,12 +494,12 @@ def test_an_address_of_version_six_is_one_that_a_port_takes() -> None:
         port.send(words("0902 0044 5 0 0 0 0"))
         while not server.display.words.any():
             server.step(0.1)
-        port._socket.close()
+        port.wire.socket.close()
 
 
 def test_hosts_in_line_are_turned_away_when_the_server_closes() -> None:
     server = TcpServer(Ramtek9300())
-    ports = [TcpPort(server.address, timeout=5) for _ in range(3)]
+    ports = [TcpPort(server.address, timeout=60) for _ in range(3)]
     server.step(1)
     server.close()
     for port in ports:

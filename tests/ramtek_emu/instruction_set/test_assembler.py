@@ -16,8 +16,7 @@ from ramtek_emu.instruction_set.assembler import (
     string_of,
     tokens_of,
 )
-from tests.ramtek_emu.listings import listing
-from tests.ramtek_emu.recorded_streams import words
+from tests.ramtek_emu.recorded_streams import listing, words
 from tests.ramtek_emu.strategies import quick, streams, thorough
 
 

@@ -35,7 +35,7 @@ def test_the_decoder_splits_as_a_reader_of_single_words_does(stream: list[int]) 
     twin = reference.split(stream)
     # Flag bits that no source names carry no words, and are not sent again.
     assert [len(part) for part in found] == [len(part) for part in twin]
-    assert decoder.held_words == len(stream) - sum(map(len, twin))
+    assert decoder.pending_words == len(stream) - sum(map(len, twin))
 
 
 @quick
@@ -44,7 +44,7 @@ def test_what_is_held_is_never_more_than_one_instruction(stream: list[int]) -> N
     decoder = Decoder()
     for word in stream:
         list(decoder.feed(np.array([word], np.uint16)))
-        assert decoder.held_words < MOST_WORDS
+        assert decoder.pending_words < MOST_WORDS
 
 
 def test_data_are_views_of_the_words_sent() -> None:
@@ -68,7 +68,7 @@ def test_conics_of_six_and_twelve_words_are_told_apart(flag_word: int, low_byte:
     found, decoder = decoded([np.array(stream, np.uint16)])
     twin = reference.split(stream)
     assert [len(part) for part in found] == [len(part) for part in twin]
-    assert decoder.held_words == len(stream) - sum(map(len, twin))
+    assert decoder.pending_words == len(stream) - sum(map(len, twin))
     assert decoded([np.array([word], np.uint16) for word in stream])[0] == found
 
 
@@ -89,7 +89,7 @@ def test_rows_of_illegal_words_are_the_illegal_words_one_by_one(stream: list[int
     one_by_one = [encode(instruction).tolist() for instruction in single.feed(words)]
     in_rows = [encode(instruction).tolist() for instruction in rows.feed(words, in_rows=True)]
     assert list(itertools.chain(*in_rows)) == list(itertools.chain(*one_by_one))
-    assert rows.held_words == single.held_words
+    assert rows.pending_words == single.pending_words
 
 
 def test_an_instruction_known_by_name_only_is_consumed_whole() -> None:

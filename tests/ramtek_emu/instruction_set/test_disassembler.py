@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from ramtek_emu.instruction_set.assembler import assemble
 from ramtek_emu.instruction_set.disassembler import items
-from tests.ramtek_emu.listings import listing
-from tests.ramtek_emu.recorded_streams import DECODED, RECORDED, words
+from tests.ramtek_emu.recorded_streams import DECODED, RECORDED, listing, words
 from tests.ramtek_emu.strategies import cuts, streams, thorough
 
 

@@ -15,7 +15,7 @@ def test_the_pattern_uses_every_ramp_on_every_display(configuration: Configurati
     display = Ramtek9300(configuration)
     display.send(pattern(configuration))
     assert display.status == Status.READY
-    assert display.decoder.held_words == 0
+    assert display.decoder.pending_words == 0
     assert display.words.max() == configuration.largest_word
     shown = {tuple(color) for color in np.unique(display.field().reshape(-1, 3), axis=0).tolist()}
     for ramp in ramp_words(configuration).values():

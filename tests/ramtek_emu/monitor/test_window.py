@@ -1,4 +1,4 @@
-"""The window on a real screen, Xvfb's."""
+"""The window on a real screen, Xvfb's; and its keys and mouse without any."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from ramtek_emu import NoScreenError, Ramtek9300, instructions
-from ramtek_emu.monitor.glass import placement
+from ramtek_emu.monitor.glass import viewport
+from ramtek_emu.monitor.input_queue import Close, Release
 from ramtek_emu.monitor.pattern import pattern
 from ramtek_emu.monitor.window import Key, Monitor, Pointer
-from tests.ramtek_emu.screens import shown
+from tests.ramtek_emu.displays import shown
 
 pygame = pytest.importorskip("pygame")
 
@@ -68,7 +70,7 @@ def test_every_pixel_is_a_block_at_every_window_size(
     resize(monitor, size)
     field = monitor.display.field()
     blocks = np.repeat(np.repeat(field, multiple, axis=0), multiple, axis=1)
-    left, top, *_ = placement((640, 480), size)
+    left, top, *_ = viewport((640, 480), size)
     expected = np.zeros((size[1], size[0], 3), np.uint8)
     cut_left, cut_top = max(0, -left), max(0, -top)
     part = blocks[cut_top : cut_top + size[1], cut_left : cut_left + size[0]]
@@ -248,7 +250,7 @@ def test_a_cursor_that_moves_leaves_nothing_behind(monitor: Monitor, size: tuple
     display = monitor.display
     display.send(instructions.write_cursor(0, 300, 200))
     resize(monitor, size)
-    left, top, width, _ = placement((640, 480), size)
+    left, top, width, _ = viewport((640, 480), size)
     for number, place in enumerate(((300, 200), (310, 210), (0, 0), (250, 299), (620, 470), (80, 150))):
         display.joystick.move_to(*place)
         if number == 3:
@@ -413,3 +415,185 @@ def test_no_screen_is_refused_and_a_driver_that_was_asked_for_is_taken(
     monitor.open()
     assert monitor.step()
     monitor.close()
+
+
+class UnopenedMonitor(Monitor):
+    """A monitor without a window; `asked` lists the requests to its window."""
+
+    asked: list[str]
+
+    def close(self) -> None:
+        self.asked.append("close")
+
+    def toggle_full_screen(self) -> None:
+        self.full_screen = not self.full_screen
+        self.asked.append("toggle")
+
+    def show_message(self, message: str) -> None:
+        self.asked.append(message)
+
+
+@pytest.fixture
+def unopened(tmp_path: Path) -> UnopenedMonitor:
+    monitor = UnopenedMonitor(Ramtek9300(), screenshots=tmp_path)
+    monitor.asked = []
+    return monitor
+
+
+def test_a_key_that_nobody_takes_does_nothing_but_escape_closes(unopened: UnopenedMonitor) -> None:
+    taken: list[Key] = []
+    unopened.on_key = taken.append
+    unopened.handle_key(Key("a", "a"))
+    assert (taken, unopened.asked) == ([Key("a", "a")], [])
+    unopened.handle_key(Key("escape"))
+    assert unopened.asked == ["close"]
+
+
+def test_escape_goes_to_whoever_takes_it(unopened: UnopenedMonitor) -> None:
+    unopened.on_key = lambda key: key.name == "escape"
+    unopened.handle_key(Key("escape"))
+    assert unopened.asked == []
+
+
+def test_escape_leaves_full_screen_before_it_closes(unopened: UnopenedMonitor) -> None:
+    for _ in range(2):
+        unopened.handle_key(Key("f11"))
+        unopened.handle_key(Key("escape"))
+    unopened.handle_key(Key("return", alt=True))
+    assert unopened.asked == ["toggle"] * 5
+    assert unopened.full_screen
+
+
+@pytest.mark.parametrize("key", [Key("left shift"), Key("right ctrl"), Key("left meta")])
+def test_a_modifier_alone_is_told_to_nobody(unopened: UnopenedMonitor, key: Key) -> None:
+    taken: list[Key] = []
+    unopened.on_key = taken.append
+    unopened.handle_key(key)
+    assert taken == []
+
+
+def test_a_key_that_is_let_go_is_told_by_its_name_unless_it_is_a_modifier(unopened: UnopenedMonitor) -> None:
+    unopened.handle(Release("a"))
+    given: list[str] = []
+    unopened.on_release = given.append
+    for name in ("a", "left shift", "f1"):
+        unopened.handle(Release(name))
+    assert given == ["a", "f1"]
+
+
+def test_a_window_stays_when_its_owner_wants_it_to(unopened: UnopenedMonitor) -> None:
+    answers = [False, True]
+    unopened.on_close = lambda: answers.pop(0)
+    unopened.handle_key(Key("q", control=True))
+    assert unopened.asked == []
+    unopened.handle_key(Key("q", control=True))
+    assert unopened.asked == ["close"]
+
+
+def test_a_screenshot_takes_the_next_free_number(unopened: UnopenedMonitor, tmp_path: Path) -> None:
+    (tmp_path / "ramtek-0001.png").write_bytes(b"kept")
+    unopened.display.send(instructions.load_entries(0, [[9, 8, 7]]))
+    unopened.handle_key(Key("f12"))
+    path = (tmp_path / "ramtek-0002.png").resolve()
+    assert unopened.asked == ["", f"saved {path}"]
+    assert (tmp_path / "ramtek-0001.png").read_bytes() == b"kept"
+    with Image.open(path) as picture:
+        assert picture.getpixel((0, 0)) == (9, 8, 7)
+
+
+def test_a_screenshot_that_cannot_be_saved_is_a_message_to_the_owner(unopened: UnopenedMonitor) -> None:
+    given: list[str] = []
+    unopened.on_message = given.append
+    unopened.screenshots = Path("/none/at/all")
+    unopened.handle_key(Key("f12"))
+    assert unopened.asked == []
+    assert given[0] == ""
+    assert given[1].startswith("an output must have a folder to be in")
+
+
+def test_the_mouse_moves_the_joystick_and_its_buttons_are_the_switches(unopened: UnopenedMonitor) -> None:
+    given: list[Pointer] = []
+    unopened.on_pointer = given.append
+    unopened.handle_pointer(Pointer(30, 40, False, "move"))
+    unopened.handle_pointer(Pointer(31, 41, False, "press", 1))
+    unopened.handle_pointer(Pointer(32, 42, False, "press", 3))
+    joystick = unopened.display.joystick
+    assert joystick.position == (32, 42)
+    assert joystick.track
+    assert unopened.display.cursors.enter_is_pressed
+    unopened.handle_pointer(Pointer(32, 42, False, "release", 3))
+    unopened.handle_pointer(Pointer(33, 43, False, "release", 1))
+    assert not joystick.track
+    assert [(pointer.enter, pointer.action, pointer.button) for pointer in given] == [
+        (False, "move", 0),
+        (True, "press", 1),
+        (True, "press", 3),
+        (True, "release", 3),
+        (False, "release", 1),
+    ]
+
+
+def test_the_mouse_and_dropped_files_and_closing_are_told(unopened: UnopenedMonitor) -> None:
+    given: list[object] = []
+    unopened.on_drop = given.append
+    unopened.handle(Path("scene.toml"))
+    unopened.handle(Close())
+    assert given == [Path("scene.toml")]
+    assert unopened.asked == ["close"]
+
+
+def test_escape_leaves_full_screen_before_it_goes_to_the_program(unopened: UnopenedMonitor) -> None:
+    taken: list[Key] = []
+
+    def take(key: Key) -> bool:
+        taken.append(key)
+        return True
+
+    unopened.on_key = take
+    unopened.handle_key(Key("f11"))
+    unopened.handle_key(Key("escape"))
+    assert (unopened.full_screen, taken) == (False, [])
+    unopened.handle_key(Key("escape"))
+    assert taken == [Key("escape")]
+
+
+def test_a_window_is_asked_to_close_once_for_each_press(unopened: UnopenedMonitor) -> None:
+    answers = [False, True]
+    unopened.on_close = lambda: answers.pop(0)
+    unopened.handle_key(Key("q", control=True))
+    unopened.handle_key(Key("q", control=True, repeated=True))
+    assert answers == [True]
+    assert unopened.asked == []
+
+
+def test_shortcuts_do_not_repeat(unopened: UnopenedMonitor) -> None:
+    for name in ("f11", "f12", "f1"):
+        unopened.handle_key(Key(name, repeated=True))
+    assert unopened.asked == []
+    assert unopened.overlay.page == ""
+
+
+def test_a_page_is_shown_over_the_field_unless_the_program_has_its_own(unopened: UnopenedMonitor) -> None:
+    for key, page in (("f1", "help"), ("f4", "entries"), ("f4", ""), ("f1", "help"), ("escape", "")):
+        unopened.handle_key(Key(key))
+        assert unopened.overlay.page == page
+    assert unopened.asked == []
+    unopened.on_key = lambda key: key.name in ("f1", "f4")
+    unopened.handle_key(Key("f1"))
+    assert unopened.overlay.page == ""
+
+
+def test_a_monitor_is_at_rest_when_nothing_is_down_and_nothing_waits(unopened: UnopenedMonitor) -> None:
+    assert unopened.is_at_rest
+    for held in (Key("left"), Pointer(1, 2, False, "press", 1)):
+        unopened.input.add(held)
+        unopened.handle(unopened.input.take())
+        assert not unopened.is_at_rest
+        unopened.input.release_everything()
+        while unopened.input:
+            assert not unopened.is_at_rest
+            unopened.handle(unopened.input.take())
+        assert unopened.is_at_rest
+    unopened.input.add(Key("left shift"))
+    unopened.input.take()
+    assert unopened.is_at_rest

@@ -89,7 +89,7 @@ def test_what_the_9460_brought_is_illegal_on_the_9300(format: object) -> None:
     display.send(sent_words([opcode << 8]))
     assert display.status == Status.READY | Status.ILLEGAL
     assert display.processor.illegal_words == 1
-    assert not display.decoder.held_words
+    assert not display.decoder.pending_words
 
 
 def test_an_illegal_word_sets_the_status_and_reset_clears_it() -> None:

@@ -5,10 +5,9 @@ from pathlib import Path
 import pytest
 
 from autocolor.errors import InputError
+from autocolor.files.formats import format_of
 from autocolor.files.meshes.byu import read_byu
-from autocolor.files.meshes.formats import format_of
 from autocolor.files.meshes.repair import MeshReport, Placement
-from tests.autocolor.files.meshes.mutations import survives
 
 CUBE = [[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]
 
@@ -185,8 +184,3 @@ def test_its_suffixes_are_known() -> None:
         found = format_of(Path(name))
         assert found is not None
         assert found.name == "Movie.BYU"
-
-
-@pytest.mark.parametrize("text", [FREE, in_columns(8)], ids=["free", "columns"])
-def test_damaged_files_are_read_or_refused(tmp_path: Path, text: str) -> None:
-    survives(read_byu, tmp_path / "cube.byu", text.encode())

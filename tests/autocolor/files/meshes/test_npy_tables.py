@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from autocolor import Mesh, View, read_scene, render, scene_of
 from autocolor.arrays import AnyArray
 from autocolor.errors import InputError, MissingInputError, OutputError, WriteError
+from autocolor.files.formats import MESH_FORMATS, format_of_files, format_of_folder, read_mesh
 from autocolor.files.meshes import npy_tables as room
-from autocolor.files.meshes.formats import format_of_files, format_of_folder, mesh_formats, read_mesh
 from autocolor.files.meshes.npy_tables import (
     FORMAT,
     TableNotes,
@@ -291,8 +291,7 @@ def test_normals_without_their_numbers_are_refused(tmp_path: Path) -> None:
     write_npy_tables(tmp_path, cube())
     (tmp_path / "normal_numbers.npy").unlink()
     assert refusal_of(tmp_path) == (
-        "normals.npy: normals.npy and normal_numbers.npy must both be there or neither, not one alone;"
-        " delete it"
+        "normals.npy: normals.npy and normal_numbers.npy must be in the folder together; delete it"
     )
     (tmp_path / "normals.npy").unlink()
     assert read(tmp_path).normals.numbers.tolist() == cube().normals.numbers.tolist()
@@ -595,7 +594,7 @@ def test_bytes_that_are_no_notes_are_refused(tmp_path: Path, data: bytes) -> Non
         read_notes(path)
 
 
-def read_2(folder: Path) -> Mesh:
+def read_table(folder: Path) -> Mesh:
     return read_mesh({"nodes": folder / "nodes.npy", "polygons": folder / "polygons.npy"}).mesh
 
 
@@ -646,8 +645,8 @@ def test_normals_that_are_computed_in_files_are_the_same_to_the_bit(
         patch.setattr(room, "LARGE", 0)
         write_npy_tables(folder, fresh)
     assert "normals" not in vars(fresh)
-    assert read_2(folder).normals.vectors.tobytes() == mesh.normals.vectors.tobytes()
-    assert read_2(folder).normals.numbers.tobytes() == mesh.normals.numbers.tobytes()
+    assert read_table(folder).normals.vectors.tobytes() == mesh.normals.vectors.tobytes()
+    assert read_table(folder).normals.numbers.tobytes() == mesh.normals.numbers.tobytes()
     assert all(path.suffix in (".npy", ".json") for path in folder.iterdir())
 
 
@@ -656,10 +655,10 @@ def test_tables_without_normals_are_converted_to_tables_with_them(tmp_path: Path
         (tmp_path / name).mkdir()
     np.save(tmp_path / "one" / "nodes.npy", cube().coordinates)
     np.save(tmp_path / "one" / "polygons.npy", cube().node_numbers)
-    write_npy_tables(tmp_path / "two", read_2(tmp_path / "one"))
+    write_npy_tables(tmp_path / "two", read_table(tmp_path / "one"))
     assert np.load(tmp_path / "two" / "normals.npy").tobytes() == cube().normals.vectors.tobytes()
     # A folder may be converted to itself while its files are mapped.
-    write_npy_tables(tmp_path / "one", read_2(tmp_path / "one"), overwrite=True)
+    write_npy_tables(tmp_path / "one", read_table(tmp_path / "one"), overwrite=True)
     for path in (tmp_path / "two").iterdir():
         assert (tmp_path / "one" / path.name).read_bytes() == path.read_bytes()
 
@@ -674,7 +673,7 @@ def test_files_that_are_there_are_not_written_over_unless_it_is_wanted(tmp_path:
     write_npy_tables(tmp_path, cube(), overwrite=True)
     # Nothing of the planes of the older mesh is left.
     assert not (tmp_path / "planes.npy").exists()
-    assert read_2(tmp_path).node_numbers.tolist() == cube().node_numbers.tolist()
+    assert read_table(tmp_path).node_numbers.tolist() == cube().node_numbers.tolist()
 
 
 def test_a_mesh_that_cannot_be_written_leaves_no_file(
@@ -768,7 +767,7 @@ def test_tables_are_known_by_the_names_of_their_files_or_how_they_begin(tmp_path
 
 
 def test_the_format_is_written_too_and_holds_all_that_a_mesh_has(tmp_path: Path) -> None:
-    npy = next(each for each in mesh_formats() if each.name == "npy")
+    npy = next(each for each in MESH_FORMATS if each.name == "npy")
     assert npy.write is not None
     npy.write(tmp_path, cube())
     mesh = npy.read(tmp_path / "nodes.npy", tmp_path / "polygons.npy").mesh

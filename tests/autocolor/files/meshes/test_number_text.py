@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.number_text import NumberText
+from autocolor.files.meshes.number_text import NumberText, Problems
 
 
 def test_numbers_are_found_between_any_white_space() -> None:
@@ -51,3 +51,25 @@ def test_too_few_numbers_are_refused_before_anything_is_made_of_them() -> None:
 def test_numbers_read_back_equal(numbers: list[float]) -> None:
     text = NumberText(" ".join(map(repr, numbers)).encode(), "")
     assert text.coordinates(0, len(numbers)).tolist() == numbers
+
+
+def test_problems_come_in_the_order_of_tables_and_rows() -> None:
+    problems = Problems("row")
+    for place, row in (("nodes.csv", 9), ("polygons.csv", 1), ("nodes.csv", 2)):
+        problems.note(place, row, "wrong")
+    with pytest.raises(InputError) as caught:
+        problems.raise_any()
+    assert caught.value.problems == (
+        "nodes.csv, row 2: wrong",
+        "nodes.csv, row 9: wrong",
+        "polygons.csv, row 1: wrong",
+    )
+
+
+def test_there_are_at_most_twenty_problems() -> None:
+    problems = Problems("row")
+    for row in range(19):
+        problems.note("a.csv", row, "wrong")
+    with pytest.raises(InputError) as caught:
+        problems.note("a.csv", 19, "wrong")
+    assert len(caught.value.problems) == 20

@@ -5,10 +5,9 @@ from pathlib import Path
 import pytest
 
 from autocolor.errors import InputError
-from autocolor.files.meshes.formats import format_of
+from autocolor.files.formats import format_of
 from autocolor.files.meshes.off import read_off
 from autocolor.files.meshes.repair import MeshReport
-from tests.autocolor.files.meshes.mutations import survives
 
 CUBE = """OFF
 # a cube
@@ -166,8 +165,3 @@ def test_a_file_is_known_by_its_suffix_and_its_first_word(tmp_path: Path) -> Non
         found = format_of(tmp_path / name)
         assert found is not None
         assert found.name == "OFF"
-
-
-def test_damaged_files_are_read_or_refused(tmp_path: Path) -> None:
-    survives(read_off, tmp_path / "cube.off", CUBE.encode())
-    survives(read_off, tmp_path / "cube.off", CUBE.replace("\n1", " 5\n1").encode())

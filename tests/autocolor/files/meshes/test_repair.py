@@ -13,7 +13,7 @@ from autocolor.files.meshes.repair import (
     LONGEST_NAME,
     MeshReport,
     Placement,
-    Polygons,
+    RawPolygons,
     _have_area,
     different,
     name_of,
@@ -29,7 +29,7 @@ SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [0, 0, 1]]
 
 def mesh_of(*polygons: list[int], coordinates: Any = SQUARE, up: str = "z") -> MeshReport:
     return repaired(
-        Polygons(
+        RawPolygons(
             np.array(coordinates, np.float64),
             np.array([corner for polygon in polygons for corner in polygon], np.intp),
             np.array([len(polygon) for polygon in polygons], np.intp),
@@ -179,7 +179,7 @@ def test_coordinates_are_scaled_after_they_are_turned() -> None:
 
 def test_a_piece_of_a_polygon_has_the_scalars_of_the_whole_and_nodes_keep_theirs() -> None:
     hexagon = [[2, 0, 0], [1, 2, 0], [-1, 2, 0], [-2, 0, 0], [-1, -2, 0], [1, -2, 0]]
-    polygons = Polygons(
+    polygons = RawPolygons(
         np.array(hexagon, np.float64),
         np.array([0, 0, 1, 0, 1, 2, 3, 4, 5, 0, 1, 2]),
         np.array([3, 6, 3]),

@@ -10,7 +10,7 @@ from hypothesis import given
 
 from autocolor import InputError, Mesh
 from autocolor.files.array_file import array_file_bytes
-from autocolor.files.meshes.formats import read_mesh
+from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import Placement
 from autocolor.files.meshes.table_file import TABLE_FILE, table_file_bytes
 from autocolor.scene.scalar import MeshScalar

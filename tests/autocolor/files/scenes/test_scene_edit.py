@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from autocolor import Flap, Flaps, InputError, Light, Scene
-from autocolor.files.meshes.formats import read_mesh
+from autocolor.files.formats import read_mesh
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.scenes.scene_edit import (
     completed,

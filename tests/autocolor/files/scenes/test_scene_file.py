@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from autocolor import BlinnPhong, Phong, Reflectance
 from autocolor.errors import InputError, MissingInputError
-from autocolor.files.meshes.formats import mesh_suffixes
-from autocolor.files.registry import suffix_rule
+from autocolor.files.formats import mesh_suffixes, suffix_rule
 from autocolor.files.scenes.scene_file import read_scene_file
 from autocolor.files.scenes.scene_report import SceneReport
 from autocolor.scene.creation import SurfaceSource

@@ -26,14 +26,15 @@ def trimesh(faces: Any) -> Any:
     return SimpleNamespace(vertices=np.array(POINTS), faces=np.array(faces), units=None)
 
 
-def polydata(*faces: list[int]) -> Any:
-    padded = [number for face in faces for number in (len(face), *face)]
-    return SimpleNamespace(points=np.array(POINTS, np.float32), faces=np.array(padded, np.int64), n_cells=9)
+def polydata(*faces: list[int], point_data: Any = None, cell_data: Any = None) -> Any:
+    counted = np.array([number for face in faces for number in (len(face), *face)], np.int64)
+    points = np.array(POINTS, np.float32)
+    return SimpleNamespace(points=points, faces=counted, point_data=point_data, cell_data=cell_data)
 
 
-def meshio(**cells: Any) -> Any:
+def meshio(point_data: Any = None, cell_data: Any = None, **cells: Any) -> Any:
     blocks = [SimpleNamespace(type=kind, data=data) for kind, data in cells.items()]
-    return SimpleNamespace(points=np.array(POINTS), cells=blocks, cells_dict={}, point_data={})
+    return SimpleNamespace(points=np.array(POINTS), cells=blocks, point_data=point_data, cell_data=cell_data)
 
 
 @pytest.mark.parametrize(
@@ -201,38 +202,25 @@ def test_tables_that_break_a_rule_are_refused_in_a_sentence(source: tuple[Any, .
     assert str(refusal.value).startswith(sentence)
 
 
-# -------------------- test_foreign_scalars
-# Data of points and cells, by stand-ins that have what the meshes of PyVista and meshio have.
-
-POINTS_2 = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 2, 0]], np.float64)
-QUAD_2, TRIANGLE, PENTAGON_2 = [0, 1, 2, 3], [3, 2, 4], [0, 1, 2, 4, 3]
+TRIANGLE = [3, 2, 4]
 
 
-def told(mesh: Mesh) -> dict[str, tuple[str, list[float]]]:
+def scalars_of(mesh: Mesh) -> dict[str, tuple[str, list[float]]]:
     return {each.name: (each.of, each.values.tolist()) for each in mesh.scalars}
-
-
-def meshio_2(point_data: Any = None, cell_data: Any = None, **cells: Any) -> Any:
-    blocks = [SimpleNamespace(type=kind, data=np.array(data)) for kind, data in cells.items()]
-    return SimpleNamespace(points=POINTS_2, cells=blocks, point_data=point_data, cell_data=cell_data)
-
-
-def polydata_2(faces: list[list[int]], point_data: Any = None, cell_data: Any = None) -> Any:
-    counted = np.array([number for face in faces for number in (len(face), *face)])
-    return SimpleNamespace(points=POINTS_2, faces=counted, point_data=point_data, cell_data=cell_data)
 
 
 def test_data_of_points_and_of_cells_are_scalars() -> None:
     mesh = Mesh.of(
-        polydata_2(
-            [QUAD_2, TRIANGLE],
-            {"stress": np.arange(5, dtype=np.float32), "id": np.arange(5)},
-            {"load": np.array([[2.5], [3.5]])},
+        polydata(
+            QUAD,
+            TRIANGLE,
+            point_data={"stress": np.arange(6, dtype=np.float32), "id": np.arange(6)},
+            cell_data={"load": np.array([[2.5], [3.5]])},
         )
     )
-    assert told(mesh) == {
-        "stress": ("node", [0, 1, 2, 3, 4]),
-        "id": ("node", [0, 1, 2, 3, 4]),
+    assert scalars_of(mesh) == {
+        "stress": ("node", [0, 1, 2, 3, 4, 5]),
+        "id": ("node", [0, 1, 2, 3, 4, 5]),
         "load": ("polygon", [2.5, 3.5]),
     }
     assert isinstance(mesh.scalars[0], MeshScalar)
@@ -240,67 +228,70 @@ def test_data_of_points_and_of_cells_are_scalars() -> None:
 
 
 def test_data_of_blocks_that_are_no_polygons_are_left_out() -> None:
-    source = meshio_2(
-        {"stress": np.arange(5.0)},
+    source = meshio(
+        {"stress": np.arange(6.0)},
         {"load": [np.array([9.0]), np.array([1.0]), np.array([8.0]), np.array([2.0])]},
         line=[[0, 1]],
-        quad=[QUAD_2],
+        quad=[QUAD],
         tetra=[[0, 1, 2, 4]],
         triangle=[TRIANGLE],
     )
-    assert told(Mesh.of(source)) == {"stress": ("node", [0, 1, 2, 3, 4]), "load": ("polygon", [1, 2])}
+    assert scalars_of(Mesh.of(source)) == {
+        "stress": ("node", [0, 1, 2, 3, 4, 5]),
+        "load": ("polygon", [1, 2]),
+    }
 
 
 def test_the_pieces_of_a_polygon_have_its_value() -> None:
     for source in (
-        polydata_2([PENTAGON_2, TRIANGLE], cell_data={"load": np.array([1.0, 2.0])}),
-        meshio_2(cell_data={"load": [[1.0], [2.0]]}, polygon5=[PENTAGON_2], triangle=[TRIANGLE]),
+        polydata(PENTAGON, TRIANGLE, cell_data={"load": np.array([1.0, 2.0])}),
+        meshio(cell_data={"load": [[1.0], [2.0]]}, polygon5=[PENTAGON], triangle=[TRIANGLE]),
     ):
         mesh = Mesh.of(source)
         assert len(mesh.node_numbers) == 3
-        assert told(mesh) == {"load": ("polygon", [1, 1, 2])}
+        assert scalars_of(mesh) == {"load": ("polygon", [1, 1, 2])}
 
 
 @pytest.mark.parametrize(
     "values",
     [
-        np.zeros((5, 3)),
-        np.zeros(4),
-        np.zeros((5, 1, 1)),
-        np.array(["a"] * 5),
+        np.zeros((6, 3)),
+        np.zeros(5),
+        np.zeros((6, 1, 1)),
+        np.array(["a"] * 6),
         [1, [2, 3]],
-        np.zeros(5, np.bool_),
-        np.zeros(5, np.complex128),
+        np.zeros(6, np.bool_),
+        np.zeros(6, np.complex128),
         None,
         3,
     ],
 )
 def test_what_is_no_scalar_is_left_out_in_a_sentence(values: Any, caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.INFO, "autocolor"):
-        mesh = Mesh.of(polydata_2([QUAD_2], {"vectors": values, "stress": np.arange(5.0)}))
-    assert list(told(mesh)) == ["stress"]
+        mesh = Mesh.of(polydata(QUAD, point_data={"vectors": values, "stress": np.arange(6.0)}))
+    assert list(scalars_of(mesh)) == ["stress"]
     assert caplog.messages == ["data of a node left out, since they are no scalar: vectors"]
 
 
 @pytest.mark.parametrize("data", [{"load": [[1.0]]}, {"load": 3}, {"load": [[1.0], [2.0], [3.0]]}, [1], 3])
 def test_data_of_cells_in_other_blocks_are_left_out(data: Any) -> None:
-    mesh = Mesh.of(meshio_2(cell_data=data, quad=[QUAD_2], triangle=[TRIANGLE]))
-    assert told(mesh) in ({}, {"load": ("polygon", [1, 2])})
+    mesh = Mesh.of(meshio(cell_data=data, quad=[QUAD], triangle=[TRIANGLE]))
+    assert scalars_of(mesh) in ({}, {"load": ("polygon", [1, 2])})
 
 
 def test_a_name_of_nodes_and_of_polygons_becomes_two() -> None:
-    mesh = Mesh.of(polydata_2([QUAD_2], {"stress": np.zeros(5)}, {"stress": np.ones(1)}))
-    assert told(mesh) == {"stress": ("node", [0] * 5), "stress of polygons": ("polygon", [1])}
+    mesh = Mesh.of(polydata(QUAD, point_data={"stress": np.zeros(6)}, cell_data={"stress": np.ones(1)}))
+    assert scalars_of(mesh) == {"stress": ("node", [0] * 6), "stress of polygons": ("polygon", [1])}
 
 
 def test_endless_values_are_missing(caplog: pytest.LogCaptureFixture) -> None:
-    given = np.array([np.inf, -1e31, np.nan, 3.0, 4.0])
+    given = np.array([np.inf, -1e31, np.nan, 3.0, 4.0, 5.0])
     with caplog.at_level(logging.INFO, "autocolor"):
-        mesh = Mesh.of(polydata_2([QUAD_2], {"stress": given}))
-    assert np.isnan(mesh.scalars[0].values).tolist() == [True, True, True, False, False]
+        mesh = Mesh.of(polydata(QUAD, point_data={"stress": given}))
+    assert np.isnan(mesh.scalars[0].values).tolist() == [True, True, True, False, False, False]
     assert caplog.messages == ["values of scalar stress above 1e30 in size made missing: 2"]
     assert given[0] == np.inf
 
 
 def test_names_that_no_scalar_can_have_are_left_out() -> None:
-    assert told(Mesh.of(polydata_2([QUAD_2], {"": np.zeros(5), 3: np.zeros(5)}))) == {}
+    assert scalars_of(Mesh.of(polydata(QUAD, point_data={"": np.zeros(6), 3: np.zeros(6)}))) == {}

@@ -12,10 +12,7 @@ from hypothesis import strategies as st
 
 from autocolor import Mesh
 from autocolor.arrays import Singles
-from autocolor.scene.geometry import normals as fans
-from autocolor.scene.geometry import normals as node_normals_2
 from autocolor.scene.geometry import normals as room
-from autocolor.scene.geometry import normals as union_find
 from autocolor.scene.geometry.normals import (
     fans_of_corners,
     group_numbers,
@@ -24,8 +21,6 @@ from autocolor.scene.geometry.normals import (
     polygon_normals,
     unite,
     united_items,
-    used_bounds,
-    used_rows,
 )
 from tests.autocolor.meshes import cube, grid, sphere
 from tests.autocolor.strategies import meshes
@@ -269,9 +264,8 @@ def test_the_normals_do_not_depend_on_how_many_corners_are_worked_on_at_once(
         return [mesh.normals.vectors[mesh.normals.numbers] for mesh in both]
 
     whole = normals()
-    monkeypatch.setattr(fans, "AT_ONCE", at_once)
-    monkeypatch.setattr(union_find, "AT_ONCE", at_once)
-    monkeypatch.setattr(node_normals_2, "POLYGONS_AT_ONCE", at_once)
+    monkeypatch.setattr(room, "AT_ONCE", at_once)
+    monkeypatch.setattr(room, "POLYGONS_AT_ONCE", at_once)
     for one, other in zip(whole, normals(), strict=True):
         assert one == pytest.approx(other, abs=1.2e-7)
 
@@ -320,7 +314,7 @@ def test_items_are_in_one_group_when_pairs_lead_from_one_to_the_other(
 
 
 def test_a_long_chain_in_any_order_is_one_group(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(union_find, "AT_ONCE", 100)
+    monkeypatch.setattr(room, "AT_ONCE", 100)
     chain = np.random.default_rng(7).permutation(10_000)
     parents = np.arange(len(chain))
     links = np.random.default_rng(8).permutation(len(chain) - 1)
@@ -333,22 +327,6 @@ def test_united_items_are_those_that_are_not_the_root_of_their_group() -> None:
     parents = np.arange(9)
     unite(parents, np.array([1, 4, 7]), np.array([5, 5, 2]))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(union_find, "AT_ONCE", 4)
+        patch.setattr(room, "AT_ONCE", 4)
         assert united_items(parents).tolist() == [4, 5, 7]
     assert united_items(np.arange(0)).tolist() == []
-
-
-@given(st.lists(st.tuples(*[st.integers(0, 9)] * 4), max_size=9), st.sampled_from([1, 2, 100]))
-def test_the_used_rows_are_those_that_appear(polygons: list[tuple[int, int, int, int]], at_once: int) -> None:
-    numbers = np.array(polygons, np.intp).reshape(-1, 4).T
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "AT_ONCE", at_once)
-        assert np.flatnonzero(used_rows(numbers, 10)).tolist() == sorted({n for row in polygons for n in row})
-
-
-def test_bounds_leave_out_what_no_number_uses() -> None:
-    rows = np.array([[1.0, -9.0, 3.0], [5.0, 99.0, 4.0]])
-    low, high = used_bounds(rows, np.array([[0, 2, 0]]))
-    assert (low.tolist(), high.tolist()) == ([1.0, 4.0], [3.0, 5.0])
-    low, high = used_bounds(rows, np.empty((1, 0), np.intp))
-    assert (low.tolist(), high.tolist()) == ([np.inf] * 2, [-np.inf] * 2)

@@ -12,12 +12,11 @@ from autocolor.scene.geometry.normals import group_numbers
 from autocolor.scene.geometry.planes import (
     EXACT,
     Rounding,
-    ScaledNodes,
+    ScaledPolygons,
     SharedPlanes,
-    as_they_are,
     coordinate_rounding,
     coplanar_groups,
-    facets,
+    facets_of,
     fitted,
     levels,
     plane_cells,
@@ -32,7 +31,7 @@ GROUND = grid(3, 2, (-1, 0, -1), (2, 0, 0), (0, 0, 2), "ground")
 DECAL = grid(2, 2, (-0.4, 0, -0.3), (0.5, 0, 0.1), (-0.1, 0, 0.5), "decal")
 
 
-def found(*parts: Mesh) -> SharedPlanes | None:
+def shared_by(*parts: Mesh) -> SharedPlanes | None:
     return Mesh.joined(parts).shared_planes
 
 
@@ -94,8 +93,8 @@ def test_a_flat_side_whose_polygons_repeat_their_nodes_or_differ_in_winding_is_o
 
 def test_patches_side_by_side_share_no_plane() -> None:
     beside = [shifted(DECAL, x, 0, z) for x in (0, 0.7, 1.4) for z in (0, 0.8)]
-    assert found(*beside) is None
-    assert found(*beside, beside[1]) is not None
+    assert shared_by(*beside) is None
+    assert shared_by(*beside, beside[1]) is not None
 
 
 def test_a_polygon_folded_over_its_neighbor_shares_its_plane() -> None:
@@ -107,7 +106,7 @@ def test_a_polygon_folded_over_its_neighbor_shares_its_plane() -> None:
 
 @pytest.mark.parametrize(("height", "shares"), [(0.0, True), (1e-9, False), (1e-6, False), (1e-3, False)])
 def test_a_decal_just_above_its_ground_has_a_plane_of_its_own(height: float, shares: bool) -> None:
-    assert (found(GROUND, shifted(DECAL, 0, height, 0)) is not None) == shares
+    assert (shared_by(GROUND, shifted(DECAL, 0, height, 0)) is not None) == shares
 
 
 @pytest.mark.parametrize(("height", "shares"), [(0.0, True), (1e-6, True), (1e-5, False)])
@@ -135,9 +134,9 @@ def test_the_sides_of_a_cylinder_share_no_plane_even_if_the_cylinder_is_there_tw
             (f"side {turn}",),
         )
 
-    assert found(around(0.0), around(0.5)) is None
+    assert shared_by(around(0.0), around(0.5)) is None
     # Where it is there twice and not turned, each side has a plane for its two polygons and no other.
-    shared = found(around(0.0), Mesh.joined([around(0.0)]))
+    shared = shared_by(around(0.0), Mesh.joined([around(0.0)]))
     assert shared is not None
     assert np.bincount(shared.plane_of_polygon).tolist() == [2] * sides
 
@@ -273,14 +272,13 @@ def test_numbers_of_any_size_have_a_rounding() -> None:
 def groups_of(
     rows: npt.NDArray[np.float64], node_rows: npt.NDArray[np.intp], tolerance: float
 ) -> npt.NDArray[np.intp]:
-    nodes = as_they_are(rows)
-    cells = plane_cells(nodes, node_rows, tolerance)
-    return group_numbers(coplanar_groups(nodes, node_rows, cells, tolerance))
+    mesh = ScaledPolygons(rows, node_rows)
+    return group_numbers(coplanar_groups(mesh, plane_cells(mesh, tolerance), tolerance))
 
 
 def test_the_width_of_a_facet_is_across_the_longer_diagonal_or_the_longer_of_two_sides() -> None:
     corners = np.array([(0, 0, 0), (2, 0, 0), (2, 1, 0), (0, 1, 0), (3, 3, 0)], np.float64)
-    found = facets(corners.T[:, np.array([(0, 1, 2, 3), (0, 1, 2, 2), (0, 2, 1, 1), (0, 1, 1, 1)]).T])
+    found = facets_of(corners.T[:, np.array([(0, 1, 2, 3), (0, 1, 2, 2), (0, 2, 1, 1), (0, 1, 1, 1)]).T])
     assert found.normals[:, :3].T.tolist() == [[0, 0, 1], [0, 0, 1], [0, 0, -1]]
     assert found.widths.tolist() == pytest.approx([4 / 5**0.5, 2 / 5**0.5, 1, 0])
     assert found.areas.tolist() == pytest.approx([4, 2, 2, 0])
@@ -291,7 +289,7 @@ def test_the_width_of_a_facet_is_across_the_longer_diagonal_or_the_longer_of_two
 def test_parallel_planes_in_one_cell_are_told_apart(seed: int, at_once: int) -> None:
     mesh, _ = decal_on_ground(seed)
     rows = (mesh.coordinates / 8).T
-    normal = facets(rows[:, mesh.node_numbers.T]).normals[:, 0]
+    normal = facets_of(rows[:, mesh.node_numbers.T]).normals[:, 0]
     heights = (0, 1e-4, 3e-4)
     layers = np.concatenate([rows + height * normal[:, None] for height in heights], axis=1)
     nodes, count = rows.shape[1], len(mesh.node_numbers)
@@ -317,31 +315,12 @@ def test_only_the_widest_polygons_are_grounds() -> None:
     assert groups.tolist() == [0] * len(groups)
 
 
-@given(st.integers(0, 1 << 32))
-def test_a_large_mesh_keeps_the_low_bits_of_hashes_and_finds_the_same_groups(seed: int) -> None:
-    mesh, _ = decal_on_ground(seed)
-    rows, node_rows = (mesh.coordinates / 8).T, mesh.node_numbers.T
-    whole = groups_of(rows, node_rows, 2e-6)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "LARGE", 0)
-        nodes = as_they_are(rows)
-        cells = plane_cells(nodes, node_rows, 2e-6)
-        assert cells.hashes.dtype == np.uint32
-        assert groups_of(rows, node_rows, 2e-6).tolist() == whole.tolist()
-    kept = plane_cells(nodes, node_rows, 2e-6)
-    every = np.arange(len(mesh.node_numbers))
-    for number in range(len(room.SHIFTS)):
-        keys = cells.keys(nodes, node_rows, every, number)
-        assert keys.tolist() == kept.hashes[number].tolist()
-        assert keys.astype(np.uint32).tolist() == cells.hashes[grid].tolist()
-
-
 def test_a_plane_is_fitted_to_each_group() -> None:
     square = np.array([(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0)], np.float64)
     corners = np.concatenate(
         [square, square + np.array([2, 0, 0]), square[:, [0, 2, 1]] + np.array([0, 3, 0])]
     )
-    found = facets(corners.T[:, np.arange(12).reshape(3, 4).T])
+    found = facets_of(corners.T[:, np.arange(12).reshape(3, 4).T])
     groups = np.array([0, 0, 1])
     fits = fitted(found, groups)
     assert np.abs(fits.normals.T) == pytest.approx(np.array([(0, 0, 1), (0, 1, 0)]))
@@ -353,7 +332,7 @@ def test_a_plane_is_fitted_to_each_group() -> None:
 
 
 def test_no_groups_have_no_planes() -> None:
-    found = facets(np.empty((3, 4, 0)))
+    found = facets_of(np.empty((3, 4, 0)))
     assert fitted(found, np.empty(0, np.intp)).normals.shape == (3, 0)
 
 
@@ -366,7 +345,7 @@ POSTER = grid(1, 1, (-0.1, 0, -0.2), (0.3, 0, 0), (0, 0, 0.2))
 NONE = Rounding(EXACT, EXACT)
 
 
-def found_2(
+def levels_of(
     heights: list[float], noise: float, turn: npt.NDArray[np.float64], rounding: Rounding = NONE
 ) -> list[int]:
     """The levels of a wall and posters at some heights; the corners are noisy, and then turned."""
@@ -378,7 +357,7 @@ def found_2(
     numbers = np.concatenate([WALL.node_numbers, *(POSTER.node_numbers + first for first in first_nodes)])
     patches = np.array([0] * len(WALL.node_numbers) + list(range(1, len(heights) + 1)))
     given_levels = levels(
-        facets((corners @ turn).T[:, numbers.T]),
+        facets_of((corners @ turn).T[:, numbers.T]),
         np.zeros(len(numbers), np.intp),
         patches,
         rounding,
@@ -395,31 +374,31 @@ def turned(seed: int) -> npt.NDArray[np.float64]:
 
 @given(st.integers(0, 1 << 32), st.integers(1, 9))
 def test_scattered_corners_are_on_one_level(seed: int, posters: int) -> None:
-    assert found_2([0.0] * posters, 1e-7, turned(seed), Rounding(1e-7, EXACT)) == [0] * posters
+    assert levels_of([0.0] * posters, 1e-7, turned(seed), Rounding(1e-7, EXACT)) == [0] * posters
 
 
 @given(st.integers(0, 1 << 32))
 def test_patches_farther_than_they_are_scattered_have_levels_of_their_own(seed: int) -> None:
     heights = [1e-6, 0.0, -2e-6, 1e-6, 0.0]
-    assert found_2(heights, 1e-8, turned(seed), Rounding(1e-8, EXACT)) in ([1, 0, 2, 1, 0], [2, 0, 1, 2, 0])
+    assert levels_of(heights, 1e-8, turned(seed), Rounding(1e-8, EXACT)) in ([1, 0, 2, 1, 0], [2, 0, 1, 2, 0])
 
 
 @given(st.integers(0, 1 << 32))
 def test_exact_corners_have_levels_however_close(seed: int) -> None:
-    assert found_2([1e-10, 0.0, 1e-10], 0.0, turned(seed)) == [1, 0, 1]
+    assert levels_of([1e-10, 0.0, 1e-10], 0.0, turned(seed)) == [1, 0, 1]
 
 
 def test_less_than_the_rounding_of_a_corner_is_no_distance_unless_along_an_axis() -> None:
     rounding = Rounding(1e-6, EXACT)
-    assert found_2([1e-6], 0.0, turned(3), rounding) == [0]
-    assert found_2([1e-6], 0.0, np.eye(3), rounding) == [1]
-    assert found_2([0.0], 0.0, np.eye(3), rounding) == [0]
+    assert levels_of([1e-6], 0.0, turned(3), rounding) == [0]
+    assert levels_of([1e-6], 0.0, np.eye(3), rounding) == [1]
+    assert levels_of([0.0], 0.0, np.eye(3), rounding) == [0]
 
 
 def test_more_levels_than_are_looked_for_are_one() -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(room, "MOST_LEVELS", 2)
-        assert found_2([1e-3, 2e-3, 3e-3], 0.0, np.eye(3)) == [1, 2, 2]
+        assert levels_of([1e-3, 2e-3, 3e-3], 0.0, np.eye(3)) == [1, 2, 2]
 
 
 TOLERANCE = 2e-6
@@ -429,10 +408,9 @@ FLAT = grid(8, 6, (-0.5, -0.4, 0), (1, 0, 0.2), (0, 0.8, 0.1))
 def united(
     rows: npt.NDArray[np.float64], node_rows: npt.NDArray[np.intp], parents: list[int]
 ) -> npt.NDArray[np.intp]:
-    nodes, found = as_they_are(rows), np.array(parents)
-    cells = plane_cells(nodes, node_rows, TOLERANCE)
-    unite_in_fitted_planes(nodes, node_rows, found, cells, TOLERANCE)
-    return group_numbers(found)
+    mesh, numbers = ScaledPolygons(rows, node_rows), np.array(parents)
+    unite_in_fitted_planes(mesh, numbers, plane_cells(mesh, TOLERANCE), TOLERANCE)
+    return group_numbers(numbers)
 
 
 def halves(height: float) -> npt.NDArray[np.intp]:
@@ -464,6 +442,7 @@ def test_corners_are_those_of_nodes_that_are_moved_and_then_scaled(seed: int) ->
     numbers = random.integers(0, 9, (4, 5))
     before = rows.copy()
     expected = ((rows - middle[:, None]) / extent)[:, numbers]
-    assert ScaledNodes(rows, middle, extent).corners(numbers).tobytes() == expected.tobytes()
-    assert as_they_are(rows).corners(numbers).tolist() == rows[:, numbers].tolist()
+    scaled = ScaledPolygons(rows, numbers, middle, extent).facets(slice(None))
+    assert scaled.corners.tobytes() == expected.tobytes()
+    assert ScaledPolygons(rows, numbers).facets(slice(None)).corners.tolist() == rows[:, numbers].tolist()
     assert rows.tobytes() == before.tobytes()

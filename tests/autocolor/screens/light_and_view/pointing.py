@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from autocolor import Light, Mesh, Scene, Surface, View, scene_of
-from autocolor.screens.light_and_view.handles import Grip
+from autocolor.screens.light_and_view.handles import MovablePoint
 from autocolor.screens.light_and_view.light_and_view_screen import LightAndViewScreen
 from autocolor.screens.screen import Handle
 from autocolor.screens.viewer import Viewer
@@ -45,14 +45,14 @@ def scene_of_hand(hand: Hand) -> Scene:
     return hand.viewer.studio.scene
 
 
-def handle_of(hand: Hand, grip: Grip) -> Handle:
+def handle_of(hand: Hand, movable: MovablePoint) -> Handle:
     """The first handle of something."""
-    return next(each for each in screen_of(hand).handles() if each.key == grip)
+    return next(each for each in screen_of(hand).handles() if each.key == movable)
 
 
-def place_of(hand: Hand, grip: Grip) -> tuple[int, int]:
+def place_of(hand: Hand, movable: MovablePoint) -> tuple[int, int]:
     """Where something can be taken hold of."""
-    handle = handle_of(hand, grip)
+    handle = handle_of(hand, movable)
     return handle.element, handle.line
 
 

@@ -15,9 +15,9 @@ from autocolor.screens.light_and_view.handles import (
     FLAP,
     LIGHT,
     TARGET,
-    Grip,
-    grip_of,
+    MovablePoint,
     handles_in,
+    movable_of,
     target_in,
 )
 from autocolor.screens.light_and_view.orthographic_views import SIDES, TOP, OrthographicViews
@@ -27,10 +27,18 @@ VIEWS = OrthographicViews((0.0, 0.0, 0.0), 10.0)
 PLACE = (1.5, -2.0, 3.0)
 
 
-@pytest.mark.parametrize("grip", [Grip(EYE), Grip(TARGET), Grip(LIGHT, light="key"), Grip(AIM, light="key")])
-def test_what_is_put_at_a_point_is_there(grip: Grip) -> None:
-    scene = grip.put(boxed(KEY, FILL), PLACE)
-    assert grip.point_in(scene, VIEWS) == PLACE
+@pytest.mark.parametrize(
+    "movable",
+    [
+        MovablePoint(EYE),
+        MovablePoint(TARGET),
+        MovablePoint(LIGHT, light="key"),
+        MovablePoint(AIM, light="key"),
+    ],
+)
+def test_what_is_put_at_a_point_is_there(movable: MovablePoint) -> None:
+    scene = movable.put(boxed(KEY, FILL), PLACE)
+    assert movable.point_in(scene, VIEWS) == PLACE
     before = boxed(KEY, FILL)
     moved = [scene.view.eye != before.view.eye, scene.view.target != before.view.target]
     moved += [scene.light("key").position != KEY.position, scene.light("key").aim != KEY.aim]
@@ -40,11 +48,11 @@ def test_what_is_put_at_a_point_is_there(grip: Grip) -> None:
 
 def test_a_direction_points_to_where_its_end_is_put() -> None:
     light = Light("spot", (1.0, 2.0, 3.0), direction=(0.0, 0.0, -1.0))
-    grip = Grip(DIRECTION, light="spot")
-    after = grip.put(boxed(light), (4.0, 2.0, 7.0)).light("spot")
+    movable = MovablePoint(DIRECTION, light="spot")
+    after = movable.put(boxed(light), (4.0, 2.0, 7.0)).light("spot")
     assert after.position == light.position
     assert after.axis == pytest.approx((0.6, 0.0, 0.8))
-    end = grip.point_in(boxed(after), VIEWS)
+    end = movable.point_in(boxed(after), VIEWS)
     assert end is not None
     assert math.dist(end, light.position) == pytest.approx(4.0)
 
@@ -52,7 +60,7 @@ def test_a_direction_points_to_where_its_end_is_put() -> None:
 def test_the_target_of_a_view_without_one_is_put_by_its_direction() -> None:
     scene = boxed().replace(view=View((0.0, -5.0, 0.5), direction=(0.0, 1.0, 0.0)))
     assert target_in(scene) == pytest.approx((0.0, 0.5, 0.5))
-    after = Grip(TARGET).put(scene, (5.0, 0.0, 0.5)).view
+    after = MovablePoint(TARGET).put(scene, (5.0, 0.0, 0.5)).view
     assert after.target is None
     assert after.eye == (0.0, -5.0, 0.5)
     assert after.axes[2] == pytest.approx((0.5**0.5, 0.5**0.5, 0.0))
@@ -60,14 +68,14 @@ def test_the_target_of_a_view_without_one_is_put_by_its_direction() -> None:
 
 def test_an_aim_at_the_place_of_its_light_is_refused() -> None:
     with pytest.raises(InputError, match="the aim must not be the position"):
-        Grip(AIM, light="key").put(boxed(KEY), KEY.position)
+        MovablePoint(AIM, light="key").put(boxed(KEY), KEY.position)
 
 
 @given(st.floats(-9, 9), st.sampled_from("xyz"), st.sampled_from(["minimum", "maximum"]))
 def test_the_ends_of_a_flap_never_pass_each_other(value: float, axis: str, end: str) -> None:
     light = FILL.replace(flaps=Flaps(x=Flap(-1.0, 2.0), y=Flap(-1.0, 2.0), z=Flap(-1.0, 2.0)))
-    grip = Grip(FLAP, "top", "fill", axis, end)
-    flap = getattr(grip.put(boxed(light), (value, value, value)).light("fill").flaps, axis)
+    movable = MovablePoint(FLAP, "top", "fill", axis, end)
+    flap = getattr(movable.put(boxed(light), (value, value, value)).light("fill").flaps, axis)
     if end == "minimum":
         assert flap == Flap(min(value, 2.0), 2.0)
     else:
@@ -77,16 +85,18 @@ def test_the_ends_of_a_flap_never_pass_each_other(value: float, axis: str, end: 
 def test_what_is_gone_has_no_point() -> None:
     scene = boxed(FILL)
     for what in (LIGHT, AIM, DIRECTION):
-        assert Grip(what, light="key").point_in(scene, VIEWS) is None
-    assert Grip(FLAP, "top", "fill", "x", "minimum").point_in(scene, VIEWS) is None
-    assert Grip(AIM, light="fill").point_in(scene, VIEWS) is None
+        assert MovablePoint(what, light="key").point_in(scene, VIEWS) is None
+    assert MovablePoint(FLAP, "top", "fill", "x", "minimum").point_in(scene, VIEWS) is None
+    assert MovablePoint(AIM, light="fill").point_in(scene, VIEWS) is None
 
 
 def test_everything_that_a_view_shows_can_be_taken_hold_of_there() -> None:
     spot = Light("spot", (1.0, 2.0, 3.0), direction=(0.0, 0.0, -1.0))
     scene = boxed(KEY, FILL, spot)
     for side in SIDES:
-        found = {grip_of(each) for each in handles_in(scene, VIEWS, "key") if grip_of(each).side == side.name}
+        found = {
+            movable_of(each) for each in handles_in(scene, VIEWS, "key") if movable_of(each).side == side.name
+        }
         lights = {
             ("light", "key"),
             ("aim", "key"),
@@ -94,25 +104,27 @@ def test_everything_that_a_view_shows_can_be_taken_hold_of_there() -> None:
             ("light", "spot"),
             ("direction", "spot"),
         }
-        assert {(grip.what, grip.light) for grip in found} == {("eye", ""), ("target", ""), *lights}
+        assert {(movable.what, movable.light) for movable in found} == {("eye", ""), ("target", ""), *lights}
 
 
 def test_handles_are_within_their_view_and_tell_the_coordinates() -> None:
     for each in handles_in(boxed(KEY, FILL), VIEWS, "key"):
-        side = next(side for side in SIDES if side.name == grip_of(each).side)
+        side = next(side for side in SIDES if side.name == movable_of(each).side)
         assert side.area.has(each.element, each.line)
-    found = {each.label for each in handles_in(boxed(KEY), VIEWS, "key") if grip_of(each).what != "eye"}
+    found = {each.label for each in handles_in(boxed(KEY), VIEWS, "key") if movable_of(each).what != "eye"}
     assert found == {"key: x 2  y -3  z 4", "key: aim: x 0.5  y 0.5  z 0.5", "target: x 0.5  y 0.5  z 0.5"}
     far = boxed(KEY.replace(position=(1e6, 0.0, 0.0)))
-    places = [grip_of(each).side for each in handles_in(far, VIEWS, "key") if grip_of(each).what == "light"]
+    places = [
+        movable_of(each).side for each in handles_in(far, VIEWS, "key") if movable_of(each).what == "light"
+    ]
     assert places == ["side"]
 
 
 def test_what_is_chosen_goes_before_the_others() -> None:
     lights = [Light(name, (0.0, 0.0, 1.0)) for name in ("a", "b", "c")]
     for chosen in ("a", "b", "c"):
-        assert handles_in(boxed(*lights), VIEWS, chosen)[-1].key == Grip(LIGHT, "side", chosen)
-    assert [grip_of(each).what for each in handles_in(boxed(*lights), VIEWS, "")[-6:]] == [TARGET] * 3 + [
+        assert handles_in(boxed(*lights), VIEWS, chosen)[-1].key == MovablePoint(LIGHT, "side", chosen)
+    assert [movable_of(each).what for each in handles_in(boxed(*lights), VIEWS, "")[-6:]] == [TARGET] * 3 + [
         EYE
     ] * 3
 
@@ -120,27 +132,27 @@ def test_what_is_chosen_goes_before_the_others() -> None:
 def test_the_line_of_a_flap_of_the_chosen_light_can_be_taken_hold_of_anywhere() -> None:
     flaps = Flaps(x=Flap(-1.0, 2.0))
     scene = boxed(KEY.replace(flaps=flaps), FILL.replace(flaps=flaps))
-    grip = Grip(FLAP, "top", "key", "x", "maximum")
-    handles = [each for each in handles_in(scene, VIEWS, "key") if each.key == grip]
+    movable = MovablePoint(FLAP, "top", "key", "x", "maximum")
+    handles = [each for each in handles_in(scene, VIEWS, "key") if each.key == movable]
     element = round(VIEWS.position(TOP, (2.0, 0.0, 0.0))[0])
     assert {each.element for each in handles} == {element}
     for line in range(TOP.area.top, TOP.area.bottom + 1):
         assert min(abs(each.line - line) for each in handles) <= BETWEEN // 2
-    grips = map(grip_of, handles_in(scene, VIEWS, "key"))
-    assert {each.light for each in grips if each.what == FLAP} == {"key"}
+    points = map(movable_of, handles_in(scene, VIEWS, "key"))
+    assert {each.light for each in points if each.what == FLAP} == {"key"}
 
 
 @pytest.mark.parametrize("follows", ["eye", "key"])
 def test_a_light_that_follows_is_taken_hold_of_and_put_where_it_is_in_the_world(follows: str) -> None:
     spot = Light("spot", (0.5, 1.0, -0.5), direction=(0.0, 1.0, 0.0), follows=follows)
     scene = boxed(KEY, spot)
-    assert Grip(LIGHT, light="spot").point_in(scene, VIEWS) == scene.light_in_world("spot").position
-    moved = Grip(LIGHT, light="spot").put(scene, PLACE)
-    assert Grip(LIGHT, light="spot").point_in(moved, VIEWS) == pytest.approx(PLACE)
+    assert MovablePoint(LIGHT, light="spot").point_in(scene, VIEWS) == scene.light_in_world("spot").position
+    moved = MovablePoint(LIGHT, light="spot").put(scene, PLACE)
+    assert MovablePoint(LIGHT, light="spot").point_in(moved, VIEWS) == pytest.approx(PLACE)
     assert moved.light("spot").follows == follows
-    turned = Grip(DIRECTION, light="spot").put(moved, (1.5, -2.0, 8.0)).light_in_world("spot")
+    turned = MovablePoint(DIRECTION, light="spot").put(moved, (1.5, -2.0, 8.0)).light_in_world("spot")
     assert turned.axis == pytest.approx((0.0, 0.0, 1.0), abs=1e-12)
-    aimed = Grip(AIM, light="spot").put(moved, (0.0, 1.0, 2.0)).light_in_world("spot")
+    aimed = MovablePoint(AIM, light="spot").put(moved, (0.0, 1.0, 2.0)).light_in_world("spot")
     assert aimed.aim == pytest.approx((0.0, 1.0, 2.0))
     handles = {handle.key for handle in handles_in(scene, VIEWS, "spot")}
-    assert Grip(LIGHT, "top", "spot") in handles
+    assert MovablePoint(LIGHT, "top", "spot") in handles

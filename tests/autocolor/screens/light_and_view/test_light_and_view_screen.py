@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, Light, Scene, View
-from autocolor.screens.light_and_view.handles import AIM, DIRECTION, EYE, FLAP, LIGHT, TARGET, Grip
+from autocolor.screens.light_and_view.handles import AIM, DIRECTION, EYE, FLAP, LIGHT, TARGET, MovablePoint
 from autocolor.screens.light_and_view.light_and_view_screen import (
     MESH,
     DisplayView,
@@ -77,14 +77,14 @@ def test_two_drags_in_two_views_put_a_light_at_the_picked_coordinates_to_a_pixel
     z = position[2]
     element = place[0]
 
-    hand.drag(place_of(hand, Grip(LIGHT, "top", "key")), (120, 110), place)
+    hand.drag(place_of(hand, MovablePoint(LIGHT, "top", "key")), (120, 110), place)
     now = scene_of_hand(hand).light("key").position
     assert now[2] == z
     assert where(hand, TOP) == pytest.approx(place, abs=0.6)
 
-    grips = [each.key for each in screen_of(hand).handles()]
-    if Grip(LIGHT, "front", "key") in grips:
-        hand.drag(place_of(hand, Grip(LIGHT, "front", "key")), (element, line))
+    points = [each.key for each in screen_of(hand).handles()]
+    if MovablePoint(LIGHT, "front", "key") in points:
+        hand.drag(place_of(hand, MovablePoint(LIGHT, "front", "key")), (element, line))
         after = scene_of_hand(hand).light("key").position
         # The element is that of the top view: y does not move, and x is where it was.
         assert after[:2] == now[:2]
@@ -98,14 +98,14 @@ def test_a_drag_never_moves_the_coordinate_that_its_view_does_not_show(
 ) -> None:
     hand = opened(boxed(KEY))
     before = scene_of_hand(hand)
-    grip = Grip(what, side.name, "key" if what in (LIGHT, AIM) else "")
+    movable = MovablePoint(what, side.name, "key" if what in (LIGHT, AIM) else "")
     if what == TARGET:
         # The aim of the light is at the same place.
         hand.pick("eye")
-    start = grip.point_in(before, screen_of(hand).views)
-    element, line = place_of(hand, grip)
+    start = movable.point_in(before, screen_of(hand).views)
+    element, line = place_of(hand, movable)
     hand.drag((element, line), (element + 9, line - 4), (element + 21, line - 17))
-    end = grip.point_in(scene_of_hand(hand), screen_of(hand).views)
+    end = movable.point_in(scene_of_hand(hand), screen_of(hand).views)
     assert start is not None
     assert end is not None
     assert [number for number in range(3) if start[number] != end[number]] == sorted({side.right, side.up})
@@ -117,7 +117,7 @@ def test_a_drag_never_moves_the_coordinate_that_its_view_does_not_show(
 def test_a_light_is_moved_by_two_picks_as_in_the_paper() -> None:
     hand = opened(boxed(KEY, FILL))
     before = scene_of_hand(hand)
-    hand.click(*place_of(hand, Grip(LIGHT, "top", "fill")))
+    hand.click(*place_of(hand, MovablePoint(LIGHT, "top", "fill")))
     assert hand.viewer.session.light_name == "fill"
     assert hand.viewer.message == "fill: x -3  y -3  z 1: pick its new place"
     assert scene_of_hand(hand) is before
@@ -126,7 +126,7 @@ def test_a_light_is_moved_by_two_picks_as_in_the_paper() -> None:
     assert after[2] == 1.0
     assert where(hand, TOP, "fill") == pytest.approx((200, 60), abs=0.6)
     assert hand.viewer.message.startswith("fill: x ")
-    hand.click(*place_of(hand, Grip(LIGHT, "side", "fill")))
+    hand.click(*place_of(hand, MovablePoint(LIGHT, "side", "fill")))
     hand.click(300, 250)
     assert scene_of_hand(hand).light("fill").position[0] == after[0]
     assert where(hand, SIDE, "fill") == pytest.approx((300, 250), abs=0.6)
@@ -138,7 +138,7 @@ def test_a_light_is_moved_by_two_picks_as_in_the_paper() -> None:
 def test_a_pick_outside_of_its_view_is_refused_in_one_sentence(place: tuple[int, int]) -> None:
     hand = opened(boxed(KEY))
     before = scene_of_hand(hand)
-    hand.click(*place_of(hand, Grip(LIGHT, "top", "key")))
+    hand.click(*place_of(hand, MovablePoint(LIGHT, "top", "key")))
     hand.click(*place)
     assert scene_of_hand(hand) is before
     assert hand.viewer.session.news.is_warning
@@ -158,7 +158,7 @@ def test_the_lines_of_a_light_that_is_held_go_when_it_is_let_go_of() -> None:
         lambda: hand.drag((20, 440), (21, 440)),
         lambda: hand.click(150, 150),
     ):
-        element, line = place_of(hand, Grip(LIGHT, "top", "key"))
+        element, line = place_of(hand, MovablePoint(LIGHT, "top", "key"))
         hand.click(element, line)
         assert (words_of(hand)[240:440, element] == SLATE).sum() > 150
         let_go()
@@ -173,16 +173,16 @@ def words_of(hand: Hand) -> np.ndarray[tuple[int, int], np.dtype[np.uint16]]:
 
 def test_a_light_that_is_dragged_beyond_its_view_stays_at_the_edge() -> None:
     hand = opened(boxed(KEY))
-    hand.drag(place_of(hand, Grip(LIGHT, "top", "key")), (300, 120), (400, 300))
+    hand.drag(place_of(hand, MovablePoint(LIGHT, "top", "key")), (300, 120), (400, 300))
     assert where(hand, TOP) == pytest.approx((TOP_AREA.right, TOP_AREA.bottom), abs=0.6)
-    hand.drag(place_of(hand, Grip(LIGHT, "side", "key")), (10, 10))
+    hand.drag(place_of(hand, MovablePoint(LIGHT, "side", "key")), (10, 10))
     assert where(hand, SIDE) == pytest.approx((SIDE_AREA.left, SIDE_AREA.top), abs=0.6)
 
 
 def test_a_point_that_is_dragged_has_lines_across_the_views_and_tells_its_coordinates() -> None:
     hand = opened(boxed(KEY))
     clear = words_of(hand).copy()
-    hand.move(*place_of(hand, Grip(LIGHT, "top", "key")))
+    hand.move(*place_of(hand, MovablePoint(LIGHT, "top", "key")))
     hand.joystick.track = True
     hand.viewer.poll()
     hand.move(40, 60)
@@ -199,7 +199,7 @@ def test_a_point_that_is_dragged_has_lines_across_the_views_and_tells_its_coordi
 def test_escape_takes_a_drag_back() -> None:
     hand = opened(boxed(KEY))
     before = scene_of_hand(hand)
-    hand.move(*place_of(hand, Grip(LIGHT, "front", "key")))
+    hand.move(*place_of(hand, MovablePoint(LIGHT, "front", "key")))
     hand.joystick.track = True
     hand.viewer.poll()
     hand.move(40, 300)
@@ -224,7 +224,7 @@ def test_a_place_that_the_scene_refuses_is_told_and_the_drag_goes_on() -> None:
     hand.viewer.session.change_light("key", aim=point)
     hand.viewer.tell("")
     aimed = scene_of_hand(hand)
-    hand.move(*place_of(hand, Grip(LIGHT, "top", "key")))
+    hand.move(*place_of(hand, MovablePoint(LIGHT, "top", "key")))
     hand.joystick.track = True
     hand.viewer.poll()
     hand.move(100, 100)
@@ -250,7 +250,7 @@ def test_a_direction_depends_on_where_its_end_was_put_and_not_on_the_way_there()
     for way in ([], [(30, 30), (200, 200), (20, 200)]):
         hand = opened(boxed(spot))
         before = scene_of_hand(hand)
-        hand.drag(place_of(hand, Grip(DIRECTION, "top", "key")), *way, (180, 90))
+        hand.drag(place_of(hand, MovablePoint(DIRECTION, "top", "key")), *way, (180, 90))
         light = scene_of_hand(hand).light("key")
         found.append(light.axis)
         assert light.position == spot.position
@@ -263,7 +263,7 @@ def test_a_view_without_a_target_looks_where_the_end_of_its_arrow_was_put() -> N
     hand = opened(boxed(KEY).replace(view=View((-2.0, -3.0, 2.0), direction=(2.5, 3.5, -1.5))))
     before = scene_of_hand(hand).view
     hand.pick("eye")
-    element, line = place_of(hand, Grip(TARGET, "top"))
+    element, line = place_of(hand, MovablePoint(TARGET, "top"))
     hand.drag((element, line), (element + 60, line), (element, line - 30))
     view = scene_of_hand(hand).view
     assert view.target is None
@@ -275,8 +275,8 @@ def test_a_view_without_a_target_looks_where_the_end_of_its_arrow_was_put() -> N
 def test_an_end_of_a_flap_is_dragged_as_far_as_the_other(end: str, low: float, high: float) -> None:
     hand = opened(boxed(KEY.replace(flaps=Flaps(z=Flap(0.1, 0.9)))))
     before = scene_of_hand(hand)
-    grip = Grip(FLAP, "front", "key", "z", end)
-    element, line = place_of(hand, grip)
+    movable = MovablePoint(FLAP, "front", "key", "z", end)
+    element, line = place_of(hand, movable)
     hand.drag((element, line), (element, line + 3), (element, 240 if end == "minimum" else 450))
     assert scene_of_hand(hand).light("key").flaps.z == Flap(low, high)
     assert hand.viewer.message == f"key: flap z, {end} {low:g}"
@@ -285,8 +285,8 @@ def test_an_end_of_a_flap_is_dragged_as_far_as_the_other(end: str, low: float, h
 
 def test_an_end_of_a_flap_is_put_where_the_second_pick_is() -> None:
     hand = opened(boxed(KEY.replace(flaps=Flaps(x=Flap(-1.0, 2.0)))))
-    grip = Grip(FLAP, "top", "key", "x", "maximum")
-    hand.click(*place_of(hand, grip))
+    movable = MovablePoint(FLAP, "top", "key", "x", "maximum")
+    hand.click(*place_of(hand, movable))
     hand.click(200, 30)
     flap = scene_of_hand(hand).light("key").flaps.x
     assert flap is not None
@@ -377,15 +377,17 @@ def test_a_light_becomes_a_point_source_and_is_aimed_again_by_pointing() -> None
     hand.pick("kind", 0.05)
     light = scene_of_hand(hand).light("key")
     assert (light.aim, light.direction, light.concentration) == (None, None, 0.0)
-    assert not any(each.key.what == AIM for each in screen_of(hand).handles() if isinstance(each.key, Grip))
+    assert not any(
+        each.key.what == AIM for each in screen_of(hand).handles() if isinstance(each.key, MovablePoint)
+    )
     hand.pick("kind", 0.9)
     assert scene_of_hand(hand).light("key").aim == (0.5, 0.5, 0.5)
-    assert handle_of(hand, Grip(AIM, "top", "key")).label == "key: aim: x 0.5  y 0.5  z 0.5"
+    assert handle_of(hand, MovablePoint(AIM, "top", "key")).label == "key: aim: x 0.5  y 0.5  z 0.5"
 
 
 def test_the_message_line_tells_what_is_where_the_pointer_is() -> None:
     hand = opened(boxed(KEY))
-    hand.move(*place_of(hand, Grip(EYE, "top")))
+    hand.move(*place_of(hand, MovablePoint(EYE, "top")))
     assert hand.viewer.board.message[0] == "eye: x -2  y -3  z 2"
     hand.move(20, 440)
     assert hand.viewer.board.message[0].startswith("front: x ")
@@ -398,13 +400,17 @@ def test_the_message_line_tells_what_is_where_the_pointer_is() -> None:
 def test_what_is_chosen_is_yellow() -> None:
     hand = opened(boxed(KEY, FILL))
     counts = []
-    for grip in (Grip(LIGHT, "top", "key"), Grip(EYE, "top"), Grip(LIGHT, "top", "fill")):
-        element, line = place_of(hand, grip)
+    for movable in (
+        MovablePoint(LIGHT, "top", "key"),
+        MovablePoint(EYE, "top"),
+        MovablePoint(LIGHT, "top", "fill"),
+    ):
+        element, line = place_of(hand, movable)
         for place in ((element, line), (element, line)):
             hand.click(*place)
         row = words_of(hand)[line, element - 4 : element + 5]
         counts.append((row == YELLOW).sum())
-        assert screen_of(hand).chosen == grip.light
+        assert screen_of(hand).chosen == movable.light
     assert counts[0] == counts[2] == 9
     assert counts[1] >= 3
     assert scene_of_hand(hand).lights == boxed(KEY, FILL).lights
@@ -418,7 +424,7 @@ def fresh(scene: Scene) -> tuple[bytes, bytes]:
 
 def test_leaving_restores_the_picture_byte_for_byte() -> None:
     hand = opened(boxed(KEY.replace(flaps=Flaps(z=Flap(0.1, 0.9))), FILL))
-    hand.drag(place_of(hand, Grip(LIGHT, "top", "key")), (60, 60), (90, 80))
+    hand.drag(place_of(hand, MovablePoint(LIGHT, "top", "key")), (60, 60), (90, 80))
     hand.pick("display", 0.9)
     for _ in range(6):
         hand.viewer.on_tick()
@@ -434,8 +440,8 @@ def test_a_page_that_changed_step_by_step_is_the_page_drawn_at_once() -> None:
     hand = opened(boxed(KEY.replace(flaps=Flaps(z=Flap(0.1, 0.9))), FILL))
     for _ in range(6):
         hand.viewer.on_tick()
-    hand.drag(place_of(hand, Grip(LIGHT, "top", "fill")), (60, 60), (90, 80))
-    hand.drag(place_of(hand, Grip(EYE, "front")), (60, 300), (90, 350))
+    hand.drag(place_of(hand, MovablePoint(LIGHT, "top", "fill")), (60, 60), (90, 80))
+    hand.drag(place_of(hand, MovablePoint(EYE, "front")), (60, 300), (90, 350))
     hand.pick("display", 0.9)
     for _ in range(6):
         hand.viewer.on_tick()
@@ -451,7 +457,7 @@ def test_a_scene_without_lights_shows_the_eye_alone() -> None:
     hand = opened(boxed())
     assert screen_of(hand).widgets() == []
     assert {each.label.split(":")[0] for each in screen_of(hand).handles()} == {"eye", "target"}
-    element, line = place_of(hand, Grip(EYE, "top"))
+    element, line = place_of(hand, MovablePoint(EYE, "top"))
     hand.drag((element, line), (element + 20, line + 9))
     assert scene_of_hand(hand).view.eye[2] == 2.0
 
@@ -462,13 +468,13 @@ def test_pointing_sends_nothing_but_the_message_and_the_mark() -> None:
     display = hand.viewer.display
     assert isinstance(display, Ramtek9300)
     before = display.words_received
-    hand.move(*place_of(hand, Grip(LIGHT, "top", "key")))
+    hand.move(*place_of(hand, MovablePoint(LIGHT, "top", "key")))
     assert display.words_received - before < 200
 
 
 def test_a_dragged_light_sends_the_small_picture_and_some_lines() -> None:
     hand = opened(boxed(KEY, FILL))
-    hand.move(*place_of(hand, Grip(LIGHT, "top", "key")))
+    hand.move(*place_of(hand, MovablePoint(LIGHT, "top", "key")))
     hand.joystick.track = True
     hand.viewer.poll()
     hand.move(100, 90)
@@ -646,7 +652,7 @@ def test_all_rows_of_sixteen_lights_can_be_reached() -> None:
     hand = opened(boxed(*(Light(f"light {n}", (n, -3.0, 2.0)) for n in range(1, 17))))
     labels = set()
     for _ in range(3):
-        labels |= {each.label for each in hand.viewer.board.menu_rows()}
+        labels |= {each.label for each in hand.viewer.board.layout.rows}
         hand.pick("more")
     assert {f"{n} light {n}" for n in range(1, 17)} <= labels
     assert {"kind", "flaps z", "rescale", "display", "angle", "frame"} <= labels

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from autocolor import Mesh, Scene, View, scene_of
 from autocolor.screens.light_and_view import object_lines as module
 from autocolor.screens.light_and_view.object_lines import (
-    Kept,
+    Cached,
     MeshEdges,
     ObjectLines,
     depths_toward,
@@ -474,7 +474,7 @@ def test_looking_along_a_cylinder_shows_no_lines_along_it() -> None:
 
 
 def test_a_value_is_made_once_for_the_same_sources() -> None:
-    kept: Kept[list[int]] = Kept()
+    kept: Cached[list[int]] = Cached()
     source = [1]
     first = kept.of(lambda: [2], source, "a")
     assert first == [2]
@@ -482,7 +482,7 @@ def test_a_value_is_made_once_for_the_same_sources() -> None:
 
 
 def test_a_value_is_made_anew_for_another_source_even_an_equal_one() -> None:
-    kept: Kept[list[int]] = Kept()
+    kept: Cached[list[int]] = Cached()
     source = [1]
     kept.of(lambda: [2], source)
     assert kept.of(lambda: [3], [1]) == [3]
@@ -491,7 +491,7 @@ def test_a_value_is_made_anew_for_another_source_even_an_equal_one() -> None:
 
 
 def test_what_fails_is_tried_again() -> None:
-    kept: Kept[float] = Kept()
+    kept: Cached[float] = Cached()
     for _ in range(2):
         try:
             kept.of(lambda: 1 / 0, "a")

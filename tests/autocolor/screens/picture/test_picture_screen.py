@@ -38,10 +38,10 @@ def test_the_row_of_the_view_goes_around_all_sides(hand: Hand) -> None:
     start = scene_of(hand)
     for side in (*SIDES, "front"):
         hand.open_menu()
-        area = next(row.area for row in hand.viewer.board.menu_rows() if row.label == "view")
+        area = next(row.area for row in hand.viewer.board.layout.rows if row.label == "view")
         hand.click(area.right - 8, area.top + 8)
         assert scene_of(hand).view == seen_from(start, side)
-        row = next(row for row in hand.viewer.board.menu_rows() if row.label == "view")
+        row = next(row for row in hand.viewer.board.layout.rows if row.label == "view")
         assert isinstance(row, Choice)
         assert row.present == side
     hand.viewer.session.undo()
@@ -71,7 +71,7 @@ def test_a_light_is_switched_by_its_box_and_chosen_beside_it(hand: Hand) -> None
     before = scene_of(hand)
 
     def chosen() -> list[str]:
-        rows = hand.viewer.board.menu_rows()
+        rows = hand.viewer.board.layout.rows
         return [row.label for row in rows if isinstance(row, Switch) and row.is_chosen]
 
     assert chosen() == ["key"]

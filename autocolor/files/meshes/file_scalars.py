@@ -1,10 +1,10 @@
-"""Scalars as they are found in files: arrays of one or several components, with any values.
+"""Scalars of a mesh from the arrays of a file: of one or several components, with any values.
 
 - An array of one component is a scalar of its name.
-- Of a vector (two or three components) its length is taken, as in "velocity magnitude".
-- Of a tensor (six components in the order xx, yy, zz, xy, yz, xz, or nine) von Mises' stress is taken, as in
+- A vector (two or three components) becomes its length, as in "velocity magnitude".
+- A tensor (six components in the order xx, yy, zz, xy, yz, xz, or nine) becomes von Mises' stress, as in
   "stress von Mises".
-- Arrays of other sizes are skipped and told.
+- An array of another size is skipped, and a message says so.
 - A value that is infinite or above 1e30 in size becomes missing, and is counted.
 """
 
@@ -24,17 +24,17 @@ SYMMETRIC: Final = (0, 3, 5, 3, 1, 4, 5, 4, 2)
 """Where the nine components of a tensor stand among six."""
 
 
-class FoundScalars:
+class FileScalars:
     """Collects the scalars of a file, with different names, and sentences about what was left out."""
 
     def __init__(self) -> None:
-        self.found: dict[str, MeshScalar] = {}
+        self._by_name: dict[str, MeshScalar] = {}
         self.sentences: list[str] = []
         self._skipped = 0
 
     def add(self, name: str, values: AnyArray, of: str, rows: Indices | None = None) -> None:
         """Add an array, (rows,) or (rows, components); `rows` are those to take, in this order."""
-        if len(self.found) >= MOST_SCALARS:
+        if len(self._by_name) >= MOST_SCALARS:
             self._skipped += 1
             return
         name = printable_name(name) or "scalar"
@@ -55,15 +55,15 @@ class FoundScalars:
                 f"scalar {shown(name)}: {count:,} value{'s' * (count > 1)} above 1e30 in size"
                 f" {'was' if count == 1 else 'were'} made missing"
             )
-        self.found[name] = MeshScalar(name, read_only(np.array(numbers, np.float64)), of)
+        self._by_name[name] = MeshScalar(name, read_only(np.array(numbers, np.float64)), of)
 
     def _unique(self, name: str, of: str) -> str:
         """The name, or one with an ending where another scalar has it."""
-        if name not in self.found:
+        if name not in self._by_name:
             return name
-        stem = name if self.found[name].of == of else f"{name} of {of}s"
+        stem = name if self._by_name[name].of == of else f"{name} of {of}s"
         name, number = stem, 1
-        while name in self.found:
+        while name in self._by_name:
             number += 1
             name = f"{stem} {number}"
         return name
@@ -71,7 +71,7 @@ class FoundScalars:
     @property
     def scalars(self) -> tuple[MeshScalar, ...]:
         """The scalars, those of nodes first."""
-        return tuple(sorted(self.found.values(), key=lambda each: each.of != NODE))
+        return tuple(sorted(self._by_name.values(), key=lambda each: each.of != NODE))
 
     @property
     def messages(self) -> tuple[str, ...]:
