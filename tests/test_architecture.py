@@ -64,10 +64,7 @@ READING_FOR_US = {"meshio", "trimesh"}
 """The packages of the extra `meshes`."""
 
 
-STILL_TWINS = {
-    "Block", "Cells", "Grip", "Header", "Item", "Output", "Place", "Placement", "Polygons", "Session", "Side",
-    "Source", "Steps", "Tables", "autocolor.files: formats",
-}  # fmt: skip
+STILL_TWINS = {"Output", "Side", "Source"}
 """Names that await another one."""
 
 
