@@ -35,7 +35,7 @@ from autocolor.files.meshes.number_text import MOST_PROBLEMS, NUMBER, Problems
 from autocolor.files.meshes.repair import PLAIN, MeshReport, Placement, RawPolygons, name_of, repaired
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE, read_bytes, shown, text_problem
-from autocolor.scene.columns import changed
+from autocolor.scene.columns import replaced
 from autocolor.scene.defaults import COLORED_PAINT, created_surface
 from autocolor.scene.geometry.polygon_split import MOST_CORNERS
 from autocolor.scene.mesh import Mesh
@@ -656,7 +656,7 @@ def _surface(name: str, values: Mapping[bytes, list[float]]) -> Surface:
         changes["blend"] = 1.0
     if b"Ns" in values:
         changes["exponent"] = max(values[b"Ns"][0], LEAST_EXPONENT)
-    return changed(created_surface(name, COLORED_PAINT.object_color), changes)
+    return replaced(created_surface(name, COLORED_PAINT.object_color), changes)
 
 
 ROWS_AT_ONCE: Final = 1 << 16
