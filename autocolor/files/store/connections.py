@@ -145,8 +145,8 @@ def transaction(connection: sqlite3.Connection, name: str) -> Iterator[None]:
                 connection.execute("COMMIT")
             except sqlite3.IntegrityError as error:
                 raise WriteError(
-                    f"{name}: tables of other programs must not refer to rows that a change removes or renames"
-                    f" ({error}); change their rows first"
+                    f"{name}: tables of other programs must not refer to rows that a change removes or"
+                    f" renames ({error}); change their rows first"
                 ) from None
         except BaseException:
             if connection.in_transaction:
