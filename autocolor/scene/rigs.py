@@ -68,8 +68,8 @@ class Rig(Row):
 def _moved(light: Light, scale: float, old: Vector, new: Vector) -> Light:
     """The light with each coordinate scaled about one point and moved with it to another.
 
-    The places of a light that follows something are scaled about the origin of its frame, and those of
-    carried half-spaces about their light.
+    A light that follows something is scaled about the origin of its frame, and a carried half-space about its
+    light.
     """
 
     def moved(axis: int, value: float) -> float:
