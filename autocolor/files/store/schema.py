@@ -166,7 +166,7 @@ def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -
     may_be_null = is_optional or not is_given or getattr(kind, "endless", None) is not None
     may_be_null |= isinstance(kind, NamedRows)
     start: Any = default() if default is not None and is_given and not may_be_null else None
-    defaults = {} if start is None else dict(kind.to_plain(name, start))
+    defaults: dict[str, Any] = {} if start is None else dict(kind.to_plain(name, start))
     keys = kind.keys(name, column)
     for key, inner_column in keys.items():
         # The other keys of a variant belong to its classes, and each class has only some of them.
