@@ -637,7 +637,7 @@ def compare_row(session: Session) -> Widget:
         return Button("compare", why_not="there is no step to undo")
     return Button(
         "compare",
-        f"Show {other.name} in place of the present one, and back.",
+        f"Show {other.name} in place of the present state, and back.",
         run=session.switch_comparing,
         is_chosen=session.comparing.is_on,
     )

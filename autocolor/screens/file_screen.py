@@ -14,9 +14,9 @@ from typing import Final
 
 from autocolor.errors import InputError, UsageError
 from autocolor.files.meshes.repair import UPS
-from autocolor.files.openable import FOLDER, Openable, kind_of, openables_of, stays_within
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig
+from autocolor.files.scene_files import FOLDER, Openable, kind_of, openables_of, stays_within
 from autocolor.files.state import recent_files
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session
@@ -130,7 +130,7 @@ class FileScreen(Screen):
             rows.append(
                 Choice(
                     "page",
-                    "A click turns to the next page of files; at the left end, to the one before.",
+                    "A click turns to the next page of files; at the left end, to the page before.",
                     names=names,
                     present=names[page],
                     choose=lambda name: setattr(self, "_page", names.index(name)),
@@ -179,21 +179,21 @@ class FileScreen(Screen):
             Gap("list gap"),
             Pair(
                 "refresh",
-                "Read the folder again, or go to the one where files are saved.",
+                "Read the folder again, or go to the folder where files are saved.",
                 run=lambda: self._list(self._folder),
                 other="home",
                 run_other=partial(self._go_to, self._root),
             ),
             Choice(
                 "mesh up",
-                "The up axis of mesh files that are opened; other files give their own.",
+                "The up axis of the mesh files that you open; other files have their own.",
                 names=UPS,
                 present=session.mesh_up,
                 choose=partial(setattr, session, "mesh_up"),
             ),
             Choice(
                 "mesh scale",
-                "A factor for mesh files that are opened: 0.001 from millimeters, 0.0254 from inches.",
+                "A factor for the mesh files that you open: 0.001 from millimeters, 0.0254 from inches.",
                 names=scales,
                 present=scale,
                 choose=lambda name: setattr(session, "mesh_scale", float(name)),
@@ -215,8 +215,8 @@ class FileScreen(Screen):
         """Raise UsageError for what the pointer of this session may not open."""
         if not self._may_open(path):
             raise UsageError(
-                f"{path.name}: what is opened from here must be in the folder {self._root.name}, and not a"
-                " link to elsewhere; choose another"
+                f"{path.name}: a file to open must be in the folder {self._root.name}, and not a link to"
+                " elsewhere; choose another"
             )
 
     def _save(self, save: Callable[[], object]) -> None:

@@ -24,8 +24,8 @@ AIM: Final = "aim"
 WORLD: Final = "world"
 """The choice of following nothing."""
 
-OF_AN_AXIS: Final = ("direction", "aim", "concentration", "cone_angle", "inner_angle", "at_infinity")
-"""The columns that only a light with an axis has."""
+AXIS_COLUMNS: Final = ("direction", "aim", "concentration", "cone_angle", "inner_angle", "at_infinity")
+"""The columns of lights with an axis."""
 
 EXCLUDING: Final = (
     ("only_surfaces", "except_surfaces"),
@@ -33,12 +33,12 @@ EXCLUDING: Final = (
     ("only_parts", "except_parts"),
     ("except_parts", "only_parts"),
 )
-"""The columns of which a light has one or the other."""
+"""Pairs of columns of which a light has one or the other."""
 
 DOWN: Final = (0.0, 0.0, -1.0)
 """The direction of a light that had none."""
 
-NEEDS_AXIS: Final = "a point source has none; choose the kind aim first"
+NEEDS_AXIS: Final = "a point source has no axis; choose the kind aim first"
 
 
 def kind_of(light: Light) -> str:
@@ -47,14 +47,11 @@ def kind_of(light: Light) -> str:
 
 
 def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()) -> list[Widget]:
-    """The rows of the columns of a light, without some, and of its kind, before what only some kinds have."""
+    """The rows of a light's columns but `leave_out`, with its kind before the columns that a kind has."""
     rows = rows_of(light, partial(_put_with_reach, session, light), session.world, leave_out)
-    # What a light follows is chosen among what it can follow, and it stays where it is.
-    if "follows" not in leave_out:
-        others = [row for row in rows if row.label != "follows"]
-        place = next((number for number, row in enumerate(rows) if row.label == "follows"), len(others))
-        rows = [*others[:place], _follows_row(session, light), *others[place:]]
-    # A point source has no axis: what needs one cannot be used, and says so.
+    # A light can follow only some lights, and stays where it is when it follows another.
+    rows = [_follows_row(session, light) if row.label == "follows" else row for row in rows]
+    # A point source has no axis: rows that need an axis cannot be used, and say so.
     if kind_of(light) == POINT:
         needing = ("concentration", "cone angle", "inner angle", "at infinity")
         rows = [replace(row, why_not=NEEDS_AXIS) if row.label in needing else row for row in rows]
@@ -71,10 +68,10 @@ def parameter_rows(session: Session, light: Light, leave_out: Sequence[str] = ()
 
 
 def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
-    """Change fields of a light; one that gets another name stays chosen.
+    """Change fields of a light; with another name it stays chosen.
 
-    A cone that becomes narrower than its inner angle, or absent, takes that along. Names that it shines on
-    only take the place of those that it excepts, and vice versa.
+    The inner angle is lowered or removed with the cone angle. Names that the light shines on only take the
+    place of names that it leaves out, and vice versa.
     """
     for chosen, other in EXCLUDING:
         if changes.get(chosen) is not None:
@@ -89,10 +86,10 @@ def put_light(session: Session, name: str, changes: Mapping[str, Any]) -> None:
 
 
 def choose_kind(session: Session, light: Light, kind: str) -> None:
-    """Make a light one of another kind; one that has a direction or an aim keeps where it shines."""
+    """Change the kind of a light; a light with a direction or an aim goes on shining where it did."""
     if kind == POINT:
         # Without an axis there is no concentration, no cone and no direction to come from.
-        put_light(session, light.name, {name: _default(name) for name in OF_AN_AXIS})
+        put_light(session, light.name, {name: _default(name) for name in AXIS_COLUMNS})
         return
     scene = session.scene
     light = scene.light_in_world(light.name)
@@ -106,7 +103,7 @@ def choose_kind(session: Session, light: Light, kind: str) -> None:
 
 
 def aim_of(light: Light, low: Vector, high: Vector) -> Vector:
-    """A point at which a light without an aim is aimed: ahead of it, or else the middle of the object.
+    """The point to aim a light at: ahead of it, or else the middle of the object.
 
     A directed light keeps its direction. `low` and `high` are the bounds of the object.
     """
@@ -123,15 +120,15 @@ def aim_of(light: Light, low: Vector, high: Vector) -> Vector:
 
 
 def choose_follows(session: Session, name: str, follows: str) -> None:
-    """Let a light follow the eye or another light, or nothing; it stays where it is now."""
+    """Let a light follow the eye, another light or nothing; it stays where it is now."""
     session.edit(session.scene.with_light_following(name, None if follows == WORLD else follows))
 
 
 def _follows_row(session: Session, light: Light) -> Choice:
-    """The choice of what a light follows: the world, the eye, or an aim that does not move with it."""
+    """The choice of what a light follows: nothing, the eye, or the aim of a light that does not follow it."""
     return Choice(
         "follows",
-        "What it moves with: nothing in the world, the eye, or the aim of another light.",
+        "The light moves with the eye, with the aim of another light, or with nothing: world.",
         names=(WORLD, EYE, *names_to_follow(light, session.scene.lights)),
         present=light.follows or WORLD,
         choose=partial(choose_follows, session, light.name),
@@ -139,7 +136,7 @@ def _follows_row(session: Session, light: Light) -> Choice:
 
 
 def _put_with_reach(session: Session, light: Light, changes: Mapping[str, Any]) -> None:
-    """Change fields of a light; one that is to fall with the distance gets a reach, the object's size."""
+    """Change fields of a light; with a falloff, it gets a reach if it has none: the size of the object."""
     if changes.get("falloff", "none") != "none" and light.reach is None:
         changes = {**changes, "reach": session.world.size}
     put_light(session, light.name, changes)

@@ -43,198 +43,6 @@ from autocolor.widgets.menu import WORK
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Button, Choice, Gap, Widget, short_name
 
-# The panel of a mapping curve: intensity rises to the right, the level upward.
-#
-# Behind the curve stands how often each intensity is seen, and on it its points.
-
-PANEL: Final = Area(8, WORK.bottom - 215, 223, WORK.bottom - 8)
-"""The panel, at the lower left of the picture."""
-
-CURVE: Final = Area(PANEL.left + 8, PANEL.top + 16, PANEL.right - 8, PANEL.bottom - 8)
-"""Where the curve is."""
-
-ACROSS: Final = np.linspace(0, 1, CURVE.width, dtype=np.float32)
-"""The fraction of the intensities at each element of the curve."""
-
-MOST_CHARACTERS: Final = (CURVE.width - 2 * CHARACTER) // CHARACTER - len("level")
-
-MOST_COUNTED: Final = 20_000
-"""Assumed: intensities that are counted; the panel cannot tell more apart."""
-
-
-class Curve(NamedTuple):
-    """What the panel shows.
-
-    `levels` are fractions at ACROSS, `shares` are how often the intensities there are seen, 0 to 1.
-    """
-
-    surface: str
-    levels: Singles
-    shares: Singles
-    points: CurvePoints
-    touched: int | None
-    """The number of the point that was touched last."""
-
-
-def panel_items(curve: Curve) -> list[Item]:
-    """How the panel looks."""
-    name = short_name(curve.surface, MOST_CHARACTERS)
-    top = PANEL.top + 4
-    items = [
-        filled(PANEL, NIGHT),
-        outline(PANEL, SLATE),
-        text("level", CURVE.left, top, LIGHT_GRAY),
-        _share_item(curve.shares),
-        outline(CURVE, SLATE),
-        lines([_places_of(ACROSS, curve.levels)], YELLOW, CURVE),
-    ]
-    if name:
-        items.append(text(name, CURVE.right + 1 - CHARACTER * len(name), top, GRAY))
-    for number, (x, y) in enumerate(curve.points):
-        element, line = place_of(x, y)
-        word = YELLOW if number == curve.touched else WHITE
-        items.append(filled(Area(element - 2, line - 2, element + 2, line + 2).within(PANEL), word))
-    return items
-
-
-def place_of(x: float, y: float) -> tuple[int, int]:
-    """The element and the line of fractions of intensity and level."""
-    return round(CURVE.left + x * (CURVE.width - 1)), round(CURVE.bottom - y * (CURVE.height - 1))
-
-
-def fractions_of(element: int, line: int) -> tuple[float, float]:
-    """The fractions of intensity and level at a place, 0 to 1."""
-    x = (element - CURVE.left) / (CURVE.width - 1)
-    y = (CURVE.bottom - line) / (CURVE.height - 1)
-    return min(1.0, max(0.0, x)), min(1.0, max(0.0, y))
-
-
-def _places_of(xs: Singles, ys: Singles) -> Floats:
-    """The elements and lines, (n, 2), of fractions."""
-    return np.column_stack(
-        [CURVE.left + xs * (CURVE.width - 1.0), CURVE.bottom - ys * (CURVE.height - 1.0)]
-    ).astype(np.float64)
-
-
-def _share_item(shares: Singles) -> Item:
-    """A line upward for each element, as long as intensities there are frequent."""
-    tops = _places_of(ACROSS, shares)
-    feet = np.column_stack([tops[:, 0], np.full(len(tops), float(CURVE.bottom))])
-    return segments(np.hstack([feet, tops]), SLATE, CURVE)
-
-
-def shares_of(intensities: Singles, low: float, high: float) -> Singles:
-    """How often the intensities from low to high are seen at ACROSS, in proportion to the most frequent.
-
-    Assumed: the square root, so that rare ones are seen beside a background that is everywhere.
-    """
-    some = intensities[:: max(1, len(intensities) // MOST_COUNTED)]
-    counts, _ = np.histogram(some, bins=len(ACROSS), range=(low, high) if low < high else (low, low + 1))
-    shares: Singles = np.sqrt(counts / max(1, counts.max())).astype(np.float32)
-    return shares
-
-
-# The points of a mapping curve, as they are moved, added and removed: the curve stays a rising one.
-#
-# Its first point is at the fraction 0 of the intensities, its last one at 1; both stay there.
-
-STRAIGHT: Final[CurvePoints] = ((0.0, 0.0), (0.25, 0.25), (0.5, 0.5), (0.75, 0.75), (1.0, 1.0))
-
-LEAST_APART: Final = 0.01
-"""Assumed: the smallest distance of two points along the intensities."""
-
-DIGITS: Final = 4
-"""Decimals of a point; pointing is not as fine."""
-
-
-def moved(points: CurvePoints, number: int, x: float, y: float) -> CurvePoints:
-    """The points with one moved to fractions of intensity and level, or as near as the others let it."""
-    last = len(points) - 1
-    low = points[number - 1][1] if number else 0.0
-    high = points[number + 1][1] if number < last else 1.0
-    if 0 < number < last:
-        least, most = points[number - 1][0] + LEAST_APART, points[number + 1][0] - LEAST_APART
-        x = min(max(x, least), most) if least <= most else points[number][0]
-    else:
-        x = points[number][0]
-    point = round(x, DIGITS), round(min(max(y, low), high), DIGITS)
-    return (*points[:number], point, *points[number + 1 :])
-
-
-def added(points: CurvePoints, x: float, y: float) -> tuple[CurvePoints, int]:
-    """The points with one more at fractions of intensity and level, and its number.
-
-    Its level is between those of its neighbors. One that is closer than LEAST_APART to another is not added:
-    that one's number is returned.
-    """
-    nearest = min(range(len(points)), key=lambda number: abs(points[number][0] - x))
-    if abs(points[nearest][0] - x) < LEAST_APART:
-        return points, nearest
-    number = sum(other < x for other, _ in points)
-    between = points[:number], points[number:]
-    y = min(max(y, between[0][-1][1]), between[1][0][1])
-    return (*between[0], (round(x, DIGITS), round(y, DIGITS)), *between[1]), number
-
-
-def removed(points: CurvePoints, number: int) -> CurvePoints:
-    """The points without one of them; the ends stay."""
-    return (*points[:number], *points[number + 1 :]) if 0 < number < len(points) - 1 else points
-
-
-# Held ranges: the rows of the menu for the range of intensities that the exposure holds.
-
-LEAST_SHARE: Final = 1e-3
-"""Assumed: the smallest distance of minimum and maximum, as a share of the bar's range."""
-
-BEYOND: Final = 2.0
-"""Assumed: the bars go to twice the largest intensity of the picture."""
-
-
-def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -> list[Widget]:
-    """The minimum and the maximum that are held for the chosen surface; none where nothing is held for it."""
-    exposure = session.scene.exposure
-    name = held_name(exposure, session.surface_name)
-    if isinstance(exposure, str) or not name:
-        return []
-    low, high = dict(exposure)[name]
-    # What is held may lie beyond: a bar whose range followed it would run away from a drag.
-    usual = bar_within(0.0, BEYOND * (session.studio.image.mapped.ranges.whole.maximum or 1.0))
-    least = LEAST_SHARE * usual.high
-
-    def hold(minimum: float, maximum: float) -> object:
-        limits = {**dict(exposure), name: (minimum, maximum)}
-        return put({"exposure": tuple(limits.items())})
-
-    of = "all surfaces" if name == OBJECT else name
-    return [
-        Bar(
-            "minimum",
-            f"The intensity of {of} that is shown by the lowest level.",
-            value=low,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
-            put=lambda value: hold(max(0.0, min(value, high - least)), high),
-        ),
-        Bar(
-            "maximum",
-            f"The intensity of {of} that is shown by the highest level.",
-            value=high,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
-            put=lambda value: hold(low, max(value, low + least)),
-        ),
-    ]
-
-
-def held_name(exposure: Exposure, surface: str) -> str:
-    """The name of the held range by which a surface is mapped: its own, or the object's; empty if none is."""
-    held = () if isinstance(exposure, str) else [name for name, _ in exposure]
-    own = surface if surface != OBJECT else ""
-    return next((name for name in (own, OBJECT) if name and name in held), "")
-
-
 POINTS: Final = "points"
 HELD: Final = "held"
 
@@ -261,7 +69,7 @@ class MappingScreen(OverPicture):
         return [
             Choice(
                 "mapping",
-                "How intensities are mapped to levels; a click in the curve makes points of it.",
+                "How intensities are mapped to levels; a click in the curve gives it points.",
                 names=(*CURVES, POINTS),
                 present=scene.mapping if isinstance(scene.mapping, str) else POINTS,
                 choose=self._choose,
@@ -271,7 +79,7 @@ class MappingScreen(OverPicture):
             Gap("exposure gap"),
             Choice(
                 "exposure",
-                "Auto: the range of intensities is the picture's. Held: it stays, and less light is darker.",
+                "Auto: the picture's range of intensities. Held: the range stays; less light is darker.",
                 names=(AUTO, HELD),
                 present=AUTO if scene.exposure == AUTO else HELD,
                 choose=self._expose,
@@ -292,7 +100,7 @@ class MappingScreen(OverPicture):
             why_not = "the ends of the curve stay; click at another point first"
         return Button(
             "remove point",
-            "Remove the point that was touched last, which is yellow.",
+            "Remove the yellow point, which was touched last.",
             why_not,
             run=self._remove,
         )
@@ -344,7 +152,7 @@ class MappingScreen(OverPicture):
         return f"intensity {x:.2f}, level {y:.2f}: a click adds a point; points are dragged"
 
     def _points(self) -> CurvePoints:
-        """The points of the curve; none of one that has a name."""
+        """The points of the curve; none if the curve has a name."""
         mapping = self.session.scene.mapping
         return () if isinstance(mapping, str) else mapping
 
@@ -421,3 +229,191 @@ def _shares(picture: Picture, number: int, low: float, high: float) -> Singles:
     """How often the intensities of a visible surface are seen, which no curve changes."""
     seen = next(surface for surface in picture.slices if surface.surface_number == number)
     return shares_of(picture.relative[seen.pixels], low, high)
+
+
+# The panel of the curve: intensity rises to the right, the level upward. Behind the curve stands how often
+# each intensity is seen, and on the curve its points.
+
+PANEL: Final = Area(8, WORK.bottom - 215, 223, WORK.bottom - 8)
+"""The panel, at the lower left of the picture."""
+
+CURVE: Final = Area(PANEL.left + 8, PANEL.top + 16, PANEL.right - 8, PANEL.bottom - 8)
+"""The area of the curve."""
+
+ACROSS: Final = np.linspace(0, 1, CURVE.width, dtype=np.float32)
+"""The fraction of the intensities at each element of the curve."""
+
+MOST_CHARACTERS: Final = (CURVE.width - 2 * CHARACTER) // CHARACTER - len("level")
+MOST_COUNTED: Final = 20_000
+"""Assumed: intensities that are counted; the panel cannot tell more apart."""
+
+
+class Curve(NamedTuple):
+    """The contents of the panel.
+
+    `levels` are fractions at ACROSS, `shares` are how often the intensities there are seen, 0 to 1.
+    """
+
+    surface: str
+    levels: Singles
+    shares: Singles
+    points: CurvePoints
+    touched: int | None
+    """The number of the point that was touched last."""
+
+
+def panel_items(curve: Curve) -> list[Item]:
+    """The items of the panel."""
+    name = short_name(curve.surface, MOST_CHARACTERS)
+    top = PANEL.top + 4
+    items = [
+        filled(PANEL, NIGHT),
+        outline(PANEL, SLATE),
+        text("level", CURVE.left, top, LIGHT_GRAY),
+        _share_item(curve.shares),
+        outline(CURVE, SLATE),
+        lines([_places_of(ACROSS, curve.levels)], YELLOW, CURVE),
+    ]
+    if name:
+        items.append(text(name, CURVE.right + 1 - CHARACTER * len(name), top, GRAY))
+    for number, (x, y) in enumerate(curve.points):
+        element, line = place_of(x, y)
+        word = YELLOW if number == curve.touched else WHITE
+        items.append(filled(Area(element - 2, line - 2, element + 2, line + 2).within(PANEL), word))
+    return items
+
+
+def place_of(x: float, y: float) -> tuple[int, int]:
+    """The element and the line of fractions of intensity and level."""
+    return round(CURVE.left + x * (CURVE.width - 1)), round(CURVE.bottom - y * (CURVE.height - 1))
+
+
+def fractions_of(element: int, line: int) -> tuple[float, float]:
+    """The fractions of intensity and level at a place, 0 to 1."""
+    x = (element - CURVE.left) / (CURVE.width - 1)
+    y = (CURVE.bottom - line) / (CURVE.height - 1)
+    return min(1.0, max(0.0, x)), min(1.0, max(0.0, y))
+
+
+def _places_of(xs: Singles, ys: Singles) -> Floats:
+    """The elements and lines, (n, 2), of fractions."""
+    return np.column_stack(
+        [CURVE.left + xs * (CURVE.width - 1.0), CURVE.bottom - ys * (CURVE.height - 1.0)]
+    ).astype(np.float64)
+
+
+def _share_item(shares: Singles) -> Item:
+    """A line upward for each element, as long as intensities there are frequent."""
+    tops = _places_of(ACROSS, shares)
+    feet = np.column_stack([tops[:, 0], np.full(len(tops), float(CURVE.bottom))])
+    return segments(np.hstack([feet, tops]), SLATE, CURVE)
+
+
+def shares_of(intensities: Singles, low: float, high: float) -> Singles:
+    """How often the intensities from low to high are seen at ACROSS, in proportion to the most frequent.
+
+    Assumed: the square root, so that rare ones are seen beside a background that is everywhere.
+    """
+    some = intensities[:: max(1, len(intensities) // MOST_COUNTED)]
+    counts, _ = np.histogram(some, bins=len(ACROSS), range=(low, high) if low < high else (low, low + 1))
+    shares: Singles = np.sqrt(counts / max(1, counts.max())).astype(np.float32)
+    return shares
+
+
+# Moving, adding and removing points: the curve always rises. Its first point is at the fraction 0 of the
+# intensities and its last point at 1; both stay there.
+
+STRAIGHT: Final[CurvePoints] = ((0.0, 0.0), (0.25, 0.25), (0.5, 0.5), (0.75, 0.75), (1.0, 1.0))
+LEAST_APART: Final = 0.01
+"""Assumed: the smallest distance of two points along the intensities."""
+
+DIGITS: Final = 4
+"""Decimals of a point; pointing is not as fine."""
+
+
+def moved(points: CurvePoints, number: int, x: float, y: float) -> CurvePoints:
+    """The points with one moved to fractions of intensity and level, or as near as its neighbors allow."""
+    last = len(points) - 1
+    low = points[number - 1][1] if number else 0.0
+    high = points[number + 1][1] if number < last else 1.0
+    if 0 < number < last:
+        least, most = points[number - 1][0] + LEAST_APART, points[number + 1][0] - LEAST_APART
+        x = min(max(x, least), most) if least <= most else points[number][0]
+    else:
+        x = points[number][0]
+    point = round(x, DIGITS), round(min(max(y, low), high), DIGITS)
+    return (*points[:number], point, *points[number + 1 :])
+
+
+def added(points: CurvePoints, x: float, y: float) -> tuple[CurvePoints, int]:
+    """The points with one more at fractions of intensity and level, and its number.
+
+    Its level is kept between the levels of its neighbors. If another point is closer than LEAST_APART, no
+    point is added, and the number of the other point is returned.
+    """
+    nearest = min(range(len(points)), key=lambda number: abs(points[number][0] - x))
+    if abs(points[nearest][0] - x) < LEAST_APART:
+        return points, nearest
+    number = sum(other < x for other, _ in points)
+    between = points[:number], points[number:]
+    y = min(max(y, between[0][-1][1]), between[1][0][1])
+    return (*between[0], (round(x, DIGITS), round(y, DIGITS)), *between[1]), number
+
+
+def removed(points: CurvePoints, number: int) -> CurvePoints:
+    """The points without one of them; the ends stay."""
+    return (*points[:number], *points[number + 1 :]) if 0 < number < len(points) - 1 else points
+
+
+# The rows of the menu for the range of intensities that the exposure holds.
+
+LEAST_SHARE: Final = 1e-3
+"""Assumed: the smallest distance of minimum and maximum, as a share of the bar's range."""
+
+BEYOND: Final = 2.0
+"""Assumed: the bars go to twice the largest intensity of the picture."""
+
+
+def held_rows(session: Session, put: Callable[[Mapping[str, object]], object]) -> list[Widget]:
+    """The rows of the held minimum and maximum of the chosen surface; none if the exposure is not held."""
+    exposure = session.scene.exposure
+    name = held_name(exposure, session.surface_name)
+    if isinstance(exposure, str) or not name:
+        return []
+    low, high = dict(exposure)[name]
+    # The held range may lie beyond: a bar whose range followed it would run away from a drag.
+    usual = bar_within(0.0, BEYOND * (session.studio.image.mapped.ranges.whole.maximum or 1.0))
+    least = LEAST_SHARE * usual.high
+
+    def hold(minimum: float, maximum: float) -> object:
+        limits = {**dict(exposure), name: (minimum, maximum)}
+        return put({"exposure": tuple(limits.items())})
+
+    of = "all surfaces" if name == OBJECT else name
+    return [
+        Bar(
+            "minimum",
+            f"The intensity of {of} that is shown by the lowest level.",
+            value=low,
+            low=usual.low,
+            high=usual.high,
+            step=usual.step,
+            put=lambda value: hold(max(0.0, min(value, high - least)), high),
+        ),
+        Bar(
+            "maximum",
+            f"The intensity of {of} that is shown by the highest level.",
+            value=high,
+            low=usual.low,
+            high=usual.high,
+            step=usual.step,
+            put=lambda value: hold(low, max(value, low + least)),
+        ),
+    ]
+
+
+def held_name(exposure: Exposure, surface: str) -> str:
+    """The name of the held range by which a surface is mapped: its own or the object's; empty without any."""
+    held = () if isinstance(exposure, str) else [name for name, _ in exposure]
+    own = surface if surface != OBJECT else ""
+    return next((name for name in (own, OBJECT) if name and name in held), "")

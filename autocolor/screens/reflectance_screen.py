@@ -24,7 +24,7 @@ class ReflectanceScreen(OverPicture):
         if surface is None:
             return []
         return [
-            surface_row(session, "The surface that these are the properties of."),
+            surface_row(session, "The surface whose properties are shown."),
             Gap("properties gap"),
             *rows_of(surface, partial(self._put, surface.name), session.world, leave_out=("name", "paint")),
         ]

@@ -23,90 +23,11 @@ from autocolor.widgets.bars import Bar
 from autocolor.widgets.rows import rows_of
 from autocolor.widgets.widget import Button, Choice, Gap, Switch, Widget
 
-# A choice of a color by its name, for those beyond the limits and of missing values.
-
-NAMED: Final[Mapping[str, Color]] = {
-    "black": (0, 0, 0),
-    "gray": (128, 128, 128),
-    "white": (255, 255, 255),
-    "magenta": (255, 0, 255),
-    "red": (255, 0, 0),
-    "yellow": (255, 255, 0),
-    "green": (0, 160, 0),
-    "cyan": (0, 255, 255),
-    "blue": (0, 0, 255),
-}
-"""Assumed: colors enough to differ from any color scale."""
-
-NO_COLOR: Final = "none"
-
-
-def color_choice(
-    label: str, help: str, color: Color | None, put: Callable[[Color | None], object], has_none: bool
-) -> Choice:
-    """A row that chooses one of the colors, or none if there can be none; any other is help in digits."""
-    names = (*([NO_COLOR] if has_none else []), *NAMED)
-    name_of = {each: name for name, each in NAMED.items()}
-    present = NO_COLOR if color is None else name_of.get(color, in_digits(color))
-    return Choice(label, help, names=names, present=present, choose=lambda name: put(NAMED.get(name)))
-
-
-# The rows of the menu for the limits of a scalar, which are set along its own range.
-
-LEAST_SHARE: Final = 1e-3
-"""Assumed: the smallest distance of the limits, as a share of the scalar's own range."""
-
-PutLimits = Callable[[tuple[float, float] | None], object]
-
-
-def limit_rows(session: Session, scalar: Scalar, put: PutLimits) -> list[Widget]:
-    """A switch for the scalar's own range, the two limits, and limits that are symmetric around zero."""
-    own_low, own_high = own_limits(session.studio.picture)
-    # The range is of float32: a scene file should say 0.1, and not 0.10000000149011612.
-    own = float(str(np.float32(own_low))), float(str(np.float32(own_high)))
-    low, high = scalar.limits or own
-    usual = bar_within(*own)
-    least = LEAST_SHARE * (own[1] - own[0])
-    far = max(abs(low), abs(high))
-    return [
-        Switch(
-            "own range",
-            f"Let the bands be from the least value, {own[0]:.5g}, to the largest, {own[1]:.5g}.",
-            is_on=scalar.limits is None,
-            flip=lambda: put(own if scalar.limits is None else None),
-        ),
-        Bar(
-            "low limit",
-            "Where the first band begins.",
-            value=low,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
-            put=lambda value: put((min(value, high - least), high)),
-        ),
-        Bar(
-            "high limit",
-            "Where the last band ends.",
-            value=high,
-            low=usual.low,
-            high=usual.high,
-            step=usual.step,
-            put=lambda value: put((low, max(value, low + least))),
-        ),
-        Button(
-            "around zero",
-            "Limits as far below zero as above, as a scale with a light middle needs.",
-            run=lambda: put((-far, far)),
-        ),
-    ]
-
-
 NO_SCALAR: Final = "none"
 ZEBRA: Final = "zebra"
 """The name of a computed scalar, and of the scale that it is for."""
 
 OWN_COLORS: Final = "own colors"
-
 COMPUTED_WITH: Final[Mapping[str, Sequence[str]]] = {
     "direction": ("distance", "slope", "draft angle", "zebra"),
     "stripes": ("zebra",),
@@ -128,7 +49,7 @@ class ScalarScreen(OverPicture):
         scene, scalar = self.session.scene, self.session.scene.scalar
         choice = Choice(
             "scalar",
-            "What colors the surfaces: a scalar of the mesh, or one that is computed.",
+            "The scalar that colors the surfaces: a scalar of the mesh, or a computed scalar.",
             names=(NO_SCALAR, *scene.scalar_names),
             present=NO_SCALAR if scalar is None else scalar.name,
             choose=self._choose,
@@ -175,7 +96,7 @@ class ScalarScreen(OverPicture):
 
     def _color_rows(self, scalar: Scalar) -> list[Widget]:
         """The colors beyond the limits, and where there is no value."""
-        help = "The color of values {} the limits; none for that of the {} band."
+        help = "The color of values {} the limits; none: the color of the {} band."
         return [
             color_choice(
                 "below",
@@ -236,3 +157,77 @@ class ScalarScreen(OverPicture):
 
     def _put(self, changes: Mapping[str, Any]) -> None:
         self.session.edit(self.session.scene.with_scalar(**changes))
+
+
+LEAST_SHARE: Final = 1e-3
+"""Assumed: the smallest distance of the limits, as a share of the scalar's own range."""
+
+PutLimits = Callable[[tuple[float, float] | None], object]
+
+
+def limit_rows(session: Session, scalar: Scalar, put: PutLimits) -> list[Widget]:
+    """A switch for the scalar's own range, the two limits, and limits that are symmetric around zero."""
+    own_low, own_high = own_limits(session.studio.picture)
+    # The range is of float32: a scene file should say 0.1, and not 0.10000000149011612.
+    own = float(str(np.float32(own_low))), float(str(np.float32(own_high)))
+    low, high = scalar.limits or own
+    usual = bar_within(*own)
+    least = LEAST_SHARE * (own[1] - own[0])
+    far = max(abs(low), abs(high))
+    return [
+        Switch(
+            "own range",
+            f"Let the bands run from the least value, {own[0]:.5g}, to the largest, {own[1]:.5g}.",
+            is_on=scalar.limits is None,
+            flip=lambda: put(own if scalar.limits is None else None),
+        ),
+        Bar(
+            "low limit",
+            "Where the first band begins.",
+            value=low,
+            low=usual.low,
+            high=usual.high,
+            step=usual.step,
+            put=lambda value: put((min(value, high - least), high)),
+        ),
+        Bar(
+            "high limit",
+            "Where the last band ends.",
+            value=high,
+            low=usual.low,
+            high=usual.high,
+            step=usual.step,
+            put=lambda value: put((low, max(value, low + least))),
+        ),
+        Button(
+            "around zero",
+            "Limits as far below zero as above, as a scale with a light middle needs.",
+            run=lambda: put((-far, far)),
+        ),
+    ]
+
+
+NAMED: Final[Mapping[str, Color]] = {
+    "black": (0, 0, 0),
+    "gray": (128, 128, 128),
+    "white": (255, 255, 255),
+    "magenta": (255, 0, 255),
+    "red": (255, 0, 0),
+    "yellow": (255, 255, 0),
+    "green": (0, 160, 0),
+    "cyan": (0, 255, 255),
+    "blue": (0, 0, 255),
+}
+"""Assumed: colors enough to differ from any color scale."""
+
+NO_COLOR: Final = "none"
+
+
+def color_choice(
+    label: str, help: str, color: Color | None, put: Callable[[Color | None], object], has_none: bool
+) -> Choice:
+    """A row that chooses one of the colors, or none if `has_none`. Another color is shown in digits."""
+    names = (*([NO_COLOR] if has_none else []), *NAMED)
+    name_of = {each: name for name, each in NAMED.items()}
+    present = NO_COLOR if color is None else name_of.get(color, in_digits(color))
+    return Choice(label, help, names=names, present=present, choose=lambda name: put(NAMED.get(name)))

@@ -1,7 +1,7 @@
 """Screen: the interface of an interactive screen of the paper. Screens know the session, but not each other.
 
-A screen tells what it looks like now, what can be pointed at, and what that does. When it is drawn and sent,
-and who points (the mouse, the joystick unit, keys), is not its affair.
+A screen says how it looks now, what can be pointed at, and what a gesture there does. It does not know when
+it is drawn, nor whether the mouse, the joystick unit or a key points.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from autocolor.widgets.widget import Widget
 
 
 class Handle(NamedTuple):
-    """A place on a screen that can be grabbed and put elsewhere; `label` is what the message line says.
+    """A place on a screen that can be grabbed and put elsewhere.
 
-    `key` is what the screen knows it by.
+    By its `key` the screen recognizes the handle; `label` is for the message line.
     """
 
     key: object
@@ -29,18 +29,18 @@ class Handle(NamedTuple):
 
 
 class Screen:
-    """A screen with nothing on it. `name` is how the session calls it, `title` how the user sees it."""
+    """An empty screen. The session calls it by its `name`, the user sees its `title`."""
 
     name: ClassVar[str] = ""
     title: ClassVar[str] = ""
     help: ClassVar[str] = ""
-    """What one does there, for the message line."""
+    """What to do on the screen, for the message line."""
     has_menu: ClassVar[bool] = True
-    """Whether the menu always stands beside it; else it comes on demand."""
+    """Whether the menu always stands beside it; else the menu comes on demand."""
     shows_picture: ClassVar[bool] = False
-    """Whether its base is the picture at full size, so that keys that change the view are seen there."""
+    """Whether its base is the picture at full size."""
     shows_scene: ClassVar[bool] = True
-    """Whether edits of the scene are seen there; else they lead back to the picture."""
+    """Whether edits of the scene are seen on it; else an edit leads back to the picture."""
     is_in_menu: ClassVar[bool] = True
     """Whether the main menu leads to it."""
 
@@ -49,18 +49,18 @@ class Screen:
         self.is_under_menu = False
         """Whether the menu, which was asked for, stands over its right part."""
 
-    # What is seen.
+    # How it looks.
 
     def base(self) -> Words | int:
-        """What is below everything: one word, or the words of a picture, the same array until it changes."""
+        """The base below everything: one word, or the words of a picture, the same array until it changes."""
         return NIGHT
 
     def items(self) -> Sequence[Item]:
-        """What is drawn over the base, from the lowest to the highest; the widgets stand over them."""
+        """The items over the base, from the lowest to the highest; the widgets stand over them."""
         return ()
 
     def loads(self) -> Sequence[tuple[int, Bytes]]:
-        """The entries that it borrows: runs of colors, (n, 3), from a first entry on."""
+        """The entries that it borrows: a first entry, and the colors from there on, (n, 3)."""
         return ()
 
     # What can be pointed at.
@@ -78,43 +78,43 @@ class Screen:
         return ()
 
     def hint(self, element: int, line: int) -> str:
-        """What the message line says of a place where no widget and no handle is."""
+        """The text of the message line for a place without widget and handle."""
         return self.help
 
-    # What that does.
+    # What gestures and keys do.
 
     def hold(self, handle: Handle) -> None:
-        """A handle was picked or grabbed, and will be placed."""
+        """Take note of a handle that was picked or grabbed, and will be placed."""
 
     def place(self, handle: Handle, element: int, line: int) -> None:
-        """Put what was grabbed at a place: once after a pick, at each movement during a drag."""
+        """Put a handle at a place: once after a pick, at each movement of a drag."""
 
     def release(self) -> None:
-        """What was held or grabbed is let go of."""
+        """Let go of the handle."""
 
     def pick(self, gesture: Gesture) -> None:
-        """A click, or ENTER, where no widget and no handle is."""
+        """Do what a click or ENTER asks for at a place without widget and handle."""
 
     def drag(self, start: Gesture, last: Gesture, now: Gesture) -> None:
-        """A drag that began where no widget and no handle is has come from one place to another."""
+        """Follow a drag that began at a place without widget and handle."""
 
     def wheel(self, gesture: Gesture) -> None:
-        """The wheel was turned where no widget is."""
+        """Do what the wheel asks for at a place without widget."""
 
     def key(self, name: str, typed: str) -> bool:
-        """A key that nothing else takes was pressed; returns False if it does nothing here."""
+        """Do what a key asks for; returns False if it does nothing here."""
         return False
 
     def escape(self) -> bool:
-        """Give up what was begun here; returns False if there is nothing, and the screen is left."""
+        """Give up what was begun here; returns False if there is nothing, and then the screen is left."""
         return False
 
     def idle(self) -> bool:
-        """Do a part of what can wait while nothing moves; returns whether something looks different now."""
+        """Do a part of the work that can wait until nothing moves; returns whether the screen changed."""
         return False
 
     def enter(self) -> None:
-        """The screen is about to be shown."""
+        """Prepare to be shown."""
 
     def leave(self) -> None:
-        """The screen is shown no more."""
+        """Clean up after being shown."""

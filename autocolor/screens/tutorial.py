@@ -1,7 +1,7 @@
 """The tutorial: a panel over every screen that says what to do next, and sees when it is done.
 
-It knows no screen: what a person did is seen in the scene. The panel can be moved out of the way, folded,
-skipped step by step, and ended; all by the joystick unit alone.
+It knows no screen: it compares scenes to see what a person did. The panel can be moved out of the way,
+folded, skipped step by step, and ended; all by the joystick unit alone.
 """
 
 from __future__ import annotations
@@ -32,9 +32,8 @@ from autocolor.widgets.items import (
 from autocolor.widgets.menu import WIDE_BAR, WORK
 from autocolor.widgets.widget import MARGIN, Button, Place, Widget
 
-# Lessons: the tasks of the tutorial, each with what tells that a person has done it.
-#
-# What was done is seen in the scene, however it was done: by a screen, a bar, a key or the picture itself.
+# The lessons: each has a function that compares two scenes, and so sees whether the task was done, be it by a
+# screen, a bar, a key or in the picture itself.
 
 
 class Work(NamedTuple):
@@ -53,7 +52,7 @@ class Lesson(NamedTuple):
 
 
 def work_of(history: History) -> Work:
-    """The work of a session now."""
+    """The work of a history now."""
     return Work(history.scene, history.saved)
 
 
@@ -194,17 +193,13 @@ class Tutorial:
         self._before = self._seen = work_of(session.studio.history)
         self._is_low = True
         self._is_folded = False
-        self._has_ended = False
+        self.has_ended = False
+        """Whether the panel was taken away."""
 
     @property
     def lesson(self) -> Lesson | None:
-        """The lesson that is to be done; None after the last."""
+        """The lesson to do; None after the last lesson."""
         return self._lessons[self._number] if self._number < len(self._lessons) else None
-
-    @property
-    def has_ended(self) -> bool:
-        """Whether the panel was taken away."""
-        return self._has_ended
 
     def look(self) -> None:
         """Go on to the next lesson if this one has been done."""
@@ -224,7 +219,7 @@ class Tutorial:
             self._go_on(False)
 
     def _end(self) -> None:
-        self._has_ended = True
+        self.has_ended = True
 
     def _move(self) -> None:
         self._is_low = not self._is_low
@@ -240,7 +235,7 @@ class Tutorial:
 
     def widgets(self) -> Sequence[Widget]:
         """The panel, the topmost widget first."""
-        if self._has_ended:
+        if self.has_ended:
             return ()
         self.look()
         buttons = [
@@ -295,7 +290,7 @@ class PanelButton(Button):
 
 @dataclass(frozen=True)
 class Task(Widget):
-    """What is to be done: a headline, and the lines below it unless it is folded; a pick runs `run`."""
+    """A task: a headline, and lines below it unless it is folded. A pick calls `run`."""
 
     head: str = ""
     lines: Sequence[str] = ()

@@ -1,7 +1,7 @@
-"""The screen of kept variants: small pictures of them, to come back to one, or to compare with it.
+"""The screen of the variants: small pictures, to come back to a variant, or to compare with it.
 
-Nothing else is shown there, so the small pictures borrow the words of all surfaces: each has a share of them,
-with the colors that it needs most.
+Nothing else is shown there, so the small pictures borrow the words of all surfaces: each picture has a share
+of the words, for the colors that it needs most.
 """
 
 from __future__ import annotations
@@ -69,11 +69,11 @@ PLACES: Final = tuple(
 """Where the small pictures stand, with their frames and names."""
 
 MOST_COLORS: Final = 200
-"""Assumed: the most colors of one; more are not seen at this size."""
+"""Assumed: the most colors of a small picture; more are not seen at this size."""
 
 
 class VariantsScreen(Screen):
-    """The kept variants: small pictures of them, which are computed one by one while nothing moves."""
+    """The variants as small pictures, which are computed one by one while nothing moves."""
 
     name = "kept"
     title = "kept"
@@ -85,7 +85,7 @@ class VariantsScreen(Screen):
         self._chosen = ""
         self._page = 0
         self._last: Rendering | None = None
-        """The rendering of the last small picture, of which the next one can use what did not change."""
+        """The rendering of the last small picture; the next rendering reuses what did not change."""
         self._small: dict[Scene, SmallPicture] = {}
 
     # What is seen.
@@ -110,7 +110,7 @@ class VariantsScreen(Screen):
         return min(MOST_COLORS, (SCREENS.first - BACKGROUND - 1) // max(1, len(self._names())))
 
     def _shown(self) -> list[tuple[Area, int, SmallPicture]]:
-        """The small pictures of this page that are there: where they stand, and the first of their words."""
+        """The computed small pictures of this page, with their areas and the first of their words."""
         share = self._share()
         shown = []
         for number, (scene, area) in enumerate(zip(self._scenes(), PLACES, strict=False)):
@@ -142,7 +142,7 @@ class VariantsScreen(Screen):
         ]
 
     def idle(self) -> bool:
-        """Compute the next small picture that is missing."""
+        """Compute the next missing small picture."""
         share = self._share()
         for scene in self._scenes():
             small = self._small.get(scene)
@@ -153,12 +153,12 @@ class VariantsScreen(Screen):
         return False
 
     def _colors_of(self, scene: Scene) -> Bytes:
-        """The colors of a small picture, (84, 112, 3); one that is refused is black."""
+        """The colors of a small picture, (84, 112, 3); black if the scene is refused at this size."""
         try:
             self._last = rendering(scene, 2 * LINES, 2 * ELEMENTS, self._last)
             return thumbnail(display_image(scene, self._last.picture), LINES, ELEMENTS)
         except InputError:
-            # At this size a surface can be seen that is not in the whole picture, and be too bright.
+            # At this size a surface may be seen that is hidden in the whole picture, and be too bright.
             return np.zeros((LINES, ELEMENTS, 3), np.uint8)
 
     def enter(self) -> None:
@@ -174,7 +174,7 @@ class VariantsScreen(Screen):
 
     @property
     def _present(self) -> str:
-        """The chosen variant; the last one kept where none is chosen."""
+        """The chosen variant, else the last variant; empty without variants."""
         names = list(self.session.studio.variants)
         return self._chosen if self._chosen in names else names[-1] if names else ""
 
@@ -194,13 +194,13 @@ class VariantsScreen(Screen):
             ),
             Pair(
                 "compare",
-                f"Compare with {name}, here and by the key; or with the state before the last step again.",
+                f"Compare with {name}, also by the key B; or with the state before the last step.",
                 why_not,
                 run=self._compare,
                 other="off",
                 run_other=self._compare_with_before,
             ),
-            Button("drop", f"Keep {name} no longer.", why_not, run=self._drop, value=name),
+            Button("drop", f"Drop variant {name}.", why_not, run=self._drop, value=name),
         ]
         pages = len(self._pages)
         if pages > 1:
@@ -208,7 +208,7 @@ class VariantsScreen(Screen):
             rows.append(
                 Choice(
                     "page",
-                    "The next variants; at the left end, those before.",
+                    "The next page of variants; at the left end, the page before.",
                     names=names,
                     present=names[min(self._page, pages - 1)],
                     choose=lambda name: setattr(self, "_page", names.index(name)),
@@ -248,7 +248,7 @@ class VariantsScreen(Screen):
         variant = self.session.studio.variants[name]
         self.session.studio.drop_variant(name)
         self.session.comparing.forget(variant.scene)
-        self.session.tell(f"{name} is variant no longer")
+        self.session.tell(f"variant {name} dropped")
 
 
 class VariantButton(Button):

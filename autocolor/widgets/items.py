@@ -137,7 +137,7 @@ An area of 248 x 224 has three times as many pixels; more strokes would fill it.
 
 
 def clipped(strokes: Floats, area: Area) -> Floats:
-    """What of the strokes is in the area, between the centers of its outer pixels, (inside, 4).
+    """The parts of strokes within an area, between the centers of its outer pixels, (inside, 4).
 
     A stroke outside of the area is left out; a stroke that touches its border leaves a point.
     """

@@ -278,7 +278,7 @@ def _list_rows(
         yield Choice(
             what,
             within=label,
-            help=f"Which of the {len(names)} {what} are shown below; {len(value)} are in the list.",
+            help=f"The page of the {len(names)} {what} that is shown below; {len(value)} are in the list.",
             names=titles,
             present=titles[page],
             choose=lambda title: pages.__setitem__(what, titles.index(title)),
@@ -287,7 +287,7 @@ def _list_rows(
         wanted = {*value} ^ {name}
         chosen = tuple(each for each in names if each in wanted)
         is_in = name in value
-        help = f"Take {name} {'from' if is_in else 'into'} the list: {label}."
+        help = f"{'Remove' if is_in else 'Add'} {name} {'from' if is_in else 'to'} the list: {label}."
         yield Switch(f"{INDENT}{name}", help, within=label, is_on=is_in, flip=partial(take, chosen))
 
 

@@ -1,4 +1,4 @@
-"""The geometry of the light and view screen, Figure 5: its three views, the lines of the mesh and the marks.
+"""The light and view screen, Figure 5: its three views, the lines of the object, the marks and the handles.
 
-Uses `visibility`, `scene`, the ground and `screens.orbit`; it draws nothing and knows no display.
+Uses the session, the interface of screens, and the edits of `picture`.
 """

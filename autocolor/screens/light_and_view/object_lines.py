@@ -117,7 +117,7 @@ def without_hidden(edges: Indices, coordinates: Floats, depths: VisibleDepths) -
 
 
 def _are_visible(points: Floats, depths: VisibleDepths) -> Booleans:
-    """Whether points, (3, n), are visible; of one outside of the picture nothing is inside, and it counts."""
+    """Whether points, (3, n), are visible; a point outside of the picture counts as visible."""
     lines, elements = depths.farthest.shape
     x, y, depth = rotated(depths.view.axes / depths.unit, points, depths.view.eye)
     before = depth > 0
@@ -135,7 +135,7 @@ def _are_visible(points: Floats, depths: VisibleDepths) -> Booleans:
 # silhouette.
 #
 # Found once for a mesh. Nodes at the same place count as one, so that parts which repeat their nodes still
-# meet. An edge is inside by two nodes, as one of its polygons numbers them.
+# meet. An edge is given by two nodes, as one of its polygons numbers them.
 
 DRAWN_CREASE: Final = 30.0
 """Assumed: degrees; a larger angle between polygons is drawn as a crease.
@@ -374,7 +374,7 @@ class _MeshLines(NamedTuple):
 
 
 class ObjectLines:
-    """The lines of the object of a scene; they are lines once for a mesh."""
+    """The lines of the object of a scene, computed once for a mesh."""
 
     def __init__(self) -> None:
         self._mesh_lines: _MeshLines | None = None

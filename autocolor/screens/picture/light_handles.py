@@ -46,7 +46,7 @@ PERIOD: Final = 5
 
 
 class HandleKey(NamedTuple):
-    """What a handle moves of a light. Those of one rim are message_of apart by their line and element."""
+    """What a handle moves of a light. The handles of a rim differ by line and element."""
 
     light: str
     what: Literal["highlight"] | Rim

@@ -21,16 +21,6 @@ from autocolor.widgets.items import Area, Item, filled, text
 from autocolor.widgets.menu import MENU
 from autocolor.widgets.widget import Choice
 
-# The legend of a scalar as items of a page.
-
-
-def legend_items(legend: Legend | None) -> Sequence[Item]:
-    """The items that draw a legend; none without one."""
-    if legend is None:
-        return ()
-    areas = [filled(Area(*swatch[:4]), swatch.word) for swatch in legend.swatches]
-    return [*areas, *(text(each.text, each.left, each.top, INK, GROUND) for each in legend.labels)]
-
 
 class OverPicture(Screen):
     """A screen whose base is the picture at full size, or another one that is compared with it."""
@@ -129,7 +119,12 @@ class Pointed(NamedTuple):
         return f"{names}, {self.read}"
 
 
-# The row that chooses a surface, in the menus of all screens that are about one.
+def legend_items(legend: Legend | None) -> Sequence[Item]:
+    """The items that draw a legend; none without one."""
+    if legend is None:
+        return ()
+    areas = [filled(Area(*swatch[:4]), swatch.word) for swatch in legend.swatches]
+    return [*areas, *(text(each.text, each.left, each.top, INK, GROUND) for each in legend.labels)]
 
 
 def surface_row(session: Session, help: str, choose: Callable[[str], object] | None = None) -> Choice:

@@ -51,13 +51,13 @@ class PictureScreen(OverPicture):
         return [
             surface_row(
                 session,
-                "The surface that colors and reflectance are for; a click in the picture chooses, too.",
+                "The surface whose colors and reflectance you change; a click in the picture chooses, too.",
             ),
             *self._light_rows(),
             Gap("view gap"),
             Choice(
                 "view",
-                "A click looks from the next side; at the left end, from the one before.",
+                "A click looks from the next side; at the left end, from the side before.",
                 names=tuple(SIDES),
                 present=edits.side,
                 choose=self._see_from,
@@ -90,7 +90,7 @@ class PictureScreen(OverPicture):
             Button("watch", "Let the picture come in line by line, as in 1983.", run=self._watch),
             Gap("leave gap"),
             Button(
-                "leave", "Leave the program; changes that are not saved are told first.", run=session.leave
+                "leave", "Leave the program; you are asked first about unsaved changes.", run=session.leave
             ),
         ]
 
@@ -112,7 +112,7 @@ class PictureScreen(OverPicture):
             return switches
         alone = Pair(
             "alone",
-            f"Light {chosen} alone; or all lights on.",
+            f"Switch on light {chosen} alone; or all lights.",
             run=partial(session.light_alone, chosen),
             other="all on",
             run_other=session.all_lights_on,

@@ -157,7 +157,7 @@ def test_what_became_a_link_out_after_it_was_listed_is_refused(hand: Hand, folde
     (folder / "broken.obj").symlink_to(folder.parent / "outside" / "scene.toml")
     pick(hand, "broken.obj")
     assert told(hand) == (
-        "broken.obj: what is opened from here must be in the folder inside, and not a link to elsewhere;"
+        "broken.obj: a file to open must be in the folder inside, and not a link to elsewhere;"
         " choose another",
         True,
     )

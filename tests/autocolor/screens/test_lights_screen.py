@@ -146,9 +146,9 @@ def test_a_point_source_has_neither_cone_nor_concentration_and_says_why(hand: Ha
     assert (light.aim, light.direction, light.cone_angle, light.concentration) == (None, None, None, 0)
     before = hand.viewer.studio.scene
     for label in ("cone angle", "concentration"):
-        assert hint_of(hand, label) == "a point source has none; choose the kind aim first"
+        assert hint_of(hand, label) == "a point source has no axis; choose the kind aim first"
         hand.pick(label, BOX)
-        assert told(hand) == (f"{label}: a point source has none; choose the kind aim first", True)
+        assert told(hand) == (f"{label}: a point source has no axis; choose the kind aim first", True)
         hand.pull(label, 0.2, 0.8)
     assert hand.viewer.studio.scene is before
     hand.pick("kind")
@@ -363,7 +363,7 @@ def test_the_verbs_of_two_half_spaces_are_told_apart(hand_2: Hand) -> None:
 
 def test_the_message_line_says_what_a_row_does(hand_2: Hand) -> None:
     assert hint_of(hand_2, "left carried") == "Whether it moves and turns with the light, as barn doors do."
-    assert hint_of(hand_2, "turn") == "The other side of left is lit; or take it away."
+    assert hint_of(hand_2, "turn") == "Light the other side of left; or remove left."
 
 
 def test_the_edge_of_a_half_space_is_dragged_in_the_picture(hand_2: Hand) -> None:

@@ -75,7 +75,7 @@ def test_a_variant_is_chosen_by_a_click_and_dropped(hand: Hand) -> None:
     assert names(hand) == ["A", "B", "C"]
     hand.click(PLACES[1].left + 20, PLACES[1].top + 20)
     hand.pick("drop")
-    assert told(hand) == ("B is kept no longer", False)
+    assert told(hand) == ("variant B dropped", False)
     assert names(hand) == ["A", "C"]
     hand.click(PLACES[0].left + 20, PLACES[0].top + 20)
     hand.pick("come back")

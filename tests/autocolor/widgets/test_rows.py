@@ -401,8 +401,8 @@ def test_names_are_put_into_a_list_and_taken_out_in_the_order_of_their_table() -
     for row in (3, 1, 2):
         menu.rows[row].pick(NEXT)
     assert menu.value == ("a", "c")
-    assert menu.rows[1].help == "Take a from the list: its posts."
-    assert menu.rows[2].help == "Take b into the list: its posts."
+    assert menu.rows[1].help == "Remove a from the list: its posts."
+    assert menu.rows[2].help == "Add b to the list: its posts."
 
 
 def test_the_same_name_in_two_lists_is_told_apart() -> None:
@@ -418,7 +418,7 @@ def test_many_names_come_in_pages() -> None:
         _, page, *boxes = menu.rows
         assert isinstance(page, Choice)
         assert (page.label, page.present) == ("posts", title)
-        assert page.help == "Which of the 25 posts are shown below; 1 are in the list."
+        assert page.help == "The page of the 25 posts that is shown below; 1 are in the list."
         assert len(boxes) <= NAMES_A_PAGE
         seen += [box.label.strip() for box in boxes]
         page.pick(NEXT)
