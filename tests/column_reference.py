@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from autocolor.files.scenes.scene_meshes import MeshEntry
+from autocolor.files.scene_toml.scene_meshes import MeshEntry
 from autocolor.scene.columns import WORLD_UNITS, Column, Kind, Row, Tier, bar_of, fields_of, keys_of, plain
 from autocolor.scene.kinds import Number
 from autocolor.scene.lights import Flap, HalfSpace, Light

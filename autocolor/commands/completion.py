@@ -45,7 +45,7 @@ def _silent(complete: Complete) -> Complete:
 @_silent
 def complete_scenes(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """Folders with a scene, scene files, mesh files and picture files."""
-    from autocolor.files.openable import FOLDER, kind_of
+    from autocolor.files.scene_files import FOLDER, kind_of
     from autocolor.files.scene_sources import scene_and_mesh_suffixes
 
     def is_scene(folder: str) -> bool:

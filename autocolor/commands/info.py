@@ -13,7 +13,7 @@ from autocolor.checks import printable
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 
 if TYPE_CHECKING:
-    from autocolor.files.scenes.scene_report import SceneReport
+    from autocolor.files.scene_report import SceneReport
     from autocolor.scene.scalar import MeshScalar
 
 EXAMPLES: Final = """\b

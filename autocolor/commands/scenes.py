@@ -12,7 +12,7 @@ from autocolor.commands.completion import complete_scenes
 from autocolor.commands.options import verbose_option
 
 if TYPE_CHECKING:
-    from autocolor.files.scenes.scene_report import SceneReport
+    from autocolor.files.scene_report import SceneReport
     from autocolor.scene.creation import SurfaceSource
 
 REPAIRED: Final = 1

@@ -13,7 +13,7 @@ from autocolor.errors import InputError, UsageError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from autocolor.files.scenes.scene_report import SceneReport
+    from autocolor.files.scene_report import SceneReport
     from autocolor.scene.columns import Field
     from autocolor.scene.scene import Scene
 
@@ -164,7 +164,7 @@ def value_of(text: str) -> Any:
     >>> value_of("2.5"), value_of("[1, 2]"), value_of("true"), value_of("#b01020")
     (2.5, [1, 2], True, '#b01020')
     """
-    from autocolor.files.scenes.toml_text import parsed_toml
+    from autocolor.files.scene_toml.toml_text import parsed_toml
 
     # In TOML, the # of a color begins a comment, and a line break ends the value.
     if not text or text.startswith("#") or not text.isprintable():

@@ -24,100 +24,10 @@ from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.errors import AutocolorError, InputError, UsageError
 
 if TYPE_CHECKING:
-    from autocolor.files.scenes.scene_report import SceneReport
-    from autocolor.files.store.statements import Answer, Value
-    from autocolor.files.store.tables import Tables
-
-
-# -------------------- answers
-# Printing the rows of an answer: as an aligned table, as CSV, or as JSON.
+    from autocolor.files.scene_report import SceneReport
+    from autocolor.files.store.tables import Answer, Tables, Value
 
 FORMATS: Final = ("table", "csv", "json")
-
-MEASURED: Final = 1000
-"""Rows whose widths are looked at; those after them are printed as they come."""
-
-WIDEST: Final = 60
-"""Assumed: letters of a cell of a table; longer text is cut."""
-
-ABSENT: Final = "NULL"
-
-
-def lines_of(answer: Answer, form: str) -> Iterator[str]:
-    """The lines of an answer in one of FORMATS, made as its rows come."""
-    if form == "csv":
-        return _csv(answer)
-    return _json(answer) if form == "json" else _table(answer)
-
-
-def _table(answer: Answer) -> Iterator[str]:
-    """The columns and the rows, aligned; numbers stand to the right."""
-    rows = iter(answer.rows)
-    cells = []
-    has_number = [False] * len(answer.columns)
-    has_other = [False] * len(answer.columns)
-    for values in islice(rows, MEASURED):
-        cells.append([_cell(value) for value in values])
-        for place, value in enumerate(values):
-            has_number[place] |= isinstance(value, (int, float))
-            has_other[place] |= not isinstance(value, (int, float, type(None)))
-    if not answer.columns:
-        return
-    header = [printable(name) for name in answer.columns]
-    widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
-    is_number = [number and not other for number, other in zip(has_number, has_other, strict=True)]
-    yield _line(header, widths, is_number)
-    yield "  ".join("-" * width for width in widths)
-    for row in chain(cells, ([_cell(value) for value in each] for each in rows)):
-        yield _line(row, widths, is_number)
-
-
-def _line(cells: Sequence[str], widths: Sequence[int], is_number: Sequence[bool]) -> str:
-    placed = [
-        cell.rjust(width) if right else cell.ljust(width)
-        for cell, width, right in zip(cells, widths, is_number, strict=True)
-    ]
-    return "  ".join(placed).rstrip()
-
-
-def _cell(value: Value) -> str:
-    if value is None:
-        return ABSENT
-    text = f"{len(value):,} bytes" if isinstance(value, bytes) else str(value)
-    return printable(text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}...")
-
-
-def _csv(answer: Answer) -> Iterator[str]:
-    """Rows as CSV, NULL as an empty cell."""
-    yield _csv_line(answer.columns)
-    for row in answer.rows:
-        yield _csv_line(["" if value is None else _plain(value) for value in row])
-
-
-def _csv_line(cells: Sequence[object]) -> str:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="").writerow(cells)
-    return text.getvalue()
-
-
-def _json(answer: Answer) -> Iterator[str]:
-    """A list of objects by the names of columns, one a line."""
-    opening = "["
-    for row in answer.rows:
-        values = dict(zip(answer.columns, map(_plain, row), strict=True))
-        yield f"{opening}{json.dumps(values, ensure_ascii=False)}"
-        opening = ","
-    yield "[]" if opening == "[" else "]"
-
-
-def _plain(value: Value) -> object:
-    """A value that JSON and CSV can hold: infinite numbers and bytes as text."""
-    if isinstance(value, bytes):
-        return value.hex()
-    if isinstance(value, float) and value - value != 0:
-        return str(value)
-    return value
-
 
 EXAMPLES: Final = """\b
 Examples:
@@ -194,7 +104,7 @@ def _opened(source: SceneSource, write: bool) -> tuple[Tables, SceneReport | Non
 
 
 def _refuse_write(path: Path) -> None:
-    """Raise UsageError for a file that no scene is saved to."""
+    """Raise UsageError for a file that a scene cannot be saved to."""
     if path.is_dir() or path.suffix.lower() == ".toml":
         return
     advice = "take its scene out with `autocolor tables --write`"
@@ -222,15 +132,101 @@ def _run(tables: Tables, source: SceneSource, write: bool, form: str, statement:
         tell_written(*map(str, write_scene_with_tables(path, tables.scene(), overwrite=True, complete=False)))
 
 
-# -------------------- prompt
-# The prompt of `autocolor sql`: statements that end with a semicolon, and words that begin with a dot.
+# Printing the rows of an answer as an aligned table, as CSV, or as JSON.
+
+MEASURED: Final = 1000
+"""Rows that decide the widths of the columns; later rows are printed as they come."""
+
+WIDEST: Final = 60
+"""Limit: letters of a cell of a table; longer text is cut."""
+
+ABSENT: Final = "NULL"
+
+
+def lines_of(answer: Answer, form: str) -> Iterator[str]:
+    """The lines of an answer in one of FORMATS, printed as its rows come."""
+    if form == "csv":
+        return _csv(answer)
+    return _json(answer) if form == "json" else _table(answer)
+
+
+def _table(answer: Answer) -> Iterator[str]:
+    """The columns and the rows, aligned; numbers are aligned to the right."""
+    rows = iter(answer.rows)
+    cells = []
+    has_number = [False] * len(answer.columns)
+    has_other = [False] * len(answer.columns)
+    for values in islice(rows, MEASURED):
+        cells.append([_cell(value) for value in values])
+        for place, value in enumerate(values):
+            has_number[place] |= isinstance(value, (int, float))
+            has_other[place] |= not isinstance(value, (int, float, type(None)))
+    if not answer.columns:
+        return
+    header = [printable(name) for name in answer.columns]
+    widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
+    is_number = [number and not other for number, other in zip(has_number, has_other, strict=True)]
+    yield _line(header, widths, is_number)
+    yield "  ".join("-" * width for width in widths)
+    for row in chain(cells, ([_cell(value) for value in each] for each in rows)):
+        yield _line(row, widths, is_number)
+
+
+def _line(cells: Sequence[str], widths: Sequence[int], is_number: Sequence[bool]) -> str:
+    placed = [
+        cell.rjust(width) if right else cell.ljust(width)
+        for cell, width, right in zip(cells, widths, is_number, strict=True)
+    ]
+    return "  ".join(placed).rstrip()
+
+
+def _cell(value: Value) -> str:
+    if value is None:
+        return ABSENT
+    text = f"{len(value):,} bytes" if isinstance(value, bytes) else str(value)
+    return printable(text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}...")
+
+
+def _csv(answer: Answer) -> Iterator[str]:
+    """Rows as CSV, NULL as an empty cell."""
+    yield _csv_line(answer.columns)
+    for row in answer.rows:
+        yield _csv_line(["" if value is None else _plain(value) for value in row])
+
+
+def _csv_line(cells: Sequence[object]) -> str:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="").writerow(cells)
+    return text.getvalue()
+
+
+def _json(answer: Answer) -> Iterator[str]:
+    """A list of objects by the names of columns, an object a line."""
+    opening = "["
+    for row in answer.rows:
+        values = dict(zip(answer.columns, map(_plain, row), strict=True))
+        yield f"{opening}{json.dumps(values, ensure_ascii=False)}"
+        opening = ","
+    yield "[]" if opening == "[" else "]"
+
+
+def _plain(value: Value) -> object:
+    """A value that JSON and CSV can hold: infinite numbers and bytes as text."""
+    if isinstance(value, bytes):
+        return value.hex()
+    if isinstance(value, float) and value - value != 0:
+        return str(value)
+    return value
+
+
+# The prompt: statements that end with a semicolon, and words that begin with a dot.
 
 GREETING: Final = "statements end with ;   .tables   .schema [TABLE]   .help   .quit, or Ctrl+D"
 FIRST: Final = "sql> "
 NEXT: Final = "...> "
 
 MOST_LETTERS: Final = 1 << 20
-"""Assumed: letters of one statement."""
+"""Limit: letters of one statement."""
 
 _PIECES: Final = re.compile(
     r"""'[^']*(?:'|\Z)|"[^"]*(?:"|\Z)|`[^`]*(?:`|\Z)|\[[^]]*(?:]|\Z)|--[^\n]*|/\*.*?(?:\*/|\Z)|;""", re.DOTALL
@@ -239,7 +235,7 @@ _PIECES: Final = re.compile(
 
 
 def prompt(tables: Tables, run: Callable[[str], None]) -> None:
-    """Ask for statements until Ctrl+D or `.quit`; Ctrl+C takes back what was typed, or ends a statement."""
+    """Ask for statements until Ctrl+D or `.quit`; Ctrl+C deletes the typed text, or ends a statement."""
     with suppress(ImportError):
         # Lines can be edited, and come back with the arrow keys.
         import readline  # noqa: F401
@@ -270,7 +266,7 @@ class _Quit(Exception):  # noqa: N818
 
 
 def _dotted(line: str, tables: Tables) -> bool:
-    """Do what a word with a dot asks for; False for a line that is none."""
+    """Run a line that is a command with a dot; False for any other line."""
     words = line.split()
     if not words:
         return True
@@ -303,7 +299,7 @@ def statements_in(lines: Iterable[str]) -> Iterator[str]:
 
 
 def _readable(lines: Iterable[str]) -> Iterator[str]:
-    """The lines. Raises UsageError for one that is not text in UTF-8."""
+    """The lines. Raises UsageError for a line that is not text in UTF-8."""
     try:
         yield from lines
     except UnicodeDecodeError:
@@ -315,9 +311,9 @@ def _not_text() -> UsageError:
 
 
 def split(text: str) -> tuple[list[str], str]:
-    """The whole statements of a text, each with its semicolon, and what is left after them.
+    """The whole statements of a text, with their semicolons, and the rest of the text.
 
-    Raises UsageError for what is not text in UTF-8.
+    Raises UsageError if it is not text in UTF-8.
 
     >>> split("SELECT ';'; SELECT 2; SELECT")
     (["SELECT ';';", ' SELECT 2;'], ' SELECT')
@@ -333,7 +329,7 @@ def split(text: str) -> tuple[list[str], str]:
 
 
 def _is_complete(text: str) -> bool:
-    """Whether a text is a statement to its end: the semicolons in a trigger end none."""
+    """Whether a text is a whole statement; a semicolon inside a trigger does not end it."""
     try:
         return sqlite3.complete_statement(text)
     except ValueError:
@@ -341,5 +337,5 @@ def _is_complete(text: str) -> bool:
 
 
 def reads_from_a_terminal() -> bool:
-    """Whether somebody types."""
+    """Whether a user types the statements."""
     return sys.stdin is not None and sys.stdin.isatty()

@@ -12,7 +12,7 @@ from autocolor.commands.outputs import tell_written
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 
 if TYPE_CHECKING:
-    from autocolor.files.scenes.scene_report import SceneReport
+    from autocolor.files.scene_report import SceneReport
 
 
 EXAMPLES: Final = """\b
@@ -43,7 +43,7 @@ def tables(
         tell_written(*map(str, meshes))
         click.echo(f"wrote {path}; render it by naming its folder or itself, not the mesh", err=True)
     elif as_json:
-        from autocolor.files.plain_scene import plain_scene
+        from autocolor.files.picture_file import plain_scene
 
         click.echo(json.dumps(plain_scene(report.scene), indent=2))
     else:
@@ -53,7 +53,7 @@ def tables(
 
 def text_of(report: SceneReport) -> str:
     """The text of a scene file; without a mesh if the scene is from a picture file."""
-    from autocolor.files.scenes.toml_text import scene_text
+    from autocolor.files.scene_toml.scene_text import scene_text
 
     return scene_text(report.scene, report.mesh_files)
 

@@ -1,4 +1,7 @@
-"""The formats that a scene can be written in, found by the name of what is written or by their own."""
+"""Writing a scene in any format: the formats, the parts of a scene that each can hold, and the writers.
+
+A format is recognized by the name of the file or folder that is written, or chosen by its own name.
+"""
 
 from __future__ import annotations
 
@@ -42,164 +45,30 @@ from autocolor.scene.scalar import NODE
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import Surface
 
-# -------------------- output
-# What a scene is written as: one format, what it holds beside nodes and polygons, and how it is written.
-
 SURFACES: Final = "surfaces"
 LIGHTS: Final = "lights"
 VIEW: Final = "view"
 SETTINGS: Final = "settings"
 WHOLE_SCENE: Final = frozenset((*HELD, SURFACES, LIGHTS, VIEW, SETTINGS))
-"""What a format holds that holds a whole scene."""
+"""The parts of a scene, beside nodes and polygons, that a format may hold."""
 
 SceneWriter = Callable[[Path, Scene, bool], list[Path]]
-"""A function that writes a scene to a path, and overwrites what is there if that is allowed.
+"""A function that writes a scene to a path, and overwrites existing files if that is allowed.
 
-It returns the files that it wrote, and raises OutputError or WriteError, with nothing left half written."""
+It returns the files that it wrote. It raises OutputError or WriteError, and leaves no file half written."""
 
 
 @dataclass(frozen=True)
 class Output(Format):
     """One format that a scene is written in.
 
-    `suffixes` are those of its file, or of its folder; `in_folder` are the names of the files of a folder.
-    `holds` is what is read back from it, of WHOLE_SCENE.
+    `suffixes` are for its file or folder; `in_folder` are the names of the files in a folder. The parts of a
+    scene that the format `holds`, of WHOLE_SCENE, can be read back.
     """
 
     write: SceneWriter
     holds: frozenset[str] = WHOLE_SCENE
     in_folder: tuple[str, ...] = ()
-
-
-# -------------------- folder_output
-# Writing a mesh of several files: all are complete before the first of them has its name.
-
-
-def write_folder(
-    path: Path, mesh: Mesh, write: Callable[[Path, Mesh], object], *, overwrite: bool
-) -> list[Path]:
-    """Write the files of a mesh to a folder, which is made if there is none; returns them.
-
-    `write` writes them into an empty folder; only then do they move to the path. Other files that are there
-    stay. Raises OutputError if one of them exists and `overwrite` is false, or if there can be no such
-    folder; WriteError if writing fails.
-    """
-    parent = path.resolve().parent
-    if not parent.is_dir():
-        raise OutputError(f"an output must be in an existing folder, not {path.parent}; create it")
-    if os.path.exists(path) and not os.path.isdir(path):
-        raise OutputError(f"an output of several files must be a folder, not the file {path}; name another")
-    beside = parent / f".{path.name[:100]}.{secrets.token_hex(6)}.part"
-    try:
-        os.mkdir(beside)
-    except OSError as error:
-        raise OutputError(
-            f"an output must have a place, and at {path} it cannot be made ({reason_of(error)}); choose"
-            " another"
-        ) from None
-    try:
-        write(beside, mesh)
-        names = sorted(str(file.relative_to(beside)) for file in beside.rglob("*") if file.is_file())
-        there = [name for name in names if os.path.lexists(path / name)]
-        if there and not overwrite:
-            raise OutputError(
-                f"an output must be new files, not {path / there[0]}, which exists; choose another folder, or"
-                " overwrite it with --force"
-            )
-        _synced(beside, names)
-        if path.exists():
-            # Remove the old files first: if this is cut off, the folder has files of one mesh only.
-            for name in there:
-                os.unlink(path / name)
-            for name in names:
-                (path / name).parent.mkdir(parents=True, exist_ok=True)
-                os.replace(beside / name, path / name)
-        else:
-            os.rename(beside, path)
-    except OSError as error:
-        raise WriteError(
-            f"an output must be written whole, and {path} could not be ({reason_of(error)}); make room or"
-            " choose another place"
-        ) from None
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
-    return [path / name for name in names]
-
-
-def _synced(folder: Path, names: list[str]) -> None:
-    for name in names:
-        with open(folder / name, "rb+") as file:
-            os.fsync(file.fileno())
-
-
-# -------------------- obj_output
-# Writing a scene as an OBJ file, with the surfaces of its parts as the materials of a library beside it.
-
-LIBRARY_SUFFIX: Final = ".mtl"
-
-
-def write_obj(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
-    """Write the mesh of a scene to an OBJ file, and its surfaces to a library beside it; returns both.
-
-    There is no library if one surface was created for all parts. Raises OutputError or WriteError.
-    """
-    refuse_output(path, overwrite=overwrite)
-    if [surface.name for surface in scene.surfaces] == [SHARED]:
-        write_atomically(path, obj_text(scene.mesh), overwrite=overwrite)
-        return [path]
-    library = path.with_suffix(LIBRARY_SUFFIX)
-    names = material_names(surface.name for surface in scene.surfaces)
-    surface_of = {part.name: part.surface for part in scene.parts}
-    materials = [names[surface_of[part]] for part in scene.mesh.part_names]
-    data = mtl_text((names[surface.name], surface) for surface in scene.surfaces)
-    was_there = os.path.lexists(library)
-    write_atomically(library, data, overwrite=overwrite)
-    try:
-        write_atomically(path, obj_text(scene.mesh, materials, library.name), overwrite=overwrite)
-    except BaseException:
-        if not was_there:
-            with suppress(OSError):
-                os.unlink(library)
-        raise
-    return [path, library]
-
-
-def material_names(surfaces: Iterable[str]) -> dict[str, str]:
-    """The name of the material of each surface: its own, as far as it can be read back, and unique."""
-    names: dict[str, str] = {}
-    for surface in surfaces:
-        name = stem = name_of(surface.encode("utf-8", "replace")) or "surface"
-        number = 1
-        while name in names.values():
-            number += 1
-            name = f"{stem} {number}"
-        names[surface] = name
-    return names
-
-
-def beyond_materials(surfaces: Iterable[Surface]) -> list[str]:
-    """The names of the surfaces of which a material library does not hold everything."""
-    return [surface.name for surface in surfaces if _read_back(surface) != surface]
-
-
-def _read_back(surface: Surface) -> Surface:
-    found, _ = materials_of(mtl_text([("material", surface)]), "", {"material"})
-    return found["material"].replace(name=surface.name)
-
-
-def _write_scene(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
-    return write_scene_with_tables(path, scene, overwrite=overwrite, complete=False)
-
-
-def _write_store(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
-    from autocolor.files.store.store_file import write_store
-
-    write_store(path, scene, overwrite=overwrite)
-    return [path]
-
-
-STORE_OUTPUT: Final = Output(STORE.name, STORE.suffixes, _write_store)
-SCENE: Final = Output("scene", (".toml",), _write_scene, in_folder=(SCENE_FILE,))
 
 
 def outputs() -> tuple[Output, ...]:
@@ -219,74 +88,55 @@ def _mesh_output(mesh_format: MeshFormat) -> Output:
     )
 
 
-def _write_file(mesh_format: MeshFormat, path: Path, scene: Scene, overwrite: bool) -> list[Path]:
-    assert mesh_format.written is not None
-    write_atomically(path, mesh_format.written(scene.mesh), overwrite=overwrite)
-    return [path]
-
-
-def _write_files(mesh_format: MeshFormat, path: Path, scene: Scene, overwrite: bool) -> list[Path]:
-    assert mesh_format.write is not None
-    folder = path.parent if path.name in mesh_format.in_folder else path
-    return write_folder(folder, scene.mesh, mesh_format.write, overwrite=overwrite)
-
-
 def output_named(name: str) -> Output:
     """The format of a name, in any capitals. Raises UsageError if there is none."""
-    known = {each.name.casefold(): each for each in outputs()}
-    if name.casefold() in known:
-        return known[name.casefold()]
-    near = difflib.get_close_matches(name.casefold(), known, 1)
+    formats = {output.name.casefold(): output for output in outputs()}
+    if name.casefold() in formats:
+        return formats[name.casefold()]
+    near = difflib.get_close_matches(name.casefold(), formats, 1)
+    *names, last = [output.name for output in formats.values()]
     raise UsageError(
-        f"--to must be {_listed([each.name for each in outputs()])}, not {name!r}"
-        + (f"; did you mean {known[near[0]].name}?" if near else "; choose one")
+        f"--to must be {', '.join(names)} or {last}, not {name!r}"
+        + (f"; did you mean {formats[near[0]].name}?" if near else "; choose one")
     )
 
 
 def output_of(path: Path) -> Output:
-    """The format of what is written to a path.
+    """The format for a path that is written.
 
-    A folder that is there keeps its format, and has a scene if it has none; a file has that of its suffix,
-    or of its name if it is one of several; what has no suffix becomes the folder of a scene. Raises
-    UsageError for any other suffix.
+    An existing folder keeps its format; an empty folder gets a scene. A file has the format of its suffix, or
+    of its name if it is one of the files of a folder. A path without a suffix becomes the folder of a scene.
+    Raises UsageError for any other suffix.
     """
-    every = outputs()
+    formats = outputs()
     # Unlike `Path.is_dir`, it never raises for a name that is too long.
     if os.path.isdir(path):
-        if not (path / SCENE_FILE).exists():
-            mesh_format = format_of_folder(path)
-            found = next((each for each in every if mesh_format and each.name == mesh_format.name), None)
-            if found is not None:
-                return found
-            named = format_named(path, [each for each in every if each.in_folder])
-            return SCENE if named is None else named
-        return SCENE
-    by_name = next((each for each in every if path.name in each.in_folder), None)
-    found = by_name or format_named(path, every)
-    if found is not None:
-        return found
+        if (path / SCENE_FILE).exists():
+            return SCENE
+        mesh_format = format_of_folder(path)
+        of_folder = next((each for each in formats if mesh_format and each.name == mesh_format.name), None)
+        return of_folder or format_named(path, [each for each in formats if each.in_folder]) or SCENE
+    output = next((each for each in formats if path.name in each.in_folder), None)
+    output = output or format_named(path, formats)
+    if output is not None:
+        return output
     if not path.suffix:
         return SCENE
     raise UsageError(
-        f"OUT must {suffix_rule(path, suffixes_of(every))}; name another, without an ending for the folder of"
-        " a scene, or choose a format with --to"
+        f"OUT must {suffix_rule(path, suffixes_of(formats))}; name another, without an ending for the folder"
+        " of a scene, or choose a format with --to"
     )
 
 
-def _listed(names: list[str]) -> str:
-    return f"{', '.join(names[:-1])} or {names[-1]}"
-
-
-# -------------------- left_out
-# What a format does not hold of a scene, counted, to be told when the scene is written in it.
+# The parts of a scene that a format cannot hold.
 
 MOST_NAMED: Final = 5
 
 
 def left_out(scene: Scene, output: Output, *, is_bare: bool) -> list[str]:
-    """A phrase for each thing that a format does not hold of a scene: "2 node scalars ('stress', 'u')".
+    """A phrase for each part of a scene that a format cannot hold: "2 node scalars ('stress', 'u')".
 
-    Of a mesh without a scene, which `is_bare`, only what belongs to the mesh is told: all else was created.
+    If the source `is_bare`, a mesh without a scene, only parts of the mesh count: all else was created.
     """
     phrases = list(_of_mesh(scene, output))
     if not is_bare:
@@ -323,7 +173,7 @@ def _of_scene(scene: Scene, output: Output) -> Iterator[str]:
 
 
 def _settings(scene: Scene) -> list[str]:
-    """The names of the fields of a scene, tables apart, that are not their defaults."""
+    """The names of the fields of a scene, without its tables, that differ from their defaults."""
     return [
         name
         for name, field in fields_of(Scene).items()
@@ -336,3 +186,138 @@ def _settings(scene: Scene) -> list[str]:
 def _named(names: Sequence[str]) -> str:
     more = f" and {len(names) - MOST_NAMED:,} more" if len(names) > MOST_NAMED else ""
     return ", ".join(shown(name) for name in names[:MOST_NAMED]) + more
+
+
+# The writers.
+
+
+def _write_scene(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    return write_scene_with_tables(path, scene, overwrite=overwrite, complete=False)
+
+
+def _write_store(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    from autocolor.files.store.store_file import write_store
+
+    write_store(path, scene, overwrite=overwrite)
+    return [path]
+
+
+def _write_file(mesh_format: MeshFormat, path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    assert mesh_format.written is not None
+    write_atomically(path, mesh_format.written(scene.mesh), overwrite=overwrite)
+    return [path]
+
+
+def _write_files(mesh_format: MeshFormat, path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    assert mesh_format.write is not None
+    folder = path.parent if path.name in mesh_format.in_folder else path
+    return write_folder(folder, scene.mesh, mesh_format.write, overwrite=overwrite)
+
+
+LIBRARY_SUFFIX: Final = ".mtl"
+
+
+def write_obj(path: Path, scene: Scene, overwrite: bool) -> list[Path]:
+    """Write the mesh of a scene to an OBJ file, and its surfaces to a library beside it; returns both.
+
+    There is no library if one surface was created for all parts. Raises OutputError or WriteError.
+    """
+    refuse_output(path, overwrite=overwrite)
+    if [surface.name for surface in scene.surfaces] == [SHARED]:
+        write_atomically(path, obj_text(scene.mesh), overwrite=overwrite)
+        return [path]
+    library = path.with_suffix(LIBRARY_SUFFIX)
+    names = material_names(surface.name for surface in scene.surfaces)
+    surface_of = {part.name: part.surface for part in scene.parts}
+    materials = [names[surface_of[part]] for part in scene.mesh.part_names]
+    data = mtl_text((names[surface.name], surface) for surface in scene.surfaces)
+    was_there = os.path.lexists(library)
+    write_atomically(library, data, overwrite=overwrite)
+    try:
+        write_atomically(path, obj_text(scene.mesh, materials, library.name), overwrite=overwrite)
+    except BaseException:
+        if not was_there:
+            with suppress(OSError):
+                os.unlink(library)
+        raise
+    return [path, library]
+
+
+def material_names(surfaces: Iterable[str]) -> dict[str, str]:
+    """Unique names of materials for surfaces: the surface's name, as far as it can be read back."""
+    names: dict[str, str] = {}
+    for surface in surfaces:
+        name = stem = name_of(surface.encode("utf-8", "replace")) or "surface"
+        number = 1
+        while name in names.values():
+            number += 1
+            name = f"{stem} {number}"
+        names[surface] = name
+    return names
+
+
+def beyond_materials(surfaces: Iterable[Surface]) -> list[str]:
+    """The names of the surfaces that a material library cannot hold whole."""
+
+    def read_back(surface: Surface) -> Surface:
+        materials, _ = materials_of(mtl_text([("material", surface)]), "", {"material"})
+        return materials["material"].replace(name=surface.name)
+
+    return [surface.name for surface in surfaces if read_back(surface) != surface]
+
+
+def write_folder(
+    path: Path, mesh: Mesh, write: Callable[[Path, Mesh], object], *, overwrite: bool
+) -> list[Path]:
+    """Write the files of a mesh to a folder, which is created if it does not exist; returns the files.
+
+    `write` writes them into an empty folder; when all are complete they move to the path. Other files in the
+    folder stay. Raises OutputError if a file exists and `overwrite` is false, or if the folder cannot be
+    created; WriteError if writing fails.
+    """
+    parent = path.resolve().parent
+    if not parent.is_dir():
+        raise OutputError(f"an output must be in an existing folder, not {path.parent}; create it")
+    if os.path.exists(path) and not os.path.isdir(path):
+        raise OutputError(f"an output of several files must be a folder, not the file {path}; name another")
+    beside = parent / f".{path.name[:100]}.{secrets.token_hex(6)}.part"
+    try:
+        os.mkdir(beside)
+    except OSError as error:
+        raise OutputError(
+            f"an output must have a place, and at {path} it cannot be made ({reason_of(error)}); choose"
+            " another"
+        ) from None
+    try:
+        write(beside, mesh)
+        names = sorted(str(file.relative_to(beside)) for file in beside.rglob("*") if file.is_file())
+        there = [name for name in names if os.path.lexists(path / name)]
+        if there and not overwrite:
+            raise OutputError(
+                f"an output must be new files, not {path / there[0]}, which exists; choose another folder, or"
+                " overwrite it with --force"
+            )
+        for name in names:
+            with open(beside / name, "rb+") as file:
+                os.fsync(file.fileno())
+        if path.exists():
+            # Remove the old files first: if this is cut off, the folder has files of one mesh only.
+            for name in there:
+                os.unlink(path / name)
+            for name in names:
+                (path / name).parent.mkdir(parents=True, exist_ok=True)
+                os.replace(beside / name, path / name)
+        else:
+            os.rename(beside, path)
+    except OSError as error:
+        raise WriteError(
+            f"an output must be written whole, and {path} could not be ({reason_of(error)}); make room or"
+            " choose another place"
+        ) from None
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+    return [path / name for name in names]
+
+
+STORE_OUTPUT: Final = Output(STORE.name, STORE.suffixes, _write_store)
+SCENE: Final = Output("scene", (".toml",), _write_scene, in_folder=(SCENE_FILE,))

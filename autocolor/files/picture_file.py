@@ -8,13 +8,12 @@ elements) float32, to be multiplied by the header's scale, `surface_number` (lin
 at the pixels are `scalar_0`, (lines, elements) float32; NaN is a missing one.
 
 Before version 4 there were no part numbers: the picture of such a file does not know its parts. Written
-again, its part numbers are all 0.
-
-`array_file` reads and writes them.
+again, its part numbers are all 0. `array_file` reads and writes the members.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
@@ -23,6 +22,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from autocolor.arrays import LARGEST_SINGLE, AnyArray
+from autocolor.checks import shown
 from autocolor.errors import InputError, UsageError
 from autocolor.files.array_file import (
     KEY,
@@ -35,19 +35,18 @@ from autocolor.files.array_file import (
     scalar_rows,
     scalars_of,
 )
-from autocolor.files.plain_scene import plain_scene, scene_of_plain
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.lighting.picture import Picture
-from autocolor.scene.columns import Problem, RowError
-from autocolor.scene.scalar import Limits
+from autocolor.scene.columns import Problem, RowError, made, plain
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scalar import Limits, MeshScalar
 from autocolor.scene.scene import Scene
 
 PLAIN_FORMATS: Final = ("autocolor picture 2", "autocolor picture 1")
-"""Before version 3 there were no scalars; in version 1 the reflectance and the paint of a surface were nested
-tables."""
+"""Versions without scalars. In version 1 the reflectance and the paint of a surface were nested tables."""
 
 SHOWN: Final = "shown_scalars"
-"""The key of the list in the header whose row, if any, is a table of the own `limits` of the scalar shown."""
+"""The key of a list in the header. Its row, if any, is a table with the `limits` of the shown scalar."""
 
 MOST_PROBLEMS: Final = 20
 LONGEST_PROBLEM: Final = 400
@@ -84,8 +83,8 @@ def write_picture(
 ) -> None:
     """Write a picture file atomically.
 
-    Raises UsageError for a name that does not end in .npz, or for a picture that is not that of the scene in
-    that only one of them has a scalar; OutputError or WriteError if it cannot be written.
+    Raises UsageError for a name that does not end in .npz, or if only one of the picture and the scene has a
+    scalar; OutputError or WriteError if it cannot be written.
     """
     check_suffix(path, ".npz", "a picture with its scene")
     if (picture.scalar_values is None) != (scene.scalar is None):
@@ -166,10 +165,10 @@ def _picture(header: Mapping[str, Any], scene: Scene, arrays: Mapping[str, AnyAr
 
 
 def _parts(arrays: Mapping[str, AnyArray], scene: Scene) -> AnyArray | None:
-    """The part numbers, (lines, elements), None if the file does not know them.
+    """The part numbers, (lines, elements); None if the file has none.
 
-    Raises InputError unless each is that of a part with polygons whose surface is the one there, or 0 where
-    there is none.
+    Raises InputError if a pixel names a part that does not exist, has no polygons, or belongs to another
+    surface than the pixel's.
     """
     parts, surfaces = arrays.get("part_number"), arrays["surface_number"]
     if parts is None:
@@ -197,7 +196,7 @@ def _parts(arrays: Mapping[str, AnyArray], scene: Scene) -> AnyArray | None:
 def _shown_scalar(
     rows: Sequence[object], scene: Scene, arrays: Mapping[str, AnyArray]
 ) -> tuple[AnyArray, tuple[float, float]] | tuple[None, None]:
-    """The raster and the own range of the scalar that a picture shows. Raises InputError."""
+    """The raster of the scalar that a picture shows, and the scalar's own range. Raises InputError."""
     if len(rows) != (scene.scalar is not None):
         rule = "there must be a scalar at the pixels if the scene shows one, and none if it does not"
         raise InputError(f"{rule}, not {len(rows)}")
@@ -215,3 +214,37 @@ def _shown_scalar(
             f" not {values.shape} with others"
         )
     return values, limits
+
+
+# A scene, without the arrays of its mesh, as values that JSON can hold, and back.
+
+
+def plain_scene(scene: Scene) -> dict[str, Any]:
+    """The tables of a scene as values that JSON can hold, without the arrays of the mesh.
+
+    Keys whose value is None or infinite are omitted.
+    """
+    mesh = {"part_names": scene.mesh.part_names, "crease_angle": scene.mesh.crease_angle}
+    return {"mesh": mesh, **plain(scene)}
+
+
+def scene_of_plain(
+    values: object,
+    coordinates: AnyArray,
+    node_numbers: AnyArray,
+    part_numbers: AnyArray,
+    scalars: tuple[MeshScalar, ...] = (),
+) -> Scene:
+    """The scene of values as from `plain_scene` and of the mesh's arrays and scalars. Raises InputError."""
+    if not isinstance(values, Mapping) or not isinstance(values.get("mesh"), Mapping):
+        raise InputError(f"scene: it must be tables, its mesh among them, not {shown(values)}")
+    described = values["mesh"]
+    mesh = Mesh(
+        coordinates,
+        node_numbers,
+        part_numbers,
+        described.get("part_names", ()),
+        described.get("crease_angle", math.nan),
+        scalars,
+    )
+    return made(Scene, {**values, "mesh": mesh})

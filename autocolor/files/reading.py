@@ -116,7 +116,8 @@ def bounded_json(data: bytes, most_values: int) -> Any:
     try:
         return json.loads(data.decode("utf-8"), parse_constant=refuse)
     except json.JSONDecodeError as error:
-        raise ValueError(f"{error.msg} at line {error.lineno}, column {error.colno}") from None
+        reason = error.msg.removesuffix(" at")
+        raise ValueError(f"{reason} at line {error.lineno}, column {error.colno}") from None
     except RecursionError:
         raise ValueError("lists in lists without end") from None
 

@@ -1,6 +1,6 @@
 """Rig files: the lights of a scene as a small TOML file, to put on another scene.
 
-    minimum = [-2.3, -0.9, 0.0]        # the least and the largest coordinates of the object
+    minimum = [-2.3, -0.9, 0.0]        # the smallest and the largest coordinates of the object
     maximum = [2.3, 0.9, 1.3]
 
     [[lights]]                         # as in a scene file
@@ -19,9 +19,9 @@ from typing import Final
 from autocolor.checks import shown
 from autocolor.errors import AutocolorError, OutputError, UsageError
 from autocolor.files.reading import read_bytes
+from autocolor.files.scene_toml.scene_text import sparse_row
+from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, SceneProblems, parsed_toml, table_text
 from autocolor.files.scene_writing import refuse_names
-from autocolor.files.scenes.scene_report import SceneProblems
-from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml, sparse_row, table_text
 from autocolor.files.writing import check_suffix, write_atomically
 from autocolor.scene.columns import RowError, made
 from autocolor.scene.rigs import Rig
@@ -31,7 +31,7 @@ RIG_SUFFIX: Final = ".toml"
 
 
 def is_rig(path: Path) -> bool:
-    """Whether a TOML file is a rig and no scene: it has the size of an object, and no mesh."""
+    """Whether a TOML file is a rig and not a scene: it has the bounds of an object, and no mesh."""
     try:
         document = parsed_toml(read_bytes(path, LARGEST_TEXT), path.name, "a rig file")
     except AutocolorError:
@@ -40,11 +40,11 @@ def is_rig(path: Path) -> bool:
 
 
 def write_rig(path: str | os.PathLike[str], scene: Scene | Rig, *, overwrite: bool = False) -> None:
-    """Write the lights of a scene, with the size of its object, to a rig file (.toml), atomically.
+    """Write the lights of a scene, with the bounds of its object, to a rig file (.toml), atomically.
 
-    `read_rig` gives back the same rig. Raises UsageError for a name that ends otherwise; InputError for a
-    name of a light that is no text; OutputError if the file exists and `overwrite` is false, or if it cannot
-    be created; WriteError if writing fails.
+    `read_rig` gives back the same rig. Raises UsageError for a path with another suffix; InputError for a
+    name of a light that UTF-8 cannot hold; OutputError if the file exists and `overwrite` is false, or if it
+    cannot be created; WriteError if writing fails.
     """
     check_suffix(path, RIG_SUFFIX, "a rig")
     rig = scene.rig if isinstance(scene, Scene) else scene

@@ -1,4 +1,7 @@
-"""Reading a scene from a folder, a scene file, a store, a mesh file or a picture file."""
+"""Reading a scene from a folder, a scene file, a store, a mesh file or a picture file.
+
+To add a format of scenes, write its reader and a row of SCENE_FORMATS below.
+"""
 
 from __future__ import annotations
 
@@ -25,9 +28,9 @@ from autocolor.files.formats import (
 from autocolor.files.meshes.repair import SCALES, UPS, Placement
 from autocolor.files.picture_file import read_picture
 from autocolor.files.reading import status_of
-from autocolor.files.scenes.scene_file import read_scene_file
-from autocolor.files.scenes.scene_meshes import MeshSource, keep_source
-from autocolor.files.scenes.scene_report import SceneReport, scene_report
+from autocolor.files.scene_report import SceneReport, scene_report
+from autocolor.files.scene_toml.scene_file import read_scene_file
+from autocolor.files.scene_toml.scene_meshes import MeshSource, keep_source
 from autocolor.scene.creation import MATERIALS, PARTS, SurfaceSource
 from autocolor.scene.scene import Scene
 
@@ -76,7 +79,7 @@ SCENE_FORMATS: Final = (
     SceneFormat("scene file", (".toml",), read_scene_file, in_folder="scene.toml"),
     STORE,
 )
-"""All formats of whole scenes. Their order is that in which a folder is looked through for a scene."""
+"""All formats of whole scenes, in the order in which a folder is searched for a scene."""
 
 
 def read_scene(
@@ -94,9 +97,9 @@ def read_scene(
     `autocolor convert --formats` lists all that can be read. Whatever the source does not define is created
     with defaults. `up` and `scale` are the up axis of a mesh that is read without a scene file, and a factor
     for its coordinates. With `outside`, a scene file may name files outside its folder. With `strict`, a mesh
-    that needs repair is refused. Parts that are given no surface have that of their material; with
-    `surfaces="parts"`, each has one of its own. Raises InputError with every problem, MissingInputError if a
-    file does not exist.
+    that needs repair is refused. A part without a surface has the surface of its material; with
+    `surfaces="parts"`, each such part has its own surface. Raises InputError with every problem,
+    MissingInputError if a file does not exist.
     """
     report = read_scene_with_report(path, up=up, scale=scale, outside=outside, surfaces=surfaces)
     if strict and report.repairs:
@@ -126,24 +129,24 @@ def read_scene_with_report(
     path = Path(path)
     status_of(path)
 
-    path, found = source_format(path)
-    if isinstance(found, SceneFormat):
+    path, source = source_format(path)
+    if isinstance(source, SceneFormat):
         for name, is_given in (("up", up != "z"), ("scale", scale != 1)):
             if is_given:
                 raise UsageError(
                     f"{name} is for mesh files, not for {path}, which gives its own; leave it out"
                 )
-        report = found.read(path, outside=outside, surfaces=surfaces)
-        return _with_source_kept(report, path.parent, path)
+        report = source.read(path, outside=outside, surfaces=surfaces)
+        return _with_source(report, path.parent, path)
     if path.is_dir():
-        files, name = files_of_folder(path, found), path.resolve().name
+        files, name = files_of_folder(path, source), path.resolve().name
         folder = next(iter(files.values())).parent
-        return _with_source_kept(_bare_mesh(files, name, placement, surfaces), folder)
-    return _with_source_kept(_bare_mesh({"file": path}, path.stem, placement, surfaces), path.parent)
+        return _with_source(_bare_mesh(files, name, placement, surfaces), folder)
+    return _with_source(_bare_mesh({"file": path}, path.stem, placement, surfaces), path.parent)
 
 
-def _with_source_kept(report: SceneReport, folder: Path, scene_file: Path | None = None) -> SceneReport:
-    """The report, after noting where its mesh was read from."""
+def _with_source(report: SceneReport, folder: Path, scene_file: Path | None = None) -> SceneReport:
+    """The report, after the files of its mesh were remembered."""
     if report.mesh_files:
         path = None if scene_file is None else scene_file.resolve()
         keep_source(report.scene.mesh, MeshSource(folder.resolve(), report.mesh_files, path))
@@ -151,30 +154,29 @@ def _with_source_kept(report: SceneReport, folder: Path, scene_file: Path | None
 
 
 def source_format(path: Path) -> tuple[Path, SceneFormat | MeshFormat]:
-    """The path to read for that of a source, and its format.
+    """The path to read for a source, and its format.
 
-    For a folder with a scene file it is the path of that, and for one of the files of a mesh that is a folder
-    it is the folder. Raises InputError if the format is unknown.
+    For a folder with a scene file, the path of the scene file is returned; for a file of a mesh that is a
+    folder, the path of the folder. Raises InputError if the format is unknown.
     """
-    found: SceneFormat | MeshFormat | None
     if path.is_dir():
         for each in SCENE_FORMATS:
             if each.in_folder is not None and (path / each.in_folder).exists():
                 return path / each.in_folder, each
-        found = format_of_folder(path)
-        if found is None:
+        mesh_format = format_of_folder(path)
+        if mesh_format is None:
             raise InputError(
                 f"{path}: a scene's folder must contain {' or '.join(folder_contents())}, and this one does"
                 " not; name a mesh file to read it alone"
             )
-        return path, found
-    known: tuple[SceneFormat | MeshFormat, ...] = (*SCENE_FORMATS, *file_formats())
-    found = recognized(path, known)
-    if found is not None:
-        return path, found
-    within = format_of_folder(path.parent)
-    if within is not None and path.name in within.in_folder:
-        return path.parent, within
+        return path, mesh_format
+    formats: tuple[SceneFormat | MeshFormat, ...] = (*SCENE_FORMATS, *file_formats())
+    file_format = recognized(path, formats)
+    if file_format is not None:
+        return path, file_format
+    mesh_format = format_of_folder(path.parent)
+    if mesh_format is not None and path.name in mesh_format.in_folder:
+        return path.parent, mesh_format
     raise InputError(
         f"{path}: a scene must be a folder, or {suffix_rule(path, scene_and_mesh_suffixes())};"
         " name one of these"
@@ -187,7 +189,7 @@ def scene_and_mesh_suffixes() -> tuple[str, ...]:
 
 
 def folder_contents() -> tuple[str, ...]:
-    """What a folder contains that is a scene or a mesh, as part of a message."""
+    """The files that make a folder a scene or a mesh, for a message."""
     scenes = [f"a {each.in_folder}" for each in SCENE_FORMATS if each.in_folder]
     return (*scenes, *(" and ".join(each.in_folder) for each in MESH_FORMATS if each.in_folder))
 

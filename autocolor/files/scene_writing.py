@@ -1,8 +1,8 @@
-"""Writing a scene to a store, or to a `scene.toml` with its mesh beside it unless files there hold it.
+"""Writing a scene to a store, or to a `scene.toml` with its mesh beside it.
 
-A file that is there already is changed in place, so that its comments and its order stay, if it is a scene
-file of the same object. First the mesh is written, under a name that no file has, then the scene file: if
-that fails, the mesh is removed again, and the old scene file still names the old mesh.
+Mesh files that hold the mesh are named again; otherwise the mesh is written first, under a new name, and the
+scene file then. If that fails, the mesh is removed, and the old scene file still names the old mesh. An old
+scene file of the same object is edited, so that its comments and its order stay.
 """
 
 from __future__ import annotations
@@ -15,20 +15,27 @@ from typing import Final
 
 from autocolor.errors import InputError, OutputError, UsageError, reason_of
 from autocolor.files.formats import mesh_suffixes, suffixes_of
-from autocolor.files.mesh_writing import Meshes, entries_of, meshes_there, reports_of, written_mesh
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_sources import SCENE_FORMATS
-from autocolor.files.scenes.scene_edit import (
+from autocolor.files.scene_toml.scene_file import report_of_text
+from autocolor.files.scene_toml.scene_meshes import (
+    Meshes,
+    entries_of,
+    meshes_there,
+    reports_of,
+    source_of,
+    written_mesh,
+)
+from autocolor.files.scene_toml.scene_text import (
     completed,
     edited_to,
+    scene_text,
     with_crease_angle,
     with_meshes,
     without_parts,
 )
-from autocolor.files.scenes.scene_file import report_of_text
-from autocolor.files.scenes.scene_meshes import source_of
-from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml, scene_text
+from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, parsed_toml
 from autocolor.files.store.store_file import STORE_SUFFIXES, write_store
 from autocolor.files.writing import refuse_output, write_atomically
 from autocolor.logs import logger_of
@@ -43,16 +50,15 @@ def write_scene(path: str | os.PathLike[str], scene: Scene, *, overwrite: bool =
     """Write a scene so that `read_scene` gives it back: its tables as TOML, and its mesh.
 
     `path` is a store (.sqlite, .db; see `write_store`), a scene file (.toml), or a folder, for a `scene.toml`
-    in it; a folder that does not exist is made in one that does. Mesh files that the scene was read from are
-    named if they are in that folder and still hold its mesh; else the mesh is written beside the scene file,
-    under a name that is free. The scene's name is that of its folder or file, and is written to stores alone.
+    in it. A missing folder is created in an existing one. Mesh files that the scene was read from are named
+    if they are in that folder and still hold its mesh; otherwise the mesh is written beside the scene file,
+    to a new file. The scene's name is the name of its folder or file, and is written to stores alone.
 
-    With `overwrite`, a scene file may exist. If it is one of the same object, its comments, its order and the
-    way in which it is written stay, and only what differs is changed. Mesh files are never overwritten.
+    With `overwrite`, a scene file may exist. If it is a file of the same object, only the differences are
+    changed, and its comments, its order and its style stay. Mesh files are never overwritten.
 
     Raises OutputError if the file exists and `overwrite` is false, or if nothing can be created there;
-    WriteError if writing fails; UsageError for a path that is that of another kind of file. Nothing is
-    changed then.
+    WriteError if writing fails; UsageError for a path of another kind of file. Nothing is changed then.
     """
     write_scene_with_tables(path, scene, overwrite=overwrite, complete=False)
 
@@ -79,14 +85,14 @@ def write_scene_with_tables(
         data = None if old is None else _edited(old, target, scene, meshes, complete)
         if data is None:
             if old is not None:
-                LOG.warning("%s: written anew; what it held, comments included, is not kept", target)
+                LOG.warning("%s: written anew; its old content and comments are lost", target)
             data = _fresh(target, scene, meshes, complete)
         write_atomically(target, data, overwrite=overwrite)
         return [*written, target]
 
 
 def _target(path: str | os.PathLike[str]) -> Path:
-    """The scene file to write for a path. Raises UsageError for a path that none is written to."""
+    """The scene file to write for a path. Raises UsageError for a path of another kind of file."""
     if not os.fspath(path):
         raise UsageError("a scene must have a place, not an empty name; for the current folder write '.'")
     target = Path(path)
@@ -106,7 +112,7 @@ def _target(path: str | os.PathLike[str]) -> Path:
 
 
 def refuse_names(rows: Iterable[Row]) -> None:
-    """Raise InputError if a name in a row, its own or another, has a character that UTF-8 does not."""
+    """Raise InputError if a name in a row, its own or another, has a character that UTF-8 lacks."""
     for row in rows:
         if any(0xD800 <= ord(letter) < 0xE000 for text in _texts_in(plain(row)) for letter in text):
             raise InputError(f"{row_label(row)}: a name in a file must be text in UTF-8; rename it")
@@ -125,7 +131,7 @@ def _texts_in(value: object) -> Iterator[str]:
 
 @contextmanager
 def _folder_made(folder: Path) -> Iterator[None]:
-    """Make a folder if there is none; remove it if what follows fails. Raises OutputError."""
+    """Create a missing folder; remove it again if the body fails. Raises OutputError."""
     try:
         os.mkdir(folder)
     except FileExistsError:
@@ -146,7 +152,7 @@ def _folder_made(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def _removed_on_failure() -> Iterator[list[Path]]:
-    """A list of files to remove again if what follows fails."""
+    """A list of files that are removed again if the body fails."""
     written: list[Path] = []
     try:
         yield written
@@ -158,7 +164,7 @@ def _removed_on_failure() -> Iterator[list[Path]]:
 
 
 def _existing(target: Path) -> bytes | None:
-    """The text of the scene file that is there; None if there is none that is valid TOML."""
+    """The text of the existing scene file; None if it is missing, or not valid TOML."""
     try:
         data = read_bytes(target, LARGEST_TEXT)
         parsed_toml(data, target.name)
@@ -168,30 +174,30 @@ def _existing(target: Path) -> bytes | None:
 
 
 def _edited(old: bytes, target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes | None:
-    """The old text, changed to give the scene; None if it is of another object, or cannot be changed to."""
+    """The old text, edited to give the scene; None if it is of another object, or cannot be edited so."""
     mesh, document = scene.mesh, parsed_toml(old, target.name)
     given = document.get("parts")
     parts = set(given) if isinstance(given, dict) else set()
     source = source_of(mesh)
-    is_kept = tuple(document.get("mesh", ())) == meshes.entries
+    is_same = tuple(document.get("mesh", ())) == meshes.entries
     is_source = source is not None and source.scene_file == target.resolve()
-    if not (is_kept or is_source or parts & set(mesh.part_names)):
+    if not (is_same or is_source or parts & set(mesh.part_names)):
         before = {
             name for report in reports_of(target.parent, entries_of(old)) for name in report.mesh.part_names
         }
         if before.isdisjoint(mesh.part_names):
             return None
     data = without_parts(old, parts - set(mesh.part_names))
-    if not is_kept:
+    if not is_same:
         data = with_meshes(data, meshes.entries)
-    if complete or mesh.crease_angle != (meshes.reports[0].mesh.crease_angle if is_kept else CREASE_ANGLE):
+    if complete or mesh.crease_angle != (meshes.reports[0].mesh.crease_angle if is_same else CREASE_ANGLE):
         data = with_crease_angle(data, mesh.crease_angle)
-    found = _giving(data, target, scene, meshes)
-    return _giving(completed(found, scene), target, scene, meshes) if complete and found else found
+    edited = _giving(data, target, scene, meshes)
+    return _giving(completed(edited, scene), target, scene, meshes) if complete and edited else edited
 
 
 def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:
-    """A new text that gives the scene. Raises OutputError if there is none."""
+    """A new text that gives the scene. Raises OutputError if no text does."""
     entries = [{key: entry[key] for key in entry if key != "crease_angle"} for entry in meshes.entries]
     text = scene_text(scene, entries, without_defaults=not complete).encode()
     data = _giving(text, target, scene, meshes)
@@ -204,10 +210,10 @@ def _fresh(target: Path, scene: Scene, meshes: Meshes, complete: bool) -> bytes:
 
 
 def _giving(data: bytes, target: Path, scene: Scene, meshes: Meshes) -> bytes | None:
-    """The text, changed until it gives the scene; None if it cannot be."""
+    """The text, edited until it gives the scene; None if no edit does."""
 
     def read(text: bytes) -> Scene:
         return report_of_text(text, target, meshes=meshes.reports).scene
 
-    found = edited_to(data, scene, read)
-    return found if found is not None and len(found) <= LARGEST_TEXT else None
+    edited = edited_to(data, scene, read)
+    return edited if edited is not None and len(edited) <= LARGEST_TEXT else None

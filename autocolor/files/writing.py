@@ -1,6 +1,7 @@
-"""Atomic writing: after any failure, either the old or the new file is there, complete.
+"""Writing files atomically, and naming new files.
 
-`ramtek_emu.writing` does the work; its errors are raised as errors of this package.
+After any failure, either the old or the new file is there, complete. `ramtek_emu.writing` does the work; its
+errors are raised as errors of this package.
 """
 
 from __future__ import annotations
@@ -32,9 +33,9 @@ def write_together(
     overwrite: bool,
     before_names: Callable[[], None] = lambda: None,
 ) -> None:
-    """Write files piece by piece, and give all of them their names when they are whole, the last one last.
+    """Write files piece by piece, and rename all of them when they are whole, in their order.
 
-    `before_names` is called in between. Raises OutputError and WriteError as `write_atomically` does.
+    `before_names` is called before that. Raises OutputError and WriteError as `write_atomically` does.
     """
     with _refusals_of_this_package(), ExitStack() as stack:
         outputs = []
@@ -54,7 +55,7 @@ def refuse_output(path: str | os.PathLike[str], *, overwrite: bool) -> None:
 
 
 def check_suffix(path: str | os.PathLike[str], suffix: str, what: str) -> None:
-    """Raise UsageError if the name of a file does not end in the suffix of what is written to it."""
+    """Raise UsageError if the name of a file does not end in a suffix; `what` is written to it."""
     if Path(path).suffix.lower() != suffix:
         raise UsageError(f"{what} must be written to a file that ends in {suffix}, not to {path}; rename it")
 
@@ -69,12 +70,11 @@ def _refusals_of_this_package() -> Iterator[None]:
         raise WriteError(str(refusal)) from None
 
 
-# -------------------- file_stem
 # Safe file names from the names of scenes and surfaces, which may contain any characters.
 
 LONGEST_STEM: Final = 100
 REFUSED: Final = frozenset('/\\:*?"<>|')
-"""Characters that have a special meaning in the paths of some system."""
+"""Characters with a special meaning in the paths of some system."""
 
 
 def file_stem(name: str) -> str:
@@ -89,7 +89,7 @@ def file_stem(name: str) -> str:
 
 
 def free_path(path: Path) -> Path:
-    """The path if nothing is there, else with the lowest number from 2 that makes it free: "rig-2.toml"."""
+    """The path, if there is no such file; else with the lowest number from 2 that is free: "rig-2.toml"."""
     stem, number, free = path.stem, 1, path
     while os.path.lexists(free):
         number += 1

@@ -31,8 +31,8 @@ from autocolor.errors import AutocolorError, InputError, MissingInputError
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.reading import read_bytes
 from autocolor.files.scene_sources import read_scene
+from autocolor.files.scene_toml.scene_meshes import source_of
 from autocolor.files.scene_writing import write_scene
-from autocolor.files.scenes.scene_meshes import source_of
 from autocolor.journal.history import Drop, Edit, History, Keep, Open, Saved, Show, Step
 from autocolor.journal.places import Opened, Source, checksum_of, opened
 from autocolor.scene.columns import difference, fields_of, plain

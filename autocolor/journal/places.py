@@ -18,7 +18,7 @@ import numpy as np
 
 from autocolor.errors import InputError
 from autocolor.files.paths import SCENE_FILE
-from autocolor.files.plain_scene import plain_scene
+from autocolor.files.picture_file import plain_scene
 from autocolor.files.scene_sources import read_scene
 from autocolor.files.store.store_file import STORE_SUFFIXES
 from autocolor.scene.creation import SurfaceSource

@@ -14,9 +14,9 @@ from typing import Final
 
 from autocolor.errors import InputError, UsageError
 from autocolor.files.meshes.repair import UPS
-from autocolor.files.openable import FOLDER, Openable, kind_of, openables_of, stays_within
 from autocolor.files.paths import SCENE_FILE
 from autocolor.files.rig_file import RIG_SUFFIX, is_rig
+from autocolor.files.scene_files import FOLDER, Openable, kind_of, openables_of, stays_within
 from autocolor.files.state import recent_files
 from autocolor.screens.screen import Screen
 from autocolor.screens.session import PICTURE, Session

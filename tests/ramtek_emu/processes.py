@@ -16,8 +16,10 @@ ROOT = Path(__file__).parents[2]
 
 
 def environment() -> dict[str, str]:
-    kept = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    return {**kept, "PYTHONPATH": str(ROOT)}
+    inherited = {
+        name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")
+    }
+    return {**inherited, "PYTHONPATH": str(ROOT)}
 
 
 def run(*arguments: object, data: bytes = b"") -> subprocess.CompletedProcess[bytes]:

@@ -96,7 +96,7 @@ def test_a_whole_number_is_one_of_python_or_numpy_and_no_truth_value() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "found"),
+    ("value", "rule"),
     [
         (0, "1 to 16, not 0"),
         (np.int64(17), "1 to 16, not 17"),
@@ -106,10 +106,10 @@ def test_a_whole_number_is_one_of_python_or_numpy_and_no_truth_value() -> None:
         (None, "a whole number from 1 to 16, not None"),
     ],
 )
-def test_a_number_that_does_not_fit_is_refused_as_it_was_given(value: object, found: str) -> None:
+def test_a_number_that_does_not_fit_is_refused_as_it_was_given(value: object, rule: str) -> None:
     with pytest.raises(ColorsError) as refusal:
         checked_number(value, "a factor", 1, 16, "choose another", ColorsError)
-    assert str(refusal.value) == f"a factor must be {found}; choose another"
+    assert str(refusal.value) == f"a factor must be {rule}; choose another"
 
 
 @pytest.mark.parametrize("data", [b"\x00\x07", bytearray(b"\x00\x07"), memoryview(b"\x00\x07")])

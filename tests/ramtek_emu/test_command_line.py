@@ -189,7 +189,7 @@ def paint(set: str, to: str, name: str) -> None:
     """Do nothing."""
 
 
-def told(monkeypatch: pytest.MonkeyPatch, *words: str) -> list[str]:
+def candidates(monkeypatch: pytest.MonkeyPatch, *words: str) -> list[str]:
     """What bash is told for the words that it made of a line, the last of them incomplete."""
     monkeypatch.setenv("COMP_WORDS", "\n".join(words))
     monkeypatch.setenv("COMP_CWORD", str(len(words) - 1))
@@ -197,22 +197,22 @@ def told(monkeypatch: pytest.MonkeyPatch, *words: str) -> list[str]:
 
 
 def test_values_are_completed_after_an_equals_sign(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert told(monkeypatch, "paint", "--set", "color", "=") == ["plain,red", "plain,dark\\ red"]
-    assert told(monkeypatch, "paint", "--set", "color", "=", "r") == ["plain,red"]
-    assert told(monkeypatch, "paint", "--set", "=", "color", "=", "da") == ["plain,dark\\ red"]
-    assert told(monkeypatch, "paint", "--set", "=", "si") == ["plain,size=1"]
+    assert candidates(monkeypatch, "paint", "--set", "color", "=") == ["plain,red", "plain,dark\\ red"]
+    assert candidates(monkeypatch, "paint", "--set", "color", "=", "r") == ["plain,red"]
+    assert candidates(monkeypatch, "paint", "--set", "=", "color", "=", "da") == ["plain,dark\\ red"]
+    assert candidates(monkeypatch, "paint", "--set", "=", "si") == ["plain,size=1"]
 
 
 def test_a_bash_that_leaves_words_whole_is_told_whole_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert told(monkeypatch, "paint", "--set", "color=d") == ["plain,color=dark\\ red"]
+    assert candidates(monkeypatch, "paint", "--set", "color=d") == ["plain,color=dark\\ red"]
 
 
 def test_an_argument_after_an_equals_sign_is_the_next_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert told(monkeypatch, "paint", "--set", "size", "=", "1", "") == ["plain,size=1"]
+    assert candidates(monkeypatch, "paint", "--set", "size", "=", "1", "") == ["plain,size=1"]
 
 
 def test_files_are_left_to_bash(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert told(monkeypatch, "paint", "--to", "x\\ y") == ["file,x y"]
+    assert candidates(monkeypatch, "paint", "--to", "x\\ y") == ["file,x y"]
 
 
 def test_words_are_joined_around_equals_signs_alone() -> None:

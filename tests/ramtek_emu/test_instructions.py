@@ -31,13 +31,13 @@ def test_encoders_take_numbers_and_rows_of_python_and_of_numpy_alike() -> None:
         (encoders.load_entries(one, [[1, 2, 3]]), encoders.load_entries(1, np.array([[1, 2, 3]]))),
         (encoders.concatenate([0x0500], range(2)), np.array([0x0500, 0, 1], np.uint16)),
     ]
-    for found, expected in pairs:
-        assert found.dtype == np.uint16
-        assert found.tolist() == expected.tolist()
-    for (found, count), (expected, again) in zip(
+    for encoded, expected in pairs:
+        assert encoded.dtype == np.uint16
+        assert encoded.tolist() == expected.tolist()
+    for (encoded, count), (expected, again) in zip(
         encoders.read_image(one, one, two, three), encoders.read_image(1, 1, 2, 3), strict=True
     ):
-        assert (found.tolist(), count) == (expected.tolist(), again)
+        assert (encoded.tolist(), count) == (expected.tolist(), again)
 
 
 def test_the_encoders_are_there_without_an_import_of_their_own() -> None:

@@ -1,11 +1,10 @@
-"""Connections to stores: what a stranger's file may do in ours is nothing but be read.
+"""Connections to stores. A store is data: the file of a stranger can be read, and can do nothing else.
 
-A store is data. The schema of a file cannot call functions that do anything but compute (`trusted_schema`),
-nothing can be attached or loaded, no pragma can be set by a statement (see `permissions`), sizes are limited,
-and a statement that takes too long is ended. Python 3.11 cannot set SQLite's defensive mode; later ones do.
-
-A `-journal` beside a store may name any file as its super-journal, which SQLite deletes after it rolled the
-journal back. So a store is always opened read-only first, and no journal is ever rolled back.
+- The schema of a file may call only functions that compute (`trusted_schema`). Nothing can be attached or
+  loaded, no statement can set a pragma (see `authorizer`), sizes are limited, and a statement that takes too
+  long is ended. Python 3.11 cannot set SQLite's defensive mode; later versions do.
+- A `-journal` beside a store may name any file as its super-journal, which SQLite deletes after it rolled
+  the journal back. So a store is always opened read-only first, and no journal is ever rolled back.
 """
 
 from __future__ import annotations
@@ -14,10 +13,10 @@ import os
 import sqlite3
 import stat
 import time
-from collections.abc import Iterator
-from contextlib import closing, contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 from urllib.request import pathname2url
 
 from autocolor.checks import printable
@@ -29,40 +28,24 @@ LEAST_SQLITE: Final = (3, 37, 0)
 
 BEGINS: Final = b"SQLite format 3\0"
 LARGEST_STORE: Final = 1 << 31
-"""Assumed: in bytes; thirty million polygons."""
+"""Limit: in bytes; thirty million polygons."""
 
 LONGEST_TEXT: Final = 1 << 20
-"""Assumed: in bytes, of a value and of a row."""
-
-LONGEST_COMPUTED: Final = 1 << 17
-"""Assumed: in bytes, of a value that a statement reads or computes. A function is not ended while it runs:
-to search half of this in all of it takes a fifth of a second, and of LONGEST_TEXT nine."""
+"""Limit: in bytes, of a value and of a row."""
 
 READING_SECONDS: Final = 120.0
-"""Assumed: how long a store may be read; the largest takes half of that."""
+"""Limit: how long a store may be read; the largest takes half of that."""
 
 SECONDS_OF_WAITING: Final = 5.0
-"""Assumed: how long to wait for another program that is writing."""
-
-STEPS: Final = 100_000
-"""Steps of SQLite's machine between two looks at the clock: about a millisecond."""
+"""Limit: how long to wait for another program that is writing."""
 
 SECONDS_BETWEEN_TRIES: Final = 0.02
 """Limit: seconds between two tries to begin a change while another program is writing."""
 
+STEPS: Final = 100_000
+"""Steps of SQLite's machine between two looks at the clock: about a millisecond."""
+
 FIRST_LOOK: Final = "SELECT count(*) FROM sqlite_master"
-
-JOURNAL_HEADER: Final = 28
-"""Bytes of the header of a rollback journal; the rest of its first sector is padding."""
-
-JOURNAL_MAGIC: Final = bytes.fromhex("d9d505f920a163d7")
-"""The bytes that a rollback journal begins with, and that follow the name of a super-journal at its end."""
-
-JOURNAL_LEFT: Final = (
-    "the -journal beside the store is from a change that has not ended, and to roll it back can delete any"
-    " file that it names; if you trust both files, open the store once with `sqlite3 FILE .tables`, otherwise"
-    " move the journal away"
-)
 
 WAL_VERSION: Final = 2
 """The byte in the header of a store in WAL mode; bytes 18 and 19 are for writing and for reading."""
@@ -81,69 +64,13 @@ LIMITS: Final = {
     sqlite3.SQLITE_LIMIT_TRIGGER_DEPTH: 1,
     sqlite3.SQLITE_LIMIT_WORKER_THREADS: 0,
 }
-"""What a statement, and a value in a file, may be at most."""
-
-
-class Clock:
-    """Ends statements of a connection that take longer than some seconds; `ended` tells that it did."""
-
-    def __init__(
-        self, connection: sqlite3.Connection, seconds: float = READING_SECONDS, steps: int = STEPS
-    ) -> None:
-        self.seconds = seconds
-        self.ended = False
-        self.begin()
-        connection.set_progress_handler(self._look, steps)
-
-    def begin(self, seconds: float | None = None) -> None:
-        """Count from now."""
-        self.seconds = self.seconds if seconds is None else seconds
-        self.ended = False
-        self._until = time.monotonic() + self.seconds
-
-    def _look(self) -> int:
-        self.ended = time.monotonic() > self._until
-        return int(self.ended)
-
-
-OF_WRITING: Final = (
-    sqlite3.SQLITE_BUSY,
-    sqlite3.SQLITE_LOCKED,
-    sqlite3.SQLITE_FULL,
-    sqlite3.SQLITE_IOERR,
-    sqlite3.SQLITE_READONLY,
-    sqlite3.SQLITE_CANTOPEN,
-)
-"""The errors of a store that is not itself at fault when it cannot be written."""
-
-OF_THE_DISK: Final = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
-"""The errors of a disk that is full or fails."""
-
-
-def guarded(connection: sqlite3.Connection) -> sqlite3.Connection:
-    """The connection, with its limits and settings; nothing of its file is run."""
-    for limit, most in LIMITS.items():
-        connection.setlimit(limit, min(most, connection.getlimit(limit)))
-    for pragma in ("trusted_schema=OFF", "cell_size_check=ON", "mmap_size=0", "foreign_keys=OFF"):
-        connection.execute(f"PRAGMA {pragma}")
-    if hasattr(connection, "setconfig"):
-        # From Python 3.12 on.
-        connection.setconfig(getattr(sqlite3, "SQLITE_DBCONFIG_DEFENSIVE"), True)  # noqa: B009
-    return connection
+"""Upper limits of statements, and of the values in a file."""
 
 
 def in_memory() -> sqlite3.Connection:
     """A new store in memory. Raises UnavailableError."""
     refuse_old_sqlite()
-    return guarded(sqlite3.connect(":memory:", isolation_level=None))
-
-
-def refuse_old_sqlite() -> None:
-    """Raise UnavailableError if the SQLite of this Python has no STRICT tables."""
-    if sqlite3.sqlite_version_info < LEAST_SQLITE:
-        raise UnavailableError(
-            f"a store must have SQLite 3.37 or later, not {sqlite3.sqlite_version}; use a newer Python"
-        )
+    return _guarded(sqlite3.connect(":memory:", isolation_level=None))
 
 
 def connected(path: Path) -> sqlite3.Connection:
@@ -167,13 +94,11 @@ def connected_to_change(path: Path, *, checks_references: bool = False) -> sqlit
     """
     _refuse_unsafe(path)
     until = time.monotonic() + SECONDS_OF_WAITING
-    with refusals(path.name), refusals_of_writing(path.name):
+    with refusals(path.name), write_refusals(path.name):
         while (connection := _begun(path, checks_references)) is None:
             if time.monotonic() > until:
                 refuse_journal(path)
-                raise WriteError(
-                    f"{path.name}: another program is writing to the store; let it end, and try again"
-                )
+                raise WriteError(f"{path.name}: {BUSY}")
             time.sleep(SECONDS_BETWEEN_TRIES)
     return connection
 
@@ -194,14 +119,168 @@ def _begun(path: Path, checks_references: bool) -> sqlite3.Connection | None:
                 connection.execute(f"PRAGMA foreign_keys = {'ON' if checks_references else 'OFF'}")
                 connection.execute("BEGIN IMMEDIATE")
             except BaseException:
-                closed(connection)
+                connection.close()
                 raise
     except sqlite3.OperationalError as error:
-        if _primary_code(error) in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
+        if primary_code(error) in BUSY_ERRORS:
             return None
         raise
     connection.execute(f"PRAGMA busy_timeout = {SECONDS_OF_WAITING * 1000:.0f}")
     return connection
+
+
+@contextmanager
+def transaction(connection: sqlite3.Connection, name: str) -> Iterator[None]:
+    """A transaction, begun unless the connection is in it, that is rolled back whole if anything in it fails.
+
+    Raises WriteError if another program is writing to the store, or if writing fails.
+    """
+    with write_refusals(name):
+        try:
+            if not connection.in_transaction:
+                connection.execute("BEGIN IMMEDIATE")
+            yield
+            connection.execute("COMMIT")
+        except BaseException:
+            if connection.in_transaction:
+                connection.execute("ROLLBACK")
+            raise
+
+
+def journal_mode(connection: sqlite3.Connection) -> str:
+    """The journal mode of a store; "delete" if a store in WAL mode was opened as an immutable file."""
+    (mode,) = connection.execute("PRAGMA journal_mode").fetchone()
+    return str(mode)
+
+
+def refuse_old_sqlite() -> None:
+    """Raise UnavailableError if the SQLite of this Python has no STRICT tables."""
+    if sqlite3.sqlite_version_info < LEAST_SQLITE:
+        raise UnavailableError(
+            f"a store must have SQLite 3.37 or later, not {sqlite3.sqlite_version}; use a newer Python"
+        )
+
+
+def _opened(path: Path, mode: str, seconds_of_waiting: float) -> sqlite3.Connection:
+    """A connection that begins no transaction by itself."""
+    uri = f"file:{pathname2url(os.path.abspath(path))}?mode={mode}"
+    connection = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=seconds_of_waiting)
+    try:
+        _guarded(connection)
+        # SQLite reads the file, and looks for its journal, only now.
+        connection.execute(FIRST_LOOK).fetchone()
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def _guarded(connection: sqlite3.Connection) -> sqlite3.Connection:
+    """The connection, with its limits and settings; nothing of its file is run."""
+    for limit, most in LIMITS.items():
+        connection.setlimit(limit, min(most, connection.getlimit(limit)))
+    for pragma in ("trusted_schema=OFF", "cell_size_check=ON", "mmap_size=0", "foreign_keys=OFF"):
+        connection.execute(f"PRAGMA {pragma}")
+    if hasattr(connection, "setconfig"):
+        # From Python 3.12 on.
+        connection.setconfig(getattr(sqlite3, "SQLITE_DBCONFIG_DEFENSIVE"), True)  # noqa: B009
+    return connection
+
+
+# Permissions of statements.
+
+READING_PRAGMAS: Final = frozenset(
+    (
+        "application_id", "data_version", "foreign_key_check", "foreign_key_list", "index_info", "index_list",
+        "integrity_check", "page_count", "page_size", "quick_check", "schema_version", "table_info",
+        "table_list", "table_xinfo", "user_version",
+    )
+)  # fmt: skip
+"""The pragmas that only read. Most take an argument; for those in SETTABLE an argument is a new value."""
+
+SETTABLE: Final = ("application_id", "schema_version", "user_version")
+
+UNSAFE_FUNCTIONS: Final = frozenset(
+    (
+        "load_extension", "fts3_tokenizer", "readfile", "writefile", "edit", "match", "matchinfo", "snippet",
+        "offsets", "optimize", "highlight", "bm25", "fts5", "rtreecheck", "rtreedepth", "rtreenode",
+    )
+)  # fmt: skip
+"""The functions that do more than compute with their arguments.
+
+The first functions run other code or open files. Most builds lack them, but Debian's has `fts3_tokenizer`,
+which gives and takes addresses of memory. The others read the inner tables of full-text and R-tree indexes,
+which a file may have damaged.
+"""
+
+READS: Final = (
+    sqlite3.SQLITE_SELECT,
+    sqlite3.SQLITE_READ,
+    sqlite3.SQLITE_RECURSIVE,
+    sqlite3.SQLITE_TRANSACTION,
+    sqlite3.SQLITE_SAVEPOINT,
+)
+CHANGES: Final = (sqlite3.SQLITE_INSERT, sqlite3.SQLITE_UPDATE, sqlite3.SQLITE_DELETE)
+
+Authorizer = Callable[[int, str | None, str | None, str | None, str | None], int]
+
+
+def authorizer(may_change: bool) -> Authorizer:
+    """The permissions of a statement: to read, to compute and, if it `may_change`, to change rows itself.
+
+    What a trigger of the file changes is refused.
+    """
+
+    def permission(
+        action: int, first: str | None, second: str | None, database: str | None, inner: str | None
+    ) -> int:
+        if action == sqlite3.SQLITE_FUNCTION:
+            is_allowed = (second or "").lower() not in UNSAFE_FUNCTIONS
+        elif action == sqlite3.SQLITE_PRAGMA:
+            name = (first or "").lower()
+            is_allowed = name in READING_PRAGMAS and not (second is not None and name in SETTABLE)
+        elif action in CHANGES:
+            is_allowed = may_change and inner is None and not (first or "").lower().startswith("sqlite_")
+        else:
+            is_allowed = action in READS
+        return sqlite3.SQLITE_OK if is_allowed else sqlite3.SQLITE_DENY
+
+    return permission
+
+
+class Clock:
+    """Ends statements of a connection that take longer than some seconds; `ended` tells that it did."""
+
+    def __init__(
+        self, connection: sqlite3.Connection, seconds: float = READING_SECONDS, steps: int = STEPS
+    ) -> None:
+        self.seconds = seconds
+        self.begin()
+        connection.set_progress_handler(self._look, steps)
+
+    def begin(self) -> None:
+        """Count from now."""
+        self.ended = False
+        self._until = time.monotonic() + self.seconds
+
+    def _look(self) -> int:
+        self.ended = time.monotonic() > self._until
+        return int(self.ended)
+
+
+# Checks of a file, and of the files beside it, before SQLite opens it.
+
+JOURNAL_HEADER: Final = 28
+"""Bytes of the header of a rollback journal; the rest of its first sector is padding."""
+
+JOURNAL_MAGIC: Final = bytes.fromhex("d9d505f920a163d7")
+"""The bytes that a rollback journal begins with, and that follow the name of a super-journal at its end."""
+
+JOURNAL_LEFT: Final = (
+    "the -journal beside the store is from a change that has not ended, and to roll it back can delete any"
+    " file that it names; if you trust both files, open the store once with `sqlite3 FILE .tables`, otherwise"
+    " move the journal away"
+)
 
 
 def _refuse_unsafe(path: Path) -> None:
@@ -298,84 +377,109 @@ def _has_journal(path: Path) -> bool:
     return False
 
 
-def _primary_code(error: Exception) -> int:
+CHANGE_COUNTER: Final = slice(24, 28)
+"""The place of the count of changes in the header of a store; in WAL mode it counts checkpoints only."""
+
+
+class FileChanges:
+    """Tells whether another program changed a file since it was `seen` last.
+
+    A file is compared by its place, time and size, a store also by its count of changes and its `-wal`. A
+    comparison takes a few system calls, so it can be made often. It opens no store with SQLite.
+    """
+
+    def __init__(self, path: Path, is_store: bool) -> None:
+        self.path = path
+        self._is_store = is_store
+        self._seen = self._stamp()
+
+    def have_come(self) -> bool:
+        """Whether the file was changed. A file that is missing or being written does not count as changed."""
+        stamp = self._stamp()
+        return stamp is not None and stamp != self._seen
+
+    def seen(self) -> None:
+        """Remember the file as it is now."""
+        self._seen = self._stamp() or self._seen
+
+    def _stamp(self) -> tuple[int | bytes, ...] | None:
+        """Numbers that differ after a change; None while the file is missing or being written."""
+        try:
+            status = os.stat(self.path)
+            stamp = (status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size)
+            if not self._is_store:
+                return stamp
+            # The header of the journal has bytes other than zero while a commit writes to the store.
+            refuse_journal(self.path)
+        except (OSError, ValueError, InputError):
+            return None
+        return *stamp, read_head(self.path)[CHANGE_COUNTER], *self._wal()
+
+    def _wal(self) -> tuple[int, int]:
+        """The time and the size of the `-wal` of a store; zeros if it has no changes."""
+        try:
+            status = os.stat(f"{os.path.realpath(self.path)}-wal")
+        except OSError:
+            return 0, 0
+        return (status.st_mtime_ns, status.st_size) if status.st_size else (0, 0)
+
+
+# Errors of SQLite as errors of this package.
+
+BUSY_ERRORS: Final = (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED)
+DISK_ERRORS: Final = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
+PLACE_ERRORS: Final = (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
+DAMAGE_ERRORS: Final = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
+
+BUSY: Final = "another program is writing to the store; let it end, and try again"
+
+
+def primary_code(error: BaseException) -> int:
     """The error code of SQLite without its details; 0 if the error has none."""
     return getattr(error, "sqlite_errorcode", 0) & 0xFF
 
 
-def _opened(path: Path, mode: str, seconds_of_waiting: float) -> sqlite3.Connection:
-    """A connection that begins no transaction by itself."""
-    uri = f"file:{pathname2url(os.path.abspath(path))}?mode={mode}"
-    connection = sqlite3.connect(uri, uri=True, isolation_level=None, timeout=seconds_of_waiting)
-    try:
-        guarded(connection)
-        # SQLite reads the file, and looks for its journal, only now.
-        connection.execute(FIRST_LOOK).fetchone()
-    except BaseException:
-        connection.close()
-        raise
-    return connection
-
-
 @contextmanager
 def refusals(name: str, clock: Clock | None = None) -> Iterator[None]:
-    """Raise what SQLite says of a damaged or unreadable store as InputError that tells what to do."""
+    """Raise errors of SQLite as InputError, with what to do about a damaged or unreadable store."""
     try:
         yield
-    except (InputError, WriteError):
-        raise
     except (sqlite3.Error, sqlite3.Warning, UnicodeError, OverflowError) as error:
-        raise InputError(f"{name}: {reason(error, clock)}") from None
+        if clock is not None and clock.ended:
+            reason = f"a store must be read within {clock.seconds:g} seconds, not longer; leave rows out"
+        else:
+            reason = sentence_of(error)
+        raise InputError(f"{name}: {reason}") from None
 
 
 @contextmanager
-def refusals_of_writing(name: str) -> Iterator[None]:
-    """Raise what keeps a store from being written as WriteError; other errors are left as they are."""
+def write_refusals(name: str) -> Iterator[None]:
+    """Raise errors that keep a store from being written as WriteError; other errors stay as they are."""
     try:
         yield
     except sqlite3.Error as error:
-        if _primary_code(error) in OF_WRITING:
-            raise WriteError(f"{name}: {reason(error)}") from None
+        if primary_code(error) in (*BUSY_ERRORS, *DISK_ERRORS, *PLACE_ERRORS):
+            raise WriteError(f"{name}: {sentence_of(error)}") from None
         raise
 
 
-def reason(error: Exception, clock: Clock | None = None) -> str:
-    """What is wrong with a store by an error of SQLite, and what to do."""
-    code = getattr(error, "sqlite_errorcode", None)
-    text = printable(reason_of(error)[:300])
-    primary: Any = None if code is None else code & 0xFF
-    if clock is not None and clock.ended:
-        return f"a store must be read within {clock.seconds:g} seconds, not longer; leave rows out"
-    if primary in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
-        return "another program is writing to the store; let it end, and try again"
-    if code == sqlite3.SQLITE_READONLY_ROLLBACK:
+def sentence_of(error: Exception) -> str:
+    """A sentence for an error of SQLite: what is wrong with the store, and what to do."""
+    code, text = primary_code(error), printable(reason_of(error)[:300])
+    if code in BUSY_ERRORS:
+        return BUSY
+    if getattr(error, "sqlite_errorcode", 0) == sqlite3.SQLITE_READONLY_ROLLBACK:
         return JOURNAL_LEFT
-    if primary == sqlite3.SQLITE_TOOBIG:
+    if code == sqlite3.SQLITE_TOOBIG:
         return f"a value must have at most {LONGEST_TEXT:,} bytes, not more; shorten it"
-    if primary in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN):
+    if code in PLACE_ERRORS:
         return (
             f"the store cannot be opened or changed where it is ({text}): a change of it was interrupted, or"
             " it is not to be written; open it once with the program that wrote it, or use another file"
         )
-    if primary in OF_THE_DISK:
+    if code in DISK_ERRORS:
         return f"the disk must hold the store, and is full or fails ({text}); make room, and try again"
-    if primary == sqlite3.SQLITE_NOMEM:
-        return "there is not enough memory to read the store; leave rows out"
-    if primary == sqlite3.SQLITE_AUTH:
-        return f"the store must hold tables of values, not ask for more ({text}); rebuild it"
     return (
         f"the store cannot be read ({text}); if it is damaged, bring a copy back, or rescue it with"
         " `sqlite3 FILE .recover`"
     )
-
-
-def closed(connection: sqlite3.Connection) -> None:
-    """Close a connection, whatever state it is in."""
-    with suppress(sqlite3.Error):
-        connection.close()
-
-
-def journal_mode(connection: sqlite3.Connection) -> str:
-    """The journal mode of a store; "delete" if a store in WAL mode was opened as an immutable file."""
-    (mode,) = connection.execute("PRAGMA journal_mode").fetchone()
-    return str(mode)

@@ -1,23 +1,278 @@
-"""The tables of a store: their names, their columns and how they are made.
+"""The tables of a store: the SQL columns of row classes, the definitions of tables, and their inspection.
 
-Every table of a scene has one, and so have the node table, the polygon table and the scalars of the mesh. All
-are STRICT, and tell what a value must be and which rows it refers to.
+Each table of a scene is one SQL table, made from the descriptions of its columns; the nodes, the polygons and
+the scalars of the mesh have tables of their own. All are STRICT. A CHECK is named by its rule, so any tool
+shows the rule when a value breaks it. Columns that refer to other tables have indexes.
+
+A number, a switch, a name, a choice or a color is one SQL column of the key's name. A point or a direction is
+three: `position_x`, `position_y`, `position_z`. A row in a row is the columns of that row with the key before
+them: `flaps_z_minimum`. Any other value is one column: text as it is, and lists and tables as JSON. An absent
+value is NULL, and so is a limit that is infinite.
 """
 
 from __future__ import annotations
 
+import json
+import math
 import sqlite3
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from autocolor.checks import LARGEST_COORDINATE, listed, nearest, shown
 from autocolor.errors import InputError
-from autocolor.files.store.sql_columns import NUMBER, SqlColumn, SqlValue, checked, columns_of, quoted
-from autocolor.scene.columns import Row, fields_of
-from autocolor.scene.row_kinds import Nested, Rows
+from autocolor.scene.columns import Field, Kind, Row, fields_of, plain
+from autocolor.scene.kinds import (
+    LARGEST_PLACE,
+    Choice,
+    ColorKind,
+    Instance,
+    Number,
+    Switch,
+    Text,
+    VectorKind,
+    Whole,
+)
+from autocolor.scene.row_kinds import NamedRows, Nested, Reference, Rows, Variant, WordOrName
 from autocolor.scene.scalar import NODE, POLYGON
 from autocolor.scene.scene import Scene
+
+NUMBER: Final = "number"
+"""The column that counts the rows of a table from 1, in their order; the tables of the mesh apart."""
+
+AXES: Final = ("x", "y", "z")
+LARGEST_FLOAT: Final = 1.7976931348623157e308
+
+TEXT_KINDS: Final = (Text, Choice, ColorKind, Reference, WordOrName, Variant)
+JSON_BEGINS: Final = ("[", "{", '"')
+"""A text that begins with one of these is JSON."""
+
+SqlValue = None | int | float | str
+"""A value of a table; a store has no bytes."""
+
+
+@dataclass(frozen=True)
+class SqlColumn:
+    """A column of an SQL table: the value at `path` in a row's keys and plain values.
+
+    A column for a vector holds the `component` of that number. The values of a column that `references` a
+    table are values of that table's column `name`.
+    """
+
+    name: str
+    path: tuple[str, ...]
+    kind: Kind
+    help: str
+    component: int | None = None
+    may_be_null: bool = False
+    default: SqlValue = None
+    references: str = ""
+
+    @property
+    def type(self) -> str:
+        """The type in SQL."""
+        if isinstance(self.kind, (Number, VectorKind)):
+            return "REAL"
+        if isinstance(self.kind, (Whole, Switch)):
+            return "INTEGER"
+        return "TEXT" if isinstance(self.kind, TEXT_KINDS) else "ANY"
+
+    @property
+    def checks(self) -> Iterator[str]:
+        """The conditions for the values, as SQL; a condition that is NULL holds."""
+        name, kind = quoted(self.name), self.kind
+        if isinstance(kind, VectorKind):
+            yield f"abs({name}) <= {LARGEST_PLACE!r}"
+        elif isinstance(kind, Number):
+            yield f"abs({name}) <= {LARGEST_FLOAT!r}"
+            if kind.at_least > -math.inf:
+                yield f"{name} {'>' if kind.above else '>='} {kind.at_least!r}"
+            if kind.at_most < math.inf:
+                yield f"{name} <= {kind.at_most!r}"
+        elif isinstance(kind, Whole):
+            yield f"{name} BETWEEN {kind.at_least} AND {kind.at_most}"
+        elif isinstance(kind, Switch):
+            yield f"{name} IN (0, 1)"
+        elif isinstance(kind, (Choice, Variant)):
+            names = kind.names if isinstance(kind, Choice) else kind.classes
+            yield f"{name} IN ({', '.join(map(literal, names))})"
+        elif isinstance(kind, (Reference, WordOrName)) or (isinstance(kind, Text) and not kind.may_be_empty):
+            yield f"{name} <> ''"
+
+    @property
+    def declaration(self) -> str:
+        """The column as a line of `CREATE TABLE`."""
+        parts = [quoted(self.name), self.type]
+        if not self.may_be_null:
+            parts.append("NOT NULL")
+        if self.path == ("name",) and isinstance(self.kind, Text) and not self.kind.may_be_empty:
+            parts.append("UNIQUE")
+        if self.default is not None:
+            parts.append(f"DEFAULT {literal(self.default)}")
+        if self.references:
+            parts.append(f"REFERENCES {quoted(self.references)} (name) ON UPDATE CASCADE")
+        checks = list(self.checks)
+        if checks:
+            # Any tool shows the name of a check that fails.
+            parts.append(checked(f"{'.'.join(self.path)} {self.kind.rule()}", " AND ".join(checks)))
+        return " ".join(parts)
+
+
+def quoted(name: str) -> str:
+    """A name as SQL writes it.
+
+    >>> quoted("on")
+    '"on"'
+    """
+    return '"' + name.replace('"', '""') + '"'
+
+
+def checked(rule: str, condition: str) -> str:
+    """A CHECK of a table, named by its rule."""
+    return f"CONSTRAINT {quoted(rule)} CHECK ({condition})"
+
+
+def literal(value: SqlValue) -> str:
+    """A value as SQL writes it.
+
+    >>> literal("it's"), literal(0.5), literal(None)
+    ("'it''s'", '0.5', 'NULL')
+    """
+    if value is None:
+        return "NULL"
+    return "'" + value.replace("'", "''") + "'" if isinstance(value, str) else repr(value)
+
+
+def columns_of(row_class: type[Row]) -> tuple[SqlColumn, ...]:
+    """The columns for the fields of a row class; a mesh and whole tables have none."""
+    return tuple(
+        column
+        for name, field in fields_of(row_class).items()
+        for column in _columns(name, field, (), is_given=True)
+    )
+
+
+def _columns(name: str, field: Field, prefix: tuple[str, ...], is_given: bool) -> Iterator[SqlColumn]:
+    """The columns of a field; unless the row around it `is_given`, all of them may be NULL."""
+    column, is_optional, default = field
+    kind, path = column.kind, (*prefix, name)
+    if isinstance(kind, (Instance, Rows)):
+        return
+    if isinstance(kind, Nested) and (not is_optional or _has_required_column(kind.row_class)):
+        inner_prefix = prefix if kind.inline else path
+        for inner_name, inner in fields_of(kind.row_class).items():
+            yield from _columns(inner_name, inner, inner_prefix, is_given and not is_optional)
+        return
+    may_be_null = is_optional or not is_given or getattr(kind, "endless", None) is not None
+    may_be_null |= isinstance(kind, NamedRows)
+    start: Any = default() if default is not None and is_given and not may_be_null else None
+    defaults = {} if start is None else dict(kind.written(name, start))
+    keys = kind.keys(name, column)
+    for key, inner_column in keys.items():
+        # The other keys of a variant belong to its classes, and each class has only some of them.
+        is_own = key == name
+        inner_kind, text = inner_column.kind, inner_column.help
+        nullable = may_be_null or not is_own
+        value = defaults.get(key) if is_own else None
+        if isinstance(inner_kind, VectorKind):
+            for number, axis in enumerate(AXES):
+                component = None if value is None else float(value[number])  # type: ignore[index]
+                name_of_axis = "_".join((*prefix, key, axis))
+                yield SqlColumn(name_of_axis, (*prefix, key), inner_kind, text, number, nullable, component)
+        else:
+            references = inner_kind.table if isinstance(inner_kind, Reference) else ""
+            yield SqlColumn(
+                "_".join((*prefix, key)),
+                (*prefix, key),
+                inner_kind,
+                text,
+                None,
+                nullable,
+                in_sql(value),
+                references,
+            )
+
+
+def _has_required_column(row_class: type[Row]) -> bool:
+    """Whether a row of the class always has a column that is not NULL, which shows that the row is there."""
+    return any(
+        not field.is_optional
+        and getattr(field.column.kind, "endless", None) is None
+        and (not isinstance(field.column.kind, Nested) or _has_required_column(field.column.kind.row_class))
+        for field in fields_of(row_class).values()
+    )
+
+
+def in_sql(value: object) -> SqlValue:
+    """A plain value as a value of a table."""
+    if value is None or isinstance(value, (bool, int)):
+        return None if value is None else int(value)
+    if isinstance(value, float):
+        return value
+    if isinstance(value, str) and not value.startswith(JSON_BEGINS):
+        return value
+    return json.dumps(value, ensure_ascii=False)
+
+
+def row_values(columns: Iterable[SqlColumn], row: Row) -> list[SqlValue]:
+    """The values of a row for some columns of its class."""
+    table = plain(row)
+    return [in_sql(_within(table, column)) for column in columns]
+
+
+def _within(table: Mapping[str, Any], column: SqlColumn) -> object:
+    value: Any = table
+    for key in column.path:
+        value = value.get(key) if isinstance(value, Mapping) else None
+    return value if column.component is None or value is None else value[column.component]
+
+
+def plain_row(columns: Iterable[SqlColumn], values: Mapping[str, SqlValue]) -> dict[str, Any]:
+    """The keys and plain values of a row, not yet validated, from its values by the names of its columns.
+
+    NULL is left out, except for infinite limits of a row that is there.
+    """
+    table: dict[str, Any] = {}
+    vectors: dict[tuple[str, ...], list[SqlValue]] = {}
+    for column in columns:
+        value = values.get(column.name)
+        if column.component is not None:
+            vectors.setdefault(column.path, []).append(value)
+        elif value is not None:
+            _put(table, column.path, _from_sql(column.kind, value))
+    for path, components in vectors.items():
+        if components != [None] * len(AXES):
+            _put(table, path, components)
+    for column in columns:
+        endless = getattr(column.kind, "endless", None)
+        if endless is not None and column.name in values and values[column.name] is None:
+            inner: Any = table
+            for key in column.path[:-1]:
+                inner = inner.get(key) if isinstance(inner, dict) else None
+            if isinstance(inner, dict):
+                inner[column.path[-1]] = endless
+    return table
+
+
+def _from_sql(kind: Kind, value: SqlValue) -> object:
+    """A value of a table as a plain value. A value that its kind will refuse is returned as it is."""
+    if isinstance(kind, Switch) and value in (0, 1):
+        return bool(value)
+    if isinstance(value, str) and value.startswith(JSON_BEGINS):
+        try:
+            return json.loads(value)
+        except (ValueError, RecursionError):
+            return value
+    return value
+
+
+def _put(table: dict[str, Any], path: Sequence[str], value: object) -> None:
+    for key in path[:-1]:
+        table = table.setdefault(key, {})
+    table[path[-1]] = value
+
+
+# The definitions of all tables.
 
 APPLICATION: Final = 0x47_4D_41_43
 """The number in the header of our stores: GMAC, for GM AUTOCOLOR."""
@@ -30,17 +285,19 @@ MESH: Final = "mesh"
 NODES: Final = "nodes"
 POLYGONS: Final = "polygons"
 SCALARS: Final = "mesh_scalars"
-IN_DEGREES: Final = "crease_angle BETWEEN 0 AND 180"
 
 VALUES: Final = {NODE: "node_scalars", POLYGON: "polygon_scalars"}
-"""The tables of the values of scalars, by what they are of."""
+"""The tables of the values of scalars, for nodes and for polygons."""
+
+
+SINGLE_ROW: Final = checked(f"{NUMBER} must be 1", f"{quoted(NUMBER)} = 1")
 
 
 @dataclass(frozen=True)
 class RowTable:
-    """A table with a row for each row of a class, in their order; at most one if it `is_single`.
+    """A table for the rows of a class, in their order; it has at most one row if it `is_single`.
 
-    `columns` are those for the class, without the one that counts the rows.
+    `columns` are the columns for the class, without NUMBER.
     """
 
     name: str
@@ -53,13 +310,13 @@ class RowTable:
         """The statement that makes the table."""
         key = f"{quoted(NUMBER)} INTEGER PRIMARY KEY"
         if self.is_single:
-            key += f" DEFAULT 1 CHECK ({quoted(NUMBER)} = 1)"
+            key += f" DEFAULT 1 {SINGLE_ROW}"
         lines = [key, *(column.declaration for column in self.columns), *_vector_checks(self.columns)]
         return _definition(self.name, lines)
 
 
 def _vector_checks(columns: tuple[SqlColumn, ...]) -> list[str]:
-    """That a vector that may be absent has all of its components or none, and that some are not all 0."""
+    """CHECKs of vector columns: all components or none are NULL, and directions are not zero."""
     checks = []
     vectors: dict[tuple[str, ...], list[SqlColumn]] = {}
     for column in columns:
@@ -77,7 +334,7 @@ def _vector_checks(columns: tuple[SqlColumn, ...]) -> list[str]:
 
 
 def row_table(name: str, row_class: type[Row], is_single: bool = False) -> RowTable:
-    """The table for a row class; of a scene, without what has tables of its own."""
+    """The table for a row class. The table of a scene lacks its inner rows, which have their own tables."""
     columns = columns_of(row_class)
     if row_class is Scene:
         columns = tuple(column for column in columns if len(column.path) == 1)
@@ -85,17 +342,17 @@ def row_table(name: str, row_class: type[Row], is_single: bool = False) -> RowTa
 
 
 def _row_tables() -> dict[str, RowTable]:
-    """The tables for the rows of a scene by name; a table comes after those that it refers to."""
-    found = {SCENE: row_table(SCENE, Scene, is_single=True)}
+    """The tables for the rows of a scene by name, in the order of its fields."""
+    tables = {SCENE: row_table(SCENE, Scene, is_single=True)}
     for name, field in fields_of(Scene).items():
         kind = field.column.kind
         if isinstance(kind, (Rows, Nested)):
-            found[name] = row_table(name, kind.row_class, is_single=isinstance(kind, Nested))
-    return found
+            tables[name] = row_table(name, kind.row_class, is_single=isinstance(kind, Nested))
+    return tables
 
 
 ROW_TABLES: Final[Mapping[str, RowTable]] = _row_tables()
-"""The tables of a scene but those of its mesh: `scene`, `parts`, `surfaces`, `lights`, `view`, `scalar`."""
+"""The tables of a scene without its mesh: `scene`, `parts`, `surfaces`, `lights`, `view`, `scalar`."""
 
 
 def _definition(name: str, lines: list[str], end: str = "STRICT") -> str:
@@ -135,53 +392,70 @@ DEFINITIONS: Final[Mapping[str, str]] = {
     MESH: _definition(
         MESH,
         [
-            f"{NUMBER} INTEGER PRIMARY KEY DEFAULT 1 CHECK ({NUMBER} = 1)",
-            f"crease_angle REAL NOT NULL {checked('crease_angle must be from 0 to 180', IN_DEGREES)}",
+            f"{NUMBER} INTEGER PRIMARY KEY DEFAULT 1 {SINGLE_ROW}",
+            "crease_angle REAL NOT NULL "
+            + checked("crease_angle must be from 0 to 180", "crease_angle BETWEEN 0 AND 180"),
         ],
     ),
     SCALARS: _definition(
         SCALARS,
         [
             f"{NUMBER} INTEGER PRIMARY KEY",
-            "name TEXT NOT NULL UNIQUE CHECK (name <> '')",
-            f'"of" TEXT NOT NULL DEFAULT {NODE!r} CHECK ("of" IN ({NODE!r}, {POLYGON!r}))',
+            "name TEXT NOT NULL UNIQUE " + checked("name must not be empty", "name <> ''"),
+            f'"of" TEXT NOT NULL DEFAULT {NODE!r} '
+            + checked(f"of must be {NODE!r} or {POLYGON!r}", f'"of" IN ({NODE!r}, {POLYGON!r})'),
         ],
     ),
     VALUES[NODE]: _values(NODE, NODES),
     VALUES[POLYGON]: _values(POLYGON, POLYGONS),
 }
-"""The statements that make the tables, by name: all tables of a store."""
+"""The statements that make all tables of a store, by name."""
+
+INDEXES: Final[Mapping[str, str]] = {
+    f"{table}_{column}": f"CREATE INDEX {quoted(f'{table}_{column}')} ON {quoted(table)} ({quoted(column)})"
+    for table, columns in {
+        **{
+            name: [column.name for column in table.columns if column.references]
+            for name, table in ROW_TABLES.items()
+        },
+        POLYGONS: ["part", "node1", "node2", "node3", "node4"],
+        VALUES[NODE]: [NODE],
+        VALUES[POLYGON]: [POLYGON],
+    }.items()
+    for column in columns
+}
+"""The statements that make the indexes, by name: an index for each column that refers to another table, so
+that joins and changes of the other table are fast. They are created after the rows are inserted."""
 
 MESH_TABLES: Final = (NODES, POLYGONS, MESH, SCALARS, *VALUES.values())
 
 
-# -------------------- found_tables
-# The tables that a file really has: plain tables with plain columns are read, and nothing else.
+# The tables that a file really has: only plain tables with plain columns are read.
 #
-# A view, a virtual table or a computed column of a name that a store needs would run what a stranger wrote
-# when it is read; it is refused by that name. Of other names they are nobody's business, and stay.
+# To read a view, a virtual table or a computed column would run code of the file. They are refused if they
+# have the name of a table that is read, and ignored otherwise.
 
 MOST_TABLES: Final = 10_000
 MOST_ROWS: Final = 100_000
-"""Assumed: the rows of a table that is not of the mesh."""
+"""Limit: the rows of a table that is not of the mesh."""
 
-COMPUTED: Final = (2, 3)
-HIDDEN: Final = 1
+NOT_STORED: Final = (1, 2, 3)
+"""The numbers that `PRAGMA table_xinfo` has for hidden and computed columns."""
 
 
-class FoundTable(NamedTuple):
-    """A table as it is: its columns, its key of whole numbers if it has one, and whether it checks types."""
+class StoredTable(NamedTuple):
+    """A table of a file: its columns, its INTEGER PRIMARY KEY or "", and whether it is STRICT."""
 
     columns: tuple[str, ...]
     key: str
     is_strict: bool
 
 
-FoundTables = Mapping[str, FoundTable]
+StoredTables = Mapping[str, StoredTable]
 
 
-def found_tables(connection: sqlite3.Connection) -> FoundTables:
-    """The tables of a store that are there, by name.
+def stored_tables(connection: sqlite3.Connection) -> StoredTables:
+    """The tables of DEFINITIONS that a store has, by name.
 
     Raises InputError if the file is of a later version, or something else has the name of a table.
     """
@@ -197,7 +471,7 @@ def found_tables(connection: sqlite3.Connection) -> FoundTables:
         for kind, name, root in rows.fetchall()
         if kind in ("table", "view") and isinstance(name, str)
     }
-    found = {}
+    tables = {}
     strict = {row[1].lower() for row in connection.execute("PRAGMA table_list").fetchall() if row[5]}
     for table in DEFINITIONS:
         if table not in kinds:
@@ -208,41 +482,41 @@ def found_tables(connection: sqlite3.Connection) -> FoundTables:
             raise InputError(f"{table} must be a table, not {what}; make it a table, or rename it")
         columns = connection.execute(f"PRAGMA table_xinfo({quoted(name)})").fetchall()
         for column in columns:
-            if column[6] in (*COMPUTED, HIDDEN):
+            if column[6] in NOT_STORED:
                 raise InputError(
                     f"{table}: a column must hold values, not compute them as {shown(column[1])} does; make"
                     " it a plain column"
                 )
         keys = [(column[1].lower(), column[2].upper()) for column in columns if column[5]]
         key = keys[0][0] if len(keys) == 1 and keys[0][1] == "INTEGER" else ""
-        found[table] = FoundTable(tuple(column[1].lower() for column in columns), key, table in strict)
-    missing = [name for name in (NODES, POLYGONS) if name not in found]
-    if missing:
-        raise InputError(_lacking("a store must have the tables", (NODES, POLYGONS), missing, kinds))
-    return found
+        tables[table] = StoredTable(tuple(column[1].lower() for column in columns), key, table in strict)
+    _require("a store must have the tables", (NODES, POLYGONS), kinds)
+    return tables
 
 
-def require_columns(table: str, columns: Iterable[str], needed: Iterable[str]) -> None:
+def require_columns(table: str, columns: Iterable[str], needed: Sequence[str]) -> None:
     """Raise InputError if a table lacks a column that it needs."""
-    there = tuple(columns)
-    missing = [name for name in needed if name not in there]
+    _require(f"{table} must have the columns", needed, columns)
+
+
+def _require(rule: str, needed: Sequence[str], names: Iterable[str]) -> None:
+    """Raise InputError, with the nearest name, if some of the needed names are missing."""
+    missing = [name for name in needed if name not in names]
     if missing:
-        raise InputError(_lacking(f"{table} must have the columns", needed, missing, there))
+        verb, them = ("is", "it") if len(missing) == 1 else ("are", "them")
+        raise InputError(
+            f"{rule} {listed(needed)}, and {listed(missing)} {verb} missing; add"
+            f" {them}{nearest(missing[0], names)}"
+        )
 
 
-def _lacking(rule: str, needed: Iterable[str], missing: list[str], there: Iterable[str]) -> str:
-    """That some of the needed names are missing, and what is there that may be meant."""
-    is_one = len(missing) == 1
-    return (
-        f"{rule} {listed(needed)}, and {listed(missing)} {'is' if is_one else 'are'} missing; add"
-        f" {'it' if is_one else 'them'}{nearest(missing[0], there)}"
-    )
-
-
-def small_table(
+def rows_of_table(
     connection: sqlite3.Connection, table: str, columns: tuple[str, ...], order: str
 ) -> list[dict[str, SqlValue]]:
-    """The rows of a table by the names of its columns, in an order; at most MOST_ROWS. Raises InputError."""
+    """The rows of a table, by the names of its columns, ordered by a column if the table has it.
+
+    Raises InputError for more than MOST_ROWS rows, and for a value that is bytes.
+    """
     names = ", ".join(map(quoted, columns))
     ordered = f" ORDER BY {quoted(order)}" if order in columns else ""
     query = f"SELECT {names} FROM {quoted(table)}{ordered} LIMIT {MOST_ROWS + 1}"

@@ -1,41 +1,58 @@
-"""The tables of a scene, to select from, to join and to change: in Python, and for `autocolor sql`."""
+"""The tables of a scene, to select from, to join and to change with SQL, in Python and by `autocolor sql`."""
 
 from __future__ import annotations
 
 import os
 import sqlite3
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
-from autocolor.errors import UsageError
+from autocolor.checks import nearest, printable, shown
+from autocolor.errors import InputError, UsageError, WriteError
 from autocolor.files.formats import recognized
+from autocolor.files.meshes.repair import different
 from autocolor.files.scene_sources import SCENE_FORMATS, PathLike, read_scene_with_report
-from autocolor.files.store.connections import closed, connected, connected_to_change, journal_mode
-from autocolor.files.store.schema import MESH_TABLES, NODES, POLYGONS, VALUES
-from autocolor.files.store.sql_columns import quoted
-from autocolor.files.store.statements import (
-    SECONDS,
-    Answer,
-    Parameters,
-    Value,
-    answer_of,
-    change,
-    changes_of,
-    columns_in,
-    names_of_tables,
-    require_name,
+from autocolor.files.store.connections import (
+    BUSY_ERRORS,
+    CHANGES,
+    DAMAGE_ERRORS,
+    DISK_ERRORS,
+    LONGEST_TEXT,
+    Clock,
+    authorizer,
+    connected,
+    connected_to_change,
+    journal_mode,
+    primary_code,
+    sentence_of,
+    transaction,
 )
-from autocolor.files.store.store_file import report_in, store_of, transaction, without_triggers
+from autocolor.files.store.schema import MESH_TABLES, NODES, POLYGONS, VALUES, quoted
+from autocolor.files.store.store_file import refuse_additions, report_in, store_of
 from autocolor.scene.scalar import NODE, POLYGON
 from autocolor.scene.scene import Scene
 
 DEPENDENT: Final = {POLYGONS: (VALUES[POLYGON], POLYGON), NODES: (VALUES[NODE], NODE)}
-"""The tables whose rows go with those of others, and by which column."""
+"""The tables whose rows are removed with rows of other tables, and the column that refers to these."""
+
+SECONDS: Final = 30.0
+"""Limit: how long a statement may take unless more is allowed."""
+
+Parameters = Sequence[object] | Mapping[str, object]
+Value = None | int | float | str | bytes
+
+
+class Answer(NamedTuple):
+    """The names of the columns of an answer, which differ, and its rows, fetched as they are asked for."""
+
+    columns: tuple[str, ...]
+    rows: Iterator[tuple[Value, ...]]
 
 
 def open_tables(path: PathLike, *, up: str = "z", scale: float = 1.0) -> Tables:
-    """The tables of a store, or of any other scene, which is read into memory for it.
+    """The tables of a store. Any other scene is read, and its tables are made in memory.
 
         with autocolor.open_tables("car.sqlite") as tables:
             tables.select("SELECT name, surface FROM parts WHERE stage = ?", [False])
@@ -50,11 +67,11 @@ def open_tables(path: PathLike, *, up: str = "z", scale: float = 1.0) -> Tables:
 
 
 def is_store(path: Path) -> bool:
-    """Whether a path is that of a store, by its name or its first bytes."""
+    """Whether a file is a store, by its name or its first bytes."""
     if os.path.isdir(path):
         return False
-    found = recognized(path, SCENE_FORMATS)
-    return found is not None and found.name == "store"
+    scene_format = recognized(path, SCENE_FORMATS)
+    return scene_format is not None and scene_format.name == "store"
 
 
 def tables_of(scene: Scene) -> Tables:
@@ -65,9 +82,9 @@ def tables_of(scene: Scene) -> Tables:
 class Tables:
     """The tables of one scene.
 
-    Whatever changes them is checked as a scene file is, and saved or refused as a whole. Changes of a store
-    are in its file at once; those of another scene are in memory: `write_scene` writes `scene()`. `seconds`
-    is how long a statement may take.
+    A change is checked as a scene file is, and saved or refused as a whole. Changes of a store are saved to
+    its file at once. Changes of another scene stay in memory: `write_scene` writes `scene()`. A statement may
+    take so many `seconds`.
     """
 
     def __init__(self, connection: sqlite3.Connection, name: str, store: Path | None = None) -> None:
@@ -118,8 +135,8 @@ class Tables:
         sets = ", ".join(f"{quoted(name)} = ?" for name in values)
         statement = f"UPDATE {quoted(table)} SET {sets} WHERE {quoted(by)} = ?"
         if self.change(statement, [*values.values(), key]) == 0:
-            known = [row[by] for row in self.select(f"SELECT {quoted(by)} FROM {quoted(table)} LIMIT 1000")]
-            require_name(str(key), [str(each) for each in known], f"row of {table} with {by}")
+            rows = self.select(f"SELECT {quoted(by)} FROM {quoted(table)} LIMIT 1000")
+            require_name(str(key), [str(row[by]) for row in rows], f"row of {table} with {by}")
 
     @property
     def is_in_a_file(self) -> bool:
@@ -133,25 +150,24 @@ class Tables:
     def change(self, statement: str, parameters: Parameters = ()) -> int:
         """Run one INSERT, UPDATE or DELETE, check the scene, and save it; returns how many rows it changed.
 
-        A part or a surface that is renamed is renamed where it is referred to. Values of scalars go with
-        their node or polygon. Raises UsageError for a wrong statement, InputError with every problem of the
-        scene that would be, and WriteError; nothing is changed then.
+        A part or a surface that is renamed is renamed where it is referred to. Values of scalars are removed
+        with their node or polygon. Raises UsageError for a wrong statement, InputError with every problem of
+        the changed scene, WriteError if the store has triggers, or cannot be written; nothing is changed
+        then.
         """
         tables = changes_of(self._connection, statement, parameters)
-        # To look for references to each node that goes would take the square of their number.
+        # Without indexes, to look for references to each removed node takes the square of their number.
         checks_references = not tables.keys() & {*MESH_TABLES}
         if self._store is None:
             self._connection.execute(f"PRAGMA foreign_keys = {'ON' if checks_references else 'OFF'}")
             return self._changed(self._connection, tables, statement, parameters)
         connection = connected_to_change(self._store, checks_references=checks_references)
-        try:
+        with closing(connection):
             count = self._changed(connection, tables, statement, parameters)
             is_outdated = journal_mode(connection) != journal_mode(self._connection)
-        finally:
-            closed(connection)
         if is_outdated:
             # The store is in WAL mode, and was opened as a file that does not change.
-            closed(self._connection)
+            self._connection.close()
             self._connection = connected(self._store)
         return count
 
@@ -163,25 +179,30 @@ class Tables:
         parameters: Parameters,
     ) -> int:
         """Run a statement that changes these tables, and check the scene; returns the number of rows."""
-        with transaction(connection, self._name), without_triggers(connection):
+        with transaction(connection, self._name):
+            refuse_additions(
+                connection,
+                ("trigger",),
+                f"{self._name}: a store that is changed must have no triggers",
+                "drop it, or write the scene to another file",
+            )
             connection.execute("PRAGMA defer_foreign_keys = ON")
             count = change(connection, statement, parameters, self.seconds)
             for table, actions in tables.items():
-                if table in DEPENDENT and sqlite3.SQLITE_DELETE in actions:
-                    self._remove_values(connection, *DEPENDENT[table], table)
+                values, column = DEPENDENT.get(table, ("", ""))
+                if sqlite3.SQLITE_DELETE in actions and column in columns_in(connection, values):
+                    connection.execute(
+                        f"DELETE FROM {values} WHERE {column} NOT IN (SELECT {column} FROM {table})"
+                    )
             report_in(connection, self._name, self._scene_name)
         return count
-
-    def _remove_values(self, connection: sqlite3.Connection, values: str, column: str, table: str) -> None:
-        if column in columns_in(connection, values):
-            connection.execute(f"DELETE FROM {values} WHERE {column} NOT IN (SELECT {column} FROM {table})")
 
     @property
     def _scene_name(self) -> str:
         return self._name if self._store is None else self._store.stem
 
     def scene(self) -> Scene:
-        """The scene that the tables are now. Raises InputError."""
+        """The scene of the tables as they are now. Raises InputError."""
         return report_in(self._connection, self._name, self._scene_name).scene
 
     def definition(self, table: str) -> str:
@@ -192,8 +213,8 @@ class Tables:
         return f"{text};"
 
     def close(self) -> None:
-        """Let go of the file."""
-        closed(self._connection)
+        """Close the file."""
+        self._connection.close()
 
     def __enter__(self) -> Tables:
         return self
@@ -203,3 +224,164 @@ class Tables:
 
     def __repr__(self) -> str:
         return f"Tables({self._name!r}: {', '.join(self.names)})"
+
+
+# Statements.
+
+LONGEST_COMPUTED: Final = 1 << 17
+"""Limit: in bytes, of a value that a statement reads or computes. SQLite cannot interrupt a function:
+searching a text of this length for one of half its length takes 0.2 s; at LONGEST_TEXT it would take 9 s."""
+
+ROWS_AT_ONCE: Final = 1000
+"""Rows that are fetched at once, unless they are long."""
+
+STATEMENT_STEPS: Final = 1000
+"""Steps of SQLite's machine between two looks at the clock: a function may take long for one step."""
+
+
+def answer_of(
+    connection: sqlite3.Connection, statement: str, parameters: Parameters = (), seconds: float = SECONDS
+) -> Answer:
+    """The answer to one statement that changes nothing. Raises UsageError, also while rows are fetched."""
+    changes = changes_of(connection, statement, parameters)
+    if changes:
+        raise UsageError(
+            f"a statement must only read the tables, and this one changes {', '.join(sorted(changes))}; allow"
+            " changes with --write (tables.change in Python), or write a SELECT"
+        )
+    clock = Clock(connection, seconds, STATEMENT_STEPS)
+    with _limited(connection, clock):
+        cursor = connection.execute(statement, parameters)
+    columns = different([column[0] for column in cursor.description or ()])
+
+    def rows() -> Iterator[tuple[Value, ...]]:
+        while True:
+            # The time between two fetches is not the statement's.
+            clock.begin()
+            with _limited(connection, clock):
+                fetched = _some_of(cursor)
+            if not fetched:
+                return
+            yield from fetched
+
+    return Answer(columns, rows())
+
+
+def _some_of(cursor: sqlite3.Cursor) -> list[tuple[Value, ...]]:
+    """The next ROWS_AT_ONCE rows; fewer if their texts are LONGEST_TEXT letters together."""
+    rows: list[tuple[Value, ...]] = []
+    letters = 0
+    while len(rows) < ROWS_AT_ONCE and letters < LONGEST_TEXT:
+        row = cursor.fetchone()
+        if row is None:
+            break
+        rows.append(row)
+        letters += sum(len(value) for value in row if isinstance(value, (str, bytes)))
+    return rows
+
+
+def change(
+    connection: sqlite3.Connection, statement: str, parameters: Parameters = (), seconds: float = SECONDS
+) -> int:
+    """Run one statement that changes rows, within a transaction; returns how many. Raises UsageError."""
+    clock = Clock(connection, seconds, STATEMENT_STEPS)
+    with _limited(connection, clock, may_change=True):
+        cursor = connection.execute(statement, parameters)
+        # The last row is changed only after all rows of a RETURNING clause are fetched.
+        for _ in cursor:
+            pass
+    return max(cursor.rowcount, 0)
+
+
+def changes_of(
+    connection: sqlite3.Connection, statement: str, parameters: Parameters = ()
+) -> Mapping[str, set[int]]:
+    """The tables that a statement would change, and how; it is not run. Raises UsageError for a wrong one."""
+    changes: dict[str, set[int]] = {}
+    permission = authorizer(may_change=True)
+
+    def note(
+        action: int, first: str | None, second: str | None, database: str | None, inner: str | None
+    ) -> int:
+        if action in CHANGES and first is not None and inner is None:
+            changes.setdefault(first.lower(), set()).add(action)
+        # The changes of triggers are refused by name when the statement is run.
+        return permission(action, first, second, database, None)
+
+    if not statement.strip().rstrip(";").strip():
+        raise UsageError("a statement must not be empty; write one, as in SELECT * FROM lights")
+    is_pragma = statement.lstrip().lower().startswith(("pragma", "explain"))
+    with _limited(connection, Clock(connection, SECONDS, STATEMENT_STEPS), may_change=True):
+        connection.set_authorizer(note)
+        connection.execute(statement if is_pragma else f"EXPLAIN {statement}", parameters).fetchall()
+    return changes
+
+
+@contextmanager
+def _limited(connection: sqlite3.Connection, clock: Clock, may_change: bool = False) -> Iterator[None]:
+    """Limits of permissions, time and the size of values for a statement.
+
+    Raises UsageError for an error of SQLite; WriteError if the disk is full or fails, InputError for a
+    journal that appeared.
+    """
+    connection.set_authorizer(authorizer(may_change))
+    longest = connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LONGEST_COMPUTED)
+    try:
+        yield
+    except (sqlite3.Error, sqlite3.Warning, OverflowError, UnicodeError) as error:
+        if "interrupted" in str(error) and not clock.ended:
+            # The user pressed Ctrl+C, which SQLite took.
+            raise KeyboardInterrupt from None
+        if primary_code(error) in DISK_ERRORS:
+            raise WriteError(sentence_of(error)) from None
+        if getattr(error, "sqlite_errorcode", 0) == sqlite3.SQLITE_READONLY_ROLLBACK:
+            raise InputError(sentence_of(error)) from None
+        raise UsageError(_sentence(error, clock)) from None
+    finally:
+        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, longest)
+        connection.set_authorizer(None)
+
+
+CHECK_FAILED: Final = "CHECK constraint failed: "
+
+
+def _sentence(error: Exception, clock: Clock) -> str:
+    """A sentence for a statement that failed: what is wrong, and what to do."""
+    text, code = printable(str(error)), primary_code(error)
+    if clock.ended:
+        return (
+            f"a statement must end within {clock.seconds:g} seconds, not run on; narrow it with WHERE or"
+            " LIMIT, or allow more with --seconds"
+        )
+    if code in (*BUSY_ERRORS, *DAMAGE_ERRORS):
+        return sentence_of(error)
+    if code == sqlite3.SQLITE_AUTH:
+        return (
+            "a statement must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not another"
+            f" ({text}); change the tables themselves with a tool of SQLite"
+        )
+    if text.startswith(CHECK_FAILED):
+        # The name of the CHECK is its rule.
+        return f"{text.removeprefix(CHECK_FAILED)}, and a changed row breaks this rule; correct its value"
+    return f"a statement must be one that SQLite can run, and this one is not ({text}); correct it"
+
+
+def names_of_tables(connection: sqlite3.Connection) -> list[str]:
+    """The names of all tables and views of a store, also of other programs."""
+    query = "SELECT name FROM sqlite_master WHERE type IN ('table', 'view') AND name NOT LIKE 'sqlite_%'"
+    return [name for (name,) in connection.execute(f"{query} ORDER BY rowid LIMIT 1000")]
+
+
+def columns_in(connection: sqlite3.Connection, table: str) -> list[str]:
+    """The names of the columns of a table; empty if there is no such table."""
+    try:
+        return [row[1] for row in connection.execute(f"PRAGMA table_info({quoted(table)})")]
+    except sqlite3.Error:
+        # A view of another program may be broken.
+        return []
+
+
+def require_name(name: str, names: Sequence[str], noun: str) -> None:
+    """Raise UsageError, with the nearest name, if a name is not among these."""
+    if name not in names:
+        raise UsageError(f"there is no {noun} {shown(name)}{nearest(name, names)}")

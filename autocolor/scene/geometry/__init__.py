@@ -1,4 +1,4 @@
-"""What is computed from the node table and the polygon table alone: normals, fans, curvatures, shared planes.
+"""Geometry of the node table and the polygon table: normals, fans, curvatures, shared planes, foreign meshes.
 
-Uses the ground, and of `scene` only its own rooms; `faults` alone uses the mesh.
+Uses the ground, and of `scene` only the scalars of meshes; never the mesh itself.
 """

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from autocolor.commands.scenes import SceneSource, ended, read, scene_options
 from autocolor.errors import InputError, MissingInputError
-from autocolor.files.scenes.scene_report import SceneReport
+from autocolor.files.scene_report import SceneReport
 from tests.autocolor.commands.conftest import Run
 from tests.autocolor.meshes import wall_scene
 

@@ -21,7 +21,7 @@ from autocolor import (
     write_rig,
 )
 from autocolor.files.rig_file import is_rig
-from autocolor.files.scenes.toml_text import LARGEST_TEXT
+from autocolor.files.scene_toml.toml_text import LARGEST_TEXT
 from autocolor.scene.lights import HalfSpace, Links
 from tests.autocolor.linked_scenes import linked_scenes
 from tests.autocolor.meshes import cube

@@ -12,7 +12,7 @@ import pytest
 from autocolor import Scene, render, write_picture
 from autocolor.errors import InputError, MissingInputError, UsageError
 from autocolor.files.formats import recognized
-from autocolor.files.openable import kind_of
+from autocolor.files.scene_files import kind_of
 from autocolor.files.scene_sources import SCENE_FORMATS, read_scene, read_scene_with_report
 from autocolor.files.scene_writing import write_scene
 from autocolor.scene.columns import fields_of

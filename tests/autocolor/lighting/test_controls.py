@@ -34,10 +34,22 @@ from autocolor.scene.following import light_frame
 from autocolor.scene.lights import Links
 from autocolor.visibility.visible_points import POINT, VisiblePoints
 from autocolor.visibility.visible_surfaces import visible_surfaces
-from tests.autocolor.lighting.lit_points import lit_at, wall_points
 from tests.autocolor.meshes import sphere, wall, wall_scene
 from tests.autocolor.reference import dot, soft, unit
 from tests.autocolor.strategies import Vector, directions, lights, numbers, scenes, some_of, vectors, views
+
+
+def wall_points() -> VisiblePoints:
+    return visible_surfaces(wall(), View((1, -4, 1), target=(0, 0, 0)), (1,), 12, 12)
+
+
+def lit_at(cosines: Singles) -> LitPoints:
+    """Points at these cosines from the light's direction, whose places no control asks for."""
+
+    def nobody_asks() -> Singles:
+        raise AssertionError
+
+    return LitPoints(cosines, nobody_asks, nobody_asks)
 
 
 def test_a_point_source_without_flaps_has_no_controls() -> None:

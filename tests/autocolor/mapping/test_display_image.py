@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from autocolor import InputError, Light, Mesh, Picture, Scene, Surface, UsageError, render, scene_of
 from autocolor.arrays import Numbers
 from autocolor.images import display_image
-from autocolor.mapping import display_image as scan_lines
 from autocolor.mapping.display_image import DisplayImage, words_by_line
 from autocolor.mapping.intensity import held_exposure
 from autocolor.mapping.ranges import BACKGROUND, SCREEN_COLORS, SCREENS, WORDS
@@ -298,10 +297,6 @@ def test_levels_that_surfaces_in_use_cannot_have_are_refused() -> None:
         display_image(scene, two_tones(0.0, 1.0))
 
 
-# -------------------- test_scan_lines
-# Line by line, the words are those of the finished picture.
-
-
 def image_of(scene: Scene, lines: int, elements: int) -> DisplayImage:
     return display_image(scene, render(scene, lines, elements))
 
@@ -344,7 +339,7 @@ def test_what_is_visible_is_found_by_the_literal_algorithm(monkeypatch: pytest.M
         for line in range(projected.lines):
             yield np.full(projected.elements, line % 2, np.int64)
 
-    monkeypatch.setattr(scan_lines, "numbers_by_line", numbers_by_line)
+    monkeypatch.setattr("autocolor.mapping.display_image.numbers_by_line", numbers_by_line)
     image = image_of(car(), 24, 32)
     lines = np.array(all_lines(image))
     assert (lines[::2] == BACKGROUND).all()

@@ -62,10 +62,6 @@ def test_a_picture_of_one_color_has_a_palette_of_one(shape: tuple[int, int]) -> 
     assert not places.any()
 
 
-# -------------------- test_thumbnail
-# Thumbnails of display images: averages of colors.
-
-
 def image(lines: int, elements: int) -> DisplayImage:
     scene = car()
     return display_image(scene, render(scene, lines=lines, elements=elements))

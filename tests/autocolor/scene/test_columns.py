@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Light, Scene, Surface, View
-from autocolor.files.scenes.scene_meshes import MeshEntry
+from autocolor.files.scene_toml.scene_meshes import MeshEntry
 from autocolor.scene.columns import (
     REFUSED,
     WORLD_UNITS,

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import Flap, Flaps, HalfSpace, InputError, Light, Rig, Scene, UsageError, render, scene_of
-from autocolor.scene.columns import made, plain
+from autocolor.scene.columns import WORLD_UNITS, Row, fields_of, made, plain
 from autocolor.scene.following import detached
 from autocolor.scene.lights import AXES
 from autocolor.scene.rigs import mirrored
@@ -174,3 +174,20 @@ def test_a_mirrored_picture_is_that_of_the_mirrored_light() -> None:
 def test_an_unknown_axis_is_refused(axis: Any) -> None:
     with pytest.raises(UsageError, match=f"^an axis must be 'x', 'y' or 'z', not '{axis}'$"):
         mirrored(Light("key", (0, 0, 0)), "other", axis, math.pi)
+
+
+def test_a_rig_scales_every_column_in_world_units_and_no_other() -> None:
+    flap, half_space = Flap(1, 2, edge_width=0.1), HalfSpace("door", (1, 2, 3), (0, 0, 1), edge_width=0.5)
+    light = Light("key", (1, 2, 3), aim=(1, 1, 1), flaps=Flaps(x=flap), half_spaces=(half_space,), reach=2)
+    (fitted,) = Rig((0, 0, 0), (1, 1, 1), (light,)).fitted((0, 0, 0), (3, 3, 3))
+    pairs: list[tuple[Row, Row]] = [(light, fitted), (half_space, fitted.half_spaces[0])]
+    assert fitted.flaps.x is not None
+    for before, after in [*pairs, (flap, fitted.flaps.x)]:
+        columns = {name: field.column for name, field in fields_of(type(before)).items()}
+        differing = {name for name in columns if vars(before)[name] != vars(after)[name]}
+        in_world_units = {
+            name
+            for name, column in columns.items()
+            if column.unit == WORLD_UNITS and vars(before)[name] is not None
+        }
+        assert differing - {"flaps", "half_spaces"} == in_world_units

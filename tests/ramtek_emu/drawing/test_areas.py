@@ -15,15 +15,15 @@ def reached(open_pixels: NDArray[np.bool_], line: int, element: int) -> set[tupl
     """The open pixels that a walk from one comes to, step by step."""
     lines, elements = open_pixels.shape
     waiting = [(line, element)] if open_pixels[line, element] else []
-    found = set(waiting)
+    filled = set(waiting)
     while waiting:
         n, e = waiting.pop()
         for place in ((n + 1, e), (n - 1, e), (n, e + 1), (n, e - 1)):
             inside = 0 <= place[0] < lines and 0 <= place[1] < elements
-            if inside and place not in found and open_pixels[place]:
-                found.add(place)
+            if inside and place not in filled and open_pixels[place]:
+                filled.add(place)
                 waiting.append(place)
-    return found
+    return filled
 
 
 @thorough
@@ -31,8 +31,8 @@ def reached(open_pixels: NDArray[np.bool_], line: int, element: int) -> set[tupl
 def test_an_area_is_what_a_walk_reaches(open_pixels: NDArray[np.bool_], data: st.DataObject) -> None:
     line = data.draw(st.integers(0, open_pixels.shape[0] - 1))
     element = data.draw(st.integers(0, open_pixels.shape[1] - 1))
-    found = {(n, e) for n, e in np.argwhere(area(open_pixels, line, element)).tolist()}
-    assert found == reached(open_pixels, line, element)
+    filled = {(n, e) for n, e in np.argwhere(area(open_pixels, line, element)).tolist()}
+    assert filled == reached(open_pixels, line, element)
 
 
 @pytest.mark.parametrize("side", [1, 2, 31, 200])

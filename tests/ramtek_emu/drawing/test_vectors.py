@@ -162,7 +162,7 @@ def test_only_the_points_inside_are_computed(
     lines: list[tuple[tuple[int, int], tuple[int, int]]], window: Window
 ) -> None:
     starts, ends = (np.array([line[end] for line in lines]) for end in (0, 1))
-    found = [
+    drawn = [
         point
         for part in points(starts, ends, window)
         for point in zip(*(each.tolist() for each in part), strict=True)
@@ -173,7 +173,7 @@ def test_only_the_points_inside_are_computed(
         for number, place in enumerate(reference.line_places(start, end))
         if reference.inside(place, window)
     ]
-    assert found == expected
+    assert drawn == expected
 
 
 def test_a_vector_across_the_whole_range_takes_no_more_points_than_the_memory_shows() -> None:

@@ -3,7 +3,6 @@ from __future__ import annotations
 import os
 import random
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import pytest
 
 from ramtek_emu import MissingInputError, Ramtek9300
 from ramtek_emu.host.joystick import MOST_BYTES, JoystickLines, actions, lines_of
+from tests.ramtek_emu.serving import until
 
 
 def done(display: Ramtek9300, line: str) -> None:
@@ -52,11 +52,12 @@ def test_a_line_that_holds_anything_else_does_nothing_and_is_answered(line: str)
     assert not display.cursors[0].enter
 
 
-def until(lines: JoystickLines, condition: Callable[[], bool]) -> None:
-    end = time.monotonic() + 5
-    while not condition():
-        assert time.monotonic() < end
+def obey_until(lines: JoystickLines, condition: Callable[[], bool]) -> None:
+    def is_met() -> bool:
         lines.obey()
+        return condition()
+
+    until(is_met)
 
 
 def test_lines_of_a_fifo_are_done_and_bad_ones_answered_with_their_number(tmp_path: Path) -> None:
@@ -66,7 +67,7 @@ def test_lines_of_a_fifo_are_done_and_bad_ones_answered_with_their_number(tmp_pa
     lines = JoystickLines(str(tmp_path / "stick"), display.joystick, display.reset, answers.append)
     for part in ("cursor 3 4\nup\n", "by 1 1\n"):
         (tmp_path / "stick").write_text(part)
-    until(lines, lambda: display.joystick.position == (4, 5))
+    obey_until(lines, lambda: display.joystick.position == (4, 5))
     assert len(answers) == 1
     assert answers[0].startswith("joystick, line 2: a joystick line must hold")
 
@@ -92,7 +93,7 @@ def test_bytes_that_are_no_lines_are_read_in_bounded_memory(tmp_path: Path) -> N
     display = Ramtek9300()
     answers: list[str] = []
     lines = JoystickLines(str(path), display.joystick, display.reset, answers.append)
-    until(lines, lambda: display.joystick.position == (5, 6))
+    obey_until(lines, lambda: display.joystick.position == (5, 6))
     assert all(len(answer) < 600 for answer in answers)
     number = os.open(path, os.O_RDONLY)
     assert max(map(len, lines_of(number))) <= 2 * MOST_BYTES + 1

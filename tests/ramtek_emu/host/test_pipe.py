@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import random
-import time
 from collections.abc import Callable
 from itertools import pairwise
 
@@ -16,6 +15,7 @@ from ramtek_emu.instruction_set.decoder import Decoder
 from ramtek_emu.monitor.window import Monitor
 from tests.ramtek_emu.processes import stream
 from tests.ramtek_emu.recorded_streams import OUTLINE, RECORDED
+from tests.ramtek_emu.serving import until
 
 
 def pop_of(pieces: list[bytes]) -> Callable[[int], bytes]:
@@ -60,9 +60,12 @@ def test_a_pipe_is_shown_in_slices_of_time_and_its_replies_come(on_screen: str) 
     pipe = PolledPipe(HostSession(display), lambda _: left.pop(), replies.append)
     monitor = Monitor(display, on_tick=lambda: pipe.serve_for(0.01))
     monitor.open()
-    end = time.monotonic() + 5
-    while not (pipe.ended and replies) and time.monotonic() < end:
+
+    def has_ended() -> bool:
         monitor.step(5)
+        return pipe.ended and bool(replies)
+
+    until(has_ended)
     assert b"".join(replies) == display.words[100, 100:103].astype("<u2").tobytes()
     monitor.close()
 
@@ -91,10 +94,10 @@ def paced(data: bytes, cuts: list[int], rate: int, clock: Clock) -> list[bytes]:
     places = [0, *sorted(cut % (len(data) + 1) for cut in cuts), len(data)]
     pieces = [data[start:end] for start, end in pairwise(places) if start < end]
     read = PacedReader(lambda _: pieces.pop(0) if pieces else b"", rate, GMR_9300, clock, clock.sleep)
-    found = []
+    read_pieces = []
     while piece := read(1 << 16):
-        found.append(piece)
-    return found
+        read_pieces.append(piece)
+    return read_pieces
 
 
 cuts = st.lists(st.integers(0, 10_000), max_size=12)

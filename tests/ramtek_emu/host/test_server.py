@@ -369,15 +369,15 @@ def test_a_display_gets_the_words_whatever_pieces_their_bytes_come_in(
 @quick
 @given(streams(), st.integers(0, 200))
 def test_what_is_recorded_ends_with_a_whole_instruction(stream: list[int], cut: int) -> None:
-    kept: list[bytes] = []
-    session = HostSession(Ramtek9300(SMALL), kept.append)
+    recorded: list[bytes] = []
+    session = HostSession(Ramtek9300(SMALL), recorded.append)
     data = np.array(stream, "<u2").tobytes()
     for piece in (data[:cut], data[cut:]):
         for _ in session.feed(piece):
             again = Ramtek9300(SMALL)
-            again.send(np.frombuffer(b"".join(kept), "<u2").astype(np.uint16))
+            again.send(np.frombuffer(b"".join(recorded), "<u2").astype(np.uint16))
             assert again.decoder.pending_words == 0
-    assert b"".join(kept) == data[: len(data) - 2 * session.display.decoder.pending_words]
+    assert b"".join(recorded) == data[: len(data) - 2 * session.display.decoder.pending_words]
 
 
 def test_a_host_that_leaves_takes_its_unfinished_words_and_replies_with_it() -> None:

@@ -16,8 +16,8 @@ from tests.ramtek_emu.strategies import cuts, quick, streams, thorough, words
 
 def decoded(pieces: list[np.ndarray[tuple[int], np.dtype[np.uint16]]]) -> tuple[list[list[int]], Decoder]:
     decoder = Decoder()
-    found = [encode(instruction).tolist() for piece in pieces for instruction in decoder.feed(piece)]
-    return found, decoder
+    encoded = [encode(instruction).tolist() for piece in pieces for instruction in decoder.feed(piece)]
+    return encoded, decoder
 
 
 @thorough
@@ -31,10 +31,10 @@ def test_instructions_do_not_depend_on_the_cuts(stream: list[int], places: list[
 @thorough
 @given(streams())
 def test_the_decoder_splits_as_a_reader_of_single_words_does(stream: list[int]) -> None:
-    found, decoder = decoded([np.array(stream, np.uint16)])
+    encoded, decoder = decoded([np.array(stream, np.uint16)])
     twin = reference.split(stream)
     # Flag bits that no source names carry no words, and are not sent again.
-    assert [len(part) for part in found] == [len(part) for part in twin]
+    assert [len(part) for part in encoded] == [len(part) for part in twin]
     assert decoder.pending_words == len(stream) - sum(map(len, twin))
 
 
@@ -65,11 +65,11 @@ def test_a_word_that_begins_nothing_is_skipped_alone() -> None:
 )
 def test_conics_of_six_and_twelve_words_are_told_apart(flag_word: int, low_byte: int, row: list[int]) -> None:
     stream = [0x0F03 | low_byte, flag_word | 0x1000, *row]
-    found, decoder = decoded([np.array(stream, np.uint16)])
+    encoded, decoder = decoded([np.array(stream, np.uint16)])
     twin = reference.split(stream)
-    assert [len(part) for part in found] == [len(part) for part in twin]
+    assert [len(part) for part in encoded] == [len(part) for part in twin]
     assert decoder.pending_words == len(stream) - sum(map(len, twin))
-    assert decoded([np.array([word], np.uint16) for word in stream])[0] == found
+    assert decoded([np.array([word], np.uint16) for word in stream])[0] == encoded
 
 
 def test_six_coefficients_are_taken_where_twelve_make_no_sense() -> None:

@@ -47,8 +47,8 @@ def test_flag_words_name_operands_in_the_order_of_their_bits(first: int, second:
 
 
 def test_a_9300_has_no_instruction_that_only_the_later_models_know() -> None:
-    plain = [format.name for format in FORMATS if not format.extended]
-    assert plain == [
+    of_9300 = [format.name for format in FORMATS if not format.extended]
+    assert of_9300 == [
         "LAM", "RAM", "RSET", "INIT", "NOP", "SET", "ERS", "WI", "RI", "WT", "WR", "WVL", "WC",
         "LPF", "WCSS", "RCSS",
     ]  # fmt: skip

@@ -143,18 +143,18 @@ def test_keys_are_handed_over_as_plain_values(monitor: Monitor) -> None:
 
 
 def test_a_release_is_told_after_its_press_and_when_the_keyboard_goes_elsewhere(monitor: Monitor) -> None:
-    told: list[str] = []
-    monitor.on_key = lambda key: told.append(f"{key.name} down")
-    monitor.on_release = lambda name: told.append(f"{name} up")
+    calls: list[str] = []
+    monitor.on_key = lambda key: calls.append(f"{key.name} down")
+    monitor.on_release = lambda name: calls.append(f"{name} up")
     press(monitor, pygame.K_b, "b")
     press(monitor, pygame.K_LSHIFT)
-    assert told == ["b down", "b up"]
-    told.clear()
+    assert calls == ["b down", "b up"]
+    calls.clear()
     pygame.event.post(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_b, unicode="b", mod=0))
     pygame.event.post(pygame.event.Event(pygame.WINDOWFOCUSLOST))
     pygame.event.post(pygame.event.Event(pygame.KEYUP, key=pygame.K_b, mod=0))
     monitor.step()
-    assert told == ["b down", "b up"]
+    assert calls == ["b down", "b up"]
     assert monitor.is_at_rest
 
 
@@ -209,10 +209,10 @@ def test_a_screenshot_that_cannot_be_saved_is_a_message(monitor: Monitor, tmp_pa
 
 
 def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
-    told: list[Pointer] = []
-    monitor.on_pointer = told.append
+    calls: list[Pointer] = []
+    monitor.on_pointer = calls.append
     resize(monitor, (1380, 960))
-    told.clear()
+    calls.clear()
     for place, kind in (
         ((50, 0), pygame.MOUSEBUTTONDOWN),
         ((53, 3), pygame.MOUSEMOTION),
@@ -220,7 +220,7 @@ def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
     ):
         pygame.event.post(pygame.event.Event(kind, pos=place, button=1, rel=(0, 0), buttons=(1, 0, 0)))
     monitor.step()
-    assert told == [
+    assert calls == [
         Pointer(0, 0, True, "press", 1),
         Pointer(1, 1, True, "move"),
         Pointer(639, 479, False, "release", 1),
@@ -228,16 +228,16 @@ def test_the_mouse_is_told_in_elements_and_lines(monitor: Monitor) -> None:
 
 
 def test_the_mouse_tells_the_modifiers_that_are_held(monitor: Monitor) -> None:
-    told: list[Pointer] = []
-    monitor.on_pointer = told.append
+    calls: list[Pointer] = []
+    monitor.on_pointer = calls.append
     resize(monitor, (640, 480))
-    told.clear()
+    calls.clear()
     for mods in (0, pygame.KMOD_LSHIFT, pygame.KMOD_RCTRL, pygame.KMOD_RSHIFT | pygame.KMOD_LMETA):
         pygame.key.set_mods(mods)
         pygame.event.post(pygame.event.Event(pygame.MOUSEBUTTONDOWN, pos=(5, 6), button=2))
         monitor.step()
     pygame.key.set_mods(0)
-    assert [(each.shift, each.control) for each in told] == [
+    assert [(each.shift, each.control) for each in calls] == [
         (False, False),
         (True, False),
         (False, True),
@@ -585,8 +585,8 @@ def test_a_page_is_shown_over_the_field_unless_the_program_has_its_own(unopened:
 
 def test_a_monitor_is_at_rest_when_nothing_is_down_and_nothing_waits(unopened: UnopenedMonitor) -> None:
     assert unopened.is_at_rest
-    for held in (Key("left"), Pointer(1, 2, False, "press", 1)):
-        unopened.input.add(held)
+    for down in (Key("left"), Pointer(1, 2, False, "press", 1)):
+        unopened.input.add(down)
         unopened.handle(unopened.input.take())
         assert not unopened.is_at_rest
         unopened.input.release_everything()

@@ -183,37 +183,37 @@ def test_a_field_that_is_kept_is_always_the_one_that_a_whole_scan_out_makes(
     # Each line shows entries that no other does.
     words = np.arange(9)[:, np.newaxis] * 100 + np.arange(13) % 8
     display.send(instructions.write_image(words & configuration.largest_word))
-    scan_out, held = display.scan_out, None
-    kept, fresh = (np.zeros((scan_out.lines, scan_out.elements), np.uint32) for _ in range(2))
+    scan_out, last = display.scan_out, None
+    updated, fresh = (np.zeros((scan_out.lines, scan_out.elements), np.uint32) for _ in range(2))
     with patch("ramtek_emu.video.scan_out.STRIP", strip):
         for (name, value), is_scanned_out in steps:
             if name == "draw on it":
-                kept[value % len(kept)], held = 0xABCDEF, None
+                updated[value % len(updated)], last = 0xABCDEF, None
             elif name == "scan out another":
                 scan_out.scan_out_into(fresh)
             else:
                 do(display, name, value)
             if is_scanned_out:
-                held = scan_out.scan_out_changes_into(kept, held)
-                assert held == scan_out.stamp
+                last = scan_out.scan_out_changes_into(updated, last)
+                assert last == scan_out.stamp
                 fresh[...] = 0x123456
                 scan_out.scan_out_into(fresh)
-                assert (kept == fresh).all()
+                assert (updated == fresh).all()
 
 
 def test_after_a_load_only_lines_that_may_show_its_entries_are_written() -> None:
     display = Ramtek9300()
     display.send(instructions.write_image(np.repeat(np.arange(480), 640).reshape(480, 640)))
     pixels = np.zeros((480, 640), np.uint32)
-    held = display.scan_out.scan_out_changes_into(pixels, None)
+    last = display.scan_out.scan_out_changes_into(pixels, None)
     for blue in (1, 2):
         pixels[...] = 0
         display.send(instructions.load_entries(200, [[0, 0, blue]] * 3))
-        held = display.scan_out.scan_out_changes_into(pixels, held)
+        last = display.scan_out.scan_out_changes_into(pixels, last)
         assert pixels[200:203].tolist() == [[blue] * 640] * 3
-        assert held == display.scan_out.stamp
+        assert last == display.scan_out.stamp
     pixels[...] = 7
-    display.scan_out.scan_out_changes_into(pixels, held)
+    display.scan_out.scan_out_changes_into(pixels, last)
     assert (pixels[:100] == 7).all()
     assert (pixels[300:] == 7).all()
     display.scan_out.scan_out_changes_into(pixels, None)
@@ -238,22 +238,22 @@ def test_where_cursors_moved_the_lines_of_old_and_new_places_are_those_that_chan
     display = Ramtek9300(TALL)
     display.send(instructions.write_image(np.arange(6000).reshape(150, 40) % 1024))
     display.send(instructions.load_entries(0, np.random.default_rng(seed).integers(0, 256, (1024, 3))))
-    kept, fresh = np.zeros((150, 40), np.uint32), np.zeros((150, 40), np.uint32)
-    held = display.scan_out.scan_out_changes_into(kept, None)
+    updated, fresh = np.zeros((150, 40), np.uint32), np.zeros((150, 40), np.uint32)
+    last = display.scan_out.scan_out_changes_into(updated, None)
     for number, element, line, look in moves:
         if look == 3:
             display.send(instructions.load_entries(line, [[element, 255, 0]]))
         display.send(instructions.write_cursor(number, element, line, visible=look != 0, blinking=look == 2))
         display.scan_out.blink_is_on = element % 2 == 0
-        before = kept.copy()
-        runs = display.scan_out.lines_changed_since(held)
-        held = display.scan_out.scan_out_changes_into(kept, held)
+        before = updated.copy()
+        runs = display.scan_out.lines_changed_since(last)
+        last = display.scan_out.scan_out_changes_into(updated, last)
         display.scan_out.scan_out_into(fresh)
-        assert (kept == fresh).all()
+        assert (updated == fresh).all()
         outside = np.ones(150, np.bool_)
         for first, end in runs:
             outside[first:end] = False
-        assert (kept[outside] == before[outside]).all()
+        assert (updated[outside] == before[outside]).all()
         assert look == 3 or outside.sum() >= 150 - 4 * 32
 
 
@@ -261,30 +261,30 @@ def test_of_a_cursor_that_moves_only_its_old_and_new_lines_are_scanned_out() -> 
     display = Ramtek9300()
     display.send(instructions.write_cursor(0, 100, 100))
     pixels = np.zeros((480, 640), np.uint32)
-    held = display.scan_out.scan_out_changes_into(pixels, None)
+    last = display.scan_out.scan_out_changes_into(pixels, None)
     display.joystick.move_to(300, 200)
-    assert display.scan_out.lines_changed_since(held) == ((85, 117), (185, 217))
+    assert display.scan_out.lines_changed_since(last) == ((85, 117), (185, 217))
     pixels[...] = 7
-    held = display.scan_out.scan_out_changes_into(pixels, held)
+    last = display.scan_out.scan_out_changes_into(pixels, last)
     written = (pixels != 7).any(axis=1)
     assert np.flatnonzero(written).tolist() == [*range(85, 117), *range(185, 217)]
-    assert display.scan_out.lines_changed_since(held) == ()
+    assert display.scan_out.lines_changed_since(last) == ()
     display.send(instructions.write_cursor(0, 300, 200, visible=False))
-    assert display.scan_out.lines_changed_since(held) == ((185, 217),)
+    assert display.scan_out.lines_changed_since(last) == ((185, 217),)
     display.send(instructions.erase((0, 0, 0, 0), 5))
-    assert display.scan_out.lines_changed_since(held) == ((0, 480),)
+    assert display.scan_out.lines_changed_since(last) == ((0, 480),)
 
 
-class KeptField:
+class UpdatedField:
     """A field that is brought up to date, and compared with a whole one each time."""
 
     def __init__(self, display: Ramtek9300) -> None:
         self.scan_out = display.scan_out
         self.pixels, self.fresh = (np.zeros((display.scan_out.lines, 13), np.uint32) for _ in range(2))
-        self.held: Stamp | None = None
+        self.last: Stamp | None = None
 
     def is_right(self) -> bool:
-        self.held = self.scan_out.scan_out_changes_into(self.pixels, self.held)
+        self.last = self.scan_out.scan_out_changes_into(self.pixels, self.last)
         self.scan_out.scan_out_into(self.fresh)
         return bool((self.pixels == self.fresh).all())
 
@@ -292,34 +292,34 @@ class KeptField:
 @patch("ramtek_emu.video.scan_out.STRIP", 1)
 def test_words_that_were_written_meanwhile_show_the_next_load_of_the_same_entries() -> None:
     display = Ramtek9300(SMALL)
-    kept = KeptField(display)
+    updated = UpdatedField(display)
     for blue, line in enumerate((2, 7, 4), 1):
         display.send(instructions.erase((3, line, 5, line), 300))
-        assert kept.is_right()
+        assert updated.is_right()
         display.send(instructions.load_entries(300, [[0, 0, blue]]))
-        assert kept.is_right()
+        assert updated.is_right()
 
 
 @patch("ramtek_emu.video.scan_out.STRIP", 1)
 def test_a_view_that_came_back_shows_the_next_load() -> None:
     display = Ramtek9300(SMALL)
     display.send(instructions.write_image(np.arange(117).reshape(9, 13)))
-    kept = KeptField(display)
-    assert kept.is_right()
+    updated = UpdatedField(display)
+    assert updated.is_right()
     display.send(instructions.set_parameters(origin=(0, 4)))
-    display.scan_out.scan_out_into(kept.fresh)
+    display.scan_out.scan_out_into(updated.fresh)
     display.send(instructions.set_parameters(origin=(0, 0)))
     display.send(instructions.load_entries(50, [[1, 2, 3]]))
-    assert kept.is_right()
+    assert updated.is_right()
 
 
 def test_a_part_of_the_table_that_is_parked_at_is_shown_by_a_field_that_is_kept() -> None:
     display = Ramtek9300(replace(SMALL, planes=8))
-    kept = KeptField(display)
+    updated = UpdatedField(display)
     display.send(instructions.load_entries(256, [[1, 2, 3]]))
     for address in (0, 0x200, 0, 0x400):
         display.send(instructions.park_table(address))
-        assert kept.is_right()
+        assert updated.is_right()
 
 
 def test_a_black_and_white_monitor_sees_the_low_eight_bits() -> None:

@@ -147,7 +147,7 @@ def test_a_scene_file_and_a_folder_name_the_tables_alike(tmp_path: Path) -> None
 def test_files_that_are_mapped_may_be_larger_than_those_that_are_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from autocolor.files.scenes import scene_meshes
+    from autocolor.files.scene_toml import scene_meshes
 
     folder_of(tmp_path, nodes=cube().coordinates, polygons=cube().node_numbers)
     (tmp_path / "scene.toml").write_text('[[mesh]]\nnodes = "nodes.npy"\npolygons = "polygons.npy"\n')

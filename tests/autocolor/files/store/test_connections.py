@@ -12,7 +12,15 @@ import pytest
 
 from autocolor import InputError, MissingInputError, UnavailableError, WriteError, open_tables
 from autocolor.files.store import connections
-from autocolor.files.store.connections import Clock, connected, connected_to_change, in_memory, refusals
+from autocolor.files.store.connections import (
+    Clock,
+    FileChanges,
+    authorizer,
+    connected,
+    connected_to_change,
+    in_memory,
+    refusals,
+)
 from tests.autocolor.files.store.stores import contents, hostile_journal, run, small_store
 
 Open = Callable[[Path], Any]
@@ -224,3 +232,150 @@ def test_a_journal_that_appears_beside_open_tables_is_told(tmp_path: Path) -> No
             ):
                 action()
     assert contents(tmp_path) == before
+
+
+BRIGHTER = "UPDATE lights SET intensity = intensity + 1"
+
+
+def test_a_store_that_is_changed_in_place_is_noticed(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    changes = FileChanges(path, is_store=True)
+    assert not changes.have_come()
+    run(path, BRIGHTER)
+    assert changes.have_come()
+    changes.seen()
+    assert not changes.have_come()
+    run(path, "SELECT * FROM lights")
+    assert not changes.have_come()
+
+
+def test_a_change_that_is_only_beside_the_store_is_noticed(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "PRAGMA journal_mode = WAL")
+    changes = FileChanges(path, is_store=True)
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("SELECT * FROM lights").fetchall()
+        changes.seen()
+        before = os.stat(path)
+        other.execute(BRIGHTER)
+        assert os.stat(path).st_mtime_ns == before.st_mtime_ns
+        assert changes.have_come()
+
+
+def test_a_store_that_is_replaced_is_noticed_and_changes_of_the_new_one(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    changes = FileChanges(path, is_store=True)
+    other = small_store(tmp_path, "other.sqlite")
+    os.utime(other, ns=(os.stat(path).st_atime_ns, os.stat(path).st_mtime_ns))
+    os.replace(other, path)
+    assert changes.have_come()
+    changes.seen()
+    run(path, BRIGHTER)
+    assert changes.have_come()
+
+
+def test_a_file_that_is_being_written_or_is_gone_was_not_changed_yet(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    changes = FileChanges(path, is_store=True)
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        other.execute(BRIGHTER)
+        assert not changes.have_come()
+        other.execute("COMMIT")
+        assert changes.have_come()
+    path.unlink()
+    assert not changes.have_come()
+
+
+def test_a_text_file_is_noticed_by_its_place_and_time(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    path.write_text("a")
+    changes = FileChanges(path, is_store=False)
+    assert not changes.have_come()
+    path.write_text("ab")
+    assert changes.have_come()
+
+
+def test_to_look_leaves_nothing_beside_the_store(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    changes = FileChanges(path, is_store=True)
+    changes.have_come()
+    run(path, "PRAGMA journal_mode = WAL")
+    assert changes.have_come()
+    assert os.listdir(tmp_path) == ["small.sqlite"]
+
+
+def test_a_store_with_a_journal_left_beside_it_is_being_written(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    changes = FileChanges(path, is_store=True)
+    run(path, BRIGHTER)
+    journal = hostile_journal(path, tmp_path / "other.txt")
+    assert not changes.have_come()
+    journal.unlink()
+    assert changes.have_come()
+
+
+REFUSED = (
+    "ATTACH 'other.db' AS other",
+    "DETACH main",
+    "SELECT load_extension('x')",
+    "SELECT writefile('x', 'y')",
+    "SELECT readfile('x')",
+    "SELECT fts3_tokenizer('simple')",
+    "SELECT FTS3_Tokenizer('simple', x'00')",
+    "SELECT * FROM nodes WHERE nodes MATCH 'a'",
+    "SELECT rtreenode(2, zeroblob(100))",
+    "PRAGMA journal_mode = WAL",
+    "PRAGMA writable_schema = ON",
+    "PRAGMA user_version = 9",
+    "PRAGMA trusted_schema = ON",
+    "VACUUM INTO 'x'",
+    "CREATE TABLE other (x)",
+    "CREATE TEMP TABLE other (x)",
+    "CREATE VIRTUAL TABLE other USING fts5(x)",
+    "DROP TABLE nodes",
+    "ALTER TABLE nodes ADD COLUMN w",
+    "ANALYZE",
+    "DELETE FROM sqlite_master",
+)
+CHANGES = ("DELETE FROM nodes", "UPDATE nodes SET x = 1", "INSERT INTO nodes VALUES (2)")
+
+
+def guarded(may_change: bool) -> sqlite3.Connection:
+    connection = sqlite3.connect(":memory:", isolation_level=None)
+    connection.execute("CREATE TABLE nodes (x)")
+    connection.execute("INSERT INTO nodes VALUES (1)")
+    connection.set_authorizer(authorizer(may_change))
+    return connection
+
+
+@pytest.mark.parametrize("statement", [*REFUSED, *CHANGES])
+def test_a_statement_that_reads_may_do_nothing_else(statement: str) -> None:
+    with pytest.raises(sqlite3.DatabaseError):
+        guarded(may_change=False).execute(statement)
+
+
+@pytest.mark.parametrize("statement", REFUSED)
+def test_a_statement_that_changes_rows_may_change_nothing_else(statement: str) -> None:
+    with pytest.raises(sqlite3.DatabaseError):
+        guarded(may_change=True).execute(statement)
+
+
+@pytest.mark.parametrize("statement", CHANGES)
+def test_rows_are_changed_where_that_is_asked_for(statement: str) -> None:
+    assert guarded(may_change=True).execute(statement).rowcount == 1
+
+
+def test_a_trigger_changes_nothing_whatever_the_schema_calls_it() -> None:
+    connection = guarded(may_change=True)
+    connection.set_authorizer(None)
+    connection.execute("CREATE TRIGGER evil AFTER DELETE ON nodes BEGIN INSERT INTO nodes VALUES (7); END")
+    connection.set_authorizer(authorizer(may_change=True))
+    with pytest.raises(sqlite3.DatabaseError, match="not authorized"):
+        connection.execute("DELETE FROM nodes")
+
+
+def test_a_statement_may_compute() -> None:
+    query = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 4) SELECT sum(i) FROM n"
+    assert guarded(may_change=False).execute(query).fetchall() == [(10,)]
+    assert guarded(may_change=False).execute("PRAGMA table_info(nodes)").fetchall()

@@ -1,13 +1,18 @@
 from __future__ import annotations
 
+import sqlite3
+import tracemalloc
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 import autocolor
-from autocolor import InputError, UsageError, open_tables
+from autocolor import InputError, UsageError, WriteError, open_tables
 from autocolor.files.scene_sources import read_scene
 from autocolor.files.scene_writing import write_scene
+from autocolor.files.store.store_file import store_of
+from autocolor.files.store.tables import LONGEST_COMPUTED, answer_of, change, changes_of
 from tests.autocolor.files.store.stores import is_equal, run, small_scene, small_store, tables_of
 
 
@@ -61,9 +66,9 @@ def test_a_row_is_changed_by_its_key_and_saved_at_once(tmp_path: Path) -> None:
             "lights",
             "key",
             {"intensity": -1},
-            "intensity must be a finite number of at least 0, and a changed row",
+            "intensity must be a finite number of at least 0, and a changed row breaks this rule",
         ),
-        ("nodes", 1, {"x": "left"}, "nodes.x must be REAL, not TEXT; convert it"),
+        ("nodes", 1, {"x": "left"}, "cannot store TEXT value in REAL column nodes.x"),
     ],
 )
 def test_an_update_that_is_wrong_says_what_to_do(
@@ -108,13 +113,28 @@ def test_values_of_scalars_go_with_their_polygons(tmp_path: Path) -> None:
     assert [(each.name, len(each.values)) for each in mesh.scalars] == [("stress", 5), ("area", 1)]
 
 
-def test_triggers_of_others_are_not_run_by_a_change_and_kept(tmp_path: Path) -> None:
+@pytest.mark.parametrize("action", ["DELETE FROM surfaces;", "SELECT RAISE(IGNORE);"])
+def test_a_store_with_a_trigger_is_read_and_not_changed(tmp_path: Path, action: str) -> None:
     path = small_store(tmp_path)
-    run(path, "CREATE TRIGGER evil AFTER UPDATE ON lights BEGIN DELETE FROM surfaces; END")
+    run(path, f"CREATE TRIGGER evil AFTER UPDATE ON lights BEGIN {action} END")
+    before = tables_of(path)
+    with open_tables(path) as tables:
+        assert is_equal(tables.scene(), small_scene())
+        with pytest.raises(
+            WriteError,
+            match=r"small\.sqlite: a store that is changed must have no triggers, and this one has trigger"
+            " 'evil'; drop it, or",
+        ):
+            tables.update("lights", "key", intensity=2.0)
+    assert tables_of(path) == before
+
+
+def test_views_and_indexes_of_others_are_no_hindrance_to_a_change(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    run(path, "CREATE VIEW bright AS SELECT * FROM lights", "CREATE INDEX by_x ON nodes (abs(x))")
     with open_tables(path) as tables:
         tables.update("lights", "key", intensity=2.0)
-    assert run(path, "SELECT count(*) FROM surfaces") == [(2,)]
-    assert run(path, "SELECT name FROM sqlite_master WHERE type = 'trigger'") == [("evil",)]
+        assert tables.select("SELECT max(intensity) AS most FROM bright") == [{"most": 2.0}]
 
 
 def test_a_scene_of_files_is_read_into_memory_and_written_by_its_user(tmp_path: Path) -> None:
@@ -125,3 +145,95 @@ def test_a_scene_of_files_is_read_into_memory_and_written_by_its_user(tmp_path: 
         assert read_scene(folder).light("rim").intensity == 1.0
         autocolor.write_scene(folder, tables.scene(), overwrite=True)
     assert read_scene(folder).light("rim").intensity == 0.5
+
+
+ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT "
+
+
+@pytest.fixture
+def connection() -> Iterator[sqlite3.Connection]:
+    made = store_of(small_scene())
+    yield made
+    made.close()
+
+
+@pytest.mark.parametrize(
+    ("statement", "problem"),
+    [
+        (
+            "SELECT * FROM light",
+            "that SQLite can run, and this one is not (no such table: light); correct it",
+        ),
+        ("SELECT on FROM lights", '(near "on": syntax error); correct it'),
+        ("SELECT * FROM", "(incomplete input); correct it"),
+        ("SELECT 1; SELECT 2", "(You can only execute one statement at a time.); correct it"),
+        ("  ; ", "a statement must not be empty; write one, as in SELECT"),
+        ("DELETE FROM lights", "must only read the tables, and this one changes lights; allow changes with"),
+        ("CREATE TABLE x (y)", "must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not"),
+        ("ATTACH 'x' AS y", "must be a SELECT or, with --write, an INSERT, UPDATE or DELETE of rows, not"),
+        ("PRAGMA journal_mode = OFF", "must be a SELECT or, with --write"),
+        ("SELECT load_extension('x')", "(not authorized to use function: load_extension)"),
+        (
+            "SELECT hex(hex(replace(printf('%100000d', 1), ' ', 'abcdef')))",
+            "(string or blob too big)",
+        ),
+        ("SELECT length(randomblob(1000000000))", "(string or blob too big); correct it"),
+        ("SELECT length(zeroblob(1000000000))", "(string or blob too big); correct it"),
+    ],
+)
+def test_a_wrong_statement_is_told_in_a_sentence_with_what_to_do(
+    connection: sqlite3.Connection, statement: str, problem: str
+) -> None:
+    with pytest.raises(UsageError) as refused:
+        list(answer_of(connection, statement).rows)
+    assert problem in str(refused.value)
+
+
+@pytest.mark.parametrize("select", ["max(i) FROM n", "i FROM n WHERE i < 0"])
+def test_a_statement_that_runs_on_is_ended(connection: sqlite3.Connection, select: str) -> None:
+    with pytest.raises(UsageError, match=r"a statement must end within 0\.05 seconds, not run on; narrow it"):
+        list(answer_of(connection, ENDLESS + select, seconds=0.05).rows)
+
+
+def test_rows_come_as_they_are_asked_for(connection: sqlite3.Connection) -> None:
+    columns, rows = answer_of(connection, ENDLESS + "i, i FROM n")
+    assert columns == ("i", "i 2")
+    assert [next(rows) for _ in range(3)] == [(1, 1), (2, 2), (3, 3)]
+
+
+def test_the_columns_of_an_answer_have_different_names(connection: sqlite3.Connection) -> None:
+    assert answer_of(connection, 'SELECT 1 AS a, 2 AS "a 2", 3 AS a').columns == ("a", "a 2", "a 3")
+
+
+def test_what_a_statement_would_change_is_known_before_it_is_run(connection: sqlite3.Connection) -> None:
+    found = changes_of(connection, "UPDATE lights SET intensity = ?", [2.0])
+    assert found == {"lights": {sqlite3.SQLITE_UPDATE}}
+    assert connection.execute("SELECT DISTINCT intensity FROM lights").fetchall() == [(1.0,)]
+    assert changes_of(connection, "SELECT * FROM lights") == {}
+
+
+def test_long_rows_are_fetched_a_few_at_a_time(connection: sqlite3.Connection) -> None:
+    rows = answer_of(connection, ENDLESS + "printf('%.1000000c', 'a') FROM n").rows
+    tracemalloc.start()
+    next(rows)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 10_000_000
+
+
+def test_a_full_disk_is_no_fault_of_the_statement(connection: sqlite3.Connection) -> None:
+    connection.execute("PRAGMA max_page_count = 1")
+    grow = "UPDATE lights SET name = name || printf('%.100000c', 'a')"
+    with pytest.raises(WriteError, match=r"the disk must hold the store, and is full or fails .*; make room"):
+        change(connection, grow)
+
+
+def test_values_that_a_statement_computes_are_short_enough_to_be_searched_at_once(
+    connection: sqlite3.Connection,
+) -> None:
+    def length_of(letters: int) -> object:
+        return next(answer_of(connection, f"SELECT length(printf('%.{letters}c', 'a'))").rows)[0]
+
+    assert length_of(LONGEST_COMPUTED - 1000) == LONGEST_COMPUTED - 1000
+    # A longer one is NULL, as printf has it.
+    assert length_of(LONGEST_COMPUTED + 1) is None

@@ -17,9 +17,9 @@ from autocolor.checks import shown
 from autocolor.errors import InputError
 from autocolor.files.meshes.repair import MeshReport
 from autocolor.files.reading import read_bytes
-from autocolor.files.scenes.scene_meshes import mesh_file, meshes_of
-from autocolor.files.scenes.scene_report import SceneProblems, SceneReport, scene_report
-from autocolor.files.scenes.toml_text import LARGEST_TEXT, parsed_toml
+from autocolor.files.scene_report import OMITTED, SceneReport, scene_report
+from autocolor.files.scene_toml.scene_meshes import mesh_file, meshes_of
+from autocolor.files.scene_toml.toml_text import LARGEST_TEXT, SceneProblems, parsed_toml
 from autocolor.scene.changes import PartChanges
 from autocolor.scene.columns import (
     REFUSED,
@@ -27,25 +27,17 @@ from autocolor.scene.columns import (
     RowError,
     SomeRow,
     changed,
-    fields_of,
     keys_of,
     made,
     unknown,
 )
 from autocolor.scene.creation import MATERIALS, SurfaceSource
-from autocolor.scene.defaults import MAPPING_FIELDS, default_surface
+from autocolor.scene.defaults import default_surface
 from autocolor.scene.scene import Scene
 from autocolor.scene.surfaces import MOST_SURFACES, Part, Surface
 
 FILE_KEYS: Final = tuple(key for key in keys_of(Scene) if key != "name")
 """The keys of a scene file; the scene's name is that of its folder or file."""
-
-OMITTED: Final = {
-    name: field.default()
-    for name, field in fields_of(Scene).items()
-    if name in MAPPING_FIELDS and field.default is not None
-}
-"""What omitted keys mean that are created for a bare mesh."""
 
 TABLES: Final = ("mesh", "parts", "surfaces")
 """The keys that cannot be read one by one, as they refer to each other."""

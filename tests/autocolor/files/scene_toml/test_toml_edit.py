@@ -9,8 +9,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from autocolor.files.scenes.toml_edit import TomlText, blocks_of, inline_items
-from autocolor.files.scenes.toml_text import KeyPath, toml_key, toml_value
+from autocolor.files.scene_toml.toml_edit import TomlText, blocks_of, inline_items
+from autocolor.files.scene_toml.toml_text import KeyPath, toml_key, toml_value
 
 TABLES = ("view", "mesh", "parts", "surfaces", "lights")
 

@@ -1,6 +1,6 @@
-"""What can be opened in a folder: scenes, meshes, pictures, rigs of lights, and further folders.
+"""The files of a folder that can be opened: scenes, stores, meshes, pictures, and further folders.
 
-A list is made from names alone, so that it is quick; a file is read when it is opened.
+They are listed by their names alone, which is quick; a file is read when it is opened.
 """
 
 from __future__ import annotations
@@ -19,37 +19,36 @@ FOLDER: Final = "folder"
 MESH: Final = "mesh"
 
 MOST_LISTED: Final = 1000
-"""Assumed: the names of a folder that are looked at; more cannot be pointed at."""
+"""Limit: the names of a folder that are listed; more cannot be pointed at."""
 
 
 class Openable(NamedTuple):
-    """A path, and what it is: "scene", "store", "picture", "mesh" or "folder"."""
+    """A path, and its kind: "scene", "store", "picture", "mesh" or "folder"."""
 
     path: Path
     kind: str
 
 
 def openables_of(folder: Path) -> list[Openable]:
-    """What can be opened in a folder, then its folders, by name; hidden names are left out.
+    """The files of a folder that can be opened, then its folders, by name; hidden names are left out.
 
-    Of a folder with more than MOST_LISTED names, only so many are looked at. Raises InputError if it cannot
-    be read.
+    At most MOST_LISTED names of a folder are read. Raises InputError if the folder cannot be read.
     """
     try:
         with os.scandir(folder) as listed:
-            names = [each.name for each in islice(listed, MOST_LISTED)]
+            names = [entry.name for entry in islice(listed, MOST_LISTED)]
     except OSError as error:
         raise InputError(
             f"{folder.name or folder}: a folder must be readable, and is not ({reason_of(error)});"
             " choose another"
         ) from None
     paths = [folder / name for name in sorted(names, key=_in_order) if not name.startswith(".")]
-    found = [Openable(path, kind) for path in paths if (kind := kind_of(path))]
-    return sorted(found, key=lambda each: each.kind == FOLDER)
+    openables = [Openable(path, kind) for path in paths if (kind := kind_of(path))]
+    return sorted(openables, key=lambda openable: openable.kind == FOLDER)
 
 
 def kind_of(path: Path) -> str:
-    """What a path is, as in `Openable`; empty for what cannot be opened, or is not there."""
+    """The kind of a path, as in `Openable`; empty if it cannot be opened, or does not exist."""
     try:
         if path.is_dir():
             if _scene_file_in(path) is not None:
@@ -66,15 +65,15 @@ def kind_of(path: Path) -> str:
 
 
 def stays_within(path: Path, folder: Path) -> bool:
-    """Whether a path, and what is read first if it is opened, are in a folder, links resolved."""
+    """Whether a path, and the files to read first when it is opened, are in a folder, links resolved."""
     real = os.path.realpath(folder)
     read = [path]
     if path.is_dir():
-        found = format_of_folder(path)
+        mesh_format = format_of_folder(path)
         names = [each.in_folder for each in SCENE_FORMATS if each.in_folder]
-        names += found.in_folder if found is not None else ()
+        names += mesh_format.in_folder if mesh_format is not None else ()
         read += [path / name for name in names]
-    return all(Path(os.path.realpath(each)).is_relative_to(real) for each in read)
+    return all(Path(os.path.realpath(file)).is_relative_to(real) for file in read)
 
 
 def _scene_file_in(folder: Path) -> str | None:

@@ -1,4 +1,4 @@
-"""Parsing TOML with bounded time and memory, and finding the line of each key.
+"""TOML: parsing in bounded time and memory, the lines of keys and of problems, and writing values.
 
 `tomllib` needs time and memory quadratic in the parts of a dotted key, and recurses into nested arrays. So
 the text is first split into tokens by a regular expression, in linear time, and refused if it exceeds a
@@ -10,27 +10,21 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
-from autocolor.errors import InputError
+from autocolor.checks import nearest
+from autocolor.errors import InputError, MissingInputError
 from autocolor.files.reading import text_problem
-from autocolor.scene.columns import Row, fields_of, made, plain
-from autocolor.scene.geometry.normals import CREASE_ANGLE
-from autocolor.scene.lights import Flap, HalfSpace, Light
-from autocolor.scene.row_kinds import NamedRows, Nested, Rows, without_name
-from autocolor.scene.scalar import Scalar
-from autocolor.scene.scene import Scene
-from autocolor.scene.surfaces import Part, Surface
-from autocolor.scene.view import View
+from autocolor.scene.columns import Problem
 
 LARGEST_TEXT: Final = 1 << 20
-"""Largest size of a scene file, in bytes."""
+"""Limit: size of a scene file, in bytes."""
 
 MOST_NESTED: Final = 16
 MOST_KEY_PARTS: Final = 8
 LONGEST_WORD: Final = 100
-"""Assumed: characters of a number or of a key without quotes; a scene needs a tenth of that."""
+"""Limit: characters of a number or of a key without quotes; a scene needs a tenth of that."""
 
 TOKEN: Final = re.compile(
     r"""
@@ -73,10 +67,10 @@ def parsed_toml(data: bytes, place: str, what: str = "a scene file") -> dict[str
 
 def _syntax_problem(message: str, text: str, place: str) -> str:
     """The parser's error message as one of ours, with file and line."""
-    found = re.search(r" \(at line (\d+), column (\d+)\)$", message)
-    if found:
-        line, column = found[1], f"column {found[2]}"
-        message = message[: found.start()]
+    place_of_error = re.search(r" \(at line (\d+), column (\d+)\)$", message)
+    if place_of_error:
+        line, column = place_of_error[1], f"column {place_of_error[2]}"
+        message = message[: place_of_error.start()]
     else:
         line, column = str(text.rstrip("\n").count("\n") + 1), "the end of the file"
         message = message.removesuffix(" (at end of document)")
@@ -173,102 +167,9 @@ def _statements(text: str) -> Iterator[tuple[int, str]]:
         line += token[0].count("\n")
 
 
-# -------------------- scene_text
-# Writing a scene as the text of a scene file; reading it back gives the same scene.
+# Writing.
 
 BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]{1,100}")
-
-
-FILE_TABLES: Final = ("view", "scalar", "mesh", "parts", "surfaces", "lights")
-"""The tables of a scene file, in the order in which they are written."""
-
-ALWAYS_WRITTEN: Final[dict[type[Row], tuple[str, ...]]] = {
-    Part: ("name", "surface"),
-    # A surface without an object color is given one in turn.
-    Surface: ("name", "object_color"),
-    Light: ("name", "position"),
-    View: ("eye", "direction", "target"),
-    Flap: (),
-    HalfSpace: ("name", "point", "direction"),
-    Scalar: ("name",),
-}
-"""The keys that are written even if `without_defaults` leaves out others."""
-
-
-def scene_text(
-    scene: Scene, mesh_files: Sequence[Mapping[str, str]], *, without_defaults: bool = False
-) -> str:
-    """The scene as TOML, with all its tables; `mesh_files` are its `[[mesh]]` tables (see SceneReport).
-
-    Keys whose values are their defaults can be left out. The scene's name is not written, as it is given by
-    the name of the folder or file.
-    """
-    tables = sparse_tables(scene) if without_defaults else plain(scene)
-    kinds = {name: field.column.kind for name, field in fields_of(Scene).items()}
-    keys = {
-        key: value
-        for key, value in tables.items()
-        if key != "name" and (not isinstance(kinds[key], (Nested, Rows)) or (key, value) == ("lights", []))
-    }
-    blocks = [table_text("", keys)] if keys else []
-    nested = [name for name, kind in kinds.items() if isinstance(kind, Nested) and name in tables]
-    blocks.extend(table_text(f"[{name}]", tables[name]) for name in nested)
-    for row, files in enumerate(mesh_files):
-        entry = {**files} if row else {**files, "crease_angle": scene.mesh.crease_angle}
-        blocks.append(table_text("[[mesh]]", sparse_entry(entry) if without_defaults else entry))
-    for name, kind in kinds.items():
-        if isinstance(kind, Rows):
-            blocks.extend(_rows(name, kind, tables[name]))
-    return "\n".join(blocks)
-
-
-def sparse_tables(scene: Scene) -> dict[str, Any]:
-    """The tables of a scene as keys and plain values, without keys whose values are their defaults."""
-    tables: dict[str, Any] = {}
-    for name, field in fields_of(Scene).items():
-        value, kind = vars(scene)[name], field.column.kind
-        if isinstance(kind, Rows):
-            tables[name] = [sparse_row(row) for row in value]
-        elif isinstance(kind, Nested) and value is not None:
-            tables[name] = sparse_row(value)
-        elif field.default is None or value != field.default():
-            tables.update(kind.written(name, value))
-    return tables
-
-
-def sparse_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """A `[[mesh]]` table without keys whose values are their defaults."""
-    defaults = {"up": "z", "scale": 1.0, "crease_angle": CREASE_ANGLE}
-    return {key: value for key, value in entry.items() if value != defaults.get(key)}
-
-
-def sparse_row(row: Row) -> dict[str, object]:
-    """The row as keys and plain values, without keys whose values are what they are if omitted."""
-    keys = plain(row)
-    always = ALWAYS_WRITTEN[type(row)]
-    given = {key: keys[key] for key in always if key in keys}
-    model = {key: keys[key] for key in ("model",) if key in keys}
-    default, of_model = plain(made(type(row), given)), plain(made(type(row), {**given, **model}))
-    if isinstance(row, Light):
-        keys["flaps"] = {axis: sparse_row(flap) for axis, flap in vars(row.flaps).items() if flap is not None}
-    for name, field in fields_of(type(row)).items():
-        if isinstance(field.column.kind, NamedRows) and name in keys:
-            inner = {each.name: sparse_row(each) for each in vars(row)[name]}
-            keys[name] = {key: without_name(each) for key, each in inner.items()}
-    return {
-        key: value
-        for key, value in keys.items()
-        if key in always or value != (default if key in model else of_model).get(key)
-    }
-
-
-def _rows(name: str, kind: Rows, rows: Any) -> Iterator[str]:
-    """The rows of a table, as [name.ROW] tables or as [[name]] tables."""
-    for keys in rows:
-        if kind.by_name:
-            yield table_text(f"[{name}.{toml_key(keys['name'])}]", without_name(keys))
-        else:
-            yield table_text(f"[[{name}]]", keys)
 
 
 def table_text(header: str, keys: Any) -> str:
@@ -299,3 +200,96 @@ def toml_value(value: object) -> str:
         # TOML needs the escapes of JSON, and one for DEL.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     return repr(value)
+
+
+# The problems of a file, each with its line, table and key.
+
+MOST_PROBLEMS: Final = 100
+
+LONGEST_SENTENCE: Final = 400
+
+
+class SceneProblems:
+    """Collects the problems of one scene file and raises them in line order."""
+
+    def __init__(self, place: str, data: bytes, document: dict[str, Any]) -> None:
+        self.place = place
+        self.data = data
+        self.document = document
+        self.lines: dict[KeyPath, int] | None = None
+        self.found: list[tuple[int, str]] = []
+        self.count = 0
+        self.all_missing = True
+
+    def note(self, path: KeyPath, text: str, names: tuple[str, Iterable[str]] | None = None) -> None:
+        """Add a problem of the value at a path.
+
+        With `names`, a wrong name and the valid ones, the message suggests the closest valid name.
+        """
+        self.note_all([Problem(path, text + (nearest(*names) if names else ""))])
+
+    def note_all(self, problems: Iterable[Problem], path: KeyPath = ()) -> None:
+        """Add problems of the table at a path."""
+        for problem in problems:
+            self.all_missing = False
+            self._note(problem.under(path))
+
+    def _note(self, problem: Problem) -> None:
+        self.count += 1
+        if self.full:
+            return
+        where, depth = self._table_of(problem.path)
+        if len(problem.path) == depth == 1 and problem.text.startswith("must "):
+            where, depth = "", 0
+        sentence = problem._replace(path=problem.path[depth:]).sentence
+        if len(sentence) > LONGEST_SENTENCE:
+            sentence = sentence[:LONGEST_SENTENCE] + "..."
+        line = self._line(problem.path)
+        at = f", line {line}" if line else ""
+        self.found.append((line or 0, f"{self.place}{at}, {where}{sentence}"))
+
+    @property
+    def full(self) -> bool:
+        """Whether the report has reached its largest number of problems."""
+        return len(self.found) >= MOST_PROBLEMS
+
+    def note_file(self, path: KeyPath, error: InputError) -> None:
+        """Add the problems of a mesh file, which state their own places; `path` is the key that names it."""
+        if isinstance(error, MissingInputError):
+            for sentence in error.problems:
+                self._note(Problem(path, sentence, names_key=True))
+            return
+        self.all_missing = False
+        self.count += len(error.problems)
+        line = self._line(path) or 0
+        self.found.extend((line, problem) for problem in error.problems[: MOST_PROBLEMS - len(self.found)])
+
+    def raise_any(self) -> None:
+        """Raise InputError with all problems, if any; MissingInputError if they are missing files only."""
+        if not self.found:
+            return
+        sentences = [sentence for _, sentence in sorted(self.found, key=lambda found: found[0])]
+        if self.full:
+            sentences.append(f"{self.place}: there may be more problems; correct these first")
+        raise MissingInputError(sentences) if self.all_missing else InputError(sentences)
+
+    def _line(self, path: KeyPath) -> int | None:
+        if self.lines is None:
+            self.lines = key_lines(self.data)
+        return next(
+            (self.lines[path[:end]] for end in range(len(path), 0, -1) if path[:end] in self.lines), None
+        )
+
+    def _table_of(self, path: KeyPath) -> tuple[str, int]:
+        """The table that a path is in, as in "lights[1] 'key': ", and how many parts of the path name it.
+
+        Rows are counted from 1.
+        """
+        if len(path) > 1 and path[0] in ("lights", "mesh") and isinstance(path[1], int):
+            rows = self.document.get(str(path[0]))
+            row = rows[path[1]] if isinstance(rows, list) else None
+            name = row.get("name") if isinstance(row, dict) else None
+            return f"{path[0]}[{path[1] + 1}]{f' {name[:60]!r}' if isinstance(name, str) else ''}: ", 2
+        if len(path) > 1 and path[0] in ("surfaces", "parts"):
+            return f"[{path[0]}.{str(path[1])[:60]}]: ", 2
+        return ("[view]: ", 1) if path[:1] == ("view",) else ("", 0)

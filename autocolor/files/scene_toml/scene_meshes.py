@@ -1,4 +1,9 @@
-"""Reading the meshes that a scene file names, and collecting their problems."""
+"""The `[[mesh]]` tables of a scene file: reading their files, remembering them, and writing a mesh for them.
+
+A mesh knows nothing of files. The files that it was read from are remembered beside it, so that a scene that
+is written can name them again, and are forgotten with it. A file may have been changed since, so its mesh is
+compared before it is named.
+"""
 
 from __future__ import annotations
 
@@ -6,27 +11,30 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Final
+from typing import Annotated, Any, ClassVar, Final, NamedTuple
 from weakref import WeakKeyDictionary
 
-from autocolor.errors import InputError
+from autocolor.errors import InputError, OutputError
 from autocolor.files.formats import format_of_files, read_mesh
+from autocolor.files.meshes.obj import obj_text
 from autocolor.files.meshes.repair import SCALES, UPS, MeshReport, Placement
+from autocolor.files.meshes.table_file import SUFFIX, table_file_bytes
 from autocolor.files.paths import path_within
 from autocolor.files.reading import LARGEST_MESH_FILE
-from autocolor.files.scenes.scene_report import SceneProblems
-from autocolor.files.scenes.toml_text import KeyPath
+from autocolor.files.scene_toml.toml_text import KeyPath, SceneProblems, parsed_toml
+from autocolor.files.writing import free_path, write_atomically
 from autocolor.scene.columns import Bar, Column, Problem, Row, RowError, Tier, made
 from autocolor.scene.kinds import Choice, Text
-from autocolor.scene.mesh import CREASE_ANGLES, Mesh
+from autocolor.scene.mesh import CREASE_ANGLES, Mesh, has_same_tables
 
 MOST_MESHES: Final = 1000
+MESH_STEM: Final = "mesh"
+"""The name, without its ending, of a mesh file that is written beside a scene file."""
 
 SCALE_BAR: Final = Bar(0.01, 10, 0.01)
 
 FILE_KEYS: Final = (("file",), ("nodes", "polygons"))
 """The keys that name the files of a mesh: one file, or a node table and a polygon table."""
-
 
 MESH_FILE_KEYS: Final = frozenset(key for keys in FILE_KEYS for key in keys)
 """The keys of a `[[mesh]]` table whose values are paths; the others tell how the files are read."""
@@ -65,8 +73,12 @@ class MeshEntry(Row):
             yield Problem((), f"it must have a file, or nodes and polygons, not {listed}; correct it")
 
 
+Entries = tuple[Mapping[str, Any], ...]
+"""`[[mesh]]` tables."""
+
+
 @dataclass(frozen=True)
-class Source:
+class MeshFiles:
     """A mesh to read: the path of its `[[mesh]]` table, its files by key, and the table itself."""
 
     path: KeyPath
@@ -83,7 +95,7 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
         source
         for row, table in enumerate(rows)
         if not problems.full
-        and (source := _source(problems, ("mesh", row), table, folder, outside)) is not None
+        and (source := _files(problems, ("mesh", row), table, folder, outside)) is not None
     ]
     crease_angle = _crease_angle(problems, sources)
     size = sum(_size(file) for source in sources for file in _read_whole(source.files))
@@ -103,9 +115,9 @@ def meshes_of(problems: SceneProblems, rows: list[Any], folder: Path, *, outside
     return reports
 
 
-def _source(
+def _files(
     problems: SceneProblems, path: KeyPath, table: object, folder: Path, outside: bool
-) -> Source | None:
+) -> MeshFiles | None:
     """The files of one `[[mesh]]` table; None, with its problems added, if they are invalid."""
     entry = _entry(problems, path, table)
     if entry is None:
@@ -117,13 +129,13 @@ def _source(
         problems.note_all([Problem((key,), reason) for reason in reasons], path)
         if file is not None:
             files[key] = file
-    return Source(path, files, entry) if tuple(files) in FILE_KEYS else None
+    return MeshFiles(path, files, entry) if tuple(files) in FILE_KEYS else None
 
 
 def _entry(problems: SceneProblems, path: KeyPath, table: object) -> MeshEntry | None:
     """One `[[mesh]]` table without its invalid keys, which are added to the problems.
 
-    So its files are still read, and their problems reported too.
+    Its files are still read, so that their problems are reported too.
     """
     try:
         return made(MeshEntry, table)
@@ -138,8 +150,8 @@ def _entry(problems: SceneProblems, path: KeyPath, table: object) -> MeshEntry |
         return None
 
 
-def _crease_angle(problems: SceneProblems, sources: list[Source]) -> float | None:
-    """The crease angle that the tables give; None if none does."""
+def _crease_angle(problems: SceneProblems, sources: list[MeshFiles]) -> float | None:
+    """The crease angle of the tables; None if no table gives it."""
     given = [
         (source.entry.crease_angle, source) for source in sources if source.entry.crease_angle is not None
     ]
@@ -153,9 +165,9 @@ def _crease_angle(problems: SceneProblems, sources: list[Source]) -> float | Non
 
 
 def _read_whole(files: Mapping[str, Path]) -> Iterable[Path]:
-    """Those of the files of a mesh that are read whole, and not mapped into memory."""
-    found = format_of_files(files)
-    return () if found is not None and found.mapped else files.values()
+    """The files of a mesh that are read whole, and not mapped into memory."""
+    mesh_format = format_of_files(files)
+    return () if mesh_format is not None and mesh_format.mapped else files.values()
 
 
 def _size(path: Path) -> int:
@@ -170,13 +182,6 @@ def mesh_file(table: Mapping[str, Any]) -> dict[str, str]:
     return {key: table[key] for key in ("file", "nodes", "polygons", "up", "scale") if key in table}
 
 
-# -------------------- mesh_sources
-# Where meshes were read from, so that a scene that is written can name the same files.
-#
-# What was read from where is kept beside the meshes, which know nothing of files, and forgotten with them.
-# Whoever names a file again must compare what it holds: it may have been changed since.
-
-
 @dataclass(frozen=True)
 class MeshSource:
     """The `[[mesh]]` tables that a mesh was read with, and the absolute folder that their files are in.
@@ -185,7 +190,7 @@ class MeshSource:
     """
 
     folder: Path
-    entries: tuple[Mapping[str, Any], ...]
+    entries: Entries
     scene_file: Path | None = None
 
 
@@ -193,10 +198,80 @@ _SOURCES: Final[WeakKeyDictionary[Mesh, MeshSource]] = WeakKeyDictionary()
 
 
 def keep_source(mesh: Mesh, source: MeshSource) -> None:
-    """Keep where a mesh was read from."""
+    """Remember the files that a mesh was read from."""
     _SOURCES[mesh] = source
 
 
 def source_of(mesh: Mesh) -> MeshSource | None:
-    """Where a mesh was read from; None if it was made in memory or is that of a picture file."""
+    """The files that a mesh was read from; None if it was made in memory, or is that of a picture file."""
     return _SOURCES.get(mesh)
+
+
+class Meshes(NamedTuple):
+    """`[[mesh]]` tables that give the mesh of a scene, and the reports of reading them."""
+
+    entries: Entries
+    reports: list[MeshReport]
+
+
+def meshes_there(folder: Path, mesh: Mesh, old: bytes | None) -> Meshes | None:
+    """The files in a folder that hold a mesh: those of an old scene file, or those that it was read from."""
+    candidates = [] if old is None else [entries_of(old)]
+    source = source_of(mesh)
+    if source is not None:
+        candidates.append(_relative(source.entries, source.folder, folder.resolve()))
+    for entries in candidates:
+        reports = reports_of(folder, entries)
+        if reports and has_same_tables(Mesh.joined([report.mesh for report in reports]), mesh):
+            return Meshes(entries, reports)
+    return None
+
+
+def entries_of(data: bytes) -> Entries:
+    """The `[[mesh]]` tables of the text of a scene file; empty if it has something else instead."""
+    entries = parsed_toml(data, "scene.toml").get("mesh")
+    return tuple(entries) if isinstance(entries, list) else ()
+
+
+def _relative(entries: Entries, source: Path, folder: Path) -> Entries:
+    """Tables with the paths of their files from another folder; empty if a file is not within it."""
+    tables = []
+    for entry in entries:
+        keys = dict(entry)
+        for key in keys.keys() & MESH_FILE_KEYS:
+            try:
+                keys[key] = Path(os.path.normpath(source / keys[key])).relative_to(folder).as_posix()
+            except ValueError:
+                return ()
+        tables.append(keys)
+    return tuple(tables)
+
+
+def reports_of(folder: Path, entries: Entries) -> list[MeshReport]:
+    """The meshes of the files that tables name; empty if anything is wrong with them."""
+    problems = SceneProblems("scene.toml", b"", {})
+    reports = meshes_of(problems, list(entries), folder, outside=False)
+    return [] if problems.found else reports
+
+
+def written_mesh(folder: Path, mesh: Mesh, written: list[Path]) -> Meshes:
+    """Write a mesh to a new file: as OBJ, or as arrays if OBJ does not give the same mesh with its scalars.
+
+    The file is added to `written`. Raises OutputError or WriteError.
+    """
+    as_obj = () if mesh.scalars else ((".obj", obj_text),)
+    for suffix, content in (*as_obj, (SUFFIX, table_file_bytes)):
+        path = free_path(folder / f"{MESH_STEM}{suffix}")
+        write_atomically(path, content(mesh), overwrite=False)
+        written.append(path)
+        try:
+            report = read_mesh({"file": path})
+            if has_same_tables(report.mesh, mesh) and not report.repairs:
+                return Meshes(({"file": path.name},), [report])
+        except InputError:
+            pass
+        os.unlink(written.pop())
+    raise OutputError(
+        f"{folder}: a mesh must read back the same from a file, and one of {len(mesh.node_numbers):,}"
+        " polygons is too large; leave parts out"
+    )

@@ -1,8 +1,17 @@
-"""Changing values in the text of a TOML file; everything else stays as it is written.
+"""Editing values in the text of a TOML file; everything else stays as it is written.
 
 A changed value takes the place of the old one, also inside an inline table. A new key goes below the others
-of its table, or into a new table after those of the same kind. With a removed key goes the rest of its line;
-the comments above it stay, but those above the header of a removed table go with it.
+of its table, or into a new table after tables of the same kind. With a removed key goes the rest of its line.
+The comments above a removed key stay; the comments above the header of a removed table go with it.
+
+The text is split into blocks of statements; joined again they are the same text. A block is a header and the
+statements below it; the first block has no header. Comments directly above a header, with no empty line
+between, belong to it. A comment at the top of a file, if it is the only comment above the first header,
+belongs to the file.
+
+Measured and rejected: tomlkit leaves the comment above a header with the table before, gathers arrays of
+tables that stand apart, writes an inline table anew for each change, and takes 21 s to save a file of a
+megabyte; with repairs for the first fault, there is as much code as here.
 """
 
 from __future__ import annotations
@@ -12,18 +21,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple
 
-from autocolor.files.scenes.toml_text import TOKEN, KeyPath, only_path, toml_key, toml_value
-
-# -------------------- toml_blocks
-# The text of a TOML file as blocks of statements; joined again they are the same text.
-#
-# A block is a header and the statements below it; the first one has no header. Comments directly above a
-# header, with no empty line between, belong to it; a comment at the top of a file that is the only one
-# above the first header belongs to the file.
-#
-# Measured and rejected: tomlkit leaves the comment above a header with the table before, gathers arrays of
-# tables that stand apart, writes an inline table anew for each change, and takes 21 s to save a file of a
-# megabyte; with what mends the first, there is as much code as here.
+from autocolor.files.scene_toml.toml_text import TOKEN, KeyPath, only_path, toml_key, toml_value
 
 EMPTY_LINE: Final = re.compile(r"^[ \t\r]*\n", re.MULTILINE)
 
@@ -72,8 +70,8 @@ def blocks_of(text: str) -> list[Block]:
             blocks[-1].tail = lead
         elif statement.startswith("["):
             array = statement.startswith("[[")
-            # What is above the last empty line is of the block before.
-            above = max((found.end() for found in EMPTY_LINE.finditer(lead)), default=0)
+            # The lines above the last empty line belong to the block before.
+            above = max((line.end() for line in EMPTY_LINE.finditer(lead)), default=0)
             if len(blocks) == 1 and not blocks[0].statements and not above:
                 above = len(lead)
             blocks[-1].tail, comment = lead[:above], lead[above:]
@@ -202,14 +200,14 @@ class TomlText:
         last = self._blocks[-1]
         self._blocks = [block for block in self._blocks if not block.path or not _is_below(block.path, path)]
         for block in self._blocks:
-            kept, above = [], ""
+            statements, above = [], ""
             for statement in block.statements:
                 if _is_below(statement.path, path):
                     above += statement.before
                 else:
                     statement.before, above = above + statement.before, ""
-                    kept.append(statement)
-            block.statements, block.tail = kept, above + block.tail
+                    statements.append(statement)
+            block.statements, block.tail = statements, above + block.tail
         if self._blocks[-1] is not last:
             end_block = self._blocks[-1]
             end_block.tail = f"{end_block.tail.rstrip()}\n" if end_block.tail.strip() else ""
@@ -342,13 +340,13 @@ def _inline(text: str, path: KeyPath, value: Any) -> str:
 def _inline_without(text: str, path: KeyPath) -> str:
     """An inline table without what is at a path inside it and below, if anything."""
     items = inline_items(text)
-    kept = []
+    others = []
     for item in items:
         inner, rest = text[item.start : item.stop], path[len(item.path) :]
         if rest and _is_below(path, item.path):
             return text[: item.start] + _inline_without(inner, rest) + text[item.stop :]
         if not _is_below(item.path, path):
-            kept.append(f"{item.key} = {inner}")
-    if len(kept) == len(items):
+            others.append(f"{item.key} = {inner}")
+    if len(others) == len(items):
         return text
-    return f"{{ {', '.join(kept)} }}" if kept else "{}"
+    return f"{{ {', '.join(others)} }}" if others else "{}"

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from autocolor import BlinnPhong, Phong, Reflectance
 from autocolor.errors import InputError, MissingInputError
 from autocolor.files.formats import mesh_suffixes, suffix_rule
-from autocolor.files.scenes.scene_file import read_scene_file
-from autocolor.files.scenes.scene_report import SceneReport
+from autocolor.files.scene_report import SceneReport
+from autocolor.files.scene_toml.scene_file import read_scene_file
 from autocolor.scene.creation import SurfaceSource
 from autocolor.scene.curves import CURVES
 from autocolor.scene.reflection_models import SpecularGrowth

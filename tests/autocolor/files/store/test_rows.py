@@ -1,10 +1,15 @@
 from __future__ import annotations
 
+import sqlite3
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from autocolor import InputError
+from autocolor.files.store import rows as module
+from autocolor.files.store.rows import insert_mesh
+from autocolor.files.store.schema import DEFINITIONS
 from autocolor.files.store.store_file import read_store
 from tests.autocolor.files.store.stores import run, small_scene, small_store
 
@@ -61,34 +66,6 @@ def test_an_empty_table_of_lights_means_no_lights(tmp_path: Path) -> None:
     assert read_store(path).scene.lights == ()
 
 
-def test_every_problem_of_the_rows_is_told(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(
-        path,
-        "UPDATE surfaces SET exponent = 5, model = 'cook-torrance' WHERE name = 'glass'",
-        "UPDATE lights SET concentration = 3 WHERE name = 'rim'",
-        "UPDATE scene SET exposure = '{\"body\": [2, 1]}'",
-    )
-    with pytest.raises(InputError) as refused:
-        read_store(path)
-    first, second = refused.value.problems
-    assert first.startswith("small.sqlite: surfaces, row 2: exponent must go with model = 'phong'")
-    assert second.startswith("small.sqlite: lights, row 2: concentration must come with a direction")
-
-
-def test_more_than_one_row_of_a_table_of_one_is_refused(tmp_path: Path) -> None:
-    path = small_store(tmp_path)
-    run(
-        path,
-        "CREATE TABLE views AS SELECT * FROM view",
-        "DROP TABLE view",
-        "ALTER TABLE views RENAME TO view",
-    )
-    run(path, "INSERT INTO view SELECT * FROM view")
-    with pytest.raises(InputError, match="view must have one row, not 2; leave one"):
-        read_store(path)
-
-
 NEW_COLUMNS = (
     "inner_angle", "half_spaces", "falloff", "reach", "at_infinity", "follows", "only_surfaces",
     "except_surfaces", "only_parts", "except_parts", "flaps_x_edge_width", "flaps_y_edge_width",
@@ -126,36 +103,73 @@ def test_rows_by_name_and_names_are_read_from_what_any_tool_writes(tmp_path: Pat
     )
 
 
-@pytest.mark.parametrize(
-    ("change", "told"),
-    [
-        (
-            """half_spaces = '{"left": {"point": [0,0,0], "direction": [0,0,1], "edge_width": -1}}'""",
-            "lights, row 1: half_spaces.left.edge_width must be a finite number of at least 0, not -1",
-        ),
-        (
-            """half_spaces = '{"left": '""",
-            "lights, row 1: half_spaces must be a table of half-spaces by name, not '{\"left\": '",
-        ),
-        ("half_spaces = 3", "lights, row 1: half_spaces must be a table of half-spaces by name, not 3"),
-        ("only_parts = 'hood'", "lights, row 1: only_parts must be a list of names, not 'hood'"),
-        (
-            """only_parts = '["hod"]'""",
-            "light 'key': only_parts 'hod' is not in the part table; did you mean 'hood'?",
-        ),
-        (
-            "follows = 'rm'",
-            "light 'key': follows 'rm' is not in the light table; did you mean 'rim'?",
-        ),
-        (
-            "follows = 'rim'",
-            "light 'key': follows must be a light with an aim, not 'rim' without one; give it an aim",
-        ),
-    ],
+LOOSE_NODES = (
+    "ALTER TABLE nodes RENAME TO old",
+    "CREATE TABLE nodes (node, x, y, z)",
+    "INSERT INTO nodes SELECT * FROM old",
+    "DROP TABLE old",
 )
-def test_what_is_wrong_with_them_is_told_with_its_place(tmp_path: Path, change: str, told: str) -> None:
+
+
+def test_a_missing_node_is_named_also_where_no_table_tells_of_references(tmp_path: Path) -> None:
     path = small_store(tmp_path)
-    run(path, f"UPDATE lights SET {change} WHERE name = 'key'")
+    run(
+        path,
+        *LOOSE_NODES,
+        "CREATE TABLE loose AS SELECT * FROM polygons",
+        "DROP TABLE polygons",
+        "ALTER TABLE loose RENAME TO polygons",
+        "UPDATE nodes SET node = 37 WHERE node = 4",
+    )
     with pytest.raises(InputError) as refused:
         read_store(path)
-    assert list(refused.value.problems) == [f"small.sqlite: {told}"]
+    problem = "polygons, row 1: node 4 is not in the node table (1 to 37); correct it"
+    assert refused.value.problems == (f"small.sqlite: {problem}",)
+    run(path, "UPDATE polygons SET node4 = 37 WHERE node4 = 4", "DELETE FROM node_scalars WHERE node = 4")
+    assert read_store(path).scene.mesh.node_numbers.tolist() == [[0, 1, 2, 4], [0, 1, 3, 3]]
+
+
+def test_too_many_rows_are_refused_before_they_are_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "MOST_MESH_ROWS", 4)
+    with pytest.raises(InputError, match="nodes must have at most 4 rows, not 5; leave rows out"):
+        read_store(small_store(tmp_path))
+
+
+def test_values_belong_to_nodes_whose_numbers_a_double_does_not_hold(tmp_path: Path) -> None:
+    path = small_store(tmp_path)
+    far = 2**53
+    run(
+        path,
+        f"UPDATE nodes SET node = node + {far}",
+        f"UPDATE node_scalars SET node = node + {far}",
+        *(f"UPDATE polygons SET node{corner} = node{corner} + {far}" for corner in (1, 2, 3, 4)),
+    )
+    stress = read_store(path).scene.mesh.scalars[0]
+    np.testing.assert_array_equal(stress.values, [1, 2, np.nan, 4, 5])
+
+
+@pytest.mark.parametrize("chunk", [1, 2, 1 << 16])
+def test_rows_are_counted_from_1_and_a_triangle_has_no_fourth_node(
+    chunk: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "CHUNK", chunk)
+    connection = sqlite3.connect(":memory:")
+    for definition in DEFINITIONS.values():
+        connection.execute(definition)
+    insert_mesh(connection, small_scene().mesh)
+    nodes = connection.execute("SELECT * FROM nodes").fetchall()
+    assert nodes[0] == (1, 0.0, 0.0, 0.0)
+    assert nodes[4] == (5, 0.5, 0.5, 1.0)
+    polygons = connection.execute("SELECT * FROM polygons").fetchall()
+    assert polygons == [(1, "hood", 1, 2, 3, 4), (2, "roof", 1, 2, 5, None)]
+    scalars = connection.execute("SELECT * FROM mesh_scalars").fetchall()
+    assert scalars == [(1, "stress", "node"), (2, "area", "polygon")]
+    values = connection.execute("SELECT * FROM node_scalars WHERE node > 2").fetchall()
+    assert values == [("stress", 3, None), ("stress", 4, 4.0), ("stress", 5, 5.0)]
+    assert connection.execute("SELECT * FROM polygon_scalars").fetchall() == [
+        ("area", 1, 1.0),
+        ("area", 2, 0.5),
+    ]
+    connection.close()

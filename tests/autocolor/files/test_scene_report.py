@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import dataclasses
-import tomllib
 from typing import Any
 
 import pytest
@@ -9,10 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from autocolor import InputError, Light, Mesh, Surface, View
-from autocolor.errors import MissingInputError
 from autocolor.files.meshes.repair import MeshReport
-from autocolor.files.scenes.scene_report import LONGEST_SENTENCE, MOST_PROBLEMS, SceneProblems, scene_report
-from autocolor.scene.columns import Problem
+from autocolor.files.scene_report import scene_report
 from autocolor.scene.defaults import created_surface
 from tests.autocolor.meshes import cube, wall_scene
 
@@ -141,142 +138,3 @@ def test_a_part_of_several_meshes_has_the_first_material_and_the_others_are_told
     report = scene_report(read)
     assert report.scene.parts[0].surface == "red"
     assert report.repairs == ("part 'cube' is in several meshes: it has material 'red'",)
-
-
-TEXT = """ambient = 1
-scaling = "object"
-[view]
-eye = [1, 2, 3]
-[[mesh]]
-file = "car.obj"
-[surfaces."my body"]
-blend = 0.5
-[[lights]]
-name = "key"
-position = [1, 2, 3]
-flaps.z = { minimum = 0 }
-[[lights]]
-position = [1, 2, 3]
-"""
-
-
-def problems_of(text: str = TEXT) -> SceneProblems:
-    return SceneProblems("scene.toml", text.encode(), tomllib.loads(text))
-
-
-def sentences_of(problems: SceneProblems) -> tuple[str, ...]:
-    with pytest.raises(InputError) as caught:
-        problems.raise_any()
-    return caught.value.problems
-
-
-@pytest.mark.parametrize(
-    ("path", "sentence"),
-    [
-        ((), "scene.toml, must be so"),
-        (("ambient",), "scene.toml, line 1, ambient must be so"),
-        (("view",), "scene.toml, line 3, view must be so"),
-        (("view", "eye"), "scene.toml, line 4, [view]: eye must be so"),
-        (("mesh", 0, "file"), "scene.toml, line 6, mesh[1]: file must be so"),
-        (("surfaces", "my body", "blend"), "scene.toml, line 8, [surfaces.my body]: blend must be so"),
-        (("lights", 0, "position"), "scene.toml, line 11, lights[1] 'key': position must be so"),
-        (
-            ("lights", 0, "flaps", "z", "minimum"),
-            "scene.toml, line 12, lights[1] 'key': flaps.z.minimum must be so",
-        ),
-        (("lights", 1, "position"), "scene.toml, line 14, lights[2]: position must be so"),
-        (("lights", 1, "name"), "scene.toml, line 13, lights[2]: name must be so"),
-        (("parts", "hood", "surface"), "scene.toml, [parts.hood]: surface must be so"),
-    ],
-)
-def test_a_problem_has_the_line_the_table_and_the_key(path: tuple[str | int, ...], sentence: str) -> None:
-    problems = problems_of()
-    problems.note(path, "must be so")
-    assert sentences_of(problems) == (sentence,)
-
-
-def test_a_wrong_name_is_told_the_nearest_right_one() -> None:
-    problems = problems_of()
-    problems.note(("parts", "hod"), "no mesh has a part of this name", ("hod", ["hood", "roof"]))
-    assert sentences_of(problems) == (
-        "scene.toml, [parts.hod]: no mesh has a part of this name; did you mean 'hood'?",
-    )
-
-
-def test_problems_of_a_row_are_noted_under_its_path() -> None:
-    problems = problems_of()
-    problems.note_all(
-        [Problem(("name",), "must be so"), Problem((), "it must have an aim")], path=("lights", 1)
-    )
-    assert sentences_of(problems) == (
-        "scene.toml, line 13, lights[2]: name must be so",
-        "scene.toml, line 13, lights[2]: it must have an aim",
-    )
-
-
-def test_problems_stand_in_the_order_of_the_lines_and_of_noting() -> None:
-    problems = problems_of()
-    for path, text in ((("view", "eye"), "must a"), (("ambient",), "must b"), (("view", "eye"), "must c")):
-        problems.note(path, text)
-    assert [sentence[-1] for sentence in sentences_of(problems)] == ["b", "a", "c"]
-
-
-def test_without_a_problem_nothing_is_raised() -> None:
-    problems_of().raise_any()
-
-
-def test_a_mesh_file_has_places_of_its_own() -> None:
-    problems = problems_of()
-    problems.note(("lights", 0, "position"), "must be so")
-    problems.note_file(("mesh", 0, "file"), InputError(["car.obj, line 1: one", "car.obj, line 2: two"]))
-    assert sentences_of(problems) == (
-        "car.obj, line 1: one",
-        "car.obj, line 2: two",
-        "scene.toml, line 11, lights[1] 'key': position must be so",
-    )
-
-
-def test_files_are_missing_input_only_where_nothing_else_is_wrong() -> None:
-    missing = MissingInputError("car.obj: there is no such file")
-    problems = problems_of()
-    problems.note_file(("mesh", 0, "file"), missing)
-    with pytest.raises(MissingInputError) as caught:
-        problems.raise_any()
-    assert str(caught.value) == "scene.toml, line 6, mesh[1]: car.obj: there is no such file"
-    problems.note(("ambient",), "must be so")
-    with pytest.raises(InputError) as other:
-        problems.raise_any()
-    assert other.type is InputError
-    assert len(other.value.problems) == 2
-
-
-@given(st.integers(1, 3 * MOST_PROBLEMS), st.integers(0, 3 * MOST_PROBLEMS))
-def test_a_report_has_at_most_so_many_problems_and_says_if_there_may_be_more(own: int, of_mesh: int) -> None:
-    problems = problems_of()
-    for _ in range(own):
-        problems.note(("ambient",), "must be so")
-    problems.note_file(("mesh", 0, "file"), InputError("car.obj: wrong" for _ in range(of_mesh)))
-    sentences = sentences_of(problems)
-    assert problems.count == own + of_mesh
-    assert problems.full == (own + of_mesh >= MOST_PROBLEMS)
-    if problems.full:
-        assert len(sentences) == MOST_PROBLEMS + 1
-        assert sentences[-1] == "scene.toml: there may be more problems; correct these first"
-    else:
-        assert len(sentences) == own + of_mesh
-
-
-@given(st.text(min_size=1, max_size=2000))
-def test_a_sentence_is_short_whatever_a_file_holds(text: str) -> None:
-    problems = problems_of()
-    problems.note(("surfaces", text, text), text)
-    (sentence,) = sentences_of(problems)
-    assert len(sentence) <= LONGEST_SENTENCE + len("scene.toml, line 14, [surfaces.]: ...") + 60
-
-
-@pytest.mark.parametrize("text", ["lights = 3\n", "lights = [1]\n", "[lights]\nname = 'x'\n"])
-def test_a_table_that_is_no_table_still_has_a_place(text: str) -> None:
-    problems = problems_of(text)
-    problems.note(("lights", 0, "name"), "must be so")
-    (sentence,) = sentences_of(problems)
-    assert sentence == "scene.toml, line 1, lights[1]: name must be so"

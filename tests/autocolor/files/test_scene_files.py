@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from autocolor import InputError
-from autocolor.files.openable import MOST_LISTED, Openable, kind_of, openables_of, stays_within
+from autocolor.files.scene_files import MOST_LISTED, Openable, kind_of, openables_of, stays_within
 
 
 def names(folder: Path) -> list[tuple[str, str]]:

@@ -1,0 +1,107 @@
+"""The report of reading a scene: the scene, what was repaired in its files, and what was created for it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from autocolor.checks import shown
+from autocolor.files.meshes.repair import MeshReport
+from autocolor.scene.columns import fields_of
+from autocolor.scene.creation import scene_of
+from autocolor.scene.defaults import MAPPING_FIELDS
+from autocolor.scene.mesh import Mesh
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import MOST_SURFACES, Surface
+
+OMITTED: Final = {
+    name: field.default()
+    for name, field in fields_of(Scene).items()
+    if name in MAPPING_FIELDS and field.default is not None
+}
+"""The values of omitted keys that are created for a bare mesh."""
+
+
+@dataclass(frozen=True)
+class SceneReport:
+    """A scene, with messages about repairs and skipped parts of its files, and about what was created.
+
+    `mesh_files` are the `[[mesh]]` tables with which a scene file can name the same mesh (see `scene_text`).
+    `is_view_created` and `are_lights_created` tell whether the source gave none.
+    """
+
+    scene: Scene
+    repairs: tuple[str, ...] = ()
+    created: tuple[str, ...] = ()
+    mesh_files: tuple[Mapping[str, Any], ...] = ()
+    is_view_created: bool = False
+    are_lights_created: bool = False
+
+
+def scene_report(
+    reports: Sequence[MeshReport], *, mesh_files: tuple[Mapping[str, Any], ...] = (), **fields: Any
+) -> SceneReport:
+    """The report for a scene of the meshes that were read; `fields` are passed to `scene_of`."""
+    mesh = Mesh.joined([report.mesh for report in reports])
+    material_of_part, materials, conflicts = _joined_materials(reports)
+    scene = scene_of(mesh, material_of_part=material_of_part, materials=tuple(materials.values()), **fields)
+    surfaces = fields.get("surfaces", ())
+    given = set() if isinstance(surfaces, str) else {surface.name for surface in surfaces}
+    names = [surface.name for surface in scene.surfaces if surface.name not in given]
+    created = []
+    if fields.get("view") is None:
+        created.append("a view was created that frames the object")
+    if fields.get("lights") is None:
+        created.append(f"{len(scene.lights)} studio lights were created")
+    if len(names) == 1:
+        created.append(f"surface {names[0]!r} was created")
+    elif names:
+        listed = ", ".join(map(repr, names[:12])) + (
+            f" and {len(names) - 12} more" if len(names) > 12 else ""
+        )
+        created.append(f"{len(names)} surfaces were created: {listed}")
+    if len(scene.surfaces) == MOST_SURFACES:
+        of_last = sum(part.surface == scene.surfaces[-1].name for part in scene.parts)
+        if of_last > 1:
+            created.append(
+                f"{of_last:,} parts share surface {scene.surfaces[-1].name!r}, because a scene has at most"
+                f" {MOST_SURFACES}"
+            )
+    repairs = (*(repair for report in reports for repair in report.repairs), *conflicts)
+    return SceneReport(
+        scene,
+        repairs,
+        tuple(created),
+        mesh_files,
+        fields.get("view") is None,
+        fields.get("lights") is None,
+    )
+
+
+def _joined_materials(
+    reports: Sequence[MeshReport],
+) -> tuple[dict[str, str], dict[str, Surface], tuple[str, ...]]:
+    """The materials of parts, the surfaces of materials, and a message for each conflict of several meshes.
+
+    If two files describe a material of the same name differently, the material of the later file is renamed.
+    A part that several meshes have is one part, with the first material that a mesh gives it.
+    """
+    material_of_part: dict[str, str] = {}
+    materials: dict[str, Surface] = {}
+    conflicts = []
+    for report in reports:
+        renamed = {}
+        for surface in report.materials:
+            name, number = surface.name, 1
+            while name in materials and materials[name].replace(name=surface.name) != surface:
+                number += 1
+                name = f"{surface.name} {number}"
+            renamed[surface.name] = name
+            materials.setdefault(name, surface if name == surface.name else surface.replace(name=name))
+        for part, material in report.material_of_part.items():
+            name = renamed.get(material, material)
+            first = material_of_part.setdefault(part, name)
+            if first != name:
+                conflicts.append(f"part {shown(part)} is in several meshes: it has material {shown(first)}")
+    return material_of_part, materials, tuple(conflicts)

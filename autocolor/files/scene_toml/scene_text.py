@@ -1,0 +1,342 @@
+"""The text of a scene file: written for a scene, or an existing text edited until it gives the scene.
+
+To edit, the text is read, and the differences between the scene that it gives and the wanted scene are
+changed in it; everything else stays as it was written. This is repeated until both scenes are equal, because
+omitted keys are created from the given ones: lights, for example, depend on the view.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Final
+
+from autocolor.errors import InputError
+from autocolor.files.scene_toml.toml_edit import TomlText
+from autocolor.files.scene_toml.toml_text import KeyPath, parsed_toml, table_text, toml_key
+from autocolor.scene.columns import Row, fields_of, made, plain, with_values
+from autocolor.scene.geometry.normals import CREASE_ANGLE
+from autocolor.scene.lights import Flap, HalfSpace, Light
+from autocolor.scene.row_kinds import NamedRows, Nested, RangesByName, Rows, without_name
+from autocolor.scene.scalar import Scalar
+from autocolor.scene.scene import Scene
+from autocolor.scene.surfaces import Part, Surface
+from autocolor.scene.view import View
+
+FILE_TABLES: Final = ("view", "scalar", "mesh", "parts", "surfaces", "lights")
+"""The tables of a scene file, in the order in which they are written."""
+
+ALWAYS_WRITTEN: Final[dict[type[Row], tuple[str, ...]]] = {
+    Part: ("name", "surface"),
+    # Surfaces without an object color are given different colors.
+    Surface: ("name", "object_color"),
+    Light: ("name", "position"),
+    View: ("eye", "direction", "target"),
+    Flap: (),
+    HalfSpace: ("name", "point", "direction"),
+    Scalar: ("name",),
+}
+"""The keys that are also written with `without_defaults`."""
+
+
+def scene_text(
+    scene: Scene, mesh_files: Sequence[Mapping[str, str]], *, without_defaults: bool = False
+) -> str:
+    """The scene as TOML, with all its tables; `mesh_files` are its `[[mesh]]` tables (see SceneReport).
+
+    Keys whose values are their defaults can be left out. The scene's name is not written, as it is given by
+    the name of the folder or file.
+    """
+    tables = sparse_tables(scene) if without_defaults else plain(scene)
+    kinds = {name: field.column.kind for name, field in fields_of(Scene).items()}
+    keys = {
+        key: value
+        for key, value in tables.items()
+        if key != "name" and (not isinstance(kinds[key], (Nested, Rows)) or (key, value) == ("lights", []))
+    }
+    blocks = [table_text("", keys)] if keys else []
+    nested = [name for name, kind in kinds.items() if isinstance(kind, Nested) and name in tables]
+    blocks.extend(table_text(f"[{name}]", tables[name]) for name in nested)
+    for row, files in enumerate(mesh_files):
+        entry = {**files} if row else {**files, "crease_angle": scene.mesh.crease_angle}
+        blocks.append(table_text("[[mesh]]", sparse_entry(entry) if without_defaults else entry))
+    for name, kind in kinds.items():
+        if isinstance(kind, Rows):
+            blocks.extend(_rows(name, kind, tables[name]))
+    return "\n".join(blocks)
+
+
+def sparse_tables(scene: Scene) -> dict[str, Any]:
+    """The tables of a scene as keys and plain values, without keys whose values are their defaults."""
+    tables: dict[str, Any] = {}
+    for name, field in fields_of(Scene).items():
+        value, kind = vars(scene)[name], field.column.kind
+        if isinstance(kind, Rows):
+            tables[name] = [sparse_row(row) for row in value]
+        elif isinstance(kind, Nested) and value is not None:
+            tables[name] = sparse_row(value)
+        elif field.default is None or value != field.default():
+            tables.update(kind.written(name, value))
+    return tables
+
+
+def sparse_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """A `[[mesh]]` table without keys whose values are their defaults."""
+    defaults = {"up": "z", "scale": 1.0, "crease_angle": CREASE_ANGLE}
+    return {key: value for key, value in entry.items() if value != defaults.get(key)}
+
+
+def sparse_row(row: Row) -> dict[str, object]:
+    """The row as keys and plain values, without keys whose values are their defaults."""
+    keys = plain(row)
+    always = ALWAYS_WRITTEN[type(row)]
+    given = {key: keys[key] for key in always if key in keys}
+    model = {key: keys[key] for key in ("model",) if key in keys}
+    default, of_model = plain(made(type(row), given)), plain(made(type(row), {**given, **model}))
+    if isinstance(row, Light):
+        keys["flaps"] = {axis: sparse_row(flap) for axis, flap in vars(row.flaps).items() if flap is not None}
+    for name, field in fields_of(type(row)).items():
+        if isinstance(field.column.kind, NamedRows) and name in keys:
+            keys[name] = {inner.name: without_name(sparse_row(inner)) for inner in vars(row)[name]}
+    return {
+        key: value
+        for key, value in keys.items()
+        if key in always or value != (default if key in model else of_model).get(key)
+    }
+
+
+def _rows(name: str, kind: Rows, rows: Any) -> Iterator[str]:
+    """The rows of a table, as [name.ROW] tables or as [[name]] tables."""
+    for keys in rows:
+        if kind.by_name:
+            yield table_text(f"[{name}.{toml_key(keys['name'])}]", without_name(keys))
+        else:
+            yield table_text(f"[[{name}]]", keys)
+
+
+# Editing a text.
+
+MOST_ROUNDS: Final = 6
+"""Limit: three rounds are enough if any number is: for given keys, for their order, for created keys."""
+
+NEW_ROW: Final = 1 << 20
+"""The number of the first row that is added to `[[lights]]` or `[[mesh]]`; the text has fewer."""
+
+ORDERED: Final = tuple(
+    (name,) for name, field in fields_of(Scene).items() if isinstance(field.column.kind, RangesByName)
+)
+"""The paths of tables whose keys have an order: a new key can be added as the last one only."""
+
+ReadText = Callable[[bytes], Scene]
+"""Reads the text of a scene file for a given mesh; raises InputError."""
+
+Tables = Mapping[str, Any]
+
+
+def edited_to(data: bytes, scene: Scene, read: ReadText) -> bytes | None:
+    """The text of a scene file, edited until it gives the scene, besides its mesh and its name.
+
+    None if the text cannot be read, or if no edit makes it give the scene.
+    """
+    for _ in range(MOST_ROUNDS):
+        try:
+            current = read(data)
+        except InputError:
+            return None
+        if with_values(current, {"mesh": scene.mesh, "name": scene.name}).equals(scene):
+            return data
+        data = _edited(data, current, scene)
+    return None
+
+
+def completed(data: bytes, scene: Scene) -> bytes:
+    """The text of a scene file that gives the scene, with all omitted keys and rows added."""
+    document = parsed_toml(data, "scene.toml")
+    text = TomlText(data.decode(), FILE_TABLES)
+    tables: dict[str, Any] = plain(scene)
+    _complete(text, (), document, {key: tables[key] for key in tables if key not in (*FILE_TABLES, "name")})
+    _complete(text, ("view",), document.get("view", {}), tables["view"])
+    if "scalar" in tables:
+        _complete(text, ("scalar",), document.get("scalar", {}), tables["scalar"])
+    for table in ("parts", "surfaces"):
+        for row in tables[table]:
+            name = row.pop("name")
+            _complete(text, (table, name), document.get(table, {}).get(name, {}), row)
+    text.arrange("surfaces", [surface.name for surface in scene.surfaces])
+    if text.has(("lights", 0)) or "lights" not in document:
+        written = document.get("lights", [{}] * len(scene.lights))
+        for number, row in enumerate(tables["lights"]):
+            _complete(text, ("lights", number), written[number], row)
+    return text.text.encode()
+
+
+def _complete(text: TomlText, path: KeyPath, given: Tables, keys: Tables) -> None:
+    """Set the keys of a table that the text omits."""
+    for key, value in keys.items():
+        if key not in given:
+            _set_all(text, path, {key: value})
+        elif isinstance(value, Mapping) and isinstance(given[key], Mapping):
+            _complete(text, (*path, key), given[key], value)
+
+
+def with_meshes(data: bytes, entries: tuple[Mapping[str, Any], ...]) -> bytes:
+    """The text of a scene file with other `[[mesh]]` tables."""
+    text = TomlText(data.decode(), FILE_TABLES)
+    if not text.has(("mesh", 0)):
+        # The tables are one inline array, or there are none.
+        text.remove(("mesh",))
+    for row, entry in enumerate(entries):
+        for key, value in sparse_entry(entry).items():
+            text.set(("mesh", NEW_ROW + row, key), value)
+    row = 0
+    while text.has(("mesh", row)):
+        text.remove(("mesh", row))
+        row += 1
+    return text.text.encode()
+
+
+def with_crease_angle(data: bytes, angle: float) -> bytes:
+    """The text of a scene file with a crease angle, in each `[[mesh]]` that gives one, else in the first."""
+    text = TomlText(data.decode(), FILE_TABLES)
+    tables = parsed_toml(data, "scene.toml")["mesh"]
+    rows = [row for row, table in enumerate(tables) if "crease_angle" in table] or [0]
+    if text.has(("mesh", 0)):
+        for row in rows:
+            text.set(("mesh", row, "crease_angle"), angle)
+    else:
+        # The tables are one inline array.
+        for row in rows:
+            tables[row]["crease_angle"] = angle
+        text.set(("mesh",), tables)
+    return text.text.encode()
+
+
+def without_parts(data: bytes, names: set[str]) -> bytes:
+    """The text of a scene file without some parts."""
+    text = TomlText(data.decode(), FILE_TABLES)
+    for name in names:
+        text.remove(("parts", name))
+    return text.text.encode()
+
+
+def _edited(data: bytes, old: Scene, new: Scene) -> bytes:
+    """The text with the differences between the scene that it gives and another one changed."""
+    document = parsed_toml(data, "scene.toml")
+    text = TomlText(data.decode(), FILE_TABLES)
+    before: dict[str, Any] = plain(old)
+    after: dict[str, Any] = plain(new)
+    sparse = sparse_tables(new)
+
+    keys = [key for key in after if key not in (*FILE_TABLES, "name")]
+    _change(text, (), {key: before[key] for key in keys}, {key: after[key] for key in keys}, after)
+    if "view" in document:
+        _change(text, ("view",), before["view"], after["view"], sparse["view"])
+    elif before["view"] != after["view"]:
+        _set_all(text, ("view",), sparse["view"])
+    if "scalar" not in after:
+        text.remove(("scalar",))
+    elif "scalar" in before:
+        _change(text, ("scalar",), before["scalar"], after["scalar"], sparse["scalar"])
+    else:
+        _set_all(text, ("scalar",), sparse["scalar"])
+    for key in ("parts", "surfaces"):
+        _change_named(text, document, key, before[key], after[key], sparse[key])
+    if before["lights"] != after["lights"]:
+        _change_lights(text, document, before["lights"], after["lights"], sparse["lights"])
+    return text.text.encode()
+
+
+def _change(text: TomlText, path: KeyPath, before: Tables, after: Tables, sparse: Tables) -> None:
+    """Change the differences between two tables. A new key is written if it is in the sparse table."""
+    for key in before:
+        if key not in after:
+            text.remove((*path, key))
+    for key, value in after.items():
+        here = (*path, key)
+        if key not in before:
+            if key in sparse:
+                _set_all(text, path, {key: sparse[key]})
+        elif isinstance(value, Mapping) and isinstance(before[key], Mapping):
+            names = [name for name in before[key] if name in value]
+            if here not in ORDERED or names == list(value)[: len(names)]:
+                _change(text, here, before[key], value, sparse.get(key, value))
+            else:
+                text.set(here, value)
+        elif before[key] != value:
+            text.set(here, value)
+
+
+def _change_named(
+    text: TomlText,
+    document: Tables,
+    table: str,
+    before: list[dict[str, Any]],
+    after: list[dict[str, Any]],
+    sparse: list[dict[str, Any]],
+) -> None:
+    """Change the differences of a table of rows by name; surfaces are in the order of the scene."""
+    written = document.get(table, {})
+    olds = {row["name"]: row for row in before}
+    names = [row["name"] for row in after]
+    is_moved = table == "surfaces" and list(olds) != names
+    for name in olds.keys() - set(names):
+        text.remove((table, name))
+    for row, keys in zip(after, sparse, strict=True):
+        name = row["name"]
+        old = olds.get(name)
+        if old is not None and (name in written or table == "parts"):
+            _change(text, (table, name), old, row, keys)
+        elif old != row or is_moved:
+            _set_all(text, (table, name), without_name(keys))
+    if is_moved and not text.arrange(table, names):
+        # Rows without headers of their own cannot be moved, but new rows can follow them.
+        remaining = [name for name in written if name in names]
+        if remaining != names[: len(remaining)]:
+            text.remove((table,))
+            for name, keys in zip(names, sparse, strict=True):
+                _set_all(text, (table, name), without_name(keys))
+
+
+def _change_lights(
+    text: TomlText,
+    document: Tables,
+    before: list[dict[str, Any]],
+    after: list[dict[str, Any]],
+    sparse: list[dict[str, Any]],
+) -> None:
+    """Change the differences of the table of lights; if the text has none, all lights are written."""
+    written = document.get("lights", [])
+    if not after or not text.has(("lights", 0)):
+        text.remove(("lights",))
+        if not after or written:
+            text.set(("lights",), sparse)
+            return
+        written = []
+    olds = {row["name"]: row for row in before}
+    number_of = {row["name"]: number for number, row in enumerate(written)}
+    names = [row["name"] for row in after]
+    if len(written) == len(names):
+        # A light with another name in the same place was renamed.
+        for old, new in zip(tuple(number_of), names, strict=True):
+            if new not in number_of and old not in names:
+                number_of[new], olds[new] = number_of.pop(old), olds[old]
+    for name, number in number_of.items():
+        if name not in names:
+            text.remove(("lights", number))
+    for row, keys in zip(after, sparse, strict=True):
+        name = row["name"]
+        if name in number_of:
+            _change(text, ("lights", number_of[name]), olds[name], row, keys)
+        else:
+            number_of[name] = NEW_ROW + len(number_of)
+            _set_all(text, ("lights", number_of[name]), keys)
+    text.arrange("lights", [number_of[name] for name in names])
+
+
+def _set_all(text: TomlText, path: KeyPath, keys: Tables) -> None:
+    """Set all keys of a table; a table of tables, such as flaps, has a line for each inner table."""
+    for key, value in keys.items():
+        if isinstance(value, Mapping) and all(isinstance(inner, Mapping) for inner in value.values()):
+            for name, inner in value.items():
+                text.set((*path, key, name), inner)
+        else:
+            text.set((*path, key), value)

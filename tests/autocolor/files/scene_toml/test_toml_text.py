@@ -1,0 +1,289 @@
+from __future__ import annotations
+
+import tomllib
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from autocolor import InputError
+from autocolor.errors import MissingInputError
+from autocolor.files.scene_toml.toml_text import (
+    LONGEST_SENTENCE,
+    MOST_PROBLEMS,
+    SceneProblems,
+    key_lines,
+    parsed_toml,
+)
+from autocolor.scene.columns import Problem
+
+
+def refusal(data: bytes | str) -> str:
+    with pytest.raises(InputError) as caught:
+        parsed_toml(data if isinstance(data, bytes) else data.encode(), "scene.toml")
+    assert len(caught.value.problems) == 1
+    return str(caught.value)
+
+
+def test_toml_is_parsed() -> None:
+    text = (
+        'a = 1\r\n["b.c"."d \\" ["]\n"""'.replace('"""', "")
+        + "e = '''x\n[y]'''\n# [[[[\nf = [[1.5, 2.5], []]\n"
+    )
+    assert parsed_toml(text.encode(), "x") == {
+        "a": 1,
+        "b.c": {'d " [': {"e": "x\n[y]", "f": [[1.5, 2.5], []]}},
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "place"),
+    [
+        ("a = 1\nb 2\n", 2, "column 3"),
+        ("a = 1\na = 2\n", 2, "column 6"),
+        ("\na = [1,\n\n", 2, "the end of the file"),
+    ],
+)
+def test_a_syntax_error_is_one_sentence_with_its_line(text: str, line: int, place: str) -> None:
+    sentence = refusal(text)
+    assert sentence.startswith(f"scene.toml, line {line}: it must be valid TOML, but is not at {place} (")
+    assert sentence.endswith("); correct the line")
+
+
+def test_other_encodings_are_refused() -> None:
+    assert refusal("a = 1".encode("utf-16")) == (
+        "scene.toml: a scene file must be text in UTF-8, not UTF-16; save it as UTF-8"
+    )
+    assert refusal(b"a = 1\nb = '\xe4'") == (
+        "scene.toml, line 2: a scene file must be text in UTF-8, not bytes like 0xe4; save it as UTF-8"
+    )
+    assert refusal(b"a = 1\n\0") == (
+        "scene.toml: a scene file must be text, not hold a NUL byte (line 2); save it as UTF-8 text"
+    )
+
+
+@pytest.mark.parametrize("brackets", ["[" * 1000, "[" * 1000 + "]" * 1000, "{a=" * 1000, "[{a=" * 500])
+def test_deep_nesting_is_refused_before_parsing(brackets: str) -> None:
+    assert refusal("b = 1\na = " + brackets) == (
+        "scene.toml, line 2: brackets must be nested at most 16 deep, not deeper; flatten them"
+    )
+
+
+@pytest.mark.parametrize("key", ["a" + ".a" * 20_000, "a" + " . 'b'" * 20_000, '"a"' + '."b"' * 20_000])
+@pytest.mark.parametrize("form", ["{} = 1", "[{}]", "[[{}]]", "a = {{ {} = 1 }}"])
+def test_long_dotted_keys_are_refused_before_parsing(key: str, form: str) -> None:
+    assert refusal("\n" + form.format(key)) == (
+        "scene.toml, line 2: a key must have at most 8 parts between dots, not more; shorten it"
+    )
+
+
+@pytest.mark.parametrize("word", ["1" * 5000, "0x" + "f" * 4998, "-1" + "_1" * 2499, "1e" + "9" * 4998])
+def test_endless_numbers_are_refused_before_parsing(word: str) -> None:
+    assert refusal("a = " + word) == (
+        "scene.toml, line 1: a number or a key must have at most 100 digits or letters, not 5,000; write it"
+        " shorter, or in quotes"
+    )
+
+
+def test_brackets_and_dots_in_texts_and_comments_do_not_count() -> None:
+    brackets = "[" * 100 + "." * 100 + "1" * 200
+    text = f"# {brackets}\na = '{brackets}'\nb = \"\\\"{brackets}\"\nc = '''\n'{brackets}'''\n"
+    text += f'd = """\n\\"""{brackets}"""\n'
+    assert set(parsed_toml(text.encode(), "x")) == {"a", "b", "c", "d"}
+
+
+def test_a_list_of_many_numbers_is_no_dotted_key() -> None:
+    assert len(parsed_toml(b"a = [" + b"1.5, " * 1000 + b"]", "x")["a"]) == 1000
+
+
+@pytest.mark.parametrize(
+    "text", ["a = 'x", 'a = "x\\', 'a = """x', "a = '''x''", 'a = """""', "]]]]", '"' * 9999]
+)
+def test_open_ends_are_refused(text: str) -> None:
+    assert refusal(text).startswith("scene.toml, line 1: it must be valid TOML")
+
+
+@given(st.binary(max_size=100) | st.text("ab.=[]{}\"'\\#,1-: \n\r\t", max_size=100).map(str.encode))
+def test_any_bytes_are_parsed_or_refused(data: bytes) -> None:
+    try:
+        parsed_toml(data, "scene.toml")
+    except InputError:
+        return
+    key_lines(data)
+
+
+def test_every_key_has_its_line() -> None:
+    text = """
+ambient = 1
+"a = b" . c = 2
+[view]
+eye = [
+    1,
+    2,
+]
+
+[[lights]]
+name = 'a' # comment
+flaps.z = { on = true }
+[[lights]]
+name = '''
+b'''
+on = true
+[surfaces."a.b"]
+"""
+    assert key_lines(text.encode()) == {
+        ("ambient",): 2,
+        ("a = b",): 3,
+        ("a = b", "c"): 3,
+        ("view",): 4,
+        ("view", "eye"): 5,
+        ("lights",): 10,
+        ("lights", 0): 10,
+        ("lights", 0, "name"): 11,
+        ("lights", 0, "flaps"): 12,
+        ("lights", 0, "flaps", "z"): 12,
+        ("lights", 1): 13,
+        ("lights", 1, "name"): 14,
+        ("lights", 1, "on"): 16,
+        ("surfaces",): 17,
+        ("surfaces", "a.b"): 17,
+    }
+
+
+TEXT = """ambient = 1
+scaling = "object"
+[view]
+eye = [1, 2, 3]
+[[mesh]]
+file = "car.obj"
+[surfaces."my body"]
+blend = 0.5
+[[lights]]
+name = "key"
+position = [1, 2, 3]
+flaps.z = { minimum = 0 }
+[[lights]]
+position = [1, 2, 3]
+"""
+
+
+def problems_of(text: str = TEXT) -> SceneProblems:
+    return SceneProblems("scene.toml", text.encode(), tomllib.loads(text))
+
+
+def sentences_of(problems: SceneProblems) -> tuple[str, ...]:
+    with pytest.raises(InputError) as caught:
+        problems.raise_any()
+    return caught.value.problems
+
+
+@pytest.mark.parametrize(
+    ("path", "sentence"),
+    [
+        ((), "scene.toml, must be so"),
+        (("ambient",), "scene.toml, line 1, ambient must be so"),
+        (("view",), "scene.toml, line 3, view must be so"),
+        (("view", "eye"), "scene.toml, line 4, [view]: eye must be so"),
+        (("mesh", 0, "file"), "scene.toml, line 6, mesh[1]: file must be so"),
+        (("surfaces", "my body", "blend"), "scene.toml, line 8, [surfaces.my body]: blend must be so"),
+        (("lights", 0, "position"), "scene.toml, line 11, lights[1] 'key': position must be so"),
+        (
+            ("lights", 0, "flaps", "z", "minimum"),
+            "scene.toml, line 12, lights[1] 'key': flaps.z.minimum must be so",
+        ),
+        (("lights", 1, "position"), "scene.toml, line 14, lights[2]: position must be so"),
+        (("lights", 1, "name"), "scene.toml, line 13, lights[2]: name must be so"),
+        (("parts", "hood", "surface"), "scene.toml, [parts.hood]: surface must be so"),
+    ],
+)
+def test_a_problem_has_the_line_the_table_and_the_key(path: tuple[str | int, ...], sentence: str) -> None:
+    problems = problems_of()
+    problems.note(path, "must be so")
+    assert sentences_of(problems) == (sentence,)
+
+
+def test_a_wrong_name_is_told_the_nearest_right_one() -> None:
+    problems = problems_of()
+    problems.note(("parts", "hod"), "no mesh has a part of this name", ("hod", ["hood", "roof"]))
+    assert sentences_of(problems) == (
+        "scene.toml, [parts.hod]: no mesh has a part of this name; did you mean 'hood'?",
+    )
+
+
+def test_problems_of_a_row_are_noted_under_its_path() -> None:
+    problems = problems_of()
+    problems.note_all(
+        [Problem(("name",), "must be so"), Problem((), "it must have an aim")], path=("lights", 1)
+    )
+    assert sentences_of(problems) == (
+        "scene.toml, line 13, lights[2]: name must be so",
+        "scene.toml, line 13, lights[2]: it must have an aim",
+    )
+
+
+def test_problems_stand_in_the_order_of_the_lines_and_of_noting() -> None:
+    problems = problems_of()
+    for path, text in ((("view", "eye"), "must a"), (("ambient",), "must b"), (("view", "eye"), "must c")):
+        problems.note(path, text)
+    assert [sentence[-1] for sentence in sentences_of(problems)] == ["b", "a", "c"]
+
+
+def test_without_a_problem_nothing_is_raised() -> None:
+    problems_of().raise_any()
+
+
+def test_a_mesh_file_has_places_of_its_own() -> None:
+    problems = problems_of()
+    problems.note(("lights", 0, "position"), "must be so")
+    problems.note_file(("mesh", 0, "file"), InputError(["car.obj, line 1: one", "car.obj, line 2: two"]))
+    assert sentences_of(problems) == (
+        "car.obj, line 1: one",
+        "car.obj, line 2: two",
+        "scene.toml, line 11, lights[1] 'key': position must be so",
+    )
+
+
+def test_files_are_missing_input_only_where_nothing_else_is_wrong() -> None:
+    missing = MissingInputError("car.obj: there is no such file")
+    problems = problems_of()
+    problems.note_file(("mesh", 0, "file"), missing)
+    with pytest.raises(MissingInputError) as caught:
+        problems.raise_any()
+    assert str(caught.value) == "scene.toml, line 6, mesh[1]: car.obj: there is no such file"
+    problems.note(("ambient",), "must be so")
+    with pytest.raises(InputError) as other:
+        problems.raise_any()
+    assert other.type is InputError
+    assert len(other.value.problems) == 2
+
+
+@given(st.integers(1, 3 * MOST_PROBLEMS), st.integers(0, 3 * MOST_PROBLEMS))
+def test_a_report_has_at_most_so_many_problems_and_says_if_there_may_be_more(own: int, of_mesh: int) -> None:
+    problems = problems_of()
+    for _ in range(own):
+        problems.note(("ambient",), "must be so")
+    problems.note_file(("mesh", 0, "file"), InputError("car.obj: wrong" for _ in range(of_mesh)))
+    sentences = sentences_of(problems)
+    assert problems.count == own + of_mesh
+    assert problems.full == (own + of_mesh >= MOST_PROBLEMS)
+    if problems.full:
+        assert len(sentences) == MOST_PROBLEMS + 1
+        assert sentences[-1] == "scene.toml: there may be more problems; correct these first"
+    else:
+        assert len(sentences) == own + of_mesh
+
+
+@given(st.text(min_size=1, max_size=2000))
+def test_a_sentence_is_short_whatever_a_file_holds(text: str) -> None:
+    problems = problems_of()
+    problems.note(("surfaces", text, text), text)
+    (sentence,) = sentences_of(problems)
+    assert len(sentence) <= LONGEST_SENTENCE + len("scene.toml, line 14, [surfaces.]: ...") + 60
+
+
+@pytest.mark.parametrize("text", ["lights = 3\n", "lights = [1]\n", "[lights]\nname = 'x'\n"])
+def test_a_table_that_is_no_table_still_has_a_place(text: str) -> None:
+    problems = problems_of(text)
+    problems.note(("lights", 0, "name"), "must be so")
+    (sentence,) = sentences_of(problems)
+    assert sentence == "scene.toml, line 1, lights[1]: name must be so"
