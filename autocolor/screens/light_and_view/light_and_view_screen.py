@@ -326,7 +326,8 @@ def smaller(words: Words, area: Area) -> Words:
         for size, count in zip((area.height, area.width), words.shape, strict=True)
     )
     # Twice `take` costs a seventh of indexing by both.
-    return words.take(lines, axis=0).take(elements, axis=1)
+    small: Words = words.take(lines, axis=0).take(elements, axis=1)
+    return small
 
 
 # The small switches of the chosen light's flaps, at the end of their lines in the three views.
